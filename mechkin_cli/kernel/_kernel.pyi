@@ -1,0 +1,117 @@
+"""The compiled core; see src/module.cpp. Batched arrays are (columns, rows), C-contiguous
+float64."""
+
+from collections.abc import Sequence
+from typing import Final, TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Triple = Sequence[float]
+
+widest: Final[int]
+
+class JointTableRow(TypedDict):
+    letter: str
+    code: int
+    freedoms: int
+    states: int
+    equations: int
+    slides: int
+    theta: bool
+    s: bool
+
+def joint_table() -> list[JointTableRow]: ...
+def elementwise(operation: int, x: Floats, y: Floats, lanes: int = 0) -> Floats: ...
+def number_text(x: float, significant_digits: int = 0) -> str: ...
+def fixed_texts(values: Floats, decimals: int) -> list[str]: ...
+def csv_text(
+    labels: Sequence[str],
+    columns: Sequence[Floats | tuple[NDArray[np.int32], Sequence[str]]],
+    missing: NDArray[np.bool_] | None = None,
+    significant_digits: int = 0,
+) -> bytes: ...
+
+class Place:
+    def __init__(
+        self, first: int, second: int, point: Triple, axis: Triple, sign: float
+    ) -> None: ...
+
+class Plan:
+    def __init__(self, length: float, origin: Triple, size: float) -> None: ...
+    @property
+    def states(self) -> int: ...
+    @property
+    def columns(self) -> int: ...
+    @property
+    def slots(self) -> int: ...
+    def add_tree_joint(
+        self, type: int, parent: int, pitch: float, at: Sequence[float], place: Place
+    ) -> None: ...
+    def add_closing_joint(
+        self,
+        type: int,
+        first: int,
+        second: int,
+        on_first: Sequence[float],
+        on_second: Sequence[float],
+        loop: Sequence[tuple[int, float]],
+        place: Place,
+    ) -> None: ...
+    def add_block(
+        self, closing_joints: int, joints: Sequence[int], unknown: Sequence[int]
+    ) -> None: ...
+    def set_rest(self, joints: Sequence[int]) -> None: ...
+    def add_input(self, column: int) -> None: ...
+    def set_inertia(
+        self, link: int, mass: float, centre: Triple, tensor: Sequence[float]
+    ) -> None: ...
+    def set_gravity(self, g: Triple) -> None: ...
+    def add_load(
+        self, type: int, link: int, other: int, point: Triple, other_point: Triple, vector: Triple
+    ) -> None: ...
+    def add_output(self, type: int, index: int, order: int, data: Triple, factor: float) -> int: ...
+    def finish(self) -> None: ...
+    def run(
+        self,
+        inputs: Floats,
+        rates: Floats | None,
+        accelerations: Floats | None,
+        guess: Floats,
+        states: Floats,
+        outputs: Floats | None,
+        first: Floats | None,
+        second: Floats | None,
+        residual: Floats,
+        correction: Floats,
+        condition: Floats | None,
+        power_error: Floats | None,
+        flags: NDArray[np.uint8],
+        demand: int,
+        iterations: int,
+        tests: tuple[float, float, float],
+        lanes: int,
+    ) -> None: ...
+    def search(
+        self,
+        block: int,
+        inputs: Floats,
+        states: Floats,
+        residual: Floats,
+        flags: NDArray[np.uint8],
+        iterations: int,
+        accept: float,
+        lanes: int,
+    ) -> None: ...
+    def track(
+        self,
+        x0: Sequence[float],
+        u: Sequence[float],
+        sigma: Floats,
+        start: Floats,
+        guess: Floats,
+        limit: Floats,
+        last: Floats,
+        limits: Sequence[float],
+    ) -> tuple[int, int, int, int, float, float]: ...

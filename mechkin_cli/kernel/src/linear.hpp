@@ -1,0 +1,137 @@
+// Small dense linear algebra on packs: LU with partial pivoting, its transpose, singular values.
+//
+// Matrices are n x n, row-major, each lane its own system; n is small (a block's size) and is made a
+// compile-time constant for 1 ... 6. Rows are exchanged lane by lane with selects, so that every lane
+// pivots as if it were alone.
+#pragma once
+
+#include "pack.hpp"
+
+namespace {
+
+struct Factors {
+  Pack* a;     // n x n: L below the diagonal, U above it, reciprocal pivots on it
+  Mask* swap;  // n (n - 1) / 2 exchanges in order
+  int n;
+};
+
+template <int N>
+MECHKIN_INLINE void factor_sized(Factors f, int runtime) {
+  const int n = N ? N : runtime;
+  int s = 0;
+  for (int k = 0; k < n; ++k) {
+    for (int i = k + 1; i < n; ++i) {
+      const Mask c = abs(f.a[i * n + k]) > abs(f.a[k * n + k]);
+      f.swap[s++] = c;
+      for (int j = 0; j < n; ++j) {
+        const Pack x = f.a[k * n + j], y = f.a[i * n + j];
+        f.a[k * n + j] = select(c, y, x);
+        f.a[i * n + j] = select(c, x, y);
+      }
+    }
+    const Pack inverse = Pack(1.0) / f.a[k * n + k];
+    f.a[k * n + k] = inverse;
+    for (int i = k + 1; i < n; ++i) {
+      const Pack l = f.a[i * n + k] * inverse;
+      f.a[i * n + k] = l;
+      for (int j = k + 1; j < n; ++j) f.a[i * n + j] -= l * f.a[k * n + j];
+    }
+  }
+}
+
+template <int N>
+MECHKIN_INLINE void solve_sized(Factors f, int runtime, Pack* b) {
+  const int n = N ? N : runtime;
+  int s = 0;
+  for (int k = 0; k < n; ++k)
+    for (int i = k + 1; i < n; ++i) {
+      const Mask c = f.swap[s++];
+      const Pack x = b[k], y = b[i];
+      b[k] = select(c, y, x);
+      b[i] = select(c, x, y);
+    }
+  for (int k = 0; k < n; ++k)
+    for (int i = k + 1; i < n; ++i) b[i] -= f.a[i * n + k] * b[k];
+  for (int k = n - 1; k >= 0; --k) {
+    for (int j = k + 1; j < n; ++j) b[k] -= f.a[k * n + j] * b[j];
+    b[k] *= f.a[k * n + k];
+  }
+}
+
+template <int N>
+MECHKIN_INLINE void solve_transposed_sized(Factors f, int runtime, Pack* b) {
+  const int n = N ? N : runtime;
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < k; ++j) b[k] -= f.a[j * n + k] * b[j];
+    b[k] *= f.a[k * n + k];
+  }
+  for (int k = n - 1; k >= 0; --k)
+    for (int i = k + 1; i < n; ++i) b[k] -= f.a[i * n + k] * b[i];
+  int s = n * (n - 1) / 2;
+  for (int k = n - 1; k >= 0; --k)
+    for (int i = n - 1; i > k; --i) {
+      const Mask c = f.swap[--s];
+      const Pack x = b[k], y = b[i];
+      b[k] = select(c, y, x);
+      b[i] = select(c, x, y);
+    }
+}
+
+#define MECHKIN_SIZED(FUNCTION, ...)                 \
+  switch (f.n) {                                     \
+    case 1: return FUNCTION<1>(f, 1 __VA_ARGS__);    \
+    case 2: return FUNCTION<2>(f, 2 __VA_ARGS__);    \
+    case 3: return FUNCTION<3>(f, 3 __VA_ARGS__);    \
+    case 4: return FUNCTION<4>(f, 4 __VA_ARGS__);    \
+    case 5: return FUNCTION<5>(f, 5 __VA_ARGS__);    \
+    case 6: return FUNCTION<6>(f, 6 __VA_ARGS__);    \
+    default: return FUNCTION<0>(f, f.n __VA_ARGS__); \
+  }
+#define MECHKIN_AND_B , b
+// Factors f.a in place.
+inline void factor(Factors f) { MECHKIN_SIZED(factor_sized, ) }
+// b := A^-1 b.
+inline void solve(Factors f, Pack* b) { MECHKIN_SIZED(solve_sized, MECHKIN_AND_B) }
+// b := A^-T b.
+inline void solve_transposed(Factors f, Pack* b) { MECHKIN_SIZED(solve_transposed_sized, MECHKIN_AND_B) }
+#undef MECHKIN_AND_B
+#undef MECHKIN_SIZED
+
+// Smallest singular value of the n x n matrix a (destroyed), by one-sided Jacobi rotations of its
+// columns (Demmel and Veselic 1992: accurate to high relative precision). A pair of columns that is
+// orthogonal to rounding is left alone, lane by lane.
+inline Pack smallest_singular_value(Pack* a, int n) {
+  const Pack negligible = 1e-15;
+  for (int sweep = 0; sweep < 30; ++sweep) {
+    bool rotated = false;
+    for (int p = 0; p < n; ++p)
+      for (int q = p + 1; q < n; ++q) {
+        Pack alpha = 0.0, beta = 0.0, gamma = 0.0;
+        for (int i = 0; i < n; ++i) {
+          const Pack x = a[i * n + p], y = a[i * n + q];
+          alpha += x * x, beta += y * y, gamma += x * y;
+        }
+        const Mask turn = abs(gamma) > negligible * sqrt(alpha * beta);
+        if (!any(turn)) continue;
+        rotated = true;
+        const Pack zeta = (beta - alpha) / (Pack(2.0) * select(turn, gamma, Pack(1.0)));
+        const Pack t = copysign(Pack(1.0), zeta) / (abs(zeta) + sqrt(Pack(1.0) + zeta * zeta));
+        const Pack c = Pack(1.0) / sqrt(Pack(1.0) + t * t), s = c * t;
+        for (int i = 0; i < n; ++i) {
+          const Pack x = a[i * n + p], y = a[i * n + q];
+          a[i * n + p] = select(turn, c * x - s * y, x);
+          a[i * n + q] = select(turn, s * x + c * y, y);
+        }
+      }
+    if (!rotated) break;
+  }
+  Pack least = 0.0;
+  for (int j = 0; j < n; ++j) {
+    Pack square = 0.0;
+    for (int i = 0; i < n; ++i) square += a[i * n + j] * a[i * n + j];
+    least = j ? min(least, square) : square;
+  }
+  return sqrt(least);
+}
+
+}  // namespace

@@ -1,0 +1,86 @@
+// Velocities and accelerations: the closing equations once and twice differentiated, solved with the
+// factors of the converged position (design: influence coefficients from the same factorisation).
+//
+// With input rates 1 and accelerations 0 the results are the first and second influence coefficients.
+#pragma once
+
+#include "position.hpp"
+
+namespace {
+
+MECHKIN_INLINE Motion motion_of(const Workspace& w, int link) {
+  if (link < 0) return {zero_twist(), zero_twist()};
+  return w.motion[link];
+}
+
+// Twist and spatial acceleration of the link of tree joint k from its parent's:
+// V = V_p + S q', V' = V_p' + S q'' + [V_p, S q'].
+inline void move_link(const Plan& p, Workspace& w, int k, bool second) {
+  const TreeJoint& j = p.joints[k];
+  const Motion parent = motion_of(w, j.parent);
+  Twist relative = zero_twist(), relative_second = zero_twist();
+  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+    for (int i = 0; i < entry.freedoms; ++i) {
+      relative += w.rate[j.column + i] * w.screw[j.column + i];
+      if (second) relative_second += w.acceleration[j.column + i] * w.screw[j.column + i];
+    }
+  });
+  w.motion[k].velocity = parent.velocity + relative;
+  if (second)
+    w.motion[k].acceleration = parent.acceleration + relative_second + bracket(parent.velocity, relative);
+}
+
+// Right-hand side -J q' over the loop's columns that are already known.
+inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* right) {
+  const Block& b = p.block[index];
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    const Closure& k = w.closure[c];
+    Twist a = zero_twist();
+    for (int l = j.loop_begin; l < j.loop_end; ++l) {
+      const TreeJoint& t = p.joints[p.loop[l].joint];
+      const Pack sign = p.loop[l].sign;
+      with_tree_joint(t.type, [&](auto entry) __attribute__((always_inline)) {
+        for (int i = 0; i < entry.freedoms; ++i)
+          if (unknown_index(p, index, t.column + i) < 0)
+            a += (sign * w.rate[t.column + i]) * w.screw[t.column + i];
+      });
+    }
+    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      Pack r[MAX_CLOSING_ROWS];
+      entry.column(k, a.angular, a.at(k.B.o), r);
+      for (int i = 0; i < entry.equations; ++i) right[j.row + i] = -r[i];
+    });
+  }
+}
+
+inline void block_velocities(const Plan& p, Workspace& w, int index) {
+  const Block& b = p.block[index];
+  const BlockPlaces at = places_of(p, w, index);
+  known_rates(p, w, index, w.right);
+  solve({at.jacobian, at.swap, b.size}, w.right);
+  for (int u = 0; u < b.size; ++u) w.rate[p.unknown[b.column_begin + u]] = w.right[u];
+  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], false);
+}
+
+// First with the block's unknown second derivatives at zero, which leaves the convective part of the
+// closing equations, then with the ones that cancel it.
+inline void block_accelerations(const Plan& p, Workspace& w, int index) {
+  const Block& b = p.block[index];
+  const BlockPlaces at = places_of(p, w, index);
+  for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = 0.0;
+  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      Pack r[MAX_CLOSING_ROWS];
+      entry.second(w.closure[c], motion_of(w, j.first), motion_of(w, j.second), r);
+      for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];
+    });
+  }
+  solve({at.jacobian, at.swap, b.size}, w.right);
+  for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = w.right[u];
+  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
+}
+
+}  // namespace

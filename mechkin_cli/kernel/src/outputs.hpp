@@ -1,0 +1,73 @@
+// The quantities that were asked for, from the workspace into the output columns.
+#pragma once
+
+#include "reactions.hpp"
+
+namespace {
+
+// Writes a pack into column `slot` of an array stored column after column; only lanes that are rows.
+struct Writer {
+  double* base;
+  long rows, row;
+  int count;
+  MECHKIN_INLINE void put(long slot, Pack x) const {
+    double* at = base + slot * rows + row;
+    if (count == LANES) return store(at, x);
+    for (int i = 0; i < count; ++i) at[i] = lane(x, i);
+  }
+  MECHKIN_INLINE void put(long slot, Vec3 a) const {
+    put(slot, a.x), put(slot + 1, a.y), put(slot + 2, a.z);
+  }
+};
+
+inline Vec3 output_point(const Plan& p, const Workspace& w, const Output& o) {
+  const Pack unit = p.length;
+  if (o.index < 0) return o.order ? zero3() : unit * constant(o.data) + constant(p.origin);
+  const Vec3 at = w.pose[o.index].point(o.data);
+  if (o.order == 0) return unit * at + constant(p.origin);
+  const Motion& m = w.motion[o.index];
+  return unit * (o.order == 1 ? m.velocity.at(at) : m.point_acceleration(at));
+}
+
+// Moment about the ground's origin of a wrench of the kernel.
+inline Vec3 ground_moment(const Plan& p, Wrench r) {
+  return r.moment + (Pack(1.0) / Pack(p.length)) * cross(constant(p.origin), r.force);
+}
+
+inline Vec3 output_joint(const Plan& p, const Workspace& w, const Output& o) {
+  const JointView j = view_joint(p, w, o.index);
+  const Wrench r = joint_wrench(w, o.index, j);
+  if (o.type == OUT_JOINT_FORCE) return r.force;
+  if (o.type == OUT_JOINT_MOMENT) return r.moment - cross(j.point, r.force);
+  return ground_moment(p, r);
+}
+
+inline void write_output(const Plan& p, const Workspace& w, const Balance* balance, const Output& o,
+                         const Writer& out) {
+  const Pack factor = o.factor;
+  switch (o.type) {
+    case OUT_STATE: return out.put(o.slot, factor * w.q[o.index]);
+    case OUT_RATE: return out.put(o.slot, factor * w.rate[o.index]);
+    case OUT_ACCELERATION: return out.put(o.slot, factor * w.acceleration[o.index]);
+    case OUT_CLOSING_THETA:
+      return out.put(o.slot, closing_coordinate(p, w, o.index, o.order).theta[o.order]);
+    case OUT_CLOSING_S:
+      return out.put(o.slot, factor * closing_coordinate(p, w, o.index, o.order).s[o.order]);
+    case OUT_POINT: return out.put(o.slot, output_point(p, w, o));
+    case OUT_VECTOR:
+      return out.put(o.slot, o.index < 0 ? constant(o.data) : w.pose[o.index].vector(o.data));
+    case OUT_OMEGA: return out.put(o.slot, w.motion[o.index].velocity.angular);
+    case OUT_ALPHA: return out.put(o.slot, w.motion[o.index].acceleration.angular);
+    case OUT_JOINT_FORCE:
+    case OUT_JOINT_MOMENT:
+    case OUT_JOINT_MOMENT_ORIGIN: return out.put(o.slot, factor * output_joint(p, w, o));
+    case OUT_EFFORT: return out.put(o.slot, factor * w.effort[o.index]);
+    case OUT_SHAKING_FORCE: return out.put(o.slot, factor * (balance->outside - balance->inertia).force);
+    case OUT_SHAKING_MOMENT:
+      return out.put(o.slot, factor * ground_moment(p, balance->outside - balance->inertia));
+    case OUT_INERTIA_FORCE: return out.put(o.slot, (-factor) * balance->inertia.force);
+    case OUT_INERTIA_MOMENT: return out.put(o.slot, (-factor) * ground_moment(p, balance->inertia));
+  }
+}
+
+}  // namespace

@@ -1,0 +1,111 @@
+// A pack: W doubles that march together (rows of a sweep, starts of a search, variants of a study).
+//
+// Everything numeric in the kernel is written once for `Pack` and `Mask` and compiled once per
+// instruction set, inside an anonymous namespace, so that no symbol of a wide unit can be linked
+// into a narrow one. Only IEEE + - * / sqrt, comparisons and bit operations occur, each lane on its
+// own: a lane's bits depend neither on its neighbours nor on the width.
+//
+// MECHKIN_LANES (2, 4, 8) is set by the build. A pack is a compiler vector of GCC or Clang.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#ifndef MECHKIN_LANES
+#error "MECHKIN_LANES must be defined by the build (2, 4 or 8)"
+#endif
+
+#if !defined(__GNUC__)
+#error "the kernel needs the vector extensions of GCC >= 11 or Clang >= 16"
+#endif
+#define MECHKIN_INLINE inline __attribute__((always_inline))
+
+namespace {
+
+constexpr int LANES = MECHKIN_LANES;
+
+typedef double Doubles __attribute__((vector_size(8 * LANES)));
+typedef std::int64_t Words __attribute__((vector_size(8 * LANES)));
+
+// All bits set in a lane: true.
+struct Mask {
+  Words w;
+  friend MECHKIN_INLINE Mask operator&(Mask a, Mask b) { return {a.w & b.w}; }
+  friend MECHKIN_INLINE Mask operator|(Mask a, Mask b) { return {a.w | b.w}; }
+  friend MECHKIN_INLINE Mask operator~(Mask a) { return {~a.w}; }
+};
+
+struct Pack {
+  Doubles v;
+  Pack() = default;
+  MECHKIN_INLINE Pack(Doubles x) : v(x) {}
+  MECHKIN_INLINE Pack(double x) : v(x - Doubles{}) {}
+
+  friend MECHKIN_INLINE Pack operator+(Pack a, Pack b) { return a.v + b.v; }
+  friend MECHKIN_INLINE Pack operator-(Pack a, Pack b) { return a.v - b.v; }
+  friend MECHKIN_INLINE Pack operator*(Pack a, Pack b) { return a.v * b.v; }
+  friend MECHKIN_INLINE Pack operator/(Pack a, Pack b) { return a.v / b.v; }
+  friend MECHKIN_INLINE Pack operator-(Pack a) { return -a.v; }
+  MECHKIN_INLINE Pack& operator+=(Pack b) { v += b.v; return *this; }
+  MECHKIN_INLINE Pack& operator-=(Pack b) { v -= b.v; return *this; }
+  MECHKIN_INLINE Pack& operator*=(Pack b) { v *= b.v; return *this; }
+
+  friend MECHKIN_INLINE Mask operator<(Pack a, Pack b) { return {(Words)(a.v < b.v)}; }
+  friend MECHKIN_INLINE Mask operator<=(Pack a, Pack b) { return {(Words)(a.v <= b.v)}; }
+  friend MECHKIN_INLINE Mask operator>(Pack a, Pack b) { return {(Words)(a.v > b.v)}; }
+  friend MECHKIN_INLINE Mask operator>=(Pack a, Pack b) { return {(Words)(a.v >= b.v)}; }
+  friend MECHKIN_INLINE Mask operator==(Pack a, Pack b) { return {(Words)(a.v == b.v)}; }
+};
+
+MECHKIN_INLINE Pack load(const double* p) {
+  Doubles v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
+}
+MECHKIN_INLINE void store(double* p, Pack x) { std::memcpy(p, &x.v, sizeof x.v); }
+MECHKIN_INLINE double lane(Pack x, int i) { return x.v[i]; }
+MECHKIN_INLINE bool lane(Mask m, int i) { return m.w[i] != 0; }
+
+// c ? a : b, lane by lane.
+MECHKIN_INLINE Pack select(Mask c, Pack a, Pack b) {
+  return (Doubles)(((Words)a.v & c.w) | ((Words)b.v & ~c.w));
+}
+MECHKIN_INLINE Pack abs(Pack a) { return (Doubles)((Words)a.v & (Words{} + INT64_MAX)); }
+MECHKIN_INLINE Pack max(Pack a, Pack b) { return select(a > b, a, b); }
+MECHKIN_INLINE Pack min(Pack a, Pack b) { return select(a < b, a, b); }
+// The bits of each lane as an integer, and back.
+MECHKIN_INLINE Words bits(Pack a) { return (Words)a.v; }
+MECHKIN_INLINE Pack from_bits(Words w) { return (Doubles)w; }
+// Logical shift: the only right shift of 64-bit lanes that every instruction set has.
+MECHKIN_INLINE Words shift_right(Words w, int count) {
+  typedef std::uint64_t Naturals __attribute__((vector_size(8 * LANES)));
+  return (Words)((Naturals)w >> count);
+}
+// 1.5 * 2^52: adding it rounds to the nearest integer and leaves that integer in the lowest bits.
+constexpr double ROUNDER = 0x1.8p52;
+// For |a| < 2^51, ties to even.
+MECHKIN_INLINE Pack nearest_integer(Pack a) { return (a + Pack(ROUNDER)) - Pack(ROUNDER); }
+// |a| with the sign of b.
+MECHKIN_INLINE Pack copysign(Pack a, Pack b) {
+  const Words sign = Words{} + INT64_MIN;
+  return (Doubles)(((Words)a.v & ~sign) | ((Words)b.v & sign));
+}
+// Correctly rounded; the loop becomes one vector instruction.
+MECHKIN_INLINE Pack sqrt(Pack a) {
+  Doubles r;
+  for (int i = 0; i < LANES; ++i) r[i] = __builtin_sqrt(a.v[i]);
+  return r;
+}
+MECHKIN_INLINE Mask all_lanes(bool value) { return {Words{} - (std::int64_t)value}; }
+MECHKIN_INLINE bool any(Mask m) {
+  std::int64_t r = 0;
+  for (int i = 0; i < LANES; ++i) r |= m.w[i];
+  return r != 0;
+}
+MECHKIN_INLINE bool all(Mask m) {
+  std::int64_t r = -1;
+  for (int i = 0; i < LANES; ++i) r &= m.w[i];
+  return r != 0;
+}
+
+}  // namespace

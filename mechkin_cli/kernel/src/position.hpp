@@ -1,0 +1,235 @@
+// Poses of the links and the closure of the loops, block by block, by Newton's method.
+//
+// A lane runs until its residual test holds: at rounding level (`tight`), or one step after it was
+// small enough for that step to reach rounding level (`coarse`, quadratic convergence). A finished lane is
+// frozen, so its bits do not depend on its neighbours.
+#pragma once
+
+#include "joints.hpp"
+#include "linear.hpp"
+
+namespace {
+
+constexpr int MAX_CLOSING_ROWS = 6;
+
+// Data of one pack of rows; every array lies in one allocation, see workspace_size.
+struct Workspace {
+  Pack *q, *rate, *acceleration;  // states, columns, columns
+  Pose* pose;                     // links
+  Twist* screw;                   // columns
+  Motion* motion;                 // links
+  Wrench* carried;                // links: wrench on the link and all that the tree hangs on it
+  Closure* closure;               // closing joints
+  Wrench* reaction;               // closing joints: on the second link
+  Pack* jacobian;                 // per block n x n, factored in place
+  Mask* swap;
+  Pack* multiplier;               // closing rows
+  Pack* right;                    // largest block
+  Pack* scratch;                  // largest block squared
+  Pack* effort;                   // inputs
+  Pack* saved;                    // states before a trial step
+};
+
+// Gives the arrays of a workspace their places from `at` on; returns the bytes used.
+inline long lay_out(const Plan& p, char* at, Workspace* w) {
+  long used = 0;
+  const auto take = [&](long bytes) {
+    char* here = at + used;
+    used += (bytes + 63) / 64 * 64;
+    return here;
+  };
+  long squares = 0, pairs = 0, rows = 0;
+  for (int b = 0; b < p.blocks; ++b) {
+    const long n = p.block[b].size;
+    squares += n * n, pairs += n * (n - 1) / 2, rows += n;
+  }
+  const long pack = sizeof(Pack), largest = p.largest_block;
+  w->q = (Pack*)take(p.states * pack);
+  w->rate = (Pack*)take(p.columns * pack);
+  w->acceleration = (Pack*)take(p.columns * pack);
+  w->pose = (Pose*)take(p.links * sizeof(Pose));
+  w->screw = (Twist*)take(p.columns * sizeof(Twist));
+  w->motion = (Motion*)take((p.links + 1) * sizeof(Motion));
+  w->carried = (Wrench*)take(p.links * sizeof(Wrench));
+  w->closure = (Closure*)take(p.closings * sizeof(Closure));
+  w->reaction = (Wrench*)take(p.closings * sizeof(Wrench));
+  w->jacobian = (Pack*)take(squares * pack);
+  w->swap = (Mask*)take(pairs * sizeof(Mask));
+  w->multiplier = (Pack*)take(rows * pack);
+  w->right = (Pack*)take((largest + MAX_CLOSING_ROWS) * pack);
+  w->scratch = (Pack*)take(largest * largest * pack);
+  w->effort = (Pack*)take((p.inputs + 1) * pack);
+  w->saved = (Pack*)take(p.states * pack);
+  return used;
+}
+
+MECHKIN_INLINE const Pose* pose_of(const Workspace& w, int link) { return link < 0 ? nullptr : &w.pose[link]; }
+
+inline void place_joint(const Plan& p, Workspace& w, int k) {
+  const TreeJoint& j = p.joints[k];
+  Pose pose = placed(j.at, pose_of(w, j.parent));
+  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) { entry.place(pose, j, w.q + j.state); });
+  w.pose[k] = pose;
+}
+
+inline void find_screws(const Plan& p, Workspace& w, int k) {
+  const TreeJoint& j = p.joints[k];
+  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+    entry.screws(w.pose[k], j, pose_of(w, j.parent), w.screw + j.column);
+  });
+}
+
+MECHKIN_INLINE Closure closure_of(const Plan& p, const Workspace& w, int c) {
+  const ClosingJoint& j = p.closing[c];
+  Closure k;
+  k.A = placed(j.on_first, pose_of(w, j.first));
+  k.B = placed(j.on_second, pose_of(w, j.second));
+  k.d = k.B.o - k.A.o;
+  return k;
+}
+
+// Closing equations of a block into w.right; returns the largest, lengths in parts of the size.
+inline Pack block_residual(const Plan& p, Workspace& w, const Block& b) {
+  Pack worst = 0.0;
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    w.closure[c] = closure_of(p, w, c);
+    Pack* r = w.right + j.row;
+    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      entry.residual(w.closure[c], r);
+      for (int i = 0; i < entry.equations; ++i) {
+        const Pack size = i < entry.lengths ? Pack(p.row_weight) * abs(r[i]) : abs(r[i]);
+        worst = select(size <= worst, worst, size);  // a NaN wins
+      }
+    });
+  }
+  return worst;
+}
+
+inline Mask block_side_conditions(const Plan& p, const Workspace& w, const Block& b) {
+  Mask good = all_lanes(true);
+  for (int c = b.closing_begin; c < b.closing_end; ++c)
+    with_closing_joint(p.closing[c].type, [&](auto entry) __attribute__((always_inline)) {
+      good = good & entry.side(w.closure[c]);
+    });
+  return good;
+}
+
+// Entries of the columns of tree joint k in the equations of closing joint c.
+MECHKIN_INLINE void closing_columns(const Plan& p, const Workspace& w, int c, const LoopEntry& e, Pack* out) {
+  const TreeJoint& t = p.joints[e.joint];
+  const Closure& k = w.closure[c];
+  const Pack sign = e.sign;
+  with_tree_joint(t.type, [&](auto tree) __attribute__((always_inline)) {
+    for (int i = 0; i < tree.freedoms; ++i) {
+      const Twist s = sign * w.screw[t.column + i];
+      with_closing_joint(p.closing[c].type, [&](auto entry) __attribute__((always_inline)) {
+        entry.column(k, s.angular, s.at(k.B.o), out + i * MAX_CLOSING_ROWS);
+      });
+    }
+  });
+}
+
+// Where a block keeps its matrices.
+struct BlockPlaces {
+  Pack *jacobian, *multiplier;
+  Mask* swap;
+};
+inline BlockPlaces places_of(const Plan& p, const Workspace& w, int block) {
+  BlockPlaces r = {w.jacobian, w.multiplier, w.swap};
+  for (int b = 0; b < block; ++b) {
+    const int n = p.block[b].size;
+    r.jacobian += n * n, r.swap += n * (n - 1) / 2, r.multiplier += n;
+  }
+  return r;
+}
+
+// Position of a column among the unknowns of a block, or -1.
+MECHKIN_INLINE int unknown_index(const Plan& p, int block, int column) {
+  return p.column_block[column] == block ? p.column_place[column] : -1;
+}
+
+// Jacobian of a block's equations with respect to its unknowns (n x n, row-major).
+inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
+  const Block& b = p.block[index];
+  const int n = b.size;
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    int equations = 0;
+    with_closing_joint(j.type, [&](auto entry) { equations = entry.equations; });
+    for (int u = 0; u < n; ++u)
+      for (int i = 0; i < equations; ++i) a[(j.row + i) * n + u] = 0.0;
+    for (int l = j.loop_begin; l < j.loop_end; ++l) {
+      const TreeJoint& t = p.joints[p.loop[l].joint];
+      Pack entry[3 * MAX_CLOSING_ROWS];
+      closing_columns(p, w, c, p.loop[l], entry);
+      int freedoms = 0;
+      with_tree_joint(t.type, [&](auto tree) { freedoms = tree.freedoms; });
+      for (int f = 0; f < freedoms; ++f) {
+        const int u = unknown_index(p, index, t.column + f);
+        if (u < 0) continue;
+        for (int i = 0; i < equations; ++i) a[(j.row + i) * n + u] = entry[f * MAX_CLOSING_ROWS + i];
+      }
+    }
+  }
+}
+
+inline void place_block(const Plan& p, Workspace& w, const Block& b) {
+  for (int o = b.joint_begin; o < b.joint_end; ++o) place_joint(p, w, p.order[o]);
+}
+inline void block_screws(const Plan& p, Workspace& w, const Block& b) {
+  for (int o = b.joint_begin; o < b.joint_end; ++o) find_screws(p, w, p.order[o]);
+}
+
+// Moves the states of a block by the increments of its unknowns.
+inline void advance_block(const Plan& p, Workspace& w, int index, const Pack* step, Mask moving) {
+  const Block& b = p.block[index];
+  for (int o = b.joint_begin; o < b.joint_end; ++o) {
+    const TreeJoint& t = p.joints[p.order[o]];
+    with_tree_joint(t.type, [&](auto entry) __attribute__((always_inline)) {
+      Pack delta[3];
+      bool touched = false;
+      for (int f = 0; f < entry.freedoms; ++f) {
+        const int u = unknown_index(p, index, t.column + f);
+        delta[f] = u < 0 ? Pack(0.0) : step[u];
+        touched = touched || u >= 0;
+      }
+      if (touched) advance(entry, w.q + t.state, delta, moving);
+    });
+  }
+}
+
+struct Closed {
+  Pack residual, correction;
+  Mask converged, side;
+};
+
+// Closes one block from the guess in w.q.
+inline Closed close_block(const Plan& p, Workspace& w, int index, const Request& r) {
+  const Block& b = p.block[index];
+  const BlockPlaces at = places_of(p, w, index);
+  Mask polished = all_lanes(false), done = all_lanes(false);
+  Pack residual = 0.0, correction = 0.0;
+  for (int iteration = 0;; ++iteration) {
+    place_block(p, w, b);
+    residual = block_residual(p, w, b);
+    done = done | polished | (residual <= Pack(r.tight));
+    if (all(done) || iteration == r.iterations) break;
+    block_screws(p, w, b);
+    block_jacobian(p, w, index, at.jacobian);
+    const Factors f = {at.jacobian, at.swap, b.size};
+    factor(f);
+    solve(f, w.right);
+    polished = residual <= Pack(r.coarse);
+    Pack length = 0.0;
+    for (int u = 0; u < b.size; ++u) {
+      w.right[u] = -w.right[u];
+      length = max(length, abs(w.right[u]));
+    }
+    correction += select(done, Pack(0.0), length);
+    advance_block(p, w, index, w.right, ~done);
+  }
+  return {residual, correction, residual <= Pack(r.accept), block_side_conditions(p, w, b)};
+}
+
+}  // namespace

@@ -1,0 +1,164 @@
+// One instruction set's copy of the kernel: compiled once per width, with MECHKIN_LANES and
+// MECHKIN_UNIT set by the build.
+#include "unit.hpp"
+
+#include "elementwise.hpp"
+#include "outputs.hpp"
+#include "search.hpp"
+
+namespace {
+
+// Reads a pack of rows; lanes beyond the last row repeat it.
+struct Reader {
+  long rows, row;
+  int count;
+  MECHKIN_INLINE Pack get(const double* base, long slot) const {
+    const double* at = base + slot * rows + row;
+    if (count == LANES) return load(at);
+    double buffer[LANES];
+    for (int i = 0; i < LANES; ++i) buffer[i] = at[i < count ? i : count - 1];
+    return load(buffer);
+  }
+};
+
+void write_flags(unsigned char* flags, const Reader& in, Mask converged, Mask side, Mask regular) {
+  for (int i = 0; i < in.count; ++i) {
+    unsigned f = 0;
+    if (!lane(converged, i)) f |= ROW_NOT_CONVERGED;
+    if (!lane(side, i)) f |= ROW_SIDE_CONDITION;
+    if (!lane(regular, i)) f |= ROW_SINGULAR;
+    flags[in.row + i] = (unsigned char)f;
+  }
+}
+
+// Smallest singular value of the block's Jacobian with lengths in parts of the size, as 1 / sigma.
+Pack block_condition(const Plan& p, Workspace& w, int index) {
+  const Block& b = p.block[index];
+  const int n = b.size;
+  block_jacobian(p, w, index, w.scratch);
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    with_closing_joint(j.type, [&](auto entry) {
+      for (int i = 0; i < entry.lengths; ++i)
+        for (int u = 0; u < n; ++u) w.scratch[(j.row + i) * n + u] *= Pack(p.row_weight);
+    });
+  }
+  for (int u = 0; u < n; ++u) {
+    const Pack weight = p.column_weight[p.unknown[b.column_begin + u]];
+    for (int i = 0; i < n; ++i) w.scratch[i * n + u] *= weight;
+  }
+  return Pack(1.0) / smallest_singular_value(w.scratch, n);
+}
+
+void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
+  const bool velocities = r.demand & DEMAND_VELOCITY, accelerations = r.demand & DEMAND_ACCELERATION;
+  for (int s = 0; s < p.states; ++s) w.q[s] = in.get(r.guess, s);
+  for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
+
+  Pack residual = 0.0, correction = 0.0, condition = 0.0;
+  Mask converged = all_lanes(true), side = all_lanes(true);
+  for (int b = 0; b < p.blocks; ++b) {
+    const Closed closed = close_block(p, w, b, r);
+    residual = max(closed.residual, residual);
+    correction = max(closed.correction, correction);
+    converged = converged & closed.converged;
+    side = side & closed.side;
+    if (!r.demand) continue;
+    const BlockPlaces at = places_of(p, w, b);
+    block_screws(p, w, p.block[b]);
+    if (r.demand & DEMAND_CONDITION) condition = max(block_condition(p, w, b), condition);
+    block_jacobian(p, w, b, at.jacobian);
+    factor({at.jacobian, at.swap, p.block[b].size});
+  }
+  for (int k = 0; k < p.rest_count; ++k) {
+    place_joint(p, w, p.rest[k]);
+    find_screws(p, w, p.rest[k]);
+  }
+  if (velocities) {
+    for (int i = 0; i < p.inputs; ++i) w.rate[p.input_column[i]] = in.get(r.rates, i);
+    for (int b = 0; b < p.blocks; ++b) block_velocities(p, w, b);
+    for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], false);
+  }
+  if (accelerations) {
+    for (int i = 0; i < p.inputs; ++i) w.acceleration[p.input_column[i]] = in.get(r.accelerations, i);
+    for (int b = 0; b < p.blocks; ++b) block_accelerations(p, w, b);
+    for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], true);
+  }
+
+  const auto writer = [&](double* base) { return Writer{base, in.rows, in.row, in.count}; };
+  if (r.states)
+    for (int s = 0; s < p.states; ++s) writer(r.states).put(s, w.q[s]);
+  if (r.velocities && velocities)
+    for (int c = 0; c < p.columns; ++c) writer(r.velocities).put(c, w.rate[c]);
+  if (r.second && accelerations)
+    for (int c = 0; c < p.columns; ++c) writer(r.second).put(c, w.acceleration[c]);
+  writer(r.residual).put(0, residual);
+  writer(r.correction).put(0, correction);
+  if (r.demand & DEMAND_CONDITION) writer(r.condition).put(0, condition);
+
+  const auto outputs = [&](const Balance* balance) {
+    const Writer out = writer(r.outputs);
+    for (int o = 0; o < p.outputs; ++o) write_output(p, w, balance, p.output[o], out);
+  };
+  if (r.demand & DEMAND_FORCES) {
+    const Balance balance = balance_forces(p, w, velocities, accelerations);
+    if (r.demand & DEMAND_POWER) {
+      const Mask none = balance.powers.size == Pack(0.0);
+      const Pack size = select(none, Pack(1.0), balance.powers.size);
+      writer(r.power_error).put(0, abs(balance.powers.sum) / size);
+    }
+    if (r.outputs) outputs(&balance);
+  } else if (r.outputs) {
+    outputs(nullptr);
+  }
+  write_flags(r.flags, in, converged, side, condition < Pack(1e300));
+}
+
+long workspace_size(const Plan& p) {
+  Workspace w;
+  return lay_out(p, nullptr, &w) + 64;
+}
+
+Workspace workspace_at(const Plan& p, char* memory) {
+  Workspace w;
+  lay_out(p, memory + (64 - (std::uintptr_t)memory % 64) % 64, &w);
+  return w;
+}
+
+void run(const Plan& p, const Request& r, char* memory) {
+  Workspace w = workspace_at(p, memory);
+  for (long row = 0; row < r.rows; row += LANES) {
+    const int count = r.rows - row < LANES ? (int)(r.rows - row) : LANES;
+    run_pack(p, r, w, {r.rows, row, count});
+  }
+}
+
+void search(const Plan& p, const SearchRequest& r, char* memory) {
+  Workspace w = workspace_at(p, memory);
+  for (long row = 0; row < r.rows; row += LANES) {
+    const int count = r.rows - row < LANES ? (int)(r.rows - row) : LANES;
+    const Reader in = {r.rows, row, count};
+    for (int s = 0; s < p.states; ++s) w.q[s] = in.get(r.states, s);
+    for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
+    for (int b = 0; b < r.block; ++b) place_block(p, w, p.block[b]);
+    const Pack residual = search_block(p, w, r.block, r.iterations, r.accept);
+    for (int s = 0; s < p.states; ++s) Writer{r.states, r.rows, row, count}.put(s, w.q[s]);
+    Writer{r.residual, r.rows, row, count}.put(0, residual);
+    write_flags(r.flags, in, residual <= Pack(r.accept), block_side_conditions(p, w, p.block[r.block]),
+                all_lanes(true));
+  }
+}
+
+template <class Entry>
+constexpr JointType constants() {
+  return {Entry::letter, Entry::freedoms, Entry::states, Entry::equations, Entry::slides, Entry::theta, Entry::s};
+}
+// in the order of JointCode
+constexpr JointType joint_types[JOINT_CODES] = {constants<Revolute>(), constants<Prismatic>(), constants<Helical>(),
+                                                constants<Cylindric>(), constants<Spheric>()};
+
+const KernelUnit unit = {LANES, joint_types, workspace_size, run, search, elementwise};
+
+}  // namespace
+
+extern "C" const KernelUnit* MECHKIN_UNIT() { return &unit; }

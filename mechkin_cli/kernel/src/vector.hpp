@@ -1,0 +1,114 @@
+// Vectors, rotations, quaternions, twists and wrenches of packs.
+//
+// Spatial vectors stand at the kernel's origin in ground axes, angular part first: a twist is
+// (omega, velocity of the body-fixed point that passes the origin), a wrench is (moment about the
+// origin, force). See Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 2.
+#pragma once
+
+#include "pack.hpp"
+
+namespace {
+
+struct Vec3 {
+  Pack x, y, z;
+  friend MECHKIN_INLINE Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend MECHKIN_INLINE Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend MECHKIN_INLINE Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
+  friend MECHKIN_INLINE Vec3 operator*(Pack s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
+  MECHKIN_INLINE Vec3& operator+=(Vec3 b) { return *this = *this + b; }
+  MECHKIN_INLINE Vec3& operator-=(Vec3 b) { return *this = *this - b; }
+};
+
+MECHKIN_INLINE Pack dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+MECHKIN_INLINE Vec3 cross(Vec3 a, Vec3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+MECHKIN_INLINE Vec3 constant(const double* c) { return {Pack(c[0]), Pack(c[1]), Pack(c[2])}; }
+MECHKIN_INLINE Vec3 zero3() { return {Pack(0.0), Pack(0.0), Pack(0.0)}; }
+MECHKIN_INLINE Vec3 select(Mask m, Vec3 a, Vec3 b) {
+  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+}
+
+// Pose of a frame in ground axes: columns X, Y, Z of the rotation and the origin o.
+struct Pose {
+  Vec3 X, Y, Z, o;
+  // A constant vector given in this frame, in ground axes.
+  MECHKIN_INLINE Vec3 vector(const double* c) const {
+    return Pack(c[0]) * X + Pack(c[1]) * Y + Pack(c[2]) * Z;
+  }
+  // A constant point given in this frame, in ground axes.
+  MECHKIN_INLINE Vec3 point(const double* c) const { return o + vector(c); }
+  // Components in this frame of a vector given in ground axes.
+  MECHKIN_INLINE Vec3 components(Vec3 a) const { return {dot(X, a), dot(Y, a), dot(Z, a)}; }
+};
+
+// Unit quaternion, scalar part first.
+struct Quaternion {
+  Pack w, x, y, z;
+};
+
+MECHKIN_INLINE Quaternion product(Quaternion a, Quaternion b) {
+  return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+          a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+}
+MECHKIN_INLINE Quaternion normalised(Quaternion a) {
+  const Pack s = Pack(1.0) / sqrt(a.w * a.w + a.x * a.x + a.y * a.y + a.z * a.z);
+  return {a.w * s, a.x * s, a.y * s, a.z * s};
+}
+
+struct Twist {
+  Vec3 angular, linear;
+  friend MECHKIN_INLINE Twist operator+(Twist a, Twist b) {
+    return {a.angular + b.angular, a.linear + b.linear};
+  }
+  friend MECHKIN_INLINE Twist operator-(Twist a, Twist b) {
+    return {a.angular - b.angular, a.linear - b.linear};
+  }
+  friend MECHKIN_INLINE Twist operator*(Pack s, Twist a) { return {s * a.angular, s * a.linear}; }
+  MECHKIN_INLINE Twist& operator+=(Twist b) { return *this = *this + b; }
+  // Velocity of the body-fixed point that is at p.
+  MECHKIN_INLINE Vec3 at(Vec3 p) const { return linear + cross(angular, p); }
+};
+MECHKIN_INLINE Twist zero_twist() { return {zero3(), zero3()}; }
+
+// Lie bracket: the rate of a screw b that is carried by a body moving with twist a.
+MECHKIN_INLINE Twist bracket(Twist a, Twist b) {
+  return {cross(a.angular, b.angular), cross(a.angular, b.linear) + cross(a.linear, b.angular)};
+}
+
+struct Wrench {
+  Vec3 moment, force;
+  friend MECHKIN_INLINE Wrench operator+(Wrench a, Wrench b) {
+    return {a.moment + b.moment, a.force + b.force};
+  }
+  friend MECHKIN_INLINE Wrench operator-(Wrench a, Wrench b) {
+    return {a.moment - b.moment, a.force - b.force};
+  }
+  friend MECHKIN_INLINE Wrench operator*(Pack s, Wrench a) { return {s * a.moment, s * a.force}; }
+  MECHKIN_INLINE Wrench& operator+=(Wrench b) { return *this = *this + b; }
+  MECHKIN_INLINE Wrench& operator-=(Wrench b) { return *this = *this - b; }
+};
+MECHKIN_INLINE Wrench zero_wrench() { return {zero3(), zero3()}; }
+// A force whose line of action passes through p.
+MECHKIN_INLINE Wrench force_at(Vec3 p, Vec3 force) { return {cross(p, force), force}; }
+
+// Power of a wrench on a twist.
+MECHKIN_INLINE Pack power(Twist t, Wrench w) {
+  return dot(t.angular, w.moment) + dot(t.linear, w.force);
+}
+
+// Motion of a link: twist and its first derivative (the spatial acceleration).
+struct Motion {
+  Twist velocity, acceleration;
+  // Second derivative of the position of the body-fixed point at p.
+  MECHKIN_INLINE Vec3 point_acceleration(Vec3 p) const {
+    return acceleration.at(p) + cross(velocity.angular, velocity.at(p));
+  }
+  // Derivatives of a vector carried by the link.
+  MECHKIN_INLINE Vec3 rate(Vec3 a) const { return cross(velocity.angular, a); }
+  MECHKIN_INLINE Vec3 second_rate(Vec3 a) const {
+    return cross(acceleration.angular, a) + cross(velocity.angular, cross(velocity.angular, a));
+  }
+};
+
+}  // namespace

@@ -1,0 +1,112 @@
+"""Every threshold of mechkin: name, unit, scale rule and reason.
+
+Lengths are scaled by the mechanism's size (diagonal of the box of the joint points at the first
+row) before they meet a limit, so the numbers below are pure or radians.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+# --- closure: residual = largest closing equation, lengths / size, angles in rad -----------------
+
+RESIDUAL_TIGHT: Final = 1e-16
+"""A Newton iteration ends here at once: half a rounding of 1. Measured floor on RCSR: 1e-16 ...
+3e-16."""
+
+RESIDUAL_COARSE: Final = 1e-9
+"""One more Newton step from here squares the error and reaches rounding level for every condition
+up to about 1e8, so the iteration ends after that step without asking for more than arithmetic can
+give."""
+
+RESIDUAL_ACCEPT: Final = 1e-14
+"""Largest residual of a row that counts as assembled: about 50 roundings, what long chains need."""
+
+NEWTON_ITERATIONS: Final = 6
+"""From a prediction that passes the jump test Newton needs 2 to 4; a seventh means the guess was
+wrong."""
+
+# --- search for assemblies -------------------------------------------------------------------
+
+SEARCH_RESIDUAL: Final = 1e-10
+"""Where the Levenberg-Marquardt search hands over to Newton; well inside its quadratic region."""
+
+SEARCH_ITERATIONS: Final = 80
+"""Steps of one start; 95 % of the starts that close do so within 30."""
+
+SEARCH_STARTS: Final = 512
+"""Fewest random starts; more follow until one more start finds a new mode with chance < 1e-3."""
+
+SEARCH_MOST_STARTS: Final = 16384
+"""A search that still finds new modes here says so instead of going on."""
+
+SEARCH_NEW_MODE_CHANCE: Final = 1e-3
+"""Good-Turing estimate (modes met once / starts that closed) below which the search ends."""
+
+SAME_MODE: Final = 1e-7
+"""Two assemblies whose poses differ less (lengths / size, direction cosines) are one. Newton
+leaves 1e-12 even at condition 1e4; modes that merge at a dead centre are 1e-6 apart already 1e-12
+from it."""
+
+SEARCH_CONDITION: Final = 1e12
+"""An end point of the search that is more singular is no isolated assembly."""
+
+NEAR_RUNNER_UP: Final = 1.2
+"""Ratio of distances below which the nearest assembly is not clearly the one that was meant."""
+
+HOME_ASSEMBLED: Final = 1e-9
+"""Closing residual at which a drawing counts as assembled: written numbers with ten digits reach
+it."""
+
+# --- following a branch ------------------------------------------------------------------------
+
+TURN_LIMIT_COSINE: Final = 0.9659258262890683
+"""Cosine of 15 degrees: largest turn of the tangent in one step."""
+
+TURN_WANTED: Final = 0.2
+"""Turn of the tangent that a step aims at, rad; leaves room below the limit."""
+
+BEND_WANTED: Final = 0.35
+"""Quadratic against linear part of a step, times two. Near a dead centre at distance d the ratio
+of the derivatives is 2 d, so steps shrink to 0.7 d and never cross it."""
+
+JUMP_LIMIT: Final = 0.1
+"""Largest Newton correction after a predicted step, in parts of the step's length: the other
+branch is farther than twice the distance to the fold, a tenth of a step cannot reach it."""
+
+INFILL_LIMIT: Final = 0.02
+"""Largest correction of a row filled in between two nodes, in parts of the nodes' distance."""
+
+LEAST_STEP: Final = 1e-15
+"""Step (in parts of max(1, |path|)) below which a branch cannot be followed in double precision."""
+
+MOST_STEPS: Final = 20000
+"""Steps of one path: a turn takes about 50; a path that needs more is not a sweep."""
+
+# --- dead centres ------------------------------------------------------------------------------
+
+DEAD_CENTRE_STEP: Final = 1e-12
+"""Newton on d(input)/d(coordinate) = 0 ends when the coordinate moves less (rad or parts of the
+size)."""
+
+DEAD_CENTRE_ITERATIONS: Final = 40
+"""Far more than quadratic convergence needs; a search that uses them all has found none."""
+
+# --- verdicts -------------------------------------------------------------------------------
+
+CONDITION_NEAR_SINGULAR: Final = 1e7
+"""1 / smallest singular value of the scaled block: above it a row keeps fewer than nine digits."""
+
+RANK_GAP: Final = 1e3
+"""Ratio of neighbouring singular values that separates rank from noise."""
+
+AXES_SQUARE: Final = 1e-9
+"""Inertia axes must be square to this (cosine): typed numbers have nine digits and more."""
+
+PARALLEL: Final = 1e-9
+"""Sine of the angle below which a reference direction is parallel to the axis it should stand
+square to."""
+
+UNPHYSICAL_INERTIA: Final = 1e-9
+"""Parts of the largest eigenvalue by which a tensor may miss the triangle inequality of a real
+body."""

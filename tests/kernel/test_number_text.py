@@ -1,0 +1,169 @@
+"""Numbers as text against Python's shortest digits and exact decimals; CSV against `csv`."""
+
+import csv
+import io
+from decimal import ROUND_HALF_EVEN, Context, Decimal
+
+import numpy as np
+import pytest
+
+from mechkin_cli.kernel._kernel import csv_text, fixed_texts, number_text
+
+INFINITY, NAN = float("inf"), float("nan")
+
+
+def random_doubles(count, seed):
+    random = np.random.default_rng(seed)
+    any_bits = np.frombuffer(random.bytes(8 * count), dtype=np.float64)
+    usual = random.uniform(-1, 1, count) * 10.0 ** random.integers(-7, 18, count)
+    values = np.concatenate([any_bits, usual])
+    return values[np.isfinite(values)].tolist()
+
+
+def plain_or_exponent(decimal):
+    """The layout rule, written with decimal: plain notation from 1e-5 up to below 1e16."""
+    if Decimal("1e-5") <= abs(decimal) < Decimal("1e16"):
+        text = f"{decimal:f}"
+        return text.rstrip("0").rstrip(".") if "." in text else text
+    digits, exponent = f"{decimal:e}".split("e")
+    digits = digits.rstrip("0").rstrip(".") if "." in digits else digits
+    return f"{digits}e{exponent[0]}{exponent[1:]:0>2}"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (-0.0, "0"),
+        (1.0, "1"),
+        (-2.0, "-2"),
+        (0.1, "0.1"),
+        (192.0, "192"),
+        (-103.88240000000002, "-103.88240000000002"),
+        (1e-5, "0.00001"),
+        (9.999999999999999e-06, "9.999999999999999e-06"),
+        (1e-6, "1e-06"),
+        (-2.5e-300, "-2.5e-300"),
+        (5e-324, "5e-324"),
+        (1e15, "1000000000000000"),
+        (9999999999999998.0, "9999999999999998"),
+        (1e16, "1e+16"),
+        (1.7976931348623157e308, "1.7976931348623157e+308"),
+        (1e22, "1e+22"),
+        (NAN, ""),
+        (INFINITY, ""),
+        (-INFINITY, ""),
+    ],
+)
+def test_shortest(value, text):
+    assert number_text(value) == text
+
+
+def test_shortest_has_the_digits_of_repr():
+    for value in random_doubles(3000, seed=1):
+        text = number_text(value)
+        assert float(text) == value
+        assert text == plain_or_exponent(Decimal(repr(value)))
+
+
+@pytest.mark.parametrize("digits", [1, 6, 12, 15])
+def test_significant_digits_round_the_exact_value(digits):
+    context = Context(prec=digits, rounding=ROUND_HALF_EVEN)
+    for value in random_doubles(1000, seed=2):
+        if 1e-300 < abs(value) < 1e308:
+            rounded = context.create_decimal(value)
+            assert number_text(value, digits) == plain_or_exponent(rounded)
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [
+        (0.1 + 0.2, 12, "0.3"),
+        (9999999999999998.0, 12, "1e+16"),
+        (9.9999999999999991e-06, 12, "0.00001"),
+        (-1e-320, 12, "-1e-320"),
+        (0.125, 2, "0.12"),
+        (0.375, 2, "0.38"),
+        (1.7976931348623157e308, 2, "1.7976931348623157e+308"),
+        (-0.0, 12, "0"),
+        (NAN, 12, ""),
+        (-INFINITY, 12, ""),
+    ],
+)
+def test_significant_digits(value, digits, text):
+    assert number_text(value, digits) == text
+
+
+@pytest.mark.parametrize("digits", [-1, 16])
+def test_refused_numbers_of_digits(digits):
+    with pytest.raises(ValueError, match="significant_digits"):
+        number_text(1.0, digits)
+
+
+@pytest.mark.parametrize("decimals", [0, 1, 3, 20])
+def test_fixed_rounds_the_exact_value(decimals):
+    values = [v for v in random_doubles(500, seed=3) if 1e-9 < abs(v) < 1e30]
+    step, context = Decimal(1).scaleb(-decimals), Context(prec=100)
+    rounded = [Decimal(v).quantize(step, ROUND_HALF_EVEN, context) for v in values]
+    expected = [f"{r if r else abs(r):f}" for r in rounded]
+    assert fixed_texts(np.array(values), decimals) == expected
+
+
+def test_fixed_of_special_values():
+    values = np.array([0.0, -0.0, -0.0004, -0.0005, 2.5, NAN, INFINITY, -1e300])
+    expected = ["0.000", "0.000", "0.000", "-0.001", "2.500", "", "", f"{-(10.0**300):.3f}"]
+    assert fixed_texts(values, 3) == expected
+    assert fixed_texts(np.array([0.5, 1.5, -0.5]), 0) == ["0", "2", "0"]
+
+
+def test_csv():
+    numbers = np.array([150.0, -0.0, NAN])
+    words = (np.array([1, 0, 1], dtype=np.int32), ["ok", 'lost, "branch"'])
+    assert csv_text(["theta1", "a,b"], [numbers, words]) == (
+        b'theta1,"a,b"\n150,"lost, ""branch"""\n0,ok\n,"lost, ""branch"""\n'
+    )
+
+
+def test_csv_is_read_back_by_the_csv_module():
+    labels = ["plain", "with, comma", 'with "quotes"', "two\nlines", "", "θ₁"]
+    texts = [*labels, "cr\rhere"]
+    codes = np.arange(7, dtype=np.int32)
+    columns = [np.linspace(0, 1, 7), *((codes, texts) for _ in range(5))]
+    written = csv_text(labels, columns).decode()
+    header, *rows = csv.reader(io.StringIO(written, newline=""))
+    assert header == labels
+    assert rows == [
+        [number_text(x), *[text] * 5] for x, text in zip(columns[0], texts, strict=True)
+    ]
+
+
+def test_csv_with_missing_cells_and_significant_digits():
+    columns = [np.array([1 / 3, 2.0]), np.array([4.0, 2 / 3])]
+    missing = np.array([[False, True], [False, False]])
+    assert csv_text(["a", "b"], columns, missing, 12) == b"a,b\n0.333333333333,\n2,0.666666666667\n"
+
+
+def test_csv_of_the_longest_numbers():
+    longest = np.full((20, 50), -1.2345678901234567e-05)
+    text = csv_text([f"c{i}" for i in range(20)], list(longest)).decode()
+    assert text.splitlines()[1:] == [",".join(["-0.000012345678901234568"] * 20)] * 50
+
+
+def test_csv_without_rows():
+    assert csv_text(["a", "b"], [np.empty(0), np.empty(0)]) == b"a,b\n"
+
+
+@pytest.mark.parametrize(
+    ("labels", "columns", "missing", "error"),
+    [
+        (["a"], [], None, "one label per column"),
+        (["a", "b"], [np.zeros(2), np.zeros(3)], None, "different length"),
+        (["a"], [np.zeros(2)], np.zeros((1, 2), dtype=bool), "shape"),
+        (["a"], [(np.array([2], dtype=np.int32), ["x", "y"])], None, "stands for none"),
+        (["a"], [(np.array([-1], dtype=np.int32), ["x"])], None, "stands for none"),
+        (["a"], [(np.array([0], dtype=np.int32),)], None, "pair"),
+    ],
+)
+def test_refused_tables(labels, columns, missing, error):
+    with pytest.raises((ValueError, IndexError), match=error):
+        csv_text(labels, columns, missing)
