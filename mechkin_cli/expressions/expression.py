@@ -1,0 +1,215 @@
+"""A parsed expression and its evaluation.
+
+Example:
+    >>> from mechkin_cli.expressions import Quantity, parse
+    >>> from mechkin_cli.units import LENGTH
+    >>> parse("2*P1 + 1 m").evaluate({"P1": Quantity(0.5, LENGTH)}.__getitem__).value
+    2.0
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mechkin_cli.expressions import arithmetic
+from mechkin_cli.expressions.errors import ExpressionError, UnknownName
+from mechkin_cli.expressions.functions import FUNCTIONS
+from mechkin_cli.expressions.limits import MAX_EXPONENT, MAX_QUOTED
+from mechkin_cli.expressions.nodes import Name, Node, Number, Operation
+from mechkin_cli.expressions.operand import Operand, Resolve, Site
+from mechkin_cli.expressions.parser import parse_nodes
+from mechkin_cli.expressions.quantity import Quantity, Scalar, Value, Vector
+from mechkin_cli.units import UNITS, UnitError, UnitSystem, conversion
+
+_OPERATIONS: dict[str, Callable[..., Quantity]] = {
+    "+": arithmetic.add_or_subtract,
+    "-": arithmetic.add_or_subtract,
+    "*": arithmetic.multiply,
+    "/": arithmetic.divide,
+    "^": arithmetic.raise_to_power,
+    "negate": arithmetic.negate,
+    "[]": arithmetic.vector,
+    ".x": arithmetic.component,
+    ".y": arithmetic.component,
+    ".z": arithmetic.component,
+    **{name: function.apply for name, function in FUNCTIONS.items()},
+}
+_AXES = ("x", "y", "z")
+_DEFAULT_UNITS = UnitSystem()
+
+
+@dataclass(frozen=True, slots=True)
+class Expression:
+    """An expression; `nodes` are in postfix order."""
+
+    text: str
+    nodes: tuple[Node, ...]
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The dotted names used, as a resolver is asked for them.
+
+        A component of a name with a dot is left out: `pm1.position.x` counts as `pm1.position`.
+        `B.x` is kept: it is a coordinate x of a joint B, or else the component of a direction B.
+        """
+        return frozenset(_asked_for(node) for node in self.nodes if isinstance(node, Name))
+
+    @property
+    def number(self) -> Number | None:
+        """The number literal, with or without unit, that the whole expression consists of."""
+        only = self.nodes[0]
+        return only if len(self.nodes) == 1 and isinstance(only, Number) else None
+
+    def offset_of(self, name: str) -> int:
+        """Where a name, or a dotted name that begins with it, first stands in the text."""
+        offsets = [
+            node.offset
+            for node in self.nodes
+            if isinstance(node, Name) and (node.text == name or node.text.startswith(name + "."))
+        ]
+        return min(offsets, default=0)
+
+    def reject_ambiguous_units(self, known: Callable[[str], bool]) -> None:
+        """Refuse unit words behind `*` or `/` that are known names too.
+
+        Raises:
+            ExpressionError: `10 N*m` where there is a parameter m.
+        """
+        for node in self.nodes:
+            if isinstance(node, Number):
+                for word, offset in node.joined_units:
+                    if known(word):
+                        unit = f"1 {word}"
+                        raise ExpressionError(
+                            f"ambiguous: {word} is a unit and a name of this file",
+                            offset,
+                            f"write spaces around the sign to mean the name, {unit} for the unit",
+                        )
+
+    def evaluate(self, resolve: Resolve, units: UnitSystem = _DEFAULT_UNITS) -> Quantity:
+        """The value in SI, with names looked up by `resolve`.
+
+        Values of names may be floats, rows of shape (rows,), or vectors of these. Rows take nan and
+        infinities quietly; a constant that is not finite is an error. To check dimensions alone,
+        resolve every name to rows of length one. `units` are only used to write hints.
+
+        Raises:
+            ExpressionError: unknown name, dimensions that do not fit, a value outside a function's
+                domain; the offset is that of the offending part.
+        """
+        self.reject_ambiguous_units(lambda word: _exists(word, resolve))
+        stack: list[Operand] = []
+        with np.errstate(all="ignore"):
+            for node in self.nodes:
+                if isinstance(node, Operation):
+                    operands = stack[-node.arity :]
+                    del stack[-node.arity :]
+                    stack.append(_operate(node, operands, units))
+                elif isinstance(node, Number):
+                    stack.append(Operand(_literal(node), node.offset, node))
+                else:
+                    stack.append(Operand(_look_up(node, resolve), node.offset))
+        return stack[-1].quantity
+
+
+def parse(text: str) -> Expression:
+    """The expression that a text says.
+
+    Raises:
+        ExpressionError: the text is no expression, or exceeds a limit (`limits`).
+    """
+    return Expression(text, parse_nodes(text))
+
+
+def _asked_for(node: Name) -> str:
+    prefix, _, axis = node.text.rpartition(".")
+    return prefix if axis in _AXES and "." in prefix else node.text
+
+
+def _operate(node: Operation, operands: list[Operand], units: UnitSystem) -> Operand:
+    site = Site(node.symbol, node.offset, units)
+    quantity = _OPERATIONS[node.symbol](site, *operands)
+    if any(exponent**2 > MAX_EXPONENT**2 for exponent in quantity.dimension.exponents):
+        raise site.error(
+            f"the dimension {quantity.dimension} has an exponent above the limit {MAX_EXPONENT}"
+        )
+    value = quantity.value
+    for item in value.components if isinstance(value, Vector) else (value,):
+        if isinstance(item, float) and not math.isfinite(item):
+            raise _not_finite(site, operands)
+    return Operand(quantity, min(node.offset, *(operand.offset for operand in operands)))
+
+
+def _not_finite(site: Site, operands: list[Operand]) -> ExpressionError:
+    """The error of a constant that overflows or leaves a function's domain."""
+    measured = [f"{item.value:.6g}" for item in operands if isinstance(item.value, float)]
+    given = f" for {', '.join(measured)} (in SI units)" if measured else ""
+    return site.error(
+        f"{site.symbol} has no finite value{given}", "check the values of the parameters"
+    )
+
+
+def _literal(number: Number) -> Quantity:
+    if number.unit is None:
+        return Quantity(number.value)
+    try:
+        value = conversion(number.unit.factor).apply(number.value)
+    except UnitError as error:
+        raise ExpressionError(error.message, number.offset, error.hint) from None
+    if not math.isfinite(value):
+        text = f"{number.text[:MAX_QUOTED]} {number.unit}"
+        raise ExpressionError(f"{text} is too large", number.offset)
+    return Quantity(value, number.unit.dimension)
+
+
+def _look_up(node: Name, resolve: Resolve) -> Quantity:
+    """The quantity of a name, or else the component of the quantity before its last dot."""
+    prefix, _, axis = node.text.rpartition(".")
+    asked = _asked_for(node)
+    try:
+        if asked == node.text:
+            try:
+                return _resolved(asked, resolve)
+            except KeyError:
+                if axis not in _AXES or not _exists(prefix, resolve):
+                    raise
+        vector = _resolved(prefix, resolve)
+    except KeyError as unknown:
+        raise _unknown(node, unknown) from None
+    except ExpressionError as error:
+        raise ExpressionError(error.message, node.offset, error.hint) from error
+    site = Site("." + axis, node.offset + len(prefix), _DEFAULT_UNITS)
+    return arithmetic.component(site, Operand(vector, node.offset))
+
+
+def _resolved(name: str, resolve: Resolve) -> Quantity:
+    """The quantity of a name, its constants as plain floats."""
+    quantity = resolve(name)
+    value: Value = quantity.value
+    if isinstance(value, Vector):
+        return replace(quantity, value=Vector(*map(_plain, value.components)))
+    return replace(quantity, value=_plain(value))
+
+
+def _plain(value: Scalar) -> Scalar:
+    return value if isinstance(value, np.ndarray) else float(value)
+
+
+def _exists(name: str, resolve: Resolve) -> bool:
+    try:
+        resolve(name)
+    except (KeyError, ExpressionError):
+        return False
+    return True
+
+
+def _unknown(node: Name, error: KeyError) -> ExpressionError:
+    hint = error.hint if isinstance(error, UnknownName) else None
+    if node.text in UNITS:
+        hint = f"a unit stands right behind a number: 1 {node.text}, 10 N*m"
+    name = node.text[:MAX_QUOTED]
+    return ExpressionError(f"there is nothing named {name}", node.offset, hint)

@@ -1,0 +1,153 @@
+"""The functions of expressions: one table of what each takes and gives.
+
+A function is added by one entry of `FUNCTIONS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import reduce
+
+import numpy as np
+
+from mechkin_cli.expressions import scalar_functions
+from mechkin_cli.expressions.arithmetic import common_dimension, raise_to_power
+from mechkin_cli.expressions.operand import Operand, Site
+from mechkin_cli.expressions.quantity import Quantity, Scalar, Vector
+from mechkin_cli.kernel import functions as kernel
+from mechkin_cli.units import ANGLE, DIMENSIONLESS, Dimension
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A function of `fewest` arguments, or of any larger number where `variadic`."""
+
+    usage: str
+    fewest: int
+    apply: Callable[..., Quantity]
+    variadic: bool = False
+
+    def accepts(self, count: int) -> bool:
+        """Whether the function takes so many arguments."""
+        return count == self.fewest or (self.variadic and count > self.fewest)
+
+    @property
+    def arity_text(self) -> str:
+        """How many arguments the function takes, in words."""
+        noun = "argument" if self.fewest == 1 else "arguments"
+        return f"{'at least ' if self.variadic else ''}{self.fewest} {noun}"
+
+
+def dot_product(a: Vector, b: Vector) -> Scalar:
+    """The sum of the components' products, in order x, y, z."""
+    return a.x * b.x + a.y * b.y + a.z * b.z
+
+
+def cross_product(a: Vector, b: Vector) -> Vector:
+    """The vector product."""
+    return Vector(
+        a.y * b.z - a.z * b.y,
+        a.z * b.x - a.x * b.z,
+        a.x * b.y - a.y * b.x,
+    )
+
+
+def _of_one(
+    function: Callable[..., Scalar], takes: Dimension, gives: Dimension
+) -> Callable[[Site, Operand], Quantity]:
+    def apply(site: Site, operand: Operand) -> Quantity:
+        value = site.scalar(operand)
+        site.require(operand, takes)
+        return Quantity(function(value), gives)
+
+    return apply
+
+
+def _arctangent(site: Site, y: Operand, x: Operand) -> Quantity:
+    sine, cosine = site.scalar(y), site.scalar(x)
+    common_dimension(site, "take atan2 of {left} and {right}", y, x)
+    return Quantity(scalar_functions.angle_of(sine, cosine), ANGLE)
+
+
+def _square_root(site: Site, operand: Operand) -> Quantity:
+    value = site.scalar(operand)
+    if not isinstance(value, np.ndarray) and value < 0.0:
+        raise site.error(
+            f"square root of a negative number ({value:.6g} in SI units)",
+            "check the values of the parameters",
+            operand,
+        )
+    root = operand.dimension ** Fraction(1, 2)
+    if any(Fraction(exponent).denominator > 2 for exponent in root.exponents):
+        raise site.error(f"no square root of {operand.phrase}", None, operand)
+    return Quantity(scalar_functions.square_root(value), root)
+
+
+def _absolute(site: Site, operand: Operand) -> Quantity:
+    return Quantity(scalar_functions.magnitude(site.scalar(operand)), operand.dimension)
+
+
+def _extreme(
+    function: Callable[[Scalar, Scalar], Scalar],
+) -> Callable[..., Quantity]:
+    def apply(site: Site, *operands: Operand) -> Quantity:
+        values = [site.scalar(operand) for operand in operands]
+        first = operands[0]
+        dimension = first.dimension
+        for operand in operands[1:]:
+            sofar = Operand(Quantity(first.value, dimension), first.offset, first.number)
+            dimension = common_dimension(site, "compare {left} and {right}", sofar, operand)
+        return Quantity(reduce(function, values), dimension)
+
+    return apply
+
+
+def _wrap(site: Site, operand: Operand) -> Quantity:
+    value = site.scalar(operand)
+    site.require(operand, ANGLE)
+    return Quantity(scalar_functions.wrap(value), ANGLE)
+
+
+def _dot(site: Site, a: Operand, b: Operand) -> Quantity:
+    value = dot_product(site.vector(a), site.vector(b))
+    return Quantity(value, a.dimension * b.dimension)
+
+
+def _cross(site: Site, a: Operand, b: Operand) -> Quantity:
+    value = cross_product(site.vector(a), site.vector(b))
+    return Quantity(value, a.dimension * b.dimension)
+
+
+def _determinant(site: Site, a: Operand, b: Operand, c: Operand) -> Quantity:
+    value = dot_product(site.vector(a), cross_product(site.vector(b), site.vector(c)))
+    return Quantity(value, a.dimension * b.dimension * c.dimension)
+
+
+def _norm(site: Site, operand: Operand) -> Quantity:
+    value = site.vector(operand)
+    return Quantity(scalar_functions.square_root(dot_product(value, value)), operand.dimension)
+
+
+FUNCTIONS: dict[str, Function] = {
+    "sin": Function("sin(angle)", 1, _of_one(kernel.sin, ANGLE, DIMENSIONLESS)),
+    "cos": Function("cos(angle)", 1, _of_one(kernel.cos, ANGLE, DIMENSIONLESS)),
+    "tan": Function("tan(angle)", 1, _of_one(kernel.tan, ANGLE, DIMENSIONLESS)),
+    "asin": Function("asin(x)", 1, _of_one(kernel.asin, DIMENSIONLESS, ANGLE)),
+    "acos": Function("acos(x)", 1, _of_one(kernel.acos, DIMENSIONLESS, ANGLE)),
+    "atan": Function("atan(x)", 1, _of_one(kernel.atan, DIMENSIONLESS, ANGLE)),
+    "atan2": Function("atan2(y, x)", 2, _arctangent),
+    "sqrt": Function("sqrt(x)", 1, _square_root),
+    "exp": Function("exp(x)", 1, _of_one(kernel.exp, DIMENSIONLESS, DIMENSIONLESS)),
+    "log": Function("log(x)", 1, _of_one(kernel.log, DIMENSIONLESS, DIMENSIONLESS)),
+    "pow": Function("pow(x, n)", 2, raise_to_power),
+    "abs": Function("abs(x)", 1, _absolute),
+    "min": Function("min(a, b)", 2, _extreme(scalar_functions.smaller), variadic=True),
+    "max": Function("max(a, b)", 2, _extreme(scalar_functions.larger), variadic=True),
+    "wrap": Function("wrap(angle)", 1, _wrap),
+    "dot": Function("dot(a, b)", 2, _dot),
+    "cross": Function("cross(a, b)", 2, _cross),
+    "det": Function("det(a, b, c)", 3, _determinant),
+    "norm": Function("norm(a)", 1, _norm),
+}

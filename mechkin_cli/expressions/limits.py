@@ -1,0 +1,16 @@
+"""Limits on expressions: far above what a drawing needs, far below what could stall a reader."""
+
+MAX_TEXT_LENGTH = 4000
+"""Characters; the longest columns of published tables have about a hundred."""
+
+MAX_NODES = 1000
+"""Numbers, names and operations of one expression."""
+
+MAX_DEPTH = 50
+"""Nested parentheses, calls, signs and powers; bounds the recursion of the parser."""
+
+MAX_EXPONENT = 16
+"""Size of a base dimension's exponent, and of a whole power of a value with a dimension."""
+
+MAX_QUOTED = 40
+"""Characters of the user's text repeated in a message."""

@@ -1,0 +1,48 @@
+"""Values with dimensions, always in SI (m, kg, s, rad).
+
+A scalar is a float, or a float64 array of shape (rows,) with one value per row. A vector is three
+scalars in one frame. The same operations serve both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mechkin_cli.units import DIMENSIONLESS, Dimension
+
+Rows = NDArray[np.float64]
+Scalar = float | Rows
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Vector:
+    """Components along the axes of ground."""
+
+    x: Scalar
+    y: Scalar
+    z: Scalar
+
+    @property
+    def components(self) -> tuple[Scalar, Scalar, Scalar]:
+        """The components in order."""
+        return (self.x, self.y, self.z)
+
+
+Value = Scalar | Vector
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Quantity:
+    """A value in SI and its dimension."""
+
+    value: Value
+    dimension: Dimension = DIMENSIONLESS
+
+    @property
+    def phrase(self) -> str:
+        """What the quantity is, in words: `a length`, `a vector (a length)`."""
+        phrase = self.dimension.phrase
+        return f"a vector ({phrase})" if isinstance(self.value, Vector) else phrase

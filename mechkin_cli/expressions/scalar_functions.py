@@ -1,0 +1,77 @@
+"""Functions of scalars, each for a float or for rows, with the same bits for both.
+
+Transcendental functions come from the kernel. Selections are written with comparisons, because the
+zero and nan rules of numpy's own minimum and maximum depend on the processor.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mechkin_cli.expressions.quantity import Scalar
+from mechkin_cli.kernel import functions as kernel
+
+Condition = NDArray[np.bool_] | np.bool_
+
+# 2 pi in two parts. The first has 22 significant bits, so its product with a whole number of turns
+# below 2^31 is exact; the second is what is left, to 4e-23.
+_TURN_HIGH = 6.283184051513672
+_TURN_LOW = 1.2556659146019252e-06
+
+
+def square_root(value: Scalar) -> Scalar:
+    """The square root; nan in rows where the value is negative."""
+    return np.sqrt(value) if isinstance(value, np.ndarray) else math.sqrt(value)
+
+
+def magnitude(value: Scalar) -> Scalar:
+    """The value without its sign."""
+    return np.abs(value) if isinstance(value, np.ndarray) else abs(value)
+
+
+def power(base: Scalar, exponent: Scalar) -> Scalar:
+    """The base to the exponent."""
+    return _paired(kernel.power, base, exponent)
+
+
+def angle_of(y: Scalar, x: Scalar) -> Scalar:
+    """The angle of the point (x, y) from the x axis, in [-pi, pi]."""
+    return _paired(kernel.atan2, y, x)
+
+
+def smaller(left: Scalar, right: Scalar) -> Scalar:
+    """The smaller of two; nan if one is nan."""
+    return _select(np.less(right, left) | np.isnan(right), right, left)
+
+
+def larger(left: Scalar, right: Scalar) -> Scalar:
+    """The larger of two; nan if one is nan."""
+    return _select(np.greater(right, left) | np.isnan(right), right, left)
+
+
+def wrap(angle: Scalar) -> Scalar:
+    """The angle in (-pi, pi] that differs by whole turns; an angle already there is unchanged."""
+    turns = np.rint(np.divide(angle, math.tau))
+    turned = (angle - turns * _TURN_HIGH) - turns * _TURN_LOW
+    turned = np.where(turned > math.pi, turned - math.tau, turned)
+    turned = np.where(turned <= -math.pi, turned + math.tau, turned)
+    inside = np.greater(angle, -math.pi) & np.less_equal(angle, math.pi)
+    return _select(inside, angle, turned)
+
+
+def _select(condition: Condition, chosen: Scalar, other: Scalar) -> Scalar:
+    selected = np.where(condition, chosen, other)
+    return selected if selected.ndim else float(selected)
+
+
+def _paired(function: Callable[..., Scalar], left: Scalar, right: Scalar) -> Scalar:
+    """A kernel function of two arguments, which takes two floats or two arrays of one length."""
+    if isinstance(left, np.ndarray) and not isinstance(right, np.ndarray):
+        right = np.full(left.shape, right)
+    elif isinstance(right, np.ndarray) and not isinstance(left, np.ndarray):
+        left = np.full(right.shape, left)
+    return function(left, right)

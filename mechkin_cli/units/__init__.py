@@ -1,0 +1,68 @@
+"""Units of measurement: dimensions, the closed table of units, and the unit system of a file."""
+
+from mechkin_cli.units.compound import CompoundUnit, parse_unit
+from mechkin_cli.units.conversion import Conversion, conversion
+from mechkin_cli.units.dimension import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_JERK,
+    ANGULAR_RATE,
+    AREA,
+    DAMPING,
+    DIMENSIONLESS,
+    ENERGY,
+    FORCE,
+    FREQUENCY,
+    INERTIA,
+    JERK,
+    LENGTH,
+    MASS,
+    MOMENT,
+    POWER,
+    STIFFNESS,
+    TIME,
+    TORSIONAL_DAMPING,
+    TORSIONAL_STIFFNESS,
+    VELOCITY,
+    VOLUME,
+    Dimension,
+)
+from mechkin_cli.units.errors import UnitError
+from mechkin_cli.units.system import UnitSystem
+from mechkin_cli.units.table import UNITS, Unit
+
+__all__ = [
+    "ACCELERATION",
+    "ANGLE",
+    "ANGULAR_ACCELERATION",
+    "ANGULAR_JERK",
+    "ANGULAR_RATE",
+    "AREA",
+    "DAMPING",
+    "DIMENSIONLESS",
+    "ENERGY",
+    "FORCE",
+    "FREQUENCY",
+    "INERTIA",
+    "JERK",
+    "LENGTH",
+    "MASS",
+    "MOMENT",
+    "POWER",
+    "STIFFNESS",
+    "TIME",
+    "TORSIONAL_DAMPING",
+    "TORSIONAL_STIFFNESS",
+    "UNITS",
+    "VELOCITY",
+    "VOLUME",
+    "CompoundUnit",
+    "Conversion",
+    "Dimension",
+    "Unit",
+    "UnitError",
+    "UnitSystem",
+    "conversion",
+    "parse_unit",
+]

@@ -1,0 +1,150 @@
+"""Dimensions: products of powers of length, mass, time and angle.
+
+Angle is a dimension of its own, so that `cos(12)` and `theta + 1` can be refused. It becomes a
+plain number only in an arc (angle times length) and in work (moment times angle, whose length
+exponent is positive too). The rule: *where a length with a positive exponent is present, a positive
+angle exponent does not count* (`Dimension.reduced`). It is applied where dimensions are compared,
+not where they are multiplied, so `(theta*r)/r` is an angle again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+Exponent = int | Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class Dimension:
+    """Exponents of the base dimensions; fractions only come from square roots."""
+
+    length: Exponent = 0
+    mass: Exponent = 0
+    time: Exponent = 0
+    angle: Exponent = 0
+
+    @property
+    def exponents(self) -> tuple[Exponent, Exponent, Exponent, Exponent]:
+        """Exponents of length, mass, time, angle."""
+        return (self.length, self.mass, self.time, self.angle)
+
+    @property
+    def dimensionless(self) -> bool:
+        """Whether all exponents are zero; an angle is not dimensionless."""
+        return not (self.length or self.mass or self.time or self.angle)
+
+    def __mul__(self, other: Dimension) -> Dimension:
+        return Dimension(
+            plain(self.length + other.length),
+            plain(self.mass + other.mass),
+            plain(self.time + other.time),
+            plain(self.angle + other.angle),
+        )
+
+    def __truediv__(self, other: Dimension) -> Dimension:
+        return Dimension(
+            plain(self.length - other.length),
+            plain(self.mass - other.mass),
+            plain(self.time - other.time),
+            plain(self.angle - other.angle),
+        )
+
+    def __pow__(self, exponent: Exponent) -> Dimension:
+        return Dimension(*(plain(power * exponent) for power in self.exponents))
+
+    def reduced(self) -> Dimension:
+        """The dimension with the angle of an arc or of work taken as a plain number."""
+        if self.length > 0 and self.angle > 0:
+            return Dimension(self.length, self.mass, self.time)
+        return self
+
+    def compatible(self, other: Dimension) -> bool:
+        """Whether values of the two can be added, compared, or stand for each other."""
+        return self == other or self.reduced() == other.reduced()
+
+    @property
+    def phrase(self) -> str:
+        """The dimension in words with an article: `a length`, `an angular rate`."""
+        reduced = self.reduced()
+        return _PHRASES.get(reduced) or f"a quantity of dimension {reduced}"
+
+    def __str__(self) -> str:
+        """The dimension as a product: `length^2/time`."""
+        return format_product(
+            [
+                ("mass", self.mass),
+                ("length", self.length),
+                ("angle", self.angle),
+                ("time", self.time),
+            ]
+        )
+
+
+def format_product(factors: list[tuple[str, Exponent]]) -> str:
+    """A product of powers as text: `lbm*in^2/s^2`, `1/s`; empty without factors."""
+    above = [_power(name, exponent) for name, exponent in factors if exponent > 0]
+    below = ["/" + _power(name, -exponent) for name, exponent in factors if exponent < 0]
+    return ("*".join(above) or ("1" if below else "")) + "".join(below)
+
+
+def _power(name: str, exponent: Exponent) -> str:
+    if exponent == 1:
+        return name
+    plain = isinstance(exponent, int)
+    return f"{name}^{exponent}" if plain else f"{name}^({exponent})"
+
+
+def plain(exponent: Exponent) -> Exponent:
+    """Whole exponents as int, so that they print and compare simply."""
+    return exponent.numerator if exponent.denominator == 1 else exponent
+
+
+DIMENSIONLESS = Dimension()
+LENGTH = Dimension(length=1)
+AREA = Dimension(length=2)
+VOLUME = Dimension(length=3)
+MASS = Dimension(mass=1)
+TIME = Dimension(time=1)
+FREQUENCY = Dimension(time=-1)
+ANGLE = Dimension(angle=1)
+ANGULAR_RATE = Dimension(angle=1, time=-1)
+ANGULAR_ACCELERATION = Dimension(angle=1, time=-2)
+ANGULAR_JERK = Dimension(angle=1, time=-3)
+VELOCITY = Dimension(length=1, time=-1)
+ACCELERATION = Dimension(length=1, time=-2)
+JERK = Dimension(length=1, time=-3)
+FORCE = Dimension(mass=1, length=1, time=-2)
+MOMENT = Dimension(mass=1, length=2, time=-2)
+ENERGY = MOMENT
+POWER = Dimension(mass=1, length=2, time=-3)
+INERTIA = Dimension(mass=1, length=2)
+STIFFNESS = FORCE / LENGTH
+DAMPING = FORCE / VELOCITY
+TORSIONAL_STIFFNESS = MOMENT / ANGLE
+TORSIONAL_DAMPING = MOMENT / ANGULAR_RATE
+
+_PHRASES = {
+    DIMENSIONLESS: "a dimensionless number",
+    LENGTH: "a length",
+    AREA: "an area",
+    VOLUME: "a volume",
+    MASS: "a mass",
+    TIME: "a time",
+    FREQUENCY: "a frequency",
+    ANGLE: "an angle",
+    ANGULAR_RATE: "an angular rate",
+    ANGULAR_ACCELERATION: "an angular acceleration",
+    ANGULAR_JERK: "an angular jerk",
+    VELOCITY: "a velocity",
+    ACCELERATION: "an acceleration",
+    JERK: "a jerk",
+    FORCE: "a force",
+    MOMENT: "a moment or energy",
+    POWER: "a power",
+    INERTIA: "a moment of inertia",
+    STIFFNESS: "a stiffness",
+    DAMPING: "a damping",
+    TORSIONAL_STIFFNESS: "a torsional stiffness",
+    TORSIONAL_DAMPING: "a torsional damping",
+}
