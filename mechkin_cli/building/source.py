@@ -1,0 +1,45 @@
+"""A mechanism file, read and checked: what was meant, and where it was written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+
+from mechkin_cli.diagnostics import InvalidFile
+from mechkin_cli.reading.document import Document, document_from_text, read_document
+from mechkin_cli.reading.explain import explain
+from mechkin_cli.schema.file import MechanismFile
+from mechkin_cli.schema.validate import InvalidDataError, validate
+
+_NONE: Mapping[str, str] = MappingProxyType({})
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """The content of a mechanism file, and the document that knows the place of each value."""
+
+    file: MechanismFile
+    document: Document
+
+
+def open_file(path: str | Path, parameters: Mapping[str, str] = _NONE) -> Source:
+    """Read a mechanism file; `parameters` replace values of its `parameters:`, as `--set` does.
+
+    Raises `UsageError` for a file that cannot be read or an unknown parameter, `InvalidFile` with
+    all independent diagnostics for content that is not format 1.
+    """
+    return _checked(read_document(path).with_parameters(parameters))
+
+
+def open_text(text: str, name: str, parameters: Mapping[str, str] = _NONE) -> Source:
+    """As `open_file`, for a text; `name` stands for the file in messages."""
+    return _checked(document_from_text(text, name).with_parameters(parameters))
+
+
+def _checked(document: Document) -> Source:
+    try:
+        return Source(validate(document.data), document)
+    except InvalidDataError as invalid:
+        raise InvalidFile(explain(invalid.errors, document)) from None

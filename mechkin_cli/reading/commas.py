@@ -1,0 +1,79 @@
+"""The classic mistake of one-line mappings: `{value: det(a, b, c)}` without quotes.
+
+Inside braces and brackets YAML ends an unquoted scalar at the comma, so the example has the keys
+`value`, `b` and `c)`. A scalar with an open parenthesis gives the mistake away.
+"""
+
+from __future__ import annotations
+
+from mechkin_cli.diagnostics import Diagnostic, Place
+from mechkin_cli.reading.nodes import Node, Scalar, Style
+
+_OPENING, _CLOSING = "([{", ")]}"
+_ENDS_AN_EXPRESSION = ",}]"
+
+
+def is_cut_off(node: Node) -> bool:
+    """Whether the node is an unquoted scalar in which a parenthesis stays open."""
+    return isinstance(node, Scalar) and node.style is Style.PLAIN and _open_parentheses(node) > 0
+
+
+def pieces_of_mapping(pairs: list[tuple[Node, Node]], first: int) -> int:
+    """The number of entries after `pairs[first]` that are pieces of its cut off value.
+
+    A piece is a key without a value; the pieces end where the parentheses are closed.
+    """
+    still_open = _open_parentheses(pairs[first][1])
+    end = first + 1
+    while end < len(pairs) and still_open > 0 and is_empty(pairs[end][1]):
+        still_open += _open_parentheses(pairs[end][0])
+        end += 1
+    return end - first - 1
+
+
+def pieces_of_sequence(items: list[Node], first: int) -> int:
+    """The number of items after `items[first]` that are pieces of it; 0 where nothing closes it."""
+    still_open = _open_parentheses(items[first])
+    for end in range(first + 1, len(items)):
+        still_open += _open_parentheses(items[end])
+        if still_open <= 0:
+            return end - first
+    return 0
+
+
+def is_empty(node: Node) -> bool:
+    """Whether YAML reads the node as 'no value'."""
+    nothing = ("", "~", "null", "Null", "NULL")
+    return isinstance(node, Scalar) and node.style is Style.PLAIN and node.text in nothing
+
+
+def cut_at_comma(scalar: Scalar, line: str, file: str) -> Diagnostic:
+    """The message for a cut off scalar; `line` is the source line on which it starts."""
+    whole = _whole_expression(line[scalar.mark.column - 1 :])
+    hint = f'put it in quotes: "{whole}"' if whole else "put the whole expression in quotes"
+    return Diagnostic(
+        "comma-without-quotes",
+        "error",
+        f"YAML ends the value {_shortened(scalar.text)} at the comma or bracket that follows",
+        Place(file, *scalar.mark),
+        hint=hint,
+    )
+
+
+def _open_parentheses(node: Node) -> int:
+    if not isinstance(node, Scalar) or node.style is not Style.PLAIN:
+        return 0
+    return node.text.count("(") - node.text.count(")")
+
+
+def _whole_expression(source: str) -> str | None:
+    depth = 0
+    for index, character in enumerate(source):
+        if depth == 0 and (character in _ENDS_AN_EXPRESSION or source[index:].startswith(" #")):
+            return source[:index].strip()
+        depth += (character in _OPENING) - (character in _CLOSING)
+    return source.strip() if depth == 0 else None
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= 40 else text[:37] + "..."

@@ -1,0 +1,152 @@
+"""What was written, with its places: one mechanism file as plain data and as positions in the text.
+
+A path leads into the file from the top, by keys and by the numbers of list items from 0:
+`("tables", 0, "columns", 2, "value")`.
+"""
+
+from __future__ import annotations
+
+import collections.abc
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TypeAlias
+
+from mechkin_cli.diagnostics import Place, UsageError
+from mechkin_cli.reading.nearest import nearest
+from mechkin_cli.reading.nodes import (
+    Entry,
+    Mapping,
+    Node,
+    PlainData,
+    Scalar,
+    Sequence,
+    Style,
+    plain_data,
+)
+from mechkin_cli.reading.offsets import source_mark
+from mechkin_cli.reading.parser import parse
+from mechkin_cli.reading.text import lines_of, read_text
+
+KeyPath: TypeAlias = tuple[str | int, ...]
+
+_PARAMETERS = "parameters"
+
+
+@dataclass(frozen=True)
+class Document:
+    """A mechanism file as written.
+
+    `file` is the name that messages show, `text` the source, `root` the top-level mapping;
+    `overrides` holds the parameters set from outside, by name.
+    """
+
+    file: str
+    text: str
+    root: Mapping
+    overrides: dict[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def data(self) -> dict[str, PlainData]:
+        """The file as dict, list and str, with the overrides in place."""
+        data = {key: plain_data(entry.value) for key, entry in self.root.entries.items()}
+        parameters = data.get(_PARAMETERS)
+        if isinstance(parameters, dict):
+            data[_PARAMETERS] = parameters | self.overrides
+        return data
+
+    def node(self, path: KeyPath) -> Node | None:
+        """The node at a path, None where there is nothing; overrides count."""
+        entry, depth = self._reach(path)
+        return entry.value if depth == len(path) else None
+
+    def place(self, path: KeyPath) -> Place:
+        """Where the value at a path stands; for a missing one, its nearest ancestor that exists."""
+        if override := self._override(path):
+            return self._outside(override, 0)
+        return Place(self.file, *self._reach(path)[0].value.mark)
+
+    def key_place(self, path: KeyPath) -> Place:
+        """Where the key at a path stands (of a list item, the item); missing keys as in `place`."""
+        entry, depth = self._reach(path)
+        return Place(self.file, *entry.mark) if depth == len(path) else self.place(path)
+
+    def place_in(self, path: KeyPath, offset: int) -> Place:
+        """Where the character `offset` (from 0) of the scalar at a path stands in the source."""
+        if override := self._override(path):
+            return self._outside(override, offset)
+        node = self.node(path)
+        if not isinstance(node, Scalar):
+            return self.place(path)
+        return Place(self.file, *source_mark(node, offset, self._lines))
+
+    def with_parameters(self, parameters: collections.abc.Mapping[str, str]) -> Document:
+        """The document with other values for some of its `parameters`.
+
+        Raises `UsageError` for a name that the file does not define.
+        """
+        entry = self.root.entries.get(_PARAMETERS)
+        defined = entry.value.entries if entry and isinstance(entry.value, Mapping) else {}
+        for name, value in parameters.items():
+            if name not in defined:
+                raise UsageError(_unknown_parameter(name, list(defined), self.file))
+            if not value.strip():
+                raise UsageError(f"--set {name}: the value is empty; write --set {name}=0.6in")
+        return replace(self, overrides=self.overrides | dict(parameters))
+
+    @cached_property
+    def _lines(self) -> list[str]:
+        return lines_of(self.text)
+
+    def _reach(self, path: KeyPath) -> tuple[Entry, int]:
+        """The last entry on the path that exists, and how many steps of the path lead to it."""
+        entry = Entry(self.root.mark, self.root)
+        for depth, step in enumerate(path):
+            child = _child(entry.value, step)
+            if child is None:
+                return entry, depth
+            entry = child
+        if override := self._override(path):
+            text = self.overrides[override]
+            entry = Entry(entry.mark, Scalar(text, entry.value.mark, Style.PLAIN))
+        return entry, len(path)
+
+    def _override(self, path: KeyPath) -> str | None:
+        if len(path) == 2 and path[0] == _PARAMETERS and path[1] in self.overrides:
+            return str(path[1])
+        return None
+
+    def _outside(self, name: str, offset: int) -> Place:
+        return Place(f"--set {name}", 1, offset + 1)
+
+
+def read_document(path: str | Path) -> Document:
+    """The document in a file.
+
+    Raises `UsageError` where there is no file to read, `InvalidFile` where it is not the YAML of a
+    mechanism file.
+    """
+    return document_from_text(read_text(path), str(path))
+
+
+def document_from_text(text: str, name: str) -> Document:
+    """The document in a text; `name` stands for the file in messages. Raises `InvalidFile`."""
+    text = text.removeprefix("\ufeff")
+    return Document(name, text, parse(text, name))
+
+
+def _child(node: Node, step: str | int) -> Entry | None:
+    if isinstance(node, Mapping) and isinstance(step, str):
+        return node.entries.get(step)
+    if isinstance(node, Sequence) and isinstance(step, int) and 0 <= step < len(node.items):
+        return Entry(node.items[step].mark, node.items[step])
+    return None
+
+
+def _unknown_parameter(name: str, defined: list[str], file: str) -> str:
+    message = f"--set {name}: {file} defines no parameter {name!r}"
+    if close := nearest(name, defined):
+        return f"{message}; did you mean {close}?"
+    if not defined:
+        return f"{message}; it has no parameters: section"
+    return f"{message}; it has {', '.join(defined[:10])}{', ...' if len(defined) > 10 else ''}"

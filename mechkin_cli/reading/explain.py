@@ -1,0 +1,108 @@
+"""Errors of a validation -> diagnostics with file, line and column.
+
+An error is a plain record: `type` (its kind), `loc` (the way to the value), `ctx` (numbers and
+words for the message). Three conventions let a rule say more than where the validator stood:
+
+- a step of `loc` in parentheses that is no key of the file names one of several forms;
+- a last step `[key]` means the key itself and not its value;
+- `ctx["at"]` leads on from `loc`, `ctx["text"]` is the whole message, `ctx["hint"]` what to do.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from mechkin_cli.diagnostics import Diagnostic, Place
+from mechkin_cli.reading import wording
+from mechkin_cli.reading.document import Document, KeyPath
+from mechkin_cli.reading.nodes import Mapping, Sequence
+from mechkin_cli.reading.parser import in_order
+
+_KEY = "[key]"
+
+
+def explain(errors: Iterable[dict[str, Any]], document: Document) -> list[Diagnostic]:
+    """One diagnostic per error, in the order of the file."""
+    told = (_diagnostic(error, document) for error in errors if not _is_echo(error, document))
+    return in_order(list(dict.fromkeys(told)))
+
+
+def _is_echo(error: dict[str, Any], document: Document) -> bool:
+    """Whether a list counts as too short only because items of it were refused for themselves."""
+    if error["type"] != "too_short":
+        return False
+    node = document.node(_path(error["loc"], document))
+    return isinstance(node, Sequence) and len(node.items) >= error["ctx"]["min_length"]
+
+
+def _path(steps: Iterable[str | int], document: Document) -> KeyPath:
+    """The steps without the names of forms; a key that somebody wrote in parentheses stays."""
+    path: KeyPath = ()
+    for step in steps:
+        is_form = str(step).startswith("(") and document.node((*path, step)) is None
+        path = path if is_form else (*path, step)
+    return path
+
+
+def _diagnostic(error: dict[str, Any], document: Document) -> Diagnostic:
+    context = error.get("ctx") or {}
+    path = _path([*error["loc"], *context.get("at", ())], document)
+    kind = str(error["type"])
+    if kind == "missing":
+        words = wording.missing_key(str(path[-1]), context)
+        return _told(words, path[:-1], document.place(path[:-1]))
+    if kind == "extra_forbidden":
+        words = wording.unknown_key(str(path[-1]), context)
+        return _told(words, path[:-1], document.key_place(path))
+    if kind in ("unknown-word", "literal_error"):
+        return _unknown_word(kind, path, context, document)
+    at_key = path[-1:] == (_KEY,)
+    path = path[:-1] if at_key else path
+    place = document.key_place(path) if at_key else document.place(path)
+    if "text" in context:
+        words = _own_words(kind, context, path, document)
+    elif at_key:
+        text = f"{wording.shown(str(path[-1]))} is not {context.get('expected', 'a key')}"
+        words = wording.Wording("wrong-form", text, context.get("hint"))
+    else:
+        words = wording.wrong_value(error, document.node(path))
+    return _told(words, path[:-1] if at_key else path, place)
+
+
+def _unknown_word(
+    kind: str, path: KeyPath, context: dict[str, Any], document: Document
+) -> Diagnostic:
+    if kind == "literal_error":
+        known = re.findall(r"'([^']*)'", str(context.get("expected")))
+    else:
+        known = str(context["words"]).split(", ")
+        if not _is_mapping(path, document):
+            words = wording.wrong_value({"type": "model_type"}, document.node(path))
+            return _told(words, path, document.place(path))
+        key = str(context["key"])
+        if document.node((*path, key)) is None:
+            words = wording.missing_key(key, {"purpose": f"one of {', '.join(known)}"})
+            return _told(words, path, document.place(path))
+        path = (*path, key)
+    return _told(wording.unknown_word(document.node(path), known), path, document.place(path))
+
+
+def _is_mapping(path: KeyPath, document: Document) -> bool:
+    return isinstance(document.node(path), Mapping)
+
+
+def _own_words(
+    code: str, context: dict[str, Any], path: KeyPath, document: Document
+) -> wording.Wording:
+    text = str(context["text"])
+    if text.startswith("expected"):
+        text += f", found {wording.kind(document.node(path))}"
+    return wording.Wording(code, text, context.get("hint"))
+
+
+def _told(words: wording.Wording, path: KeyPath, place: Place) -> Diagnostic:
+    where = "".join(f"#{step + 1}" if isinstance(step, int) else f".{step}" for step in path)
+    message = f"{where[1:]}: {words.message}" if where else words.message
+    return Diagnostic(words.code, "error", message, place, hint=words.hint)

@@ -1,0 +1,134 @@
+"""From a path to text: size, encoding and invisible characters, settled before any YAML."""
+
+from __future__ import annotations
+
+import codecs
+import re
+import stat
+from pathlib import Path
+
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place, UsageError
+from mechkin_cli.reading.limits import MOST_BYTES
+from mechkin_cli.reading.nearest import nearest
+
+_LINE_BREAK = re.compile(r"\r\n|\r|\n")
+_TAB_IN_INDENTATION = re.compile(r"^ *(\t)[ \t]*[^ \t\r\n#]", re.MULTILINE)
+_DIRECTIVE = re.compile(r"^%", re.MULTILINE)
+# What YAML does not allow, and what would make editors and parsers count lines differently
+_INVISIBLE = re.compile(
+    "[^\t\n\r\x20-\x7e\xa0-\u2027\u202a-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
+)
+_OTHER_ENCODINGS = (codecs.BOM_UTF32_LE, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+
+
+def read_text(path: str | Path) -> str:
+    """The text of a file, decoded from UTF-8 (a byte order mark is dropped).
+
+    Raises `UsageError` where there is no file to read, `InvalidFile` where its content cannot be a
+    mechanism file.
+    """
+    content = _read_bytes(Path(path))
+    file = str(path)
+    if len(content) > MOST_BYTES:
+        raise _invalid(
+            "file-too-large",
+            "the file is too large for a mechanism file",
+            Place(file, 1, 1),
+            "keep long tables of numbers in CSV files",
+            measured="more than 1 MiB",
+            limit=f"{MOST_BYTES} bytes",
+        )
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise _not_utf8(content, error, file) from None
+    text = text.removeprefix("\ufeff")
+    check_characters(text, file)
+    return text
+
+
+def check_characters(text: str, file: str) -> None:
+    """Raise `InvalidFile` at the first character that a mechanism file may not hold.
+
+    These are NUL and other control characters, invisible line breaks, tabs in the indentation, and
+    directives (`%` in the first column).
+    """
+    if found := _INVISIBLE.search(text):
+        code = ord(found[0])
+        name = "a NUL character" if code == 0 else f"the invisible character U+{code:04X}"
+        place = place_at(text, found.start(), file)
+        hint = "delete it; a mechanism file is plain UTF-8 text"
+        raise _invalid("bad-character", f"{name} in the text", place, hint)
+    if found := _TAB_IN_INDENTATION.search(text):
+        place = place_at(text, found.start(1), file)
+        raise _invalid("tab", "a tab in the indentation", place, "indent with blanks")
+    if found := _DIRECTIVE.search(text):
+        place = place_at(text, found.start(), file)
+        hint = "delete the line, or put a text that starts with % in quotes"
+        raise _invalid("directive", "YAML directives (%) are not used here", place, hint)
+
+
+def place_at(text: str, index: int, file: str) -> Place:
+    """The line and column of the character `text[index]`."""
+    line, start = 1, 0
+    for found in _LINE_BREAK.finditer(text, 0, index):
+        line, start = line + 1, found.end()
+    return Place(file, line, index - start + 1)
+
+
+def lines_of(text: str) -> list[str]:
+    """The lines of a text as YAML and editors count them, without their breaks."""
+    return _LINE_BREAK.split(text)
+
+
+def _read_bytes(path: Path) -> bytes:
+    try:
+        mode = path.stat().st_mode
+        if stat.S_ISDIR(mode):
+            raise UsageError(f"{path} is a directory; name a mechanism file in it{_example(path)}")
+        if not stat.S_ISREG(mode):
+            raise UsageError(f"{path} is not a regular file; save the mechanism in a file")
+        with path.open("rb") as stream:
+            return stream.read(MOST_BYTES + 1)
+    except FileNotFoundError:
+        raise UsageError(f"there is no file {path}{_similar(path)}") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise UsageError(
+            f"{path} cannot be read: {reason}; check the path and its rights"
+        ) from None
+
+
+def _example(folder: Path) -> str:
+    names = sorted(path.name for path in folder.glob("*.yaml"))
+    return f", for example {folder / names[0]}" if names else ""
+
+
+def _similar(path: Path) -> str:
+    try:
+        names = [entry.name for entry in path.parent.glob("*.y*ml")]
+    except OSError:
+        names = []
+    name = nearest(path.name, names)
+    return f"; did you mean {path.parent / name}?" if name else "; check the path"
+
+
+def _not_utf8(content: bytes, error: UnicodeDecodeError, file: str) -> InvalidFile:
+    if content.startswith(_OTHER_ENCODINGS):
+        place, message = Place(file, 1, 1), "the file is UTF-16 or UTF-32 text, not UTF-8"
+    else:
+        before = content[: error.start].decode("utf-8").removeprefix("\ufeff")
+        place = place_at(before, len(before), file)
+        message = f"the byte 0x{content[error.start]:02X} is not UTF-8 text"
+    return _invalid("encoding", message, place, "save the file as UTF-8")
+
+
+def _invalid(
+    code: str,
+    message: str,
+    place: Place,
+    hint: str,
+    measured: str | None = None,
+    limit: str | None = None,
+) -> InvalidFile:
+    return InvalidFile([Diagnostic(code, "error", message, place, measured, limit, hint)])

@@ -1,0 +1,73 @@
+"""The whole file: format 1."""
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+
+from mechkin_cli.schema.assembly import AssemblySection
+from mechkin_cli.schema.base import Section, refuse
+from mechkin_cli.schema.chain import ChainRow
+from mechkin_cli.schema.joints import Joint
+from mechkin_cli.schema.links import Link
+from mechkin_cli.schema.loads import Load
+from mechkin_cli.schema.motion import MotionSection
+from mechkin_cli.schema.points import DirectionOfLink, PointOfLink
+from mechkin_cli.schema.scalars import AnyDimension, Name, Text
+from mechkin_cli.schema.tables import Table, differing_names
+from mechkin_cli.schema.units_section import UnitsSection
+
+
+def _format_number(value: Any) -> int:
+    if str(value).strip() == "1" and not isinstance(value, bool):
+        return 1
+    raise refuse("unknown-format", "this version of mechkin reads format 1", "write format: 1")
+
+
+class MechanismFile(Section):
+    """A mechanism in the format 1 of mechkin.
+
+    All points, axes, mass centres and inertias are written in one drawing, the home pose, in ground
+    axes; every joint coordinate is zero there. Joints, links, points, directions and parameters
+    share one namespace.
+    """
+
+    format: Annotated[Literal[1], BeforeValidator(_format_number)]
+    """Version of the file format."""
+    name: Text | None = None
+    """Name of the mechanism."""
+    source: Text | None = None
+    """Where the mechanism comes from: book, page, drawing."""
+    units: UnitsSection = UnitsSection.model_construct()
+    """Units of bare numbers and of the tables."""
+    parameters: dict[Name, AnyDimension] = Field(default_factory=dict)
+    """Named numbers, values with units, or expressions of one another."""
+    links: dict[Name, Link] = Field(default_factory=dict)
+    """The moving bodies by name; `ground` always exists."""
+    joints: dict[Name, Joint] = Field(default_factory=dict)
+    """The joints by name."""
+    chain: tuple[ChainRow, ...] = ()
+    """A loop as rows (theta, s, alpha, a), beside or instead of `joints`."""
+    points: dict[Name, PointOfLink] = Field(default_factory=dict)
+    """Points that move with links, by name."""
+    directions: dict[Name, DirectionOfLink] = Field(default_factory=dict)
+    """Directions that turn with links, by name."""
+    motion: MotionSection | None = None
+    """The driven coordinates and their values."""
+    assembly: AssemblySection | None = None
+    """Which way of assembling the mechanism is meant."""
+    loads: tuple[Load, ...] = ()
+    """Gravity, forces, torques, springs and dampers."""
+    tables: Annotated[tuple[Table, ...], AfterValidator(differing_names)] = ()
+    """The tables a run writes; left out, one table of all coordinates, their rates and efforts."""
+    follow: tuple[Name, ...] | None = None
+    """Joints whose loops are followed beside those the outputs need; left out, all loops are."""
+    accept: tuple[Literal["unphysical-inertia"], ...] = ()
+    """Warnings that the file acknowledges."""
+    idle: Literal["hold"] | None = None
+    """`hold`: idle freedoms that loads would move are held, and the holding moment is reported."""
+
+    @model_validator(mode="after")
+    def _has_a_joint(self) -> Self:
+        if not self.joints and not self.chain:
+            raise refuse("no-joints", "the file has no joints", "add joints: (or chain:)")
+        return self

@@ -1,0 +1,181 @@
+"""`joints:` - the pairs of the mechanism, one model per type with exactly the keys of that type.
+
+All places and directions stand in the home drawing, in ground axes. A joint whose two halves do not
+meet in the drawing gives a place or direction per link: `point: {crank: [...], rocker: [...]}`.
+"""
+
+from typing import Annotated, Any, ClassVar, Final, Literal, Self, TypeVar
+
+from pydantic import Discriminator, Field, Tag, model_validator
+from typing_extensions import TypeAliasType
+
+from mechkin_cli.schema.alternatives import by_word
+from mechkin_cli.schema.base import Section, refuse
+from mechkin_cli.schema.scalars import DirectionVector, Length, LengthVector, Name
+
+JOINT_TYPES: Final = ("R", "P", "C", "H", "S", "Sp", "Sg", "U", "E", "W")
+_PER_LINK_FIELDS = ("point", "axis", "normal", "groove", "x", "zero")
+
+
+def _vector_or_per_link(value: Any) -> str:
+    return "(per link)" if isinstance(value, dict) else "(vector)"
+
+
+_Vector = TypeVar("_Vector")
+PerLink = Annotated[dict[Name, _Vector], Field(min_length=2, max_length=2)]
+"""One vector for each of the joint's two links."""
+
+Point = TypeAliasType(
+    "Point",
+    Annotated[
+        Annotated[LengthVector, Tag("(vector)")]
+        | Annotated[PerLink[LengthVector], Tag("(per link)")],
+        Discriminator(_vector_or_per_link),
+    ],
+)
+Direction = TypeAliasType(
+    "Direction",
+    Annotated[
+        Annotated[DirectionVector, Tag("(vector)")]
+        | Annotated[PerLink[DirectionVector], Tag("(per link)")],
+        Discriminator(_vector_or_per_link),
+    ],
+)
+ZeroReference = TypeAliasType("ZeroReference", PerLink[DirectionVector])
+
+
+class JointBase(Section):
+    """What all joints have. The coordinates are the motion of the second link against the first."""
+
+    links: Annotated[tuple[Name, ...], Field(min_length=2, max_length=2)]
+    """The two links, [first, second]; `ground` is a link."""
+
+    @model_validator(mode="after")
+    def _stays_with_its_links(self) -> Self:
+        first, second = self.links
+        if first == second:
+            raise refuse("same-link", f"{first} is joined to itself", "name two links", "links", 1)
+        for key in _PER_LINK_FIELDS:
+            per_link = getattr(self, key, None)
+            for name in per_link if isinstance(per_link, dict) else ():
+                if name not in self.links:
+                    text = f"{name} is not a link of this joint"
+                    hint = f"write {key}: {{{first}: [...], {second}: [...]}}"
+                    raise refuse("not-its-link", text, hint, key, name, "[key]")
+        return self
+
+
+class PointJoint(JointBase):
+    """What all joints except the weld have."""
+
+    point: Point
+    """A point of the joint in the home drawing, [x, y, z], or one point per link."""
+
+
+class AxisJoint(PointJoint):
+    """Joints with one axis."""
+
+    axis: Direction
+    """Direction of the axis in the home drawing, or one direction for each of the two links."""
+    zero: ZeroReference | None = None
+    """For an axis per link: a direction for each link; seen along the axis, the two lie in line at
+    coordinate 0. Left out, the shortest turn that carries one axis onto the other defines it."""
+
+
+class RevoluteJoint(AxisJoint):
+    """R: the second link turns by theta about `axis`."""
+
+    type: Literal["R"]
+
+
+class PrismaticJoint(AxisJoint):
+    """P: the second link slides by s along `axis`."""
+
+    type: Literal["P"]
+
+
+class CylindricJoint(AxisJoint):
+    """C: the second link turns by theta about `axis` and slides by s along it."""
+
+    type: Literal["C"]
+
+
+class HelicalJoint(AxisJoint):
+    """H: the second link turns by theta about `axis` and slides along it by s = lead*theta/turn."""
+
+    advice: ClassVar[dict[str, str]] = {"pitch": "use lead: length per turn, right-handed positive"}
+
+    type: Literal["H"]
+    lead: Length
+    """Length per turn, positive for a right-handed thread."""
+
+
+class SphericalJoint(PointJoint):
+    """S: ball and socket; `point` is the centre of the sphere."""
+
+    type: Literal["S"]
+
+
+class SpherePlaneJoint(PointJoint):
+    """Sp: a sphere of the first link on a plane of the second."""
+
+    type: Literal["Sp"]
+    normal: Direction
+    """Normal of the plane."""
+
+
+class SphereGrooveJoint(PointJoint):
+    """Sg: a sphere of the first link in a groove of the second; s > 0 along `groove`."""
+
+    type: Literal["Sg"]
+    groove: Direction
+    """Direction of the groove."""
+
+
+class UniversalJoint(PointJoint):
+    """U: turns by theta1 about `axis` of the first link and theta2 about `axis2` of the second.
+
+    The angle drawn between the two axes stays as it is.
+    """
+
+    type: Literal["U"]
+    axis: DirectionVector
+    """Axis fixed in the first link."""
+    axis2: DirectionVector
+    """Axis fixed in the second link."""
+
+
+class PlanarJoint(PointJoint):
+    """E: the second link slides by x and y in a plane and turns by theta about its normal."""
+
+    type: Literal["E"]
+    normal: Direction
+    """Normal of the plane; the axis of theta."""
+    x: Direction
+    """Direction of the coordinate x in the plane; y = normal cross x."""
+
+
+class WeldJoint(JointBase):
+    """W: the two links are one body."""
+
+    type: Literal["W"]
+
+
+def _tag(mapping: dict[str, Any]) -> str | None:
+    word = mapping.get("type")
+    return f"({word})" if word in JOINT_TYPES else None
+
+
+Joint = Annotated[
+    Annotated[RevoluteJoint, Tag("(R)")]
+    | Annotated[PrismaticJoint, Tag("(P)")]
+    | Annotated[CylindricJoint, Tag("(C)")]
+    | Annotated[HelicalJoint, Tag("(H)")]
+    | Annotated[SphericalJoint, Tag("(S)")]
+    | Annotated[SpherePlaneJoint, Tag("(Sp)")]
+    | Annotated[SphereGrooveJoint, Tag("(Sg)")]
+    | Annotated[UniversalJoint, Tag("(U)")]
+    | Annotated[PlanarJoint, Tag("(E)")]
+    | Annotated[WeldJoint, Tag("(W)")],
+    by_word("type", _tag, ", ".join(JOINT_TYPES)),
+]

@@ -1,0 +1,80 @@
+"""Laws of motion: an input as a function of time, for files with `motion: {time: ...}`."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from mechkin_cli.schema.base import Section
+from mechkin_cli.schema.scalars import (
+    AngleOrLength,
+    AnyDimension,
+    CoordinateAcceleration,
+    CoordinateRate,
+    CsvPath,
+    Duration,
+)
+
+
+class ConstantRate(Section):
+    """x = at + rate*t, with t from the first moment of `time`."""
+
+    law: Literal["constant-rate"]
+    at: AngleOrLength
+    """Value at the first moment."""
+    rate: CoordinateRate
+    """Constant rate."""
+
+
+class ConstantAcceleration(Section):
+    """x = at + rate*t + acceleration*t^2/2, with t from the first moment of `time`."""
+
+    law: Literal["constant-acceleration"]
+    at: AngleOrLength
+    """Value at the first moment."""
+    rate: CoordinateRate = "0"
+    """Rate at the first moment."""
+    acceleration: CoordinateAcceleration
+    """Constant acceleration."""
+
+
+class Polynomial(Section):
+    """x = c0 + c1*t + c2*t^2 + ..., with t from the first moment of `time`."""
+
+    law: Literal["polynomial"]
+    coefficients: Annotated[tuple[AnyDimension, ...], Field(min_length=1, max_length=20)]
+    """c0, c1, c2, ...; the k-th has the coordinate's dimension per time^k."""
+
+
+class _Rise(Section):
+    start: Duration | None = None
+    """When the rise begins; left out, at the first moment of `time`. Before it the input rests."""
+    duration: Duration | None = None
+    """How long it lasts; left out, to the last moment of `time`. After it the input rests."""
+
+
+class Harmonic(_Rise):
+    """x = from + (to - from) * (1 - cos(pi*u))/2, with u from 0 to 1 over the duration."""
+
+    law: Literal["harmonic"]
+    first: AngleOrLength = Field(alias="from")
+    """Value before the rise."""
+    last: AngleOrLength = Field(alias="to")
+    """Value after the rise."""
+
+
+class Cycloidal(_Rise):
+    """x = from + (to - from) * (u - sin(2*pi*u)/(2*pi)), with u from 0 to 1 over the duration."""
+
+    law: Literal["cycloidal"]
+    first: AngleOrLength = Field(alias="from")
+    """Value before the rise."""
+    last: AngleOrLength = Field(alias="to")
+    """Value after the rise."""
+
+
+class TableLaw(Section):
+    """x as a table of time and value, joined by a smooth curve."""
+
+    law: Literal["table"]
+    file: CsvPath
+    """CSV file with a header and two columns: time, value; relative to the mechanism file."""

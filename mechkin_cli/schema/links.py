@@ -1,0 +1,70 @@
+"""`links:` - the rigid bodies: mass, mass centre and inertia in the home drawing."""
+
+from typing import ClassVar, Self
+
+from pydantic import ConfigDict, model_validator
+
+from mechkin_cli.schema.base import Section, refuse
+from mechkin_cli.schema.scalars import DirectionVector, Inertia, LengthVector, Mass
+
+
+class InertiaAxes(Section):
+    """The axes in which an inertia tensor is written, drawn in ground axes of the home drawing.
+
+    They are normalised, must be square to one another to 1e-9, and z = x cross y.
+    """
+
+    advice: ClassVar[dict[str, str]] = {"z": "leave it out: z = x cross y"}
+
+    x: DirectionVector
+    """First axis, [x, y, z]."""
+    y: DirectionVector
+    """Second axis, [x, y, z]."""
+
+
+class LinkInertia(Section):
+    """The inertia tensor about the mass centre; an entry that is left out is zero.
+
+    `xy` is the entry as it stands in the tensor (minus the integral of x*y).
+    """
+
+    xx: Inertia = "0"
+    yy: Inertia = "0"
+    zz: Inertia = "0"
+    xy: Inertia = "0"
+    xz: Inertia = "0"
+    yz: Inertia = "0"
+    axes: InertiaAxes | None = None
+    """Axes of the tensor; left out, those of the ground in the home drawing."""
+
+
+class Link(Section):
+    """A rigid body. All its keys may be left out: `{}` is a link without mass."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "dependentRequired": {"mass": ["center_of_mass"], "center_of_mass": ["mass"]}
+        }
+    )
+    advice: ClassVar[dict[str, str]] = {
+        "centre_of_mass": "the key is spelled center_of_mass",
+        "com": "the key is spelled center_of_mass",
+    }
+
+    mass: Mass | None = None
+    """Mass of the link."""
+    center_of_mass: LengthVector | None = None
+    """Mass centre in the home drawing, [x, y, z] in ground axes."""
+    inertia: LinkInertia | None = None
+    """Inertia tensor about the mass centre."""
+
+    @model_validator(mode="after")
+    def _mass_has_a_centre(self) -> Self:
+        if self.mass is not None and self.center_of_mass is None:
+            raise refuse("mass-without-centre", "a mass needs a center_of_mass", "add it", "mass")
+        if self.mass is None and self.center_of_mass is not None:
+            hint = "add the mass (0 for none)"
+            raise refuse(
+                "centre-without-mass", "a center_of_mass needs a mass", hint, "center_of_mass"
+            )
+        return self

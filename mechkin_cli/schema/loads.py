@@ -1,0 +1,186 @@
+"""`loads:` - gravity, forces, torques, springs and dampers.
+
+A value may be an expression of coordinates, their rates and `time`, or `{table: file.csv}`.
+"""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag
+from typing_extensions import TypeAliasType
+
+from mechkin_cli.schema.alternatives import by_word
+from mechkin_cli.schema.base import Section
+from mechkin_cli.schema.scalars import (
+    AccelerationVector,
+    AngleOrLength,
+    CsvPath,
+    Damping,
+    Force,
+    ForceOrTorque,
+    Length,
+    LengthVector,
+    Name,
+    Stiffness,
+    Torque,
+)
+
+
+class TableValue(Section):
+    """A value read from a CSV file."""
+
+    table: CsvPath
+    """CSV file with a header and two columns: coordinate or time, value."""
+
+
+def _expression_or_table(value: Any) -> str:
+    return "(table)" if isinstance(value, (dict, TableValue)) else "(expression)"
+
+
+ForceValue = TypeAliasType(
+    "ForceValue",
+    Annotated[
+        Annotated[Force, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
+        Discriminator(_expression_or_table),
+    ],
+)
+TorqueValue = TypeAliasType(
+    "TorqueValue",
+    Annotated[
+        Annotated[Torque, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
+        Discriminator(_expression_or_table),
+    ],
+)
+Axes = Literal["ground", "link"]
+Between = Annotated[tuple[Name, ...], Field(min_length=2, max_length=2)]
+
+
+class Gravity(Section):
+    """Acts at the mass centre of every link with mass."""
+
+    type: Literal["gravity"]
+    g: AccelerationVector
+    """Acceleration of free fall in ground axes, [x, y, z]."""
+
+
+class ForceOnLink(Section):
+    """A force at a point of a link."""
+
+    type: Literal["force"]
+    link: Name
+    """The link it acts on."""
+    point: LengthVector
+    """Where it acts: a point of the link in the home drawing."""
+    force: Annotated[tuple[ForceValue, ...], Field(min_length=3, max_length=3)]
+    """The force, [x, y, z]."""
+    axes: Axes = "ground"
+    """Whether the components are in ground axes or turn with the link (its axes in the drawing)."""
+
+
+class TorqueOnLink(Section):
+    """A couple on a link."""
+
+    type: Literal["torque"]
+    link: Name
+    """The link it acts on."""
+    torque: Annotated[tuple[TorqueValue, ...], Field(min_length=3, max_length=3)]
+    """The couple, [x, y, z]."""
+    axes: Axes = "ground"
+    """Whether the components are in ground axes or turn with the link (its axes in the drawing)."""
+
+
+class ForceOnJoint(Section):
+    """A force on the coordinate s of a joint: it acts on the second link, against the first."""
+
+    type: Literal["force"]
+    joint: Name
+    """The joint."""
+    value: ForceValue
+    """The force, positive in the direction of s."""
+
+
+class TorqueOnJoint(Section):
+    """A torque on the coordinate theta of a joint: on the second link, against the first."""
+
+    type: Literal["torque"]
+    joint: Name
+    """The joint."""
+    value: TorqueValue
+    """The torque, positive in the direction of theta."""
+
+
+class SpringBetweenPoints(Section):
+    """A straight spring; its pull is preload + stiffness * (distance - free)."""
+
+    type: Literal["spring"]
+    between: Between
+    """Two named points."""
+    stiffness: Stiffness
+    """Force per length."""
+    free: Length
+    """Length without force (apart from the preload)."""
+    preload: Force = "0"
+    """Pull at the free length."""
+
+
+class SpringAtJoint(Section):
+    """A spring on a coordinate; it resists with preload + stiffness * (coordinate - free)."""
+
+    type: Literal["spring"]
+    joint: Name
+    """The joint."""
+    coordinate: Name
+    """The coordinate of the joint, for example theta."""
+    stiffness: Stiffness
+    """Force per length, or moment per angle (bare numbers: per rad)."""
+    free: AngleOrLength = "0"
+    """Coordinate without force (apart from the preload)."""
+    preload: ForceOrTorque = "0"
+    """Force or moment at the free coordinate."""
+
+
+class DamperBetweenPoints(Section):
+    """A straight damper; it resists the rate of the distance."""
+
+    type: Literal["damper"]
+    between: Between
+    """Two named points."""
+    damping: Damping
+    """Force per speed."""
+
+
+class DamperAtJoint(Section):
+    """A damper on a coordinate; it resists the rate of the coordinate."""
+
+    type: Literal["damper"]
+    joint: Name
+    """The joint."""
+    coordinate: Name
+    """The coordinate of the joint, for example theta."""
+    damping: Damping
+    """Force per speed, or moment per angular rate (bare numbers: per rad/s)."""
+
+
+_WORDS = ("gravity", "force", "torque", "spring", "damper")
+
+
+def _tag(mapping: dict[str, Any]) -> str | None:
+    word = mapping.get("type")
+    if word not in _WORDS:
+        return None
+    if word == "gravity":
+        return "(gravity)"
+    return f"({word} at joint)" if "joint" in mapping else f"({word})"
+
+
+Load = Annotated[
+    Annotated[Gravity, Tag("(gravity)")]
+    | Annotated[ForceOnLink, Tag("(force)")]
+    | Annotated[ForceOnJoint, Tag("(force at joint)")]
+    | Annotated[TorqueOnLink, Tag("(torque)")]
+    | Annotated[TorqueOnJoint, Tag("(torque at joint)")]
+    | Annotated[SpringBetweenPoints, Tag("(spring)")]
+    | Annotated[SpringAtJoint, Tag("(spring at joint)")]
+    | Annotated[DamperBetweenPoints, Tag("(damper)")]
+    | Annotated[DamperAtJoint, Tag("(damper at joint)")],
+    by_word("type", _tag, ", ".join(_WORDS)),
+]

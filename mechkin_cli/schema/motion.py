@@ -1,0 +1,168 @@
+"""`motion:` - which coordinates are driven, and through which values.
+
+Rows of a sweep: n = floor(|to - from|/|step| + 1e-9) + 1, x_i = from + i*step. One input is swept;
+others are held (`at`), follow (`with`) or run in step through equally many values.
+"""
+
+from typing import Annotated, Any, Self
+
+from pydantic import ConfigDict, Field, Tag, model_validator
+
+from mechkin_cli.schema.alternatives import by_word
+from mechkin_cli.schema.base import Section, refuse
+from mechkin_cli.schema.laws import (
+    ConstantAcceleration,
+    ConstantRate,
+    Cycloidal,
+    Harmonic,
+    Polynomial,
+    TableLaw,
+)
+from mechkin_cli.schema.scalars import (
+    AngleOrLength,
+    AnyDimension,
+    Coordinate,
+    CoordinateAcceleration,
+    CoordinateJerk,
+    CoordinateRate,
+    Duration,
+    WholeNumber,
+)
+
+_STEP_OR_COUNT = ConfigDict(
+    json_schema_extra={"oneOf": [{"required": ["step"]}, {"required": ["count"]}]}
+)
+
+
+class _WithRates(Section):
+    rate: CoordinateRate = "0"
+    """Rate of the input, the same in every row."""
+    acceleration: CoordinateAcceleration = "0"
+    """Second rate of the input, the same in every row."""
+    jerk: CoordinateJerk = "0"
+    """Third rate of the input, the same in every row."""
+
+
+class SweptInput(_WithRates):
+    """An input that runs from one value to another in equal steps."""
+
+    model_config = _STEP_OR_COUNT
+
+    first: AngleOrLength = Field(alias="from")
+    """Value of the first row."""
+    last: AngleOrLength = Field(alias="to")
+    """Value that the last row reaches or stays below."""
+    step: AngleOrLength | None = None
+    """Distance between rows; its sign does not matter."""
+    count: Annotated[WholeNumber, Field(ge=1)] | None = None
+    """Number of rows, instead of `step`; the last row is exactly `to`."""
+
+    @model_validator(mode="after")
+    def _step_or_count(self) -> Self:
+        if self.step is None and self.count is None:
+            raise refuse("missing-key", "from and to need a step or a count", "add one of them")
+        if self.step is not None and self.count is not None:
+            text = "step and count both say how many rows there are"
+            raise refuse("two-choices", text, "keep one of them", "count")
+        return self
+
+
+class ListedInput(_WithRates):
+    """An input that takes the listed values, one per row."""
+
+    values: Annotated[tuple[AngleOrLength, ...], Field(min_length=1)]
+    """The value of each row."""
+
+
+class HeldInput(_WithRates):
+    """An input that has the same value in every row."""
+
+    at: AngleOrLength
+    """The value."""
+
+
+class FollowingInput(Section):
+    """An input that follows the swept one; its rates follow from the expression."""
+
+    value: AnyDimension = Field(alias="with")
+    """An expression of the swept input, for example `2*O1.theta`."""
+
+
+class TimeSection(Section):
+    """The moments of the rows, where the inputs are given by laws."""
+
+    model_config = _STEP_OR_COUNT
+
+    first: Duration = Field(alias="from")
+    """First moment."""
+    last: Duration = Field(alias="to")
+    """Last moment."""
+    step: Duration | None = None
+    """Time between rows."""
+    count: Annotated[WholeNumber, Field(ge=1)] | None = None
+    """Number of rows, instead of `step`."""
+
+    @model_validator(mode="after")
+    def _step_or_count(self) -> Self:
+        if (self.step is None) == (self.count is None):
+            text = "time needs either a step or a count"
+            raise refuse("step-or-count", text, "give exactly one of them")
+        return self
+
+
+_LAWS = {
+    "constant-rate": ConstantRate,
+    "constant-acceleration": ConstantAcceleration,
+    "polynomial": Polynomial,
+    "harmonic": Harmonic,
+    "cycloidal": Cycloidal,
+    "table": TableLaw,
+}
+
+
+def _tag(mapping: dict[str, Any]) -> str | None:
+    if "law" in mapping:
+        return f"({mapping['law']})" if mapping["law"] in _LAWS else None
+    if {"from", "to", "step", "count"} & mapping.keys():
+        return "(swept)"
+    for key, tag in (("values", "(listed)"), ("with", "(following)"), ("at", "(held)")):
+        if key in mapping:
+            return tag
+    return "(swept)"
+
+
+InputMotion = Annotated[
+    Annotated[SweptInput, Tag("(swept)")]
+    | Annotated[ListedInput, Tag("(listed)")]
+    | Annotated[HeldInput, Tag("(held)")]
+    | Annotated[FollowingInput, Tag("(following)")]
+    | Annotated[ConstantRate, Tag("(constant-rate)")]
+    | Annotated[ConstantAcceleration, Tag("(constant-acceleration)")]
+    | Annotated[Polynomial, Tag("(polynomial)")]
+    | Annotated[Harmonic, Tag("(harmonic)")]
+    | Annotated[Cycloidal, Tag("(cycloidal)")]
+    | Annotated[TableLaw, Tag("(table)")],
+    by_word("law", _tag, ", ".join(_LAWS)),
+]
+
+
+class MotionSection(Section):
+    """The driven coordinates. Without inputs the mechanism has one row."""
+
+    inputs: dict[Coordinate, InputMotion] = Field(default_factory=dict)
+    """Driven coordinates by name: {O1.theta: {from: 0, to: 360, step: 5}}."""
+    time: TimeSection | None = None
+    """The moments of the rows, for inputs that are given by laws."""
+
+    @model_validator(mode="after")
+    def _laws_go_with_time(self) -> Self:
+        for name, motion in self.inputs.items():
+            has_law = isinstance(motion, tuple(_LAWS.values()))
+            if has_law and self.time is None:
+                text = f"the law of {name} needs the moments of the rows"
+                raise refuse("law-without-time", text, "add time: {from, to, step}", "inputs", name)
+            if self.time is not None and isinstance(motion, (SweptInput, ListedInput)):
+                text = f"{name} lists rows of its own beside time:"
+                hint = "give it a law, or remove time"
+                raise refuse("rows-beside-time", text, hint, "inputs", name)
+        return self

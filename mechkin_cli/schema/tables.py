@@ -1,0 +1,95 @@
+"""`tables:` - the layouts a run writes, one file each: columns are expressions over quantities."""
+
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, field_validator
+from pydantic.annotated_handlers import GetJsonSchemaHandler
+from typing_extensions import TypeAliasType
+
+from mechkin_cli.schema.base import Section, refuse
+from mechkin_cli.schema.scalars import (
+    TABLE_NAME_PATTERN,
+    AnyDimension,
+    CsvPath,
+    Shown,
+    Text,
+    WholeNumber,
+)
+
+TableName = TypeAliasType(
+    "TableName",
+    Annotated[
+        str,
+        Field(pattern=TABLE_NAME_PATTERN),
+        Shown(("string",), "letters, digits, - and _; the name of the file written", ("table_03",)),
+    ],
+)
+
+
+class Column(Section):
+    """One column. A plain text stands for a column whose label and value are that text."""
+
+    label: Text
+    """Heading of the column."""
+    value: AnyDimension
+    """An expression over quantities and parameters; with commas or brackets it stands in quotes."""
+    decimals: Annotated[WholeNumber, Field(ge=0, le=17)] | None = None
+    """Decimals in Markdown; CSV always has all digits."""
+
+
+class _ShortForm:
+    """Tells editors that a column may be a plain text."""
+
+    def __get_pydantic_json_schema__(
+        self, schema: Any, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        text = {"type": ["string", "number"], "description": "label and value in one: O1.theta"}
+        return {"anyOf": [text, handler(schema)]}
+
+
+def _in_full(value: Any) -> Any:
+    return {"label": value, "value": value} if isinstance(value, (str, int, float)) else value
+
+
+ColumnOrText = Annotated[Column, BeforeValidator(_in_full), _ShortForm()]
+
+
+class Table(Section):
+    """A table with one row per position."""
+
+    name: TableName = Field(json_schema_extra={"not": {"pattern": "^[Rr][Oo][Ww][Ss]$"}})
+    """Name of the files written, without ending."""
+    title: Text | None = None
+    """Heading in Markdown; left out, the name."""
+    columns: Annotated[tuple[ColumnOrText, ...], Field(min_length=1, max_length=1000)]
+    """The columns, from left to right."""
+    published: CsvPath | None = None
+    """Values printed in the source, as a CSV file with the same labels."""
+
+    @field_validator("name", mode="after")
+    @classmethod
+    def _is_not_taken(cls, name: str) -> str:
+        if name.casefold() == "rows":
+            raise refuse("reserved-name", "every run writes a table rows of its own", "rename it")
+        return name
+
+    @field_validator("columns", mode="after")
+    @classmethod
+    def _labels_differ(cls, columns: tuple[Column, ...]) -> tuple[Column, ...]:
+        labels = [column.label for column in columns]
+        for index, label in enumerate(labels):
+            if label in labels[:index]:
+                hint = "give each column of a table its own label"
+                text = f"the label {label!r} is used twice"
+                raise refuse("label-clash", text, hint, index, "label")
+        return columns
+
+
+def differing_names(tables: tuple[Table, ...]) -> tuple[Table, ...]:
+    """The tables, if no two would be written to the same file; file systems may ignore case."""
+    names = [table.name.casefold() for table in tables]
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            text = f"two tables are called {tables[index].name}"
+            raise refuse("table-clash", text, "rename one of them", index, "name")
+    return tables

@@ -1,0 +1,58 @@
+"""Plain data -> `MechanismFile`, or every independent error as a plain record.
+
+A record has `type`, `loc` (keys, list indices and tags in parentheses), `msg` and `ctx`. To the
+records of pydantic are added the reserved and clashing names, and what a mapping's keys could have
+been.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import ValidationError
+
+from mechkin_cli.schema.file import MechanismFile
+from mechkin_cli.schema.names import name_errors
+from mechkin_cli.schema.scalars import FORMS
+
+
+class InvalidDataError(Exception):
+    """Data that is not a mechanism file of format 1; `errors` holds the records."""
+
+    def __init__(self, errors: list[dict[str, Any]]) -> None:
+        self.errors = errors
+        super().__init__(f"{len(errors)} errors in the data of a mechanism file")
+
+
+def validate(data: object) -> MechanismFile:
+    """The mechanism file that plain data describes; raises `InvalidDataError`."""
+    errors = name_errors(data)
+    try:
+        file = MechanismFile.model_validate(data)
+    except ValidationError as failure:
+        found = failure.errors(include_url=False, include_input=False)
+        errors = [_completed(dict(error)) for error in found] + errors
+    if errors:
+        raise InvalidDataError(errors)
+    return file
+
+
+def _completed(error: dict[str, Any]) -> dict[str, Any]:
+    """The record with what a message needs beyond pydantic's own context."""
+    if error["type"] == "string_pattern_mismatch":
+        expected, hint = FORMS[error["ctx"]["pattern"]]
+        return error | {"ctx": {"expected": expected, "hint": hint}}
+    if error["type"] not in ("missing", "extra_forbidden"):
+        return error
+    from mechkin_cli.schema.known_keys import known_keys  # reads sources: only for messages
+
+    *mapping, key = error["loc"]
+    known = known_keys(MechanismFile, tuple(mapping))
+    if known is None:
+        return error
+    context = {
+        "known": list(known.descriptions),
+        "advice": known.advice.get(str(key)),
+        "purpose": known.descriptions.get(str(key)),
+    }
+    return error | {"ctx": context}
