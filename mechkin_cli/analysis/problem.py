@@ -1,0 +1,32 @@
+"""Everything that one mechanism file asks for, in SI and checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.model import Mechanism
+from mechkin_cli.mechanism.motion import Assembly, Motion
+from mechkin_cli.mechanism.quantities import Wanted, catalogue
+
+if TYPE_CHECKING:
+    from mechkin_cli.expressions import Quantity
+    from mechkin_cli.units import UnitSystem
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A mechanism, how it moves, how it is assembled, and the units of its file."""
+
+    mechanism: Mechanism
+    motion: Motion
+    assembly: Assembly
+    units: UnitSystem
+    parameters: Mapping[str, Quantity] = field(default_factory=dict)
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+    def quantities(self) -> dict[str, Wanted]:
+        """The quantities that the mechanism has, by name."""
+        return catalogue(self.mechanism, self.motion.driven)

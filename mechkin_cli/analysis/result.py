@@ -1,0 +1,96 @@
+"""What a sweep found: rows with their verdicts, and quantities by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.analysis.problem import Problem
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.expressions import Quantity, UnknownName, Vector
+from mechkin_cli.mechanism.quantities import Wanted
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import Slot
+from mechkin_cli.solver.graph import SolverGraph
+from mechkin_cli.status import Status
+from mechkin_cli.units import DIMENSIONLESS, UnitSystem
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Result:
+    """Arrays have the shape (rows,), `outputs` (slots, rows) in SI; nan where a row has no
+    solution."""
+
+    problem: Problem
+    graph: SolverGraph
+    demand: Demand
+    mode: str
+    how: str
+    status: NDArray[np.int8]
+    residual: Floats
+    condition: Floats
+    power_error: Floats
+    outputs: Floats
+    slots: Mapping[str, Slot]
+    nodes: int
+    diagnostics: tuple[Diagnostic, ...]
+
+    @cached_property
+    def _known(self) -> dict[str, Wanted]:
+        return self.problem.quantities()
+
+    @property
+    def rows(self) -> int:
+        """Number of rows asked for."""
+        return self.problem.motion.rows
+
+    @property
+    def units(self) -> UnitSystem:
+        """The file's units."""
+        return self.problem.units
+
+    @property
+    def coordinates(self) -> Sequence[str]:
+        """All joint coordinates in joint order."""
+        return self.problem.mechanism.coordinates
+
+    @property
+    def inputs(self) -> Mapping[str, Floats]:
+        """Input values in the file's units, exactly as written."""
+        return {i.name: i.written for i in self.problem.motion.inputs}
+
+    @property
+    def complete(self) -> bool:
+        """Whether every row has a solution."""
+        return all(Status(int(code)).has_solution for code in self.status)
+
+    def quantity(self, name: str) -> Quantity:
+        """A parameter, direction or result by name, in SI.
+
+        Raises:
+            UnknownName: nothing has this name, or it was not asked for in this run.
+        """
+        if name in self.problem.parameters:
+            return self.problem.parameters[name]
+        if name in ("row.residual", "row.condition", "row.power_error"):
+            return Quantity(getattr(self, name[4:]), DIMENSIONLESS)
+        wanted = self._known.get(name)
+        for driven in self.problem.motion.inputs:
+            if driven.name == name and wanted is not None:
+                return Quantity(driven.values, wanted.dimension)
+        slot = self.slots.get(name)
+        if slot is None or wanted is None:
+            raise UnknownName(name, sorted(self.slots))
+        columns = self.outputs[slot.first : slot.first + slot.width]
+        if wanted.vector:
+            return Quantity(Vector(columns[0], columns[1], columns[2]), wanted.dimension)
+        return Quantity(columns[0], wanted.dimension)

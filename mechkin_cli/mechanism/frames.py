@@ -1,0 +1,71 @@
+"""Right-handed orthonormal frames: three axes and an origin, in ground axes of the home drawing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mechkin_cli.mechanism.vectors import ZERO, Vector, add, cross, dot, scale, subtract, unit
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """Axes x, y, z and origin o."""
+
+    x: Vector
+    y: Vector
+    z: Vector
+    o: Vector
+
+    def components(self, vector: Vector) -> Vector:
+        """Components of a vector along the frame's axes."""
+        return (dot(self.x, vector), dot(self.y, vector), dot(self.z, vector))
+
+    def local(self, point: Vector) -> Vector:
+        """Coordinates of a point in the frame."""
+        return self.components(subtract(point, self.o))
+
+    def of(self, inner: Frame) -> Frame:
+        """A frame given in ground axes, expressed in this one."""
+        return Frame(
+            self.components(inner.x),
+            self.components(inner.y),
+            self.components(inner.z),
+            self.local(inner.o),
+        )
+
+    def flipped(self) -> Frame:
+        """The same frame turned half a turn about x: z reversed."""
+        return Frame(self.x, scale(-1.0, self.y), scale(-1.0, self.z), self.o)
+
+
+GROUND = Frame((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), ZERO)
+
+
+def perpendicular(z: Vector) -> Vector:
+    """A unit vector square to the unit vector z: from the ground axis that is farthest from z."""
+    sizes = [abs(c) for c in z]
+    axis = (GROUND.x, GROUND.y, GROUND.z)[sizes.index(min(sizes))]
+    return unit(cross(axis, z))
+
+
+def frame_about(z: Vector, x: Vector, o: Vector) -> Frame:
+    """The frame with axis z whose x is the projection of `x` square to z.
+
+    Raises:
+        ZeroDivisionError: x is parallel to z.
+    """
+    square = unit(subtract(x, scale(dot(x, z), z)))
+    return Frame(square, cross(z, square), z, o)
+
+
+def turned_shortest(a: Vector, b: Vector, vector: Vector) -> Vector:
+    """`vector` turned by the shortest rotation that carries the unit vector a onto b.
+
+    Rodrigues' formula with axis a x b; for opposite a and b the half turn about `perpendicular(a)`.
+    """
+    axis, cosine = cross(a, b), dot(a, b)
+    if cosine <= -1.0 + 1e-15:
+        p = perpendicular(a)
+        return subtract(scale(2.0 * dot(p, vector), p), vector)
+    along = scale(dot(axis, vector) / (1.0 + cosine), axis)
+    return add(add(scale(cosine, vector), cross(axis, vector)), along)

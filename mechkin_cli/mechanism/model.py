@@ -1,0 +1,149 @@
+"""A mechanism as data: SI units, home drawing, ground axes.
+
+Links are the vertices and joints the edges of the mechanism graph; `ground` is the link that does
+not move.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from mechkin_cli.mechanism.frames import Frame
+from mechkin_cli.mechanism.joint_types import JointType, joint_types
+from mechkin_cli.mechanism.vectors import ZERO, Vector
+
+GROUND_NAME = "ground"
+
+Tensor = tuple[float, float, float, float, float, float]
+"""xx, yy, zz, xy, xz, yz."""
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A rigid body; mass in kg, mass centre in m, inertia about the mass centre in kg m^2."""
+
+    name: str
+    mass: float = 0.0
+    center_of_mass: Vector = ZERO
+    inertia: Tensor = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+    @property
+    def has_mass(self) -> bool:
+        """Whether the link has inertia of any kind."""
+        return self.mass != 0.0 or any(self.inertia)
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """A pair between two links.
+
+    `on_first` and `on_second` are the joint's frame as drawn for either link: z the axis, the
+    frames coincide where all coordinates are zero. `lead` (H) is the slide per turn in m.
+    """
+
+    name: str
+    letter: str
+    first: str
+    second: str
+    on_first: Frame
+    on_second: Frame
+    lead: float = 0.0
+
+    @property
+    def type(self) -> JointType:
+        """The joint's row of the joint table."""
+        return joint_types()[self.letter]
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Full names of the coordinates: `O2.theta`, `O2.s`."""
+        return tuple(f"{self.name}.{coordinate}" for coordinate in self.type.coordinates)
+
+
+@dataclass(frozen=True, slots=True)
+class Attached:
+    """A point or a direction carried by a link, as drawn at home."""
+
+    link: str
+    vector: Vector
+
+
+@dataclass(frozen=True, slots=True)
+class LinkLoad:
+    """A force (N, at a point of the link) or torque (N m) on a link, in ground or link axes."""
+
+    kind: Literal["force", "torque"]
+    link: str
+    value: Vector
+    axes: Literal["ground", "link"] = "ground"
+    point: Vector = ZERO
+
+
+@dataclass(frozen=True, slots=True)
+class JointLoad:
+    """A torque on a joint's theta (N m) or a force on its s (N): on the second link, opposite on
+    the first."""
+
+    joint: str
+    coordinate: Literal["theta", "s"]
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
+class Spring:
+    """A spring between two points (N/m) or on a joint coordinate (N/m or N m/rad)."""
+
+    between: tuple[Attached, Attached] | None
+    joint: str | None
+    coordinate: Literal["theta", "s"] | None
+    stiffness: float
+    free: float
+    preload: float
+
+
+@dataclass(frozen=True, slots=True)
+class Damper:
+    """A viscous damper between two points (N s/m) or on a joint coordinate (or N m s/rad)."""
+
+    between: tuple[Attached, Attached] | None
+    joint: str | None
+    coordinate: Literal["theta", "s"] | None
+    damping: float
+
+
+Load = LinkLoad | JointLoad | Spring | Damper
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """Links and joints by name in the order written; gravity in m/s^2."""
+
+    name: str
+    links: Mapping[str, Link]
+    joints: Mapping[str, Joint]
+    points: Mapping[str, Attached] = field(default_factory=dict)
+    directions: Mapping[str, Attached] = field(default_factory=dict)
+    loads: tuple[Load, ...] = ()
+    gravity: Vector = ZERO
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """All coordinates in joint order."""
+        return tuple(name for joint in self.joints.values() for name in joint.coordinates)
+
+    def box_diagonal(self) -> float:
+        """Diagonal of the box of all joint points as drawn, in m; 1 if they all coincide."""
+        points = [f.o for j in self.joints.values() for f in (j.on_first, j.on_second)]
+        return diagonal(points)
+
+
+def diagonal(points: list[Vector]) -> float:
+    """Diagonal of the box of some points; 1 where they all coincide (a mechanism without
+    lengths)."""
+    from mechkin_cli.mechanism.vectors import norm, subtract
+
+    low = tuple(min(p[i] for p in points) for i in range(3))
+    high = tuple(max(p[i] for p in points) for i in range(3))
+    return norm(subtract(high, low)) or 1.0  # type: ignore[arg-type]

@@ -1,0 +1,137 @@
+"""The closed list of quantities that a mechanism has, with their dimensions.
+
+`J.theta`, `J.theta_dot`, `J.force`, `p.position`, `L.omega`, `ground.shaking_force`,
+`row.residual`, ... (format 1, Quantities). Directions and parameters stand by their own names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism
+from mechkin_cli.units import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_RATE,
+    DIMENSIONLESS,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    VELOCITY,
+    Dimension,
+)
+
+Kind = Literal[
+    "coordinate",
+    "point",
+    "direction",
+    "omega",
+    "alpha",
+    "axis",
+    "joint_point",
+    "force",
+    "moment",
+    "moment_about_origin",
+    "effort",
+    "shaking_force",
+    "shaking_moment",
+    "inertia_force",
+    "inertia_moment",
+    "residual",
+    "condition",
+    "power_error",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """One quantity: its kind, whose it is, which derivative, dimension, whether it is a vector."""
+
+    name: str
+    kind: Kind
+    owner: str
+    dimension: Dimension
+    vector: bool
+    coordinate: str = ""
+    order: int = 0
+
+
+_DERIVATIVES = {
+    "theta": (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION),
+    "s": (LENGTH, VELOCITY, ACCELERATION),
+}
+_SUFFIXES = ("", "_dot", "_ddot")
+_GROUND: dict[str, tuple[Kind, Dimension]] = {
+    "shaking_force": ("shaking_force", FORCE),
+    "shaking_moment": ("shaking_moment", MOMENT),
+    "inertia_force": ("inertia_force", FORCE),
+    "inertia_moment": ("inertia_moment", MOMENT),
+}
+_ROW: tuple[Kind, ...] = ("residual", "condition", "power_error")
+_JOINT_WRENCH: dict[str, tuple[Kind, Dimension]] = {
+    "force": ("force", FORCE),
+    "moment": ("moment", MOMENT),
+    "moment_about_origin": ("moment_about_origin", MOMENT),
+}
+
+
+def catalogue(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> dict[str, Wanted]:
+    """Every quantity by name; `inputs` (joint, coordinate) have efforts."""
+    found = {}
+    for wanted in (
+        *_of_joints(mechanism),
+        *_of_efforts(inputs),
+        *_of_points(mechanism),
+        *_of_links(mechanism),
+        *_of_ground(),
+    ):
+        found[wanted.name] = wanted
+    return found
+
+
+def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
+    for joint in mechanism.joints.values():
+        for coordinate in joint.type.coordinates:
+            for order, dimension in enumerate(_DERIVATIVES[coordinate]):
+                name = f"{joint.name}.{coordinate}{_SUFFIXES[order]}"
+                yield Wanted(name, "coordinate", joint.name, dimension, False, coordinate, order)
+        yield Wanted(f"{joint.name}.point", "joint_point", joint.name, LENGTH, True)
+        if joint.letter != "S":
+            yield Wanted(f"{joint.name}.axis", "axis", joint.name, DIMENSIONLESS, True)
+        for word, (kind, dimension) in _JOINT_WRENCH.items():
+            yield Wanted(f"{joint.name}.{word}", kind, joint.name, dimension, True)
+
+
+def _of_efforts(inputs: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
+    joints = [joint for joint, _ in inputs]
+    for joint, coordinate in inputs:
+        dimension = MOMENT if coordinate == "theta" else FORCE
+        if joints.count(joint) == 1:
+            yield Wanted(f"{joint}.effort", "effort", joint, dimension, False, coordinate)
+        yield Wanted(f"{joint}.{coordinate}.effort", "effort", joint, dimension, False, coordinate)
+
+
+def _of_points(mechanism: Mechanism) -> Iterator[Wanted]:
+    words = (("position", LENGTH), ("velocity", VELOCITY), ("acceleration", ACCELERATION))
+    for name in mechanism.points:
+        for order, (word, dimension) in enumerate(words):
+            yield Wanted(f"{name}.{word}", "point", name, dimension, True, order=order)
+    for name in mechanism.directions:
+        yield Wanted(name, "direction", name, DIMENSIONLESS, True)
+
+
+def _of_links(mechanism: Mechanism) -> Iterator[Wanted]:
+    for name in mechanism.links:
+        if name != GROUND_NAME:
+            yield Wanted(f"{name}.omega", "omega", name, ANGULAR_RATE, True)
+            yield Wanted(f"{name}.alpha", "alpha", name, ANGULAR_ACCELERATION, True)
+
+
+def _of_ground() -> Iterator[Wanted]:
+    for word, (kind, dimension) in _GROUND.items():
+        yield Wanted(f"ground.{word}", kind, GROUND_NAME, dimension, True)
+    for word in _ROW:
+        yield Wanted(f"row.{word}", word, "row", DIMENSIONLESS, False)

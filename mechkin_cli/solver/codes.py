@@ -1,0 +1,65 @@
+"""Codes that the kernel's plan uses (kernel/src/plan.hpp)."""
+
+from __future__ import annotations
+
+from enum import IntEnum, IntFlag
+
+
+class LoadCode(IntEnum):
+    """Kinds of loads."""
+
+    FORCE_GROUND = 0
+    FORCE_LINK = 1
+    TORQUE_GROUND = 2
+    TORQUE_LINK = 3
+    JOINT_TORQUE = 4
+    JOINT_FORCE = 5
+    SPRING = 6
+    DAMPER = 7
+    JOINT_SPRING_THETA = 8
+    JOINT_SPRING_S = 9
+    JOINT_DAMPER_THETA = 10
+    JOINT_DAMPER_S = 11
+
+
+class OutputCode(IntEnum):
+    """Kinds of outputs."""
+
+    STATE = 0
+    RATE = 1
+    ACCELERATION = 2
+    CLOSING_THETA = 3
+    CLOSING_S = 4
+    POINT = 5
+    VECTOR = 6
+    OMEGA = 7
+    ALPHA = 8
+    JOINT_FORCE = 9
+    JOINT_MOMENT = 10
+    JOINT_MOMENT_ORIGIN = 11
+    EFFORT = 12
+    SHAKING_FORCE = 13
+    SHAKING_MOMENT = 14
+    INERTIA_FORCE = 15
+    INERTIA_MOMENT = 16
+
+
+class Demand(IntFlag):
+    """What a run computes beyond positions."""
+
+    POSITION = 0
+    VELOCITY = 1
+    ACCELERATION = 2
+    FORCES = 4
+    WRENCHES = 8
+    CONDITION = 16
+    POWER = 32
+
+
+class RowFlag(IntFlag):
+    """Why a row of a run is not good."""
+
+    GOOD = 0
+    NOT_CONVERGED = 1
+    SIDE_CONDITION = 2
+    SINGULAR = 4

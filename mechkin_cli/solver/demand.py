@@ -1,0 +1,158 @@
+"""The demand plan: from the quantities asked for to what the kernel has to compute.
+
+Positions only read no mass; reactions need accelerations unless no link has mass, velocities only
+where something is damped; an effort needs no joint reactions (design section 8).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import pi
+from typing import TYPE_CHECKING
+
+from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Damper, Mechanism
+from mechkin_cli.mechanism.quantities import Wanted
+from mechkin_cli.mechanism.vectors import ZERO, Vector
+from mechkin_cli.solver.codes import Demand, OutputCode
+from mechkin_cli.solver.graph import freedom_of
+from mechkin_cli.solver.layout import Layout
+
+if TYPE_CHECKING:
+    from mechkin_cli.kernel._kernel import Plan
+
+_WRENCH_KINDS = {"force", "moment", "moment_about_origin"}
+_SHAKING_KINDS = {"shaking_force", "shaking_moment"}
+_INERTIA_KINDS = {"inertia_force", "inertia_moment"}
+_FORCE_KINDS = _WRENCH_KINDS | _SHAKING_KINDS | _INERTIA_KINDS | {"effort"}
+
+
+def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
+    """What has to be computed for some quantities."""
+    demand = Demand.POSITION
+    for quantity in wanted:
+        if quantity.order == 1 or quantity.kind == "omega":
+            demand |= Demand.VELOCITY
+        elif quantity.order == 2 or quantity.kind == "alpha":
+            demand |= Demand.VELOCITY | Demand.ACCELERATION
+        elif quantity.kind in _FORCE_KINDS:
+            demand |= forces_demand(mechanism)
+            if quantity.kind in _WRENCH_KINDS:
+                demand |= Demand.WRENCHES
+        elif quantity.kind == "condition":
+            demand |= Demand.CONDITION
+        elif quantity.kind == "power_error":
+            demand |= forces_demand(mechanism) | Demand.VELOCITY | Demand.POWER
+    return demand
+
+
+def forces_demand(mechanism: Mechanism) -> Demand:
+    """What forces need: accelerations if a link has mass, velocities if something is damped."""
+    demand = Demand.FORCES
+    if any(link.has_mass for link in mechanism.links.values()):
+        demand |= Demand.VELOCITY | Demand.ACCELERATION
+    elif any(isinstance(load, Damper) for load in mechanism.loads):
+        demand |= Demand.VELOCITY
+    return demand
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """Where a quantity stands in the kernel's output array: first column, and how many."""
+
+    first: int
+    width: int
+
+
+class OutputPlan:
+    """Adds the quantities to a plan and remembers their slots."""
+
+    def __init__(self, layout: Layout, plan: Plan, inputs: list[tuple[str, str]]) -> None:
+        self.layout = layout
+        self.plan = plan
+        self.inputs = inputs
+        self.slots: dict[str, Slot] = {}
+
+    def add(self, wanted: Wanted) -> None:
+        """Plans one quantity; quantities of the row itself need no slot."""
+        if wanted.name in self.slots or wanted.owner == "row":
+            return
+        if wanted.kind == "coordinate":
+            first = self._add_coordinate(wanted)
+        else:
+            first = self._add_other(wanted)
+        self.slots[wanted.name] = Slot(first, 3 if wanted.vector else 1)
+
+    def _output(
+        self, code: OutputCode, index: int, factor: float, order: int = 0, data: Vector = ZERO
+    ) -> int:
+        return self.plan.add_output(int(code), index, order, data, factor)
+
+    def _add_coordinate(self, wanted: Wanted) -> int:
+        layout = self.layout
+        reference = layout.joint_reference[wanted.owner]
+        joint = layout.mechanism.joints[wanted.owner]
+        slide = wanted.coordinate == "s"
+        factor = layout.length if slide else 1.0
+        if reference < 0:
+            code = OutputCode.CLOSING_S if slide else OutputCode.CLOSING_THETA
+            return self._output(code, -1 - reference, factor, wanted.order)
+        if joint.letter == "H" and slide:
+            factor = joint.lead / (2.0 * pi)
+        freedom = freedom_of(joint, wanted.coordinate)
+        if wanted.order == 0:
+            return self._output(OutputCode.STATE, layout.first_state[reference] + freedom, factor)
+        code = (OutputCode.RATE, OutputCode.ACCELERATION)[wanted.order - 1]
+        return self._output(code, layout.first_column[reference] + freedom, factor)
+
+    def _add_other(self, wanted: Wanted) -> int:
+        layout, mechanism = self.layout, self.layout.mechanism
+        length = layout.length
+        kind, owner = wanted.kind, wanted.owner
+        if kind == "point":
+            return self._point(mechanism.points[owner], wanted.order)
+        if kind == "direction":
+            return self._vector(mechanism.directions[owner])
+        if kind in ("axis", "joint_point"):
+            joint = mechanism.joints[owner]
+            if kind == "axis":
+                return self._vector(Attached(joint.second, joint.on_second.z))
+            return self._point(Attached(joint.second, joint.on_second.o), 0)
+        if kind in ("omega", "alpha"):
+            code = OutputCode.OMEGA if kind == "omega" else OutputCode.ALPHA
+            return self._output(code, layout.link_number[owner], 1.0)
+        if kind in _WRENCH_KINDS:
+            code = {
+                "force": OutputCode.JOINT_FORCE,
+                "moment": OutputCode.JOINT_MOMENT,
+                "moment_about_origin": OutputCode.JOINT_MOMENT_ORIGIN,
+            }[kind]
+            factor = length if kind == "force" else length * length
+            return self._output(code, layout.joint_reference[owner], factor)
+        if kind == "effort":
+            number = self.inputs.index((owner, wanted.coordinate))
+            joint = mechanism.joints[owner]
+            factor = length if wanted.coordinate == "s" else length * length
+            if joint.letter == "H" and wanted.coordinate == "s":
+                # a force along s does the work of the torque force * slide per radian
+                factor = length * length / (joint.lead / (2.0 * pi))
+            return self._output(OutputCode.EFFORT, number, factor)
+        code = OutputCode[kind.upper()]
+        return self._output(code, 0, length if kind.endswith("force") else length * length)
+
+    def _point(self, at: Attached, order: int) -> int:
+        number = self.layout.link_number[at.link]
+        return self._output(OutputCode.POINT, number, 1.0, order, self.layout.point(at))
+
+    def _vector(self, at: Attached) -> int:
+        number = self.layout.link_number[at.link]
+        return self._output(OutputCode.VECTOR, number, 1.0, 0, self.layout.vector(at))
+
+
+def joint_points(layout: Layout) -> list[tuple[str, Attached]]:
+    """Every joint's point on each of its links, ground first where both are meant."""
+    points = []
+    for joint in layout.mechanism.joints.values():
+        for link, frame in ((joint.first, joint.on_first), (joint.second, joint.on_second)):
+            points.append((joint.name, Attached(link, frame.o)))
+    return sorted(points, key=lambda entry: entry[1].link != GROUND_NAME)

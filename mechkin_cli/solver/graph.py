@@ -1,0 +1,287 @@
+"""The solver graph: a spanning tree from ground, closing joints, and blocks in the order of
+solution.
+
+Every independent loop is closed at one joint. Incidence is per closing joint: all its equations
+together, never per scalar row, since accidental zeros change with the drawing's axes. The tree is
+the one with the smallest largest block (RCSR: closed at S, 3 unknowns).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations, islice
+
+from mechkin_cli.diagnostics import Diagnostic, MechkinError
+from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
+
+MOST_TREES = 20000
+"""Choices of closing joints that are compared; mechanisms with more have their first ones
+compared."""
+
+
+class UnsolvableGraph(MechkinError):
+    """The mechanism's graph cannot be solved as it is driven; `diagnostic` says why, `joints`
+    where."""
+
+    def __init__(self, diagnostic: Diagnostic, joints: tuple[str, ...] = ()) -> None:
+        self.diagnostic = diagnostic
+        self.joints = joints
+        super().__init__(str(diagnostic))
+
+
+@dataclass(frozen=True, slots=True)
+class TreeEdge:
+    """A joint of the tree: it carries `child`; `forward` where the child is the joint's second
+    link."""
+
+    joint: Joint
+    parent: str
+    child: str
+
+    @property
+    def forward(self) -> bool:
+        """Whether the tree passes the joint from its first link to its second."""
+        return self.child == self.joint.second
+
+
+@dataclass(frozen=True, slots=True)
+class Closing:
+    """A closing joint; `loop` holds the tree edges on the way to its second (+1) and first link
+    (-1)."""
+
+    joint: Joint
+    loop: tuple[tuple[int, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Closing joints (by index) that are solved together for unknown coordinates (edge,
+    freedom)."""
+
+    closings: tuple[int, ...]
+    unknowns: tuple[tuple[int, int], ...]
+    equations: int
+
+
+@dataclass(frozen=True, slots=True)
+class SolverGraph:
+    """Tree edges in placing order (edge k carries link k), closings in block order, blocks."""
+
+    edges: tuple[TreeEdge, ...]
+    closings: tuple[Closing, ...]
+    blocks: tuple[Block, ...]
+    inputs: tuple[tuple[int, int], ...]
+
+    def link_index(self, link: str) -> int:
+        """Number of a link, -1 for ground."""
+        if link == GROUND_NAME:
+            return -1
+        return next(k for k, edge in enumerate(self.edges) if edge.child == link)
+
+
+def freedom_of(joint: Joint, coordinate: str) -> int:
+    """Index of a named coordinate among a joint's freedoms (H: theta and s are one freedom)."""
+    names = joint.type.coordinates
+    return min(names.index(coordinate), joint.type.freedoms - 1)
+
+
+def build_graph(
+    mechanism: Mechanism,
+    inputs: Sequence[tuple[str, str]],
+    closed_at: Sequence[str] | None = None,
+) -> SolverGraph:
+    """The solver graph of a mechanism whose `inputs` (joint, coordinate) are driven.
+
+    `closed_at` forces the closing joints (one per independent loop).
+
+    Raises:
+        UnsolvableGraph: links not connected to ground, no joint to close a loop at, undriven or
+            overconstrained loops.
+    """
+    loops = len(mechanism.joints) - len(mechanism.links) + (GROUND_NAME in mechanism.links)
+    best: SolverGraph | None = None
+    problem: UnsolvableGraph | None = None
+    for names in _choices(mechanism, inputs, loops, closed_at):
+        edges = _spanning_tree(mechanism, names)
+        if edges is None:
+            continue
+        try:
+            graph = _with_blocks(mechanism, edges, names, inputs)
+        except UnsolvableGraph as error:
+            problem = problem or error
+            continue
+        if best is None or _cost(graph) < _cost(best):
+            best = graph
+    if best is not None:
+        return best
+    raise problem or _no_closing_joint(mechanism)
+
+
+def _choices(
+    mechanism: Mechanism,
+    inputs: Sequence[tuple[str, str]],
+    loops: int,
+    closed_at: Sequence[str] | None,
+) -> Iterator[tuple[str, ...]]:
+    if closed_at is not None:
+        yield tuple(closed_at)
+        return
+    driven = {joint for joint, _ in inputs}
+    able = [
+        name
+        for name, joint in mechanism.joints.items()
+        if joint.type.equations and name not in driven
+    ]
+    able.sort(key=lambda name: mechanism.joints[name].type.equations)
+    yield from islice(combinations(able, loops), MOST_TREES)
+
+
+def _no_closing_joint(mechanism: Mechanism) -> UnsolvableGraph:
+    diagnostic = Diagnostic(
+        "no-closing-joint",
+        "error",
+        f"the loops of {mechanism.name} cannot be closed: every loop needs an R, P, C or S "
+        "that is not an input",
+        hint="drive another coordinate",
+    )
+    return UnsolvableGraph(diagnostic, tuple(mechanism.joints))
+
+
+def _spanning_tree(mechanism: Mechanism, closing: Iterable[str]) -> list[TreeEdge] | None:
+    """Edges from ground outward, breadth first; None if links stay unreached."""
+    free = [joint for name, joint in mechanism.joints.items() if name not in set(closing)]
+    reached = {GROUND_NAME}
+    edges: list[TreeEdge] = []
+    front = [GROUND_NAME]
+    while front:
+        link = front.pop(0)
+        for joint in free:
+            if link == joint.first and joint.second not in reached:
+                edges.append(TreeEdge(joint, link, joint.second))
+            elif link == joint.second and joint.first not in reached:
+                edges.append(TreeEdge(joint, link, joint.first))
+            else:
+                continue
+            reached.add(edges[-1].child)
+            front.append(edges[-1].child)
+    if len(edges) != len(free) or len(reached) != len(set(mechanism.links) | {GROUND_NAME}):
+        return None
+    return edges
+
+
+def _root_path(edges: Sequence[TreeEdge], link: str) -> list[int]:
+    carrier = {edge.child: k for k, edge in enumerate(edges)}
+    path = []
+    while link != GROUND_NAME:
+        path.append(carrier[link])
+        link = edges[path[-1]].parent
+    return path[::-1]
+
+
+def _loop(edges: Sequence[TreeEdge], joint: Joint) -> tuple[tuple[int, int], ...]:
+    first, second = _root_path(edges, joint.first), _root_path(edges, joint.second)
+    shared = 0
+    while shared < min(len(first), len(second)) and first[shared] == second[shared]:
+        shared += 1
+    return tuple([(k, 1) for k in second[shared:]] + [(k, -1) for k in first[shared:]])
+
+
+def _with_blocks(
+    mechanism: Mechanism,
+    edges: list[TreeEdge],
+    names: tuple[str, ...],
+    inputs: Sequence[tuple[str, str]],
+) -> SolverGraph:
+    number = {edge.joint.name: k for k, edge in enumerate(edges)}
+    driven = []
+    for name, coordinate in inputs:
+        if name not in number:
+            raise _no_closing_joint(mechanism)
+        driven.append((number[name], freedom_of(edges[number[name]].joint, coordinate)))
+    closings = [Closing(mechanism.joints[n], _loop(edges, mechanism.joints[n])) for n in names]
+    blocks: list[Block] = []
+    order: list[Closing] = []
+    solved = set(driven)
+    left = list(closings)
+    while left:
+        group = _smallest_square(edges, left, solved)
+        if group is None:
+            raise _not_square(edges, left, solved)
+        unknowns = _unknowns(edges, group, solved)
+        start = len(order)
+        order.extend(group)
+        solved.update(unknowns)
+        equations = sum(c.joint.type.equations for c in group)
+        blocks.append(Block(tuple(range(start, len(order))), tuple(unknowns), equations))
+        left = [c for c in left if c not in group]
+    everything = {(k, f) for k, e in enumerate(edges) for f in range(e.joint.type.freedoms)}
+    if everything - solved:
+        raise _undriven(edges, sorted(everything - solved), len(everything - solved))
+    return SolverGraph(tuple(edges), tuple(order), tuple(blocks), tuple(driven))
+
+
+def _unknowns(
+    edges: Sequence[TreeEdge], group: Iterable[Closing], solved: set[tuple[int, int]]
+) -> list[tuple[int, int]]:
+    members = {k for closing in group for k, _ in closing.loop}
+    freedoms = [(k, f) for k in sorted(members) for f in range(edges[k].joint.type.freedoms)]
+    return [freedom for freedom in freedoms if freedom not in solved]
+
+
+def _smallest_square(
+    edges: Sequence[TreeEdge], left: Sequence[Closing], solved: set[tuple[int, int]]
+) -> tuple[Closing, ...] | None:
+    """The smallest group of closing joints with as many equations as unknowns."""
+    for size in range(1, len(left) + 1):
+        for group in combinations(left, size):
+            equations = sum(c.joint.type.equations for c in group)
+            if len(_unknowns(edges, group, solved)) == equations:
+                return group
+    return None
+
+
+def _not_square(
+    edges: Sequence[TreeEdge], left: Sequence[Closing], solved: set[tuple[int, int]]
+) -> UnsolvableGraph:
+    unknowns = _unknowns(edges, left, solved)
+    equations = sum(c.joint.type.equations for c in left)
+    if len(unknowns) > equations:
+        return _undriven(edges, unknowns, len(unknowns) - equations)
+    members = {edges[k].joint.name for c in left for k, _ in c.loop}
+    joints = sorted(members | {c.joint.name for c in left})
+    diagnostic = Diagnostic(
+        "overconstrained",
+        "error",
+        f"the loop through {', '.join(joints)} has {equations - len(unknowns)} more closing "
+        "equations than unknowns (an overconstrained mechanism, or too many inputs)",
+        measured=f"{equations} equations, {len(unknowns)} unknowns",
+        hint="drive fewer coordinates or free a joint; overconstrained loops are not solved by "
+        "this version",
+    )
+    return UnsolvableGraph(diagnostic, tuple(joints))
+
+
+def _undriven(
+    edges: Sequence[TreeEdge], unknowns: Sequence[tuple[int, int]], missing: int
+) -> UnsolvableGraph:
+    names: list[str] = []
+    for k, _ in unknowns:
+        joint = edges[k].joint
+        names.extend(name for name in joint.coordinates or (joint.name,) if name not in names)
+    count = "one free coordinate is" if missing == 1 else f"{missing} free coordinates are"
+    diagnostic = Diagnostic(
+        "undriven-freedom",
+        "error",
+        f"{count} not driven; candidates: {', '.join(names)}",
+        measured=f"{missing} more unknowns than closing equations",
+        hint="add inputs under motion",
+    )
+    return UnsolvableGraph(diagnostic, tuple(edges[k].joint.name for k, _ in unknowns))
+
+
+def _cost(graph: SolverGraph) -> tuple[int, int, int]:
+    """Largest block, total work, and how unevenly the loops are split at their closing joints."""
+    sizes = [block.equations for block in graph.blocks]
+    uneven = sum(abs(sum(sign for _, sign in closing.loop)) for closing in graph.closings)
+    return (max(sizes, default=0), sum(n**3 for n in sizes), uneven)

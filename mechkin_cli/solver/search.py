@@ -1,0 +1,218 @@
+"""All ways of assembling a mechanism at given inputs that random starts find.
+
+Block by block: Levenberg-Marquardt from random starts (fixed seed), side conditions, clustering by
+the poses. Starts go on until one more is unlikely to find a new mode (Good-Turing estimate).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.kernel import functions
+from mechkin_cli.solver.batch import run
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.layout import Layout
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.kernel._kernel import Plan
+
+    Floats = NDArray[np.float64]
+
+SEED = 20_240_229
+"""Fixed, so that the same file gives the same starts."""
+
+SLIDE_RANGE = 2.0
+"""Bound of random slides in sizes of the home drawing: a chain of links reaches no farther."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """Assemblies (columns of `states`), their condition, and how the search went.
+
+    `closed` starts of `starts` ended on an assembly; `chance` estimates that one more start finds
+    a new one.
+    """
+
+    states: Floats
+    residual: Floats
+    condition: Floats
+    starts: int
+    closed: int
+    chance: float
+
+    @property
+    def count(self) -> int:
+        """Number of assemblies."""
+        return int(self.states.shape[1])
+
+
+@dataclass
+class _Clusters:
+    """Representatives found so far and how often each was met."""
+
+    states: list[Floats]
+    keys: list[Floats]
+    met: list[int]
+
+    def add(self, state: Floats, key: Floats) -> None:
+        for i, known in enumerate(self.keys):
+            if np.max(np.abs(known - key)) < tolerances.SAME_MODE:
+                self.met[i] += 1
+                return
+        self.states.append(state)
+        self.keys.append(key)
+        self.met.append(1)
+
+    @property
+    def chance(self) -> float:
+        total = sum(self.met)
+        return sum(1 for m in self.met if m == 1) / total if total else 1.0
+
+
+def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Found:
+    """The assemblies at one set of inputs.
+
+    Args:
+        layout: the mechanism in the kernel.
+        plan: its plan.
+        inputs: (inputs,) in kernel units.
+        turns: turns of helical joints to either side.
+    """
+    generator = np.random.Generator(np.random.PCG64(SEED))
+    partial: list[Floats] = [np.zeros((plan.states, 1))]
+    partial[0][_quaternion_scalars(layout), 0] = 1.0
+    starts = closed = 0
+    chance = 0.0
+    for number in range(len(layout.graph.blocks)):
+        continued: list[Floats] = []
+        for base in partial:
+            clusters, tried = _search_block(layout, plan, number, inputs, base, generator, turns)
+            continued.extend(state[:, None] for state in clusters.states)
+            starts, closed = starts + tried, closed + sum(clusters.met)
+            chance = max(chance, clusters.chance if clusters.met else 0.0)
+        partial = continued
+    return _polished(layout, plan, inputs, partial, starts, closed, chance)
+
+
+def _search_block(
+    layout: Layout,
+    plan: Plan,
+    number: int,
+    inputs: Floats,
+    base: Floats,
+    generator: np.random.Generator,
+    turns: int,
+) -> tuple[_Clusters, int]:
+    clusters = _Clusters([], [], [])
+    tried = 0
+    size = tolerances.SEARCH_STARTS
+    values = np.repeat(inputs[:, None], size, axis=1)
+    while tried < tolerances.SEARCH_MOST_STARTS:
+        states = np.repeat(base, size, axis=1)
+        _randomise(layout, number, states, generator, turns)
+        residual, flags = np.empty(size), np.empty(size, dtype=np.uint8)
+        limits = (tolerances.SEARCH_ITERATIONS, tolerances.SEARCH_RESIDUAL)
+        plan.search(number, values, states, residual, flags, *limits, 0)
+        good = np.flatnonzero(flags == 0)
+        keys = pose_keys(layout, states[:, good])
+        for i, column in enumerate(good):
+            clusters.add(states[:, column].copy(), keys[:, i])
+        tried += size
+        if clusters.chance < tolerances.SEARCH_NEW_MODE_CHANCE or not clusters.met:
+            break
+    return clusters, tried
+
+
+def _randomise(
+    layout: Layout, number: int, states: Floats, generator: np.random.Generator, turns: int
+) -> None:
+    """Fills the unknown states of a block with random starts."""
+    rows = states.shape[1]
+    reach = SLIDE_RANGE * layout.mechanism.box_diagonal() / layout.length
+    for k, freedom in layout.graph.blocks[number].unknowns:
+        joint = layout.graph.edges[k].joint
+        state = layout.first_state[k]
+        if joint.letter == "S":
+            if freedom == 0:
+                q = generator.standard_normal((4, rows))
+                q /= np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+                states[state : state + 4] = q
+        elif joint.type.slides[freedom]:
+            states[state + freedom] = reach * generator.uniform(-1.0, 1.0, rows)
+        else:
+            half = pi * (2 * turns + 1) if joint.letter == "H" else pi
+            states[state + freedom] = half * generator.uniform(-1.0, 1.0, rows)
+
+
+def _quaternion_scalars(layout: Layout) -> list[int]:
+    spheres = (k for k, edge in enumerate(layout.graph.edges) if edge.joint.letter == "S")
+    return [layout.first_state[k] for k in spheres]
+
+
+def pose_keys(layout: Layout, states: Floats) -> Floats:
+    """What tells assemblies apart: direction cosines of turns, slides, rotation matrices'
+    quaternion products."""
+    keys: list[Floats] = []
+    for k, edge in enumerate(layout.graph.edges):
+        state = layout.first_state[k]
+        if edge.joint.letter == "S":
+            q = states[state : state + 4]
+            keys.extend(q[i] * q[j] for i in range(4) for j in range(i, 4))
+            continue
+        for freedom, slide in enumerate(edge.joint.type.slides):
+            value = np.ascontiguousarray(states[state + freedom])
+            if slide or edge.joint.letter == "H":
+                keys.append(value)
+            else:
+                keys.extend((functions.cos(value), functions.sin(value)))
+    return np.stack(keys) if keys else np.zeros((0, states.shape[1]))
+
+
+def _polished(
+    layout: Layout,
+    plan: Plan,
+    inputs: Floats,
+    partial: list[Floats],
+    starts: int,
+    closed: int,
+    chance: float,
+) -> Found:
+    """Newton on the whole mechanism, singular ends and doubles dropped, angles wrapped."""
+    empty = np.empty(0)
+    if not partial:
+        return Found(np.empty((plan.states, 0)), empty, empty, starts, closed, chance)
+    states = np.concatenate(partial, axis=1)
+    values = np.repeat(inputs[:, None], states.shape[1], axis=1)
+    batch = run(plan, values, states, demand=Demand.CONDITION, iterations=20)
+    assert batch.condition is not None
+    keep = batch.good & (batch.condition < tolerances.SEARCH_CONDITION)
+    states, residual, condition = (
+        batch.states[:, keep],
+        batch.residual[keep],
+        batch.condition[keep],
+    )
+    wrap_angles(layout, states)
+    keys = pose_keys(layout, states)
+    chosen: list[int] = []
+    for i in range(states.shape[1]):
+        if all(np.max(np.abs(keys[:, i] - keys[:, j])) >= tolerances.SAME_MODE for j in chosen):
+            chosen.append(i)
+    return Found(states[:, chosen], residual[chosen], condition[chosen], starts, closed, chance)
+
+
+def wrap_angles(layout: Layout, states: Floats) -> None:
+    """Brings the angles of unknown R and C joints into (-pi, pi], in place."""
+    driven = set(layout.graph.inputs)
+    for k, edge in enumerate(layout.graph.edges):
+        if edge.joint.letter not in "RC" or (k, 0) in driven:
+            continue
+        row = states[layout.first_state[k]]
+        turns = np.ceil((row - pi) / (2.0 * pi))
+        row -= turns * (2.0 * pi)
