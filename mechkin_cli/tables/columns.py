@@ -1,0 +1,122 @@
+"""Column values of a table: expressions evaluated over all rows, in the units of the file.
+
+Values are float64 arrays of shape (rows,), nan where a cell stays empty. In a row without solution
+only inputs, `row.mode` and `row.status` keep their cells.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mechkin_cli.expressions import ExpressionError, Quantity, Vector
+from mechkin_cli.status import Status
+from mechkin_cli.tables.layout import ROW_NUMBERS, ROW_TEXTS, ColumnLayout, TableLayout
+from mechkin_cli.tables.source import FloatArray, Source
+from mechkin_cli.units import DIMENSIONLESS
+
+_HAS_SOLUTION = np.array([status.has_solution for status in Status])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Words:
+    """A text per row: `words[codes[i]]`."""
+
+    codes: NDArray[np.int32]
+    words: tuple[str, ...]
+
+    def texts(self) -> list[str]:
+        """The text of every row."""
+        return [self.words[code] for code in self.codes.tolist()]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Column:
+    """One evaluated column: `values` in the unit that `unit` names, shape (rows,)."""
+
+    label: str
+    unit: str
+    values: FloatArray | Words
+    decimals: int | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Columns:
+    """One evaluated table."""
+
+    name: str
+    title: str
+    columns: tuple[Column, ...]
+
+
+def evaluate(table: TableLayout, source: Source) -> Columns:
+    """All columns of a table, in file units.
+
+    Raises:
+        ExpressionError: a column is no number per row, or names what the source does not have.
+    """
+    columns = tuple(_column(layout, source) for layout in table.columns)
+    return Columns(table.name, table.title, columns)
+
+
+def status_words(source: Source) -> Words:
+    """The status label of every row."""
+    codes = source.status.astype(np.int32)
+    return Words(codes, tuple(status.label for status in Status))
+
+
+def mode_words(source: Source) -> Words:
+    """The assembly mode of every row."""
+    return Words(np.zeros(source.rows, dtype=np.int32), (source.mode,))
+
+
+def solved_rows(source: Source) -> NDArray[np.bool_]:
+    """Which rows have a solution, shape (rows,)."""
+    return np.asarray(_HAS_SOLUTION[source.status])
+
+
+def _column(layout: ColumnLayout, source: Source) -> Column:
+    name = layout.expression.text.strip()
+    if name == "row.mode":
+        return Column(layout.label, "", mode_words(source))
+    if name == "row.status":
+        return Column(layout.label, "", status_words(source))
+    if name in source.inputs:
+        unit = source.units.label(source.quantity(name).dimension)
+        return Column(layout.label, unit, source.inputs[name], layout.decimals)
+    return _evaluated(layout, source)
+
+
+def _evaluated(layout: ColumnLayout, source: Source) -> Column:
+    quantity = layout.expression.evaluate(lambda name: _resolve(name, source))
+    value = quantity.value
+    if isinstance(value, Vector):
+        raise ExpressionError(
+            f"column {layout.label!r} is a vector, a column holds one number per row",
+            0,
+            f"write one component of it: {_component(layout.expression.text)}",
+        )
+    in_si = np.array(np.broadcast_to(value, (source.rows,)), dtype=np.float64)
+    # the conversion may hand back the array itself, so it works on the copy
+    values = source.units.from_si(in_si, quantity.dimension)
+    values[~(solved_rows(source) & np.isfinite(values))] = np.nan
+    return Column(layout.label, source.units.label(quantity.dimension), values, layout.decimals)
+
+
+def _resolve(name: str, source: Source) -> Quantity:
+    if name in ROW_TEXTS:
+        raise ExpressionError(
+            f"{name} is a text and cannot be computed with", 0, "make it a column of its own"
+        )
+    if name in ROW_NUMBERS:
+        return Quantity(getattr(source, name.removeprefix("row.")), DIMENSIONLESS)
+    return source.quantity(name)
+
+
+def _component(text: str) -> str:
+    """The expression text with `.x` behind it, in parentheses where it is a sum or the like."""
+    text = text.strip()
+    bare = text.replace(".", "").replace("_", "").isalnum()
+    return f"{text}.x" if bare else f"({text}).x"

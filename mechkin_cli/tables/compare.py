@@ -1,0 +1,204 @@
+"""Comparison of fresh tables with committed ones, byte by byte, explained cell by cell.
+
+The relative change of a cell is |fresh - committed| / max(|fresh|, |committed|); the scaled change
+is the same difference over the column's largest committed magnitude, which tells rounding near a
+zero crossing from a change that matters.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import zip_longest
+from pathlib import Path
+from typing import Literal
+
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.tables.table_text import TableText, read_table_text
+
+SHOWN_CELLS = 3
+SHOWN_LINES = 3
+
+Verdict = Literal["equal", "missing", "extra", "different"]
+
+
+@dataclass(frozen=True, slots=True)
+class CellChange:
+    """One differing cell; `row` counts from 1 below the labels, cells are as in the files."""
+
+    row: int
+    column: str
+    committed: str
+    fresh: str
+    relative: float | None = None
+    scaled: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class FileComparison:
+    """Outcome for one file.
+
+    `missing`: not committed; `extra`: committed, but no table makes it. `cells` holds the first few
+    of `cell_count` differing cells, `remarks` what is no matter of cells. The largest changes are
+    over all numeric cells, None where no numeric cell differs.
+    """
+
+    name: str
+    verdict: Verdict
+    remarks: tuple[str, ...] = ()
+    cells: tuple[CellChange, ...] = ()
+    cell_count: int = 0
+    largest_relative_change: float | None = None
+    largest_scaled_change: float | None = None
+
+
+def compare_files(
+    fresh: Mapping[str, bytes], committed: Mapping[str, bytes]
+) -> list[FileComparison]:
+    """One comparison per file name, those of `fresh` first and in its order."""
+    found = [
+        _compare(name, content, committed[name])
+        if name in committed
+        else FileComparison(name, "missing")
+        for name, content in fresh.items()
+    ]
+    return found + [FileComparison(name, "extra") for name in sorted(committed.keys() - fresh)]
+
+
+def read_committed(folder: Path, suffixes: tuple[str, ...] = (".csv", ".md")) -> dict[str, bytes]:
+    """The table files that stand directly in `folder`, by name; none where it does not exist.
+
+    Raises:
+        UsageError: the folder or a file in it cannot be read.
+    """
+    try:
+        if not folder.is_dir():
+            return {}
+        paths = sorted(path for path in folder.iterdir() if path.suffix in suffixes)
+        return {path.name: path.read_bytes() for path in paths if path.is_file()}
+    except OSError as error:
+        place = error.filename or folder
+        raise UsageError(
+            f"cannot read {place}: {error.strerror}; make it readable to compare with it"
+        ) from error
+
+
+def _compare(name: str, fresh: bytes, committed: bytes) -> FileComparison:
+    if fresh == committed:
+        return FileComparison(name, "equal")
+    new = read_table_text(name, fresh)
+    try:
+        old = read_table_text(name, committed)
+    except ValueError as error:
+        return FileComparison(name, "different", (f"committed file: {error}",))
+    changes = _cell_changes(old, new)
+    remarks = [*_label_remarks(old, new), *_count_remarks(old, new), *_line_remarks(old, new)]
+    if not changes and not remarks:
+        remarks.append(_spacing_remark(fresh, committed))
+    return FileComparison(
+        name,
+        "different",
+        tuple(remarks),
+        tuple(changes[:SHOWN_CELLS]),
+        len(changes),
+        max((change.relative for change in changes if change.relative is not None), default=None),
+        max((change.scaled for change in changes if change.scaled is not None), default=None),
+    )
+
+
+def _cell_changes(old: TableText, new: TableText) -> list[CellChange]:
+    """Differing cells row by row, over the columns and rows that both have."""
+    pairs = _column_pairs(old, new)
+    scales = {place: _largest_magnitude(old, place) for _, place, _ in pairs}
+    changes = []
+    for number, (old_row, new_row) in enumerate(zip(old.rows, new.rows, strict=False), start=1):
+        for label, old_place, new_place in pairs:
+            committed, fresh = _cell(old_row, old_place), _cell(new_row, new_place)
+            if committed != fresh:
+                relative, scaled = _changes(committed, fresh, scales[old_place])
+                changes.append(CellChange(number, label, committed, fresh, relative, scaled))
+    return changes
+
+
+def _column_pairs(old: TableText, new: TableText) -> list[tuple[str, int, int]]:
+    """Label, place in `old` and place in `new` of each column that both have."""
+    if old.labels == new.labels:
+        return [(label, place, place) for place, label in enumerate(new.labels)]
+    return [
+        (label, old.labels.index(label), place)
+        for place, label in enumerate(new.labels)
+        if label in old.labels
+    ]
+
+
+def _largest_magnitude(table: TableText, place: int) -> float:
+    numbers = (_number(_cell(row, place)) for row in table.rows)
+    return max((abs(number) for number in numbers if number is not None), default=0.0)
+
+
+def _changes(committed: str, fresh: str, scale: float) -> tuple[float | None, float | None]:
+    old, new = _number(committed), _number(fresh)
+    if old is None or new is None:
+        return None, None
+    difference = abs(new - old)
+    largest = max(abs(old), abs(new))
+    relative = difference / largest if largest else 0.0
+    return relative, difference / scale if scale else relative
+
+
+def _number(cell: str) -> float | None:
+    try:
+        value = float(cell)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
+
+
+def _cell(row: tuple[str, ...], place: int) -> str:
+    return row[place] if place < len(row) else ""
+
+
+def _label_remarks(old: TableText, new: TableText) -> list[str]:
+    if old.labels == new.labels:
+        return []
+    added = [label for label in new.labels if label not in old.labels]
+    removed = [label for label in old.labels if label not in new.labels]
+    remarks = []
+    if added:
+        remarks.append(f"columns not committed: {', '.join(added)}")
+    if removed:
+        remarks.append(f"columns no longer made: {', '.join(removed)}")
+    return remarks or ["the columns stand in another order or number"]
+
+
+def _count_remarks(old: TableText, new: TableText) -> list[str]:
+    remarks = []
+    if len(old.rows) != len(new.rows):
+        remarks.append(f"committed {len(old.rows)} rows, fresh {len(new.rows)}")
+    for number, row in enumerate(old.rows, start=1):
+        if len(row) != len(old.labels):
+            remarks.append(
+                f"committed row {number} has {len(row)} cells for {len(old.labels)} columns"
+            )
+            break
+    return remarks
+
+
+def _line_remarks(old: TableText, new: TableText) -> list[str]:
+    pairs = zip_longest(old.lines, new.lines, fillvalue="")
+    differing = [(committed, fresh) for committed, fresh in pairs if committed != fresh]
+    return [
+        f"text: committed {_quoted(committed)}, fresh {_quoted(fresh)}"
+        for committed, fresh in differing[:SHOWN_LINES]
+    ]
+
+
+def _quoted(line: str) -> str:
+    return f'"{line}"' if line else "nothing"
+
+
+def _spacing_remark(fresh: bytes, committed: bytes) -> str:
+    pairs = zip_longest(committed.split(b"\n"), fresh.split(b"\n"))
+    line = next(number for number, (old, new) in enumerate(pairs, start=1) if old != new)
+    return f"the cells agree; line {line} differs in spacing, quotes or line ending"

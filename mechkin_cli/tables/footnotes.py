@@ -1,0 +1,71 @@
+"""Footnotes of a table: which rows are not ok or lack a cell, and why."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mechkin_cli.status import Status
+from mechkin_cli.tables.columns import Columns, Words, solved_rows
+from mechkin_cli.tables.source import FloatArray, Source
+
+LISTED_RANGES = 6
+
+
+def footnotes(columns: Columns, source: Source) -> list[str]:
+    """One sentence per verdict other than ok, then one per column with unexplained empty cells."""
+    notes = [
+        f"{_where(source.status == status, source)}: {status.label}: {status.sentence}"
+        for status in Status
+        if status is not Status.ok and bool((source.status == status).any())
+    ]
+    explained = ~solved_rows(source) | (source.status == Status.rank_unclear)
+    for column in columns.columns:
+        if isinstance(column.values, Words):
+            continue
+        empty = ~np.isfinite(column.values) & ~explained
+        if bool(empty.any()):
+            reason = "the value is not finite or not unique there."
+            notes.append(f"{_where(empty, source)}: no {column.label}: {reason}")
+    return notes
+
+
+def _where(chosen: NDArray[np.bool_], source: Source) -> str:
+    """Rows in words, counted from 1: `Rows 3, 27-30 (O1.theta 202 to 208 deg)`."""
+    numbers = (np.flatnonzero(chosen) + 1).tolist()
+    ranges = _ranges(numbers)
+    swept = _swept_input(source)
+    texts = [_range_text(first, last, swept) for first, last in ranges[:LISTED_RANGES]]
+    if len(ranges) > LISTED_RANGES:
+        rest = sum(last - first + 1 for first, last in ranges[LISTED_RANGES:])
+        texts.append(f"and {rest} more")
+    return f"{'Row' if len(numbers) == 1 else 'Rows'} {', '.join(texts)}"
+
+
+def _ranges(numbers: list[int]) -> list[tuple[int, int]]:
+    """Runs of consecutive numbers as (first, last)."""
+    ranges: list[tuple[int, int]] = []
+    for number in numbers:
+        if ranges and ranges[-1][1] == number - 1:
+            ranges[-1] = (ranges[-1][0], number)
+        else:
+            ranges.append((number, number))
+    return ranges
+
+
+def _swept_input(source: Source) -> tuple[str, FloatArray, str] | None:
+    """Name, values and unit of the first input that is not held."""
+    for name, values in source.inputs.items():
+        if bool((values != values[0]).any()):
+            return name, values, source.units.label(source.quantity(name).dimension)
+    return None
+
+
+def _range_text(first: int, last: int, swept: tuple[str, FloatArray, str] | None) -> str:
+    rows = str(first) if first == last else f"{first}-{last}"
+    if swept is None:
+        return rows
+    name, values, unit = swept
+    start, end = float(values[first - 1]), float(values[last - 1])
+    place = f"{name} {start:.12g}" if first == last else f"{name} {start:.12g} to {end:.12g}"
+    return f"{rows} ({f'{place} {unit}'.rstrip()})"

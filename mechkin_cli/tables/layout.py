@@ -1,0 +1,58 @@
+"""Table layouts: which columns a table has, under which labels, with how many decimals."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mechkin_cli.expressions import Expression
+
+
+ROW_TEXTS = ("row.mode", "row.status")
+"""Quantities of a row that are texts: each can only be a column of its own."""
+
+ROW_NUMBERS = ("row.residual", "row.condition", "row.power_error")
+"""Quantities of a row that are dimensionless numbers."""
+
+
+@dataclass(frozen=True, slots=True)
+class ColumnLayout:
+    """One column; `decimals` holds for Markdown alone, None leaves them to the values."""
+
+    label: str
+    expression: Expression
+    decimals: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TableLayout:
+    """One table; `name` is the stem of its files, `title` its heading in Markdown."""
+
+    name: str
+    title: str
+    columns: tuple[ColumnLayout, ...]
+
+
+def default_table(coordinates: Sequence[str], inputs: Collection[str]) -> TableLayout:
+    """The table `sweep` of a file without tables: all coordinates, their rates, the efforts.
+
+    `coordinates` are the dotted names in joint order, `inputs` the driven ones among them. Each
+    column is labelled with the name of its quantity.
+    """
+    from mechkin_cli.expressions import parse
+
+    rates = [f"{name}_dot" for name in coordinates]
+    names = [*coordinates, *rates, *effort_names(inputs)]
+    columns = tuple(ColumnLayout(name, parse(name)) for name in names)
+    return TableLayout("sweep", "Coordinates, rates and efforts", columns)
+
+
+def effort_names(inputs: Collection[str]) -> list[str]:
+    """Name of each input's effort: `O1.effort`, or `O2.s.effort` where O2 has several inputs."""
+    joints = [name.partition(".")[0] for name in inputs]
+    return [
+        f"{joint}.effort" if joints.count(joint) == 1 else f"{name}.effort"
+        for name, joint in zip(inputs, joints, strict=True)
+    ]

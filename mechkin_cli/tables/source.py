@@ -1,0 +1,73 @@
+"""What tables ask of the results of an analysis: rows, inputs, verdicts and quantities by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from mechkin_cli.expressions import Quantity
+    from mechkin_cli.units import UnitSystem
+
+FloatArray = NDArray[np.float64]
+StatusArray = NDArray[np.int8]
+
+
+class Source(Protocol):
+    """Results of one analysis; every array has the shape (rows,)."""
+
+    @property
+    def rows(self) -> int:
+        """Number of rows asked for."""
+        ...
+
+    @property
+    def coordinates(self) -> Sequence[str]:
+        """Scalar joint coordinates in joint order, such as `O1.theta`."""
+        ...
+
+    @property
+    def inputs(self) -> Mapping[str, FloatArray]:
+        """Values of the driven coordinates, in file units exactly as written."""
+        ...
+
+    @property
+    def mode(self) -> str:
+        """Name of the assembly mode that the rows follow."""
+        ...
+
+    @property
+    def status(self) -> StatusArray:
+        """Codes of `mechkin_cli.status.Status`."""
+        ...
+
+    @property
+    def residual(self) -> FloatArray:
+        """Largest closure component of the row, dimensionless; nan where not computed."""
+        ...
+
+    @property
+    def condition(self) -> FloatArray:
+        """Condition of the row's closure, dimensionless; nan where not computed."""
+        ...
+
+    @property
+    def power_error(self) -> FloatArray:
+        """|sum of powers| / sum of |powers|, dimensionless; nan where not computed."""
+        ...
+
+    @property
+    def units(self) -> UnitSystem:
+        """Units of the mechanism file; tables are written in them."""
+        ...
+
+    def quantity(self, name: str) -> Quantity:
+        """A parameter, direction or result by its dotted name, in SI.
+
+        Raises:
+            UnknownName: nothing has this name.
+        """
+        ...

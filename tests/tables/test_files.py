@@ -1,0 +1,128 @@
+"""Writing files: all of them whole, or none."""
+
+import errno
+import os
+from pathlib import Path
+
+import pytest
+
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.tables import files
+from mechkin_cli.tables.files import write_files
+
+CONTENT = {"a.csv": b"x\n1\n", "b.md": b"# b\n"}
+
+
+def everything(folder: Path) -> dict[str, bytes]:
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+
+
+def test_files_are_written_and_folders_made(tmp_path):
+    written = write_files(tmp_path / "out" / "rcsr", CONTENT)
+    assert everything(tmp_path) == {"out/rcsr/a.csv": b"x\n1\n", "out/rcsr/b.md": b"# b\n"}
+    assert written == [tmp_path / "out/rcsr/a.csv", tmp_path / "out/rcsr/b.md"]
+
+
+def test_names_may_hold_folders(tmp_path):
+    write_files(tmp_path, {"one/a.csv": b"1", "two/a.csv": b"2"})
+    assert everything(tmp_path) == {"one/a.csv": b"1", "two/a.csv": b"2"}
+
+
+def test_existing_files_are_replaced(tmp_path):
+    write_files(tmp_path, {"a.csv": b"a much longer old content"})
+    write_files(tmp_path, CONTENT)
+    assert everything(tmp_path) == CONTENT
+
+
+def test_new_files_have_the_usual_permissions(tmp_path):
+    (tmp_path / "plain").write_bytes(b"")
+    write_files(tmp_path, CONTENT)
+    assert (tmp_path / "a.csv").stat().st_mode == (tmp_path / "plain").stat().st_mode
+
+
+def fail_after(monkeypatch, calls: int, error: BaseException):
+    """Let the writing of the file after `calls` others fail when half of it is written."""
+    whole, seen = files._write, []
+
+    def write(path, content):
+        seen.append(path)
+        if len(seen) > calls:
+            path.write_bytes(content[:2])
+            raise error
+        whole(path, content)
+
+    monkeypatch.setattr(files, "_write", write)
+
+
+@pytest.mark.parametrize("calls", [0, 1])
+@pytest.mark.parametrize(
+    ("error", "raised"),
+    [
+        (KeyboardInterrupt(), KeyboardInterrupt),
+        (MemoryError(), MemoryError),
+        (OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)), UsageError),
+    ],
+)
+def test_a_failure_leaves_nothing_behind(tmp_path, monkeypatch, calls, error, raised):
+    fail_after(monkeypatch, calls, error)
+    with pytest.raises(raised):
+        write_files(tmp_path / "new" / "folder", CONTENT)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_failure_leaves_old_files_as_they_were(tmp_path, monkeypatch):
+    old = {"a.csv": b"old", "b.md": b"old too"}
+    write_files(tmp_path, old)
+    fail_after(monkeypatch, 1, KeyboardInterrupt())
+    with pytest.raises(KeyboardInterrupt):
+        write_files(tmp_path, CONTENT)
+    assert everything(tmp_path) == old
+
+
+def refusal(folder: Path, content=CONTENT) -> str:
+    with pytest.raises(UsageError) as caught:
+        write_files(folder, content)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("below", ["file", "file/deeper"])
+def test_a_file_in_place_of_a_folder(tmp_path, below):
+    (tmp_path / "file").write_bytes(b"kept")
+    message = refusal(tmp_path / below)
+    assert str(tmp_path / below / "a.csv") in message
+    assert "a file stands where a folder is needed" in message
+    assert "--out" in message
+    assert everything(tmp_path) == {"file": b"kept"}
+
+
+def test_a_folder_in_place_of_a_file(tmp_path):
+    (tmp_path / "b.md").mkdir()
+    message = refusal(tmp_path)
+    assert "b.md" in message
+    assert "a folder stands where a file is to be written" in message
+    assert everything(tmp_path) == {}
+
+
+@pytest.mark.parametrize(
+    ("number", "words"),
+    [
+        (errno.ENOSPC, "the disk is full; free some space"),
+        (errno.EACCES, "no permission to write there"),
+        (errno.EROFS, "the file system is read-only"),
+        (errno.EIO, os.strerror(errno.EIO)),
+    ],
+)
+def test_refusals_say_the_cure(tmp_path, monkeypatch, number, words):
+    fail_after(monkeypatch, 0, OSError(number, os.strerror(number)))
+    message = refusal(tmp_path)
+    assert words in message
+    assert "--out" in message
+
+
+def test_a_name_that_is_too_long(tmp_path):
+    assert "the name is too long" in refusal(tmp_path / ("x" * 300))
+    assert list(tmp_path.iterdir()) == []
