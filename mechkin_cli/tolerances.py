@@ -97,6 +97,10 @@ DEAD_CENTRE_ITERATIONS: Final = 40
 CONDITION_NEAR_SINGULAR: Final = 1e7
 """1 / smallest singular value of the scaled block: above it a row keeps fewer than nine digits."""
 
+CONDITION_RANK_UNCLEAR: Final = 1e12
+"""Above it rates and reactions of a row have no digit that means anything; its position still
+has."""
+
 RANK_GAP: Final = 1e3
 """Ratio of neighbouring singular values that separates rank from noise."""
 
@@ -110,3 +114,9 @@ square to."""
 UNPHYSICAL_INERTIA: Final = 1e-9
 """Parts of the largest eigenvalue by which a tensor may miss the triangle inequality of a real
 body."""
+
+# --- numbers of the file ------------------------------------------------------------------------
+
+LARGEST_NUMBER: Final = 1e100
+"""SI value of a field above which it is a slip of the pen: its third power would leave the doubles
+(1.8e308), and rows would be empty without a reason."""

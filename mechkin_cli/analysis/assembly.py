@@ -51,7 +51,7 @@ class Probe:
         for name in self.coordinates:
             self.outputs.add(quantities[name])
         self.points = [at for _, at in joint_points(layout) if at.link != "ground"]
-        self.point_slots = [self.outputs._point(at, 0) for at in self.points]
+        self.point_slots = [self.outputs.add_point(at, 0) for at in self.points]
 
     def read(self, inputs: Floats, states: Floats) -> tuple[dict[str, Floats], Floats]:
         """Coordinates by name (SI) and the joint points of the moving links (points, 3,
@@ -200,7 +200,10 @@ def _distances_home(layout: Layout, probe: Probe, points: Floats) -> list[float]
     """Root mean square over the moving links' joint points, in parts of the size."""
     home = np.array([at.vector for at in probe.points])[:, :, None]
     miss = (points - home) / layout.mechanism.box_diagonal()
-    return [sqrt(float((miss[:, :, i] ** 2).sum()) / len(home)) for i in range(points.shape[2])]
+    total = np.zeros(points.shape[2])
+    for x, y, z in miss:
+        total = total + (x * x + y * y + z * z)
+    return [sqrt(float(squares) / len(home)) for squares in total]
 
 
 def _by_name(found: Found, letters: dict[int, str], name: str) -> Start:

@@ -51,9 +51,8 @@ class Demand(IntFlag):
     VELOCITY = 1
     ACCELERATION = 2
     FORCES = 4
-    WRENCHES = 8
-    CONDITION = 16
-    POWER = 32
+    CONDITION = 8
+    POWER = 16
 
 
 class RowFlag(IntFlag):
@@ -62,4 +61,3 @@ class RowFlag(IntFlag):
     GOOD = 0
     NOT_CONVERGED = 1
     SIDE_CONDITION = 2
-    SINGULAR = 4

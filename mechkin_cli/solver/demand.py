@@ -21,10 +21,10 @@ from mechkin_cli.solver.layout import Layout
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
 
-_WRENCH_KINDS = {"force", "moment", "moment_about_origin"}
+WRENCH_KINDS = {"force", "moment", "moment_about_origin"}
 _SHAKING_KINDS = {"shaking_force", "shaking_moment"}
 _INERTIA_KINDS = {"inertia_force", "inertia_moment"}
-_FORCE_KINDS = _WRENCH_KINDS | _SHAKING_KINDS | _INERTIA_KINDS | {"effort"}
+_FORCE_KINDS = WRENCH_KINDS | _SHAKING_KINDS | _INERTIA_KINDS | {"effort"}
 
 
 def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
@@ -37,8 +37,6 @@ def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
             demand |= Demand.VELOCITY | Demand.ACCELERATION
         elif quantity.kind in _FORCE_KINDS:
             demand |= forces_demand(mechanism)
-            if quantity.kind in _WRENCH_KINDS:
-                demand |= Demand.WRENCHES
         elif quantity.kind == "condition":
             demand |= Demand.CONDITION
         elif quantity.kind == "power_error":
@@ -110,18 +108,18 @@ class OutputPlan:
         length = layout.length
         kind, owner = wanted.kind, wanted.owner
         if kind == "point":
-            return self._point(mechanism.points[owner], wanted.order)
+            return self.add_point(mechanism.points[owner], wanted.order)
         if kind == "direction":
             return self._vector(mechanism.directions[owner])
         if kind in ("axis", "joint_point"):
             joint = mechanism.joints[owner]
             if kind == "axis":
                 return self._vector(Attached(joint.second, joint.on_second.z))
-            return self._point(Attached(joint.second, joint.on_second.o), 0)
+            return self.add_point(Attached(joint.second, joint.on_second.o), 0)
         if kind in ("omega", "alpha"):
             code = OutputCode.OMEGA if kind == "omega" else OutputCode.ALPHA
             return self._output(code, layout.link_number[owner], 1.0)
-        if kind in _WRENCH_KINDS:
+        if kind in WRENCH_KINDS:
             code = {
                 "force": OutputCode.JOINT_FORCE,
                 "moment": OutputCode.JOINT_MOMENT,
@@ -140,7 +138,8 @@ class OutputPlan:
         code = OutputCode[kind.upper()]
         return self._output(code, 0, length if kind.endswith("force") else length * length)
 
-    def _point(self, at: Attached, order: int) -> int:
+    def add_point(self, at: Attached, order: int) -> int:
+        """Plans a position (order 0) or a derivative of it; returns its first slot."""
         number = self.layout.link_number[at.link]
         return self._output(OutputCode.POINT, number, 1.0, order, self.layout.point(at))
 

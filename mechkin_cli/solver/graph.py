@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from itertools import combinations, islice
 
 from mechkin_cli.diagnostics import Diagnostic, MechkinError
-from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
+from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism, Spring
 
 MOST_TREES = 20000
 """Choices of closing joints that are compared; mechanisms with more have their first ones
@@ -66,12 +66,16 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class SolverGraph:
-    """Tree edges in placing order (edge k carries link k), closings in block order, blocks."""
+    """Tree edges in placing order (edge k carries link k), closings in block order, blocks.
+
+    `inputs` are (edge, freedom), `driven` the same as (joint, coordinate).
+    """
 
     edges: tuple[TreeEdge, ...]
     closings: tuple[Closing, ...]
     blocks: tuple[Block, ...]
     inputs: tuple[tuple[int, int], ...]
+    driven: tuple[tuple[str, str], ...]
 
     def link_index(self, link: str) -> int:
         """Number of a link, -1 for ground."""
@@ -127,11 +131,16 @@ def _choices(
     if closed_at is not None:
         yield tuple(closed_at)
         return
-    driven = {joint for joint, _ in inputs}
+    # the tree has the angle of a torsion spring beyond half a turn, a closing joint has not
+    kept = {joint for joint, _ in inputs} | {
+        load.joint
+        for load in mechanism.loads
+        if isinstance(load, Spring) and load.coordinate == "theta"
+    }
     able = [
         name
         for name, joint in mechanism.joints.items()
-        if joint.type.equations and name not in driven
+        if joint.type.equations and name not in kept
     ]
     able.sort(key=lambda name: mechanism.joints[name].type.equations)
     yield from islice(combinations(able, loops), MOST_TREES)
@@ -142,8 +151,8 @@ def _no_closing_joint(mechanism: Mechanism) -> UnsolvableGraph:
         "no-closing-joint",
         "error",
         f"the loops of {mechanism.name} cannot be closed: every loop needs an R, P, C or S "
-        "that is not an input",
-        hint="drive another coordinate",
+        "that is not an input and has no spring on its theta",
+        hint="drive another coordinate, or put the spring on another joint",
     )
     return UnsolvableGraph(diagnostic, tuple(mechanism.joints))
 
@@ -218,7 +227,7 @@ def _with_blocks(
     everything = {(k, f) for k, e in enumerate(edges) for f in range(e.joint.type.freedoms)}
     if everything - solved:
         raise _undriven(edges, sorted(everything - solved), len(everything - solved))
-    return SolverGraph(tuple(edges), tuple(order), tuple(blocks), tuple(driven))
+    return SolverGraph(tuple(edges), tuple(order), tuple(blocks), tuple(driven), tuple(inputs))
 
 
 def _unknowns(

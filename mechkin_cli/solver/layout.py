@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import frexp, pi
+from math import frexp, ldexp, pi
 from typing import TYPE_CHECKING
 
 from mechkin_cli.mechanism.frames import GROUND, Frame
@@ -45,7 +45,7 @@ class Layout:
     def length(self) -> float:
         """The length unit in m: the power of two next to the size of the home drawing."""
         mantissa, exponent = frexp(self.mechanism.box_diagonal())
-        return 2.0 ** (exponent if mantissa > 0.7 else exponent - 1)
+        return ldexp(1.0, exponent if mantissa > 0.7 else exponent - 1)
 
     @cached_property
     def origin(self) -> Vector:
@@ -136,8 +136,10 @@ class Layout:
                 self.place(joint, 1.0),
             )
         self._add_blocks(plan)
-        for edge_number, freedom in self.graph.inputs:
-            plan.add_input(self.first_column[edge_number] + freedom)
+        for (number, freedom), (_, coordinate) in zip(
+            self.graph.inputs, self.graph.driven, strict=True
+        ):
+            plan.add_input(self.first_column[number] + freedom, coordinate == "s")
         self._add_inertias(plan)
         for load in self.mechanism.loads:
             self._add_load(plan, load)

@@ -17,6 +17,7 @@ from mechkin_cli.kernel import functions
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.random_starts import RandomStarts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
 
     Floats = NDArray[np.float64]
-
-SEED = 20_240_229
-"""Fixed, so that the same file gives the same starts."""
 
 SLIDE_RANGE = 2.0
 """Bound of random slides in sizes of the home drawing: a chain of links reaches no farther."""
@@ -85,7 +83,7 @@ def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Fo
         inputs: (inputs,) in kernel units.
         turns: turns of helical joints to either side.
     """
-    generator = np.random.Generator(np.random.PCG64(SEED))
+    generator = RandomStarts()
     partial: list[Floats] = [np.zeros((plan.states, 1))]
     partial[0][_quaternion_scalars(layout), 0] = 1.0
     starts = closed = 0
@@ -107,7 +105,7 @@ def _search_block(
     number: int,
     inputs: Floats,
     base: Floats,
-    generator: np.random.Generator,
+    generator: RandomStarts,
     turns: int,
 ) -> tuple[_Clusters, int]:
     clusters = _Clusters([], [], [])
@@ -131,7 +129,7 @@ def _search_block(
 
 
 def _randomise(
-    layout: Layout, number: int, states: Floats, generator: np.random.Generator, turns: int
+    layout: Layout, number: int, states: Floats, generator: RandomStarts, turns: int
 ) -> None:
     """Fills the unknown states of a block with random starts."""
     rows = states.shape[1]
@@ -141,14 +139,12 @@ def _randomise(
         state = layout.first_state[k]
         if joint.letter == "S":
             if freedom == 0:
-                q = generator.standard_normal((4, rows))
-                q /= np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-                states[state : state + 4] = q
+                states[state : state + 4] = generator.quaternions(rows)
         elif joint.type.slides[freedom]:
-            states[state + freedom] = reach * generator.uniform(-1.0, 1.0, rows)
+            states[state + freedom] = generator.between(reach, rows)
         else:
             half = pi * (2 * turns + 1) if joint.letter == "H" else pi
-            states[state + freedom] = half * generator.uniform(-1.0, 1.0, rows)
+            states[state + freedom] = generator.between(half, rows)
 
 
 def _quaternion_scalars(layout: Layout) -> list[int]:

@@ -5,7 +5,7 @@
 // frame A on the first link and B on the second, their derivatives, the wrenches it transmits and the
 // side condition that tells a true assembly from a false root of the equations.
 //
-// Equations are lengths along A's axes (the S: ground axes) and angles; d = B.o - A.o. The Jacobian
+// Equations are lengths along A's axes (S and R: ground axes) and angles; d = B.o - A.o. The Jacobian
 // of an equation is the product of its wrench with the relative twist of B against A, exact where the
 // joint is closed.
 #pragma once

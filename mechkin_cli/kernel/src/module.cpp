@@ -47,7 +47,9 @@ unsigned char* row_flags(const Flags& a, long rows) {
   return a.data();
 }
 
-void check_demand(const Request& r) {
+void check_demand(const PlanStore& store, const Request& r) {
+  if (!store.finished()) throw nb::value_error("the plan is not finished");
+  if (r.outputs && (store.demand() & ~r.demand)) throw nb::value_error("the outputs need more than is demanded");
   const bool moving = r.demand & DEMAND_VELOCITY;
   if (moving && !r.rates) throw nb::value_error("velocities need rates of the inputs");
   if (r.demand & DEMAND_ACCELERATION && (!moving || !r.accelerations))
@@ -81,7 +83,7 @@ void run(const PlanStore& store, Array2 inputs, std::optional<Array2> rates, std
   r.demand = demand;
   r.iterations = iterations;
   r.tight = tests[0], r.coarse = tests[1], r.accept = tests[2];
-  check_demand(r);
+  check_demand(store, r);
   std::vector<char> memory(unit.workspace_size(p));
   nb::gil_scoped_release released;
   FloatingPointState state;
@@ -193,7 +195,7 @@ NB_MODULE(_kernel, m) {
            "on_second"_a, "loop"_a, "place"_a)
       .def("add_block", &PlanStore::add_block, "closing_joints"_a, "joints"_a, "unknown"_a)
       .def("set_rest", &PlanStore::set_rest, "joints"_a)
-      .def("add_input", &PlanStore::add_input, "column"_a)
+      .def("add_input", &PlanStore::add_input, "column"_a, "along_s"_a)
       .def("set_inertia", &PlanStore::set_inertia, "link"_a, "mass"_a, "centre"_a, "tensor"_a)
       .def("set_gravity", &PlanStore::set_gravity, "g"_a)
       .def("add_load", &PlanStore::add_load, "type"_a, "link"_a, "other"_a, "point"_a, "other_point"_a, "vector"_a)

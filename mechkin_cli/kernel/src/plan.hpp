@@ -105,10 +105,9 @@ struct Output {
 enum Demand : unsigned {
   DEMAND_VELOCITY = 1,
   DEMAND_ACCELERATION = 2,
-  DEMAND_FORCES = 4,     // closing wrenches and efforts
-  DEMAND_WRENCHES = 8,   // wrenches of tree joints
-  DEMAND_CONDITION = 16,
-  DEMAND_POWER = 32
+  DEMAND_FORCES = 4,  // closing wrenches, wrenches of tree joints, efforts
+  DEMAND_CONDITION = 8,
+  DEMAND_POWER = 16
 };
 
 // The joint as users know it: which frame carries its point and axis, which way it is in the tree.
@@ -117,6 +116,7 @@ struct JointPlace {
   double point[3], axis[3];  // in the second link's frame
   double sign;               // +1: the tree (or the closing joint) goes from the first link to the second
   int effort_theta, effort_s;  // input whose drive acts on this coordinate, or -1
+  double force_per_effort;     // of a drive on s
 };
 
 struct Plan {
@@ -170,8 +170,7 @@ struct Request {
 
 enum RowFlag : unsigned char {
   ROW_NOT_CONVERGED = 1,
-  ROW_SIDE_CONDITION = 2,
-  ROW_SINGULAR = 4
+  ROW_SIDE_CONDITION = 2
 };
 
 // Levenberg-Marquardt from many starts on one block; states of earlier blocks and inputs as given.

@@ -22,7 +22,7 @@ Frame frame(const FrameData& f) {
 }
 
 JointPlace joint_place(const PlaceData& p) {
-  JointPlace r = {p.first, p.second, {}, {}, p.sign, -1, -1};
+  JointPlace r = {p.first, p.second, {}, {}, p.sign, -1, -1, 1.0};
   copy(p.point, r.point);
   copy(p.axis, r.axis);
   return r;
@@ -40,6 +40,26 @@ int width(int type) {
     case OUT_CLOSING_S:
     case OUT_EFFORT: return 1;
     default: return 3;
+  }
+}
+
+// What an output needs beyond positions.
+unsigned demand_of(int type, int order) {
+  const unsigned motion = order == 0 ? 0 : order == 1 ? DEMAND_VELOCITY : DEMAND_VELOCITY | DEMAND_ACCELERATION;
+  switch (type) {
+    case OUT_RATE:
+    case OUT_OMEGA: return DEMAND_VELOCITY;
+    case OUT_ACCELERATION:
+    case OUT_ALPHA: return DEMAND_VELOCITY | DEMAND_ACCELERATION;
+    case OUT_JOINT_FORCE:
+    case OUT_JOINT_MOMENT:
+    case OUT_JOINT_MOMENT_ORIGIN:
+    case OUT_EFFORT:
+    case OUT_SHAKING_FORCE:
+    case OUT_SHAKING_MOMENT:
+    case OUT_INERTIA_FORCE:
+    case OUT_INERTIA_MOMENT: return DEMAND_FORCES;
+    default: return motion;
   }
 }
 
@@ -121,12 +141,19 @@ void PlanStore::set_rest(const std::vector<int>& joints) {
   rest_ = joints;
 }
 
-void PlanStore::add_input(int column) {
+void PlanStore::add_input(int column, bool along_s) {
   require(!finished_, "the plan is finished");
   require(column >= 0 && column < plan_.columns && column_state_[column] >= 0, "an input must be a scalar coordinate");
   JointPlace& place = tree_places_[column_joint_[column]];
   const TreeJoint& joint = joints_[column_joint_[column]];
-  (is_slide(joint.type, column - joint.column) ? place.effort_s : place.effort_theta) = (int)input_column_.size();
+  const int input = (int)input_column_.size();
+  if (!along_s) {
+    place.effort_theta = input;
+  } else {
+    place.effort_s = input;
+    // the effort of an H is a torque: the force along s that does its work is torque / pitch
+    if (joint.type == JOINT_H) place.force_per_effort = 1.0 / joint.pitch;
+  }
   input_column_.push_back(column);
 }
 
@@ -149,10 +176,12 @@ void PlanStore::add_load(int type, int link, int other, const Triple& point, con
                          const Triple& vector) {
   const int links = (int)joints_.size();
   const bool on_joint = type == LOAD_JOINT_TORQUE || type == LOAD_JOINT_FORCE || type >= LOAD_JOINT_SPRING_THETA;
+  require(!finished_, "the plan is finished");
+  const bool between = type == LOAD_SPRING || type == LOAD_DAMPER;
   if (on_joint)
     check_reference(link);
   else
-    require(link >= -1 && link < links && other >= -1 && other < links, "load on an unknown link");
+    require(link >= (between ? -1 : 0) && link < links && other >= -1 && other < links, "load on an unknown link");
   Load l = {type, link, other, {}, {}, {}};
   copy(point, l.point);
   copy(other_point, l.other_point);
@@ -182,6 +211,7 @@ int PlanStore::add_output(int type, int index, int order, const Triple& data, do
   Output o = {type, index, order, plan_.slots, {}, factor};
   copy(data, o.data);
   output_.push_back(o);
+  demand_ |= demand_of(type, order);
   plan_.slots += width(type);
   point_view_at_arrays();
   return o.slot;

@@ -26,7 +26,8 @@ class PlanStore {
                          const std::vector<std::pair<int, double>>& loop, const PlaceData& place);
   void add_block(int closing_joints, const std::vector<int>& joints, const std::vector<int>& unknown);
   void set_rest(const std::vector<int>& joints);
-  void add_input(int column);
+  // The drive acts on s rather than theta: a force along the axis, for H as well.
+  void add_input(int column, bool along_s);
   void set_inertia(int link, double mass, const Triple& centre, const std::array<double, 6>& tensor);
   void set_gravity(const Triple& g);
   void add_load(int type, int link, int other, const Triple& point, const Triple& other_point, const Triple& vector);
@@ -35,6 +36,9 @@ class PlanStore {
   void finish();
 
   const Plan& view() const { return plan_; }
+  bool finished() const { return finished_; }
+  // What a run that fills the outputs must demand.
+  unsigned demand() const { return demand_; }
 
  private:
   void point_view_at_arrays();
@@ -42,6 +46,7 @@ class PlanStore {
 
   Plan plan_{};
   bool finished_ = false;
+  unsigned demand_ = 0;
   double size_;
   std::vector<TreeJoint> joints_;
   std::vector<JointPlace> tree_places_, closing_places_;

@@ -224,8 +224,10 @@ inline Closed close_block(const Plan& p, Workspace& w, int index, const Request&
     Pack length = 0.0;
     for (int u = 0; u < b.size; ++u) {
       w.right[u] = -w.right[u];
-      length = max(length, abs(w.right[u]));
+      length = select(abs(w.right[u]) <= length, length, abs(w.right[u]));  // a NaN wins
     }
+    // where the Jacobian is singular there is no step: the lane stays where it is
+    done = done | ~(length < Pack(1e100));
     correction += select(done, Pack(0.0), length);
     advance_block(p, w, index, w.right, ~done);
   }

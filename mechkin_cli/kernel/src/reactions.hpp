@@ -134,7 +134,9 @@ inline void apply_between_points(Balance& balance, const Load& l) {
   const auto point = [&](int link, const double* at) { return link < 0 ? constant(at) : w.pose[link].point(at); };
   const Vec3 p = point(l.link, l.point), q = point(l.other, l.other_point), d = q - p;
   const Pack length = sqrt(dot(d, d));
-  const Vec3 along = (Pack(1.0) / length) * d;
+  // where the ends meet the line is lost: no force if there is no tension, else no number
+  const Mask apart = length > Pack(0.0);
+  const Vec3 along = select(apart, Pack(1.0) / select(apart, length, Pack(1.0)), Pack(0.0)) * d;
   Pack tension;
   if (l.type == LOAD_SPRING) {
     tension = Pack(l.vector[0]) * (length - Pack(l.vector[1])) + Pack(l.vector[2]);
@@ -143,8 +145,9 @@ inline void apply_between_points(Balance& balance, const Load& l) {
     const Vec3 rate = motion_of(w, l.other).velocity.at(q) - motion_of(w, l.link).velocity.at(p);
     tension = Pack(l.vector[0]) * dot(along, rate);
   }
-  balance.apply(l.link, force_at(p, tension * along));
-  balance.apply(l.other, Pack(-1.0) * force_at(p, tension * along));
+  const Vec3 pull = select(apart | (tension == Pack(0.0)), tension, Pack(__builtin_nan(""))) * along;
+  balance.apply(l.link, force_at(p, pull));
+  balance.apply(l.other, Pack(-1.0) * force_at(p, pull));
 }
 
 inline void apply_load(Balance& balance, const Load& l) {
@@ -225,7 +228,8 @@ inline Wrench joint_wrench(const Workspace& w, int reference, const JointView& j
   const Wrench carried = reference >= 0 ? w.carried[reference] : w.reaction[-1 - reference];
   Wrench r = Pack(j.place->sign) * carried;
   if (j.place->effort_theta >= 0) r.moment -= w.effort[j.place->effort_theta] * j.axis;
-  if (j.place->effort_s >= 0) r -= force_at(j.point, w.effort[j.place->effort_s] * j.axis);
+  if (j.place->effort_s >= 0)
+    r -= force_at(j.point, (Pack(j.place->force_per_effort) * w.effort[j.place->effort_s]) * j.axis);
   return r;
 }
 

@@ -21,12 +21,11 @@ struct Reader {
   }
 };
 
-void write_flags(unsigned char* flags, const Reader& in, Mask converged, Mask side, Mask regular) {
+void write_flags(unsigned char* flags, const Reader& in, Mask converged, Mask side) {
   for (int i = 0; i < in.count; ++i) {
     unsigned f = 0;
     if (!lane(converged, i)) f |= ROW_NOT_CONVERGED;
     if (!lane(side, i)) f |= ROW_SIDE_CONDITION;
-    if (!lane(regular, i)) f |= ROW_SINGULAR;
     flags[in.row + i] = (unsigned char)f;
   }
 }
@@ -59,8 +58,9 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
   Mask converged = all_lanes(true), side = all_lanes(true);
   for (int b = 0; b < p.blocks; ++b) {
     const Closed closed = close_block(p, w, b, r);
-    residual = max(closed.residual, residual);
-    correction = max(closed.correction, correction);
+    // a NaN wins
+    residual = select(closed.residual <= residual, residual, closed.residual);
+    correction = select(closed.correction <= correction, correction, closed.correction);
     converged = converged & closed.converged;
     side = side & closed.side;
     if (!r.demand) continue;
@@ -111,7 +111,7 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
   } else if (r.outputs) {
     outputs(nullptr);
   }
-  write_flags(r.flags, in, converged, side, condition < Pack(1e300));
+  write_flags(r.flags, in, converged, side);
 }
 
 long workspace_size(const Plan& p) {
@@ -144,8 +144,7 @@ void search(const Plan& p, const SearchRequest& r, char* memory) {
     const Pack residual = search_block(p, w, r.block, r.iterations, r.accept);
     for (int s = 0; s < p.states; ++s) Writer{r.states, r.rows, row, count}.put(s, w.q[s]);
     Writer{r.residual, r.rows, row, count}.put(0, residual);
-    write_flags(r.flags, in, residual <= Pack(r.accept), block_side_conditions(p, w, p.block[r.block]),
-                all_lanes(true));
+    write_flags(r.flags, in, residual <= Pack(r.accept), block_side_conditions(p, w, p.block[r.block]));
   }
 }
 

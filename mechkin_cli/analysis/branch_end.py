@@ -1,0 +1,132 @@
+"""Why a branch ends: at a dead centre, which is located, or somewhere it could not be followed."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.problem import Problem
+from mechkin_cli.analysis.rows import KernelInputs, RowStates
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.solver.batch import run
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.dead_centre import DeadCentre, locate
+from mechkin_cli.solver.follow import Followed
+from mechkin_cli.solver.layout import Layout
+from mechkin_cli.status import Status
+from mechkin_cli.units import ANGLE, LENGTH
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.kernel._kernel import Plan
+
+    Floats = NDArray[np.float64]
+
+
+def explain_end(
+    problem: Problem,
+    layout: Layout,
+    plan: Plan,
+    inputs: KernelInputs,
+    followed: Followed,
+    rows: RowStates,
+) -> None:
+    """Finds why a branch ended; rows before a dead centre get their guesses from its shape."""
+    moving = np.flatnonzero(followed.direction)
+    fold = None
+    if moving.size == 1:
+        first = _derivatives(plan, followed)
+        number = int(moving[0])
+        if first is not None:
+            fold = locate(
+                layout, problem.motion.driven, number, followed.inputs, followed.state, first
+            )
+        if fold is not None and _lies_ahead(fold, followed, number):
+            _fill_before(fold, inputs, followed, number, rows)
+            rows.status[~rows.reached] = Status.beyond_dead_centre
+            rows.diagnostics.append(_dead_centre_note(problem, layout, fold, number, rows))
+            return
+    rows.status[~rows.reached] = Status.branch_lost
+    rows.diagnostics.append(_lost_note(problem, layout, followed, rows))
+
+
+def _derivatives(plan: Plan, followed: Followed) -> Floats | None:
+    rates = followed.direction[:, None]
+    batch = run(
+        plan,
+        followed.inputs[:, None],
+        followed.state[:, None],
+        rates=np.ascontiguousarray(rates),
+        accelerations=np.zeros_like(rates),
+        demand=Demand.VELOCITY | Demand.ACCELERATION,
+        derivatives=True,
+    )
+    return batch.first[:, 0] if batch.good[0] and batch.first is not None else None
+
+
+def _lies_ahead(fold: DeadCentre, followed: Followed, number: int) -> bool:
+    """Whether the fold is where the branch was going, next to where it could not be followed."""
+    ahead = (fold.value - float(followed.inputs[number])) * float(followed.direction[number])
+    curvature = float(fold.second[fold.exchanged.input_column]) * float(followed.direction[number])
+    return ahead >= -1e-9 and curvature < 0.0
+
+
+def _fill_before(
+    fold: DeadCentre, inputs: KernelInputs, followed: Followed, number: int, rows: RowStates
+) -> None:
+    row = followed.reached
+    while row < rows.reached.size:
+        guess = fold.guess(float(inputs.values[number, row]), followed.state)
+        if guess is None:
+            return
+        rows.guess[:, row] = guess
+        rows.limit[row] = tolerances.JUMP_LIMIT
+        rows.reached[row] = True
+        row += 1
+
+
+def _in_file_units(problem: Problem, layout: Layout, number: int, value: float) -> str:
+    item = problem.motion.inputs[number]
+    if item.coordinate == "theta":
+        dimension, si = ANGLE, value
+    else:
+        joint = problem.mechanism.joints[item.joint]
+        dimension = LENGTH
+        si = value * (joint.lead / (2.0 * pi) if joint.letter == "H" else layout.length)
+    return f"{float(problem.units.from_si(si, dimension)):.12g} {problem.units.label(dimension)}"
+
+
+def _row_span(rows: RowStates) -> str:
+    missing = np.flatnonzero(~rows.reached) + 1
+    return f"row {missing[0]}" if missing.size == 1 else f"rows {missing[0]} to {missing[-1]}"
+
+
+def _dead_centre_note(
+    problem: Problem, layout: Layout, fold: DeadCentre, number: int, rows: RowStates
+) -> Diagnostic:
+    name = problem.motion.inputs[number].name
+    return Diagnostic(
+        "dead-centre",
+        "warning",
+        f"the branch ends at a dead centre; {_row_span(rows)} lie beyond it and stay empty",
+        measured=f"{name} = {_in_file_units(problem, layout, number, fold.value)}",
+        hint="end the sweep before it, or choose another assembly",
+    )
+
+
+def _lost_note(problem: Problem, layout: Layout, followed: Followed, rows: RowStates) -> Diagnostic:
+    places = ", ".join(
+        f"{item.name} = {_in_file_units(problem, layout, k, float(followed.inputs[k]))}"
+        for k, item in enumerate(problem.motion.inputs)
+    )
+    return Diagnostic(
+        "branch-lost",
+        "error",
+        f"the branch could not be followed further; {_row_span(rows)} stay empty",
+        measured=f"last place {places}",
+        hint="this may be a branch point or a special position; sweep from its other side",
+    )

@@ -1,0 +1,87 @@
+"""Continuous angles of closing joints.
+
+The kernel has the angle of a closing joint from an arctangent. Whole turns are counted along a
+refined path between the rows, on which no angle changes by half a turn from one place to the next.
+"""
+
+from __future__ import annotations
+
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.mechanism.quantities import Wanted
+from mechkin_cli.solver.batch import run
+from mechkin_cli.solver.demand import OutputPlan
+from mechkin_cli.solver.follow import follow
+from mechkin_cli.solver.layout import Layout
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+FINEST_STEP = 0.1
+"""Step of the inputs (rad, length units) on the refined path; angles turn less than half a turn in
+it unless they run thirty times as fast as the input."""
+
+
+def unwrap_closing_angles(
+    layout: Layout,
+    outputs: OutputPlan,
+    wanted: list[Wanted],
+    values: Floats,
+    inputs: Floats,
+    start: Floats,
+    reached: int,
+) -> None:
+    """Makes the angles of closing joints in `values` (slots, rows) continuous, in place.
+
+    `inputs` (inputs, rows) in kernel units, `start` the states at the first row, `reached` the
+    number of leading rows that have a solution.
+    """
+    angles = [
+        quantity
+        for quantity in wanted
+        if quantity.kind == "coordinate"
+        and quantity.coordinate == "theta"
+        and quantity.order == 0
+        and layout.joint_reference[quantity.owner] < 0
+    ]
+    if not angles or reached < 2:
+        return
+    path, rows = refined(inputs[:, :reached])
+    plan = layout.build()
+    own = OutputPlan(layout, plan, outputs.inputs)
+    for quantity in angles:
+        own.add(quantity)
+    followed = follow(plan, path, start)
+    count = followed.reached
+    batch = run(
+        plan,
+        np.ascontiguousarray(path[:, :count]),
+        np.ascontiguousarray(followed.guess[:, :count]),
+        outputs=True,
+    )
+    assert batch.outputs is not None
+    rows = rows[rows < count]
+    for quantity in angles:
+        along = batch.outputs[own.slots[quantity.name].first]
+        turns = np.cumsum(np.rint(np.diff(along, prepend=along[:1]) / (2.0 * pi)))
+        row = values[outputs.slots[quantity.name].first]
+        row[: rows.size] -= turns[rows] * (2.0 * pi)
+
+
+def refined(inputs: Floats) -> tuple[Floats, NDArray[np.int64]]:
+    """The path with places added between the rows, and the rows' places on it."""
+    pieces = [inputs[:, :1]]
+    places = [0]
+    for k in range(1, inputs.shape[1]):
+        a, b = inputs[:, k - 1 : k], inputs[:, k : k + 1]
+        largest = float(np.max(np.abs(b - a), initial=0.0))
+        parts = max(1, int(np.ceil(largest / FINEST_STEP)))
+        fractions = np.arange(1, parts) / parts
+        pieces.extend((a + (b - a) * fractions, b))
+        places.append(places[-1] + parts)
+    return np.ascontiguousarray(np.concatenate(pieces, axis=1)), np.array(places)

@@ -1,0 +1,56 @@
+"""The rows of a sweep while it runs: inputs in kernel units, guesses, what is known of each row."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.analysis.problem import Problem
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.solver.layout import Layout
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class RowStates:
+    """Guesses for the rows and what is known about those that have none."""
+
+    guess: Floats
+    limit: Floats
+    reached: NDArray[np.bool_]
+    status: NDArray[np.int8]
+    nodes: int
+    diagnostics: list[Diagnostic]
+
+
+@dataclass(frozen=True)
+class KernelInputs:
+    """Values, rates and accelerations (inputs, rows) in kernel units."""
+
+    values: Floats
+    rates: Floats
+    accelerations: Floats
+
+
+def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
+    """Inputs as the kernel takes them: slides in length units, a helical joint by its angle."""
+    inputs, rows = problem.motion.inputs, problem.motion.rows
+
+    def table(name: str) -> Floats:
+        columns = []
+        for item in inputs:
+            joint = problem.mechanism.joints[item.joint]
+            unit = 1.0
+            if item.coordinate == "s":
+                unit = joint.lead / (2.0 * pi) if joint.letter == "H" else layout.length
+            columns.append(getattr(item, name) / unit)
+        return np.ascontiguousarray(np.stack(columns)) if columns else np.empty((0, rows))
+
+    return KernelInputs(table("values"), table("rates"), table("accelerations"))
