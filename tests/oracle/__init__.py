@@ -1,0 +1,51 @@
+"""An independent oracle for the tests: spatial mechanisms at 40 digits.
+
+It shares nothing with the package: its own reader, the closure as written with poses by matrices,
+rates by truncated Taylor series in time, forces by free-body equations of every link. Nothing here
+uses twists, screws or virtual power.
+
+All values are in the base units of `Mechanism.units` (coherent; see `oracle.units`), angles in
+radians, vectors in ground axes. `mp.dps` (40) sets the digits of everything computed afterwards.
+"""
+
+from oracle.dead_centre import fold
+from oracle.document import document, to_text
+from oracle.forces import Reactions, newton_euler
+from oracle.kinematics import Solution, condition, solve, sweep
+from oracle.mechanism import Mechanism
+from oracle.numerics import UnsolvableError, mp
+from oracle.random_mechanisms import random_loop
+from oracle.reader import read
+from oracle.transforms import (
+    in_other_units,
+    mirrored,
+    moved,
+    renamed,
+    reordered,
+    rotation_matrix,
+    swapped_links,
+)
+
+__all__ = [
+    "Mechanism",
+    "Reactions",
+    "Solution",
+    "UnsolvableError",
+    "condition",
+    "document",
+    "fold",
+    "in_other_units",
+    "mirrored",
+    "moved",
+    "mp",
+    "newton_euler",
+    "random_loop",
+    "read",
+    "renamed",
+    "reordered",
+    "rotation_matrix",
+    "solve",
+    "swapped_links",
+    "sweep",
+    "to_text",
+]

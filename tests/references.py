@@ -1,0 +1,39 @@
+"""Published and exact values of mechanisms, from `tests/reference`.
+
+`exact/rcsr.csv`: 17 significant digits computed at 40; angles in degrees, rates in rad/s, lengths
+in in, forces in lbm in/s^2, moments in lbm in^2/s^2 about the ground origin. Columns `ne_*` are
+Newton-Euler; `author_*` follow the inertia couples of the dissertation, which are wrong but
+reproduce its print. `published/table_*.csv`: cells as printed.
+"""
+
+from __future__ import annotations
+
+import csv
+from functools import cache
+from pathlib import Path
+
+FOLDER = Path(__file__).parent / "reference"
+MECHANISMS = Path(__file__).parent.parent / "mechanisms"
+RCSR = MECHANISMS / "rcsr.yaml"
+
+
+@cache
+def exact(name: str) -> dict[str, list[str]]:
+    """The columns of `exact/<name>.csv` by header, as text."""
+    return _columns(FOLDER / "exact" / f"{name}.csv")
+
+
+@cache
+def published(name: str) -> dict[str, list[str]]:
+    """The columns of `published/<name>.csv` by header, as printed."""
+    return _columns(FOLDER / "published" / f"{name}.csv")
+
+
+def published_names() -> list[str]:
+    return sorted(path.stem for path in (FOLDER / "published").glob("*.csv"))
+
+
+def _columns(path: Path) -> dict[str, list[str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        header, *rows = csv.reader(file)
+    return {name: list(cells) for name, cells in zip(header, zip(*rows, strict=True), strict=True)}
