@@ -1,0 +1,149 @@
+"""The kernel at work on RCSR: plans, inputs and guesses as a sweep makes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.benchmark.rcsr import ACCELERATION, COORDINATES, RATE, SPAN, Dimensions, values
+from mechkin_cli.interface import loads
+from mechkin_cli.solver.batch import Batch, run
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import OutputPlan, demand_of
+from mechkin_cli.solver.follow import follow
+from mechkin_cli.solver.graph import freedom_of
+from mechkin_cli.solver.layout import Layout
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.kernel._kernel import Plan
+
+    Floats = NDArray[np.float64]
+
+BATCH = 2048
+"""Rows of a timed call."""
+
+SWEEP_ROWS = 361
+"""Rows of the timed sweep: as many as a full turn has degrees."""
+
+
+class PlannedRun:
+    """A kernel call with what it computes: demand, plan and the names of its outputs."""
+
+    def __init__(
+        self, case: KernelCase, names: Iterable[str], more: Demand = Demand.POSITION
+    ) -> None:
+        problem, self.names = case.model.problem, tuple(names)
+        known = problem.quantities()
+        wanted = [known[name] for name in self.names]
+        self.demand = demand_of(problem.mechanism, wanted) | more
+        self.plan: Plan = case.layout.build()
+        self.outputs = OutputPlan(case.layout, self.plan, problem.motion.driven)
+        for quantity in wanted:
+            self.outputs.add(quantity)
+
+    def __call__(
+        self,
+        inputs: Floats,
+        guess: Floats,
+        iterations: int = tolerances.NEWTON_ITERATIONS,
+        lanes: int = 0,
+    ) -> Batch:
+        """Runs all rows; inputs (1, rows), guess (states, rows)."""
+        return run(
+            self.plan,
+            inputs,
+            guess,
+            rates=np.full_like(inputs, RATE),
+            accelerations=np.full_like(inputs, ACCELERATION),
+            demand=self.demand,
+            outputs=True,
+            iterations=iterations,
+            lanes=lanes,
+        )
+
+    def quantities(self, batch: Batch) -> dict[str, Any]:
+        """The outputs by name, (rows,) or (rows, 3), in SI."""
+        assert batch.outputs is not None
+        found = {}
+        for name in self.names:
+            slot = self.outputs.slots[name]
+            columns = batch.outputs[slot.first : slot.first + slot.width]
+            found[name] = columns[0] if slot.width == 1 else columns.T
+        return found
+
+
+class KernelCase:
+    """RCSR at the positions theta1 (rows, rad): coordinates by name, and the kernel's arrays."""
+
+    def __init__(self, size: Dimensions, theta1: Floats) -> None:
+        names = [f"{name}{order}" for name in COORDINATES for order in ("", "_dot", "_ddot")]
+        self.model = loads(size.text(values(theta1.tolist())), "rcsr")
+        self.layout = Layout(self.model.problem.mechanism, self.model.graph)
+        analysis = self.model.analyze(names)
+        self.found = {name: analysis[name] for name in names}
+        self.theta1 = self.model.problem.motion.inputs[0].values
+        self.inputs = np.ascontiguousarray(self.theta1[None, :])
+        self.states = self._states([self.found[name] for name in COORDINATES])
+
+    def _states(self, coordinates: list[Floats]) -> Floats:
+        """The kernel's states (states, rows) for given theta2, s, theta4."""
+        states = np.zeros((self.layout.build().states, self.theta1.size))
+        known = dict(zip(COORDINATES, coordinates, strict=True)) | {"O1.theta": self.theta1}
+        for k, edge in enumerate(self.layout.graph.edges):
+            for kind in edge.joint.type.coordinates:
+                unit = self.layout.length if kind == "s" else 1.0
+                place = self.layout.first_state[k] + freedom_of(edge.joint, kind)
+                states[place] = known[f"{edge.joint.name}.{kind}"] / unit
+        return states
+
+    def second_order_guesses(self) -> Floats:
+        """Each row's states predicted from the row before by its two derivatives."""
+        step = np.diff(self.theta1)
+        predicted = []
+        for name in COORDINATES:
+            value, rate, second = (self.found[f"{name}{order}"] for order in ("", "_dot", "_ddot"))
+            first = rate / RATE
+            curvature = (second - ACCELERATION * first) / RATE**2
+            ahead = value[:-1] + step * first[:-1] + 0.5 * step * step * curvature[:-1]
+            predicted.append(np.concatenate([value[:1], ahead]))
+        return self._states(predicted)
+
+    def sweep(self, planned: PlannedRun, lanes: int = 0) -> Callable[[], Batch]:
+        """A call that follows the branch from the first row along all rows and runs them."""
+        start = np.ascontiguousarray(self.states[:, 0])
+
+        def timed() -> Batch:
+            followed = follow(planned.plan, self.inputs, start)
+            return planned(self.inputs, followed.guess, lanes=lanes)
+
+        return timed
+
+
+def degree_rows() -> Floats:
+    """Positions 1 degree apart over the sweep of the source, rad."""
+    rows: Floats = np.radians(np.arange(SPAN[0], SPAN[1] + 1.0))
+    return rows
+
+
+def sweep_rows(rows: int = SWEEP_ROWS) -> Floats:
+    """Equidistant positions over the sweep of the source, rad."""
+    first, last = (float(end) for end in np.radians(SPAN))
+    return np.linspace(first, last, rows)
+
+
+def repeated(array: Floats, rows: int = BATCH) -> Floats:
+    """(columns, rows) by repeating the columns' rows from the start."""
+    times = -(-rows // array.shape[1])
+    return np.ascontiguousarray(np.tile(array, times)[:, :rows])
+
+
+def widths() -> list[int]:
+    """The lane widths that this machine can run."""
+    from mechkin_cli.kernel import _kernel
+
+    return [lanes for lanes in (2, 4, 8) if lanes <= _kernel.widest]

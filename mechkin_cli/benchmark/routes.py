@@ -1,0 +1,166 @@
+"""Run time against error: the kernel, the sweep, and what engineers do by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.benchmark.arithmetic import Arithmetic, extended
+from mechkin_cli.benchmark.closure import drawing, kinematics
+from mechkin_cli.benchmark.kernel_case import (
+    BATCH,
+    SWEEP_ROWS,
+    KernelCase,
+    PlannedRun,
+    degree_rows,
+    repeated,
+    sweep_rows,
+)
+from mechkin_cli.benchmark.peers import Closure, dense_loads, differences, fsolve_positions
+from mechkin_cli.benchmark.rcsr import COORDINATES, Dimensions
+from mechkin_cli.benchmark.reference import EVERYTHING, POSITIONS, errors, solution
+from mechkin_cli.benchmark.report import Cell, Column, Table
+from mechkin_cli.benchmark.timing import Timing, in_turns
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+BY_HAND_ROUNDS = 5
+"""The peers in Python take a thousand times as long; they are timed in few rounds."""
+
+COLUMNS = (
+    Column("route", "route"),
+    Column("microseconds", "us per\nrow", "time"),
+    Column("spread", "+-\n%", "percent"),
+    Column("ratio", "times\nkernel", "time"),
+    Column("position", "error:\nposi-\ntion", "error"),
+    Column("velocity", "velo-\ncity", "error"),
+    Column("acceleration", "acceler-\nation", "error"),
+    Column("loads", "\nloads", "error"),
+)
+
+
+@dataclass(frozen=True)
+class Route:
+    """A way to the answers: what is timed, for how many rows, and what it finds."""
+
+    name: str
+    call: Callable[[], object]
+    rows: int
+    found: dict[str, Any]
+    exact: dict[str, Any]
+
+
+def table(size: Dimensions) -> Table:
+    """Times and errors of all routes."""
+    coarse = KernelCase(size, degree_rows())
+    fine = KernelCase(size, sweep_rows())
+    native = [*_kernel_routes(size, coarse), *_sweep_routes(size, fine)]
+    by_hand = _by_hand_routes(size, coarse)
+    times = in_turns({route.name: route.call for route in native})
+    times |= in_turns({route.name: route.call for route in by_hand}, BY_HAND_ROUNDS)
+    unit = next(route for route in native if route.name == "kernel, converged")
+    rows = [
+        _row(route, times[route.name], times[unit.name], unit.rows) for route in native + by_hand
+    ]
+    notes = (
+        f"kernel: {BATCH} rows a call, 1 degree apart, each predicted to second order.",
+        f"sweep: {SWEEP_ROWS} rows; follow and run: the calls that analyze() makes of the kernel.",
+        "differences: central ones, from three positions a row, instead of derivatives.",
+        "dense 24x24 system: the loads alone, from an exact motion.",
+        f"errors in parts of the largest value; exact: {extended().name}.",
+    )
+    return Table("routes", "run time against error, RCSR, one thread", COLUMNS, rows, notes)
+
+
+def exact_solution(size: Dimensions, case: KernelCase) -> dict[str, Any]:
+    """The independent solution at a case's rows."""
+    return solution(size, case.theta1, [case.found[name] for name in COORDINATES])
+
+
+def _row(route: Route, time: Timing, unit: Timing, unit_rows: int) -> dict[str, Cell]:
+    found = errors(route.found, route.exact)
+    return {
+        "route": route.name,
+        "microseconds": 1e6 * time.median / route.rows,
+        "spread": time.spread,
+        "ratio": (time.median / route.rows) / (unit.median / unit_rows),
+        **vars(found),
+    }
+
+
+def _kernel_routes(size: Dimensions, case: KernelCase) -> list[Route]:
+    exact, guess = exact_solution(size, case), case.second_order_guesses()
+    inputs, guesses = repeated(case.inputs), repeated(guess)
+    everything, positions = PlannedRun(case, EVERYTHING), PlannedRun(case, POSITIONS)
+
+    def route(name: str, planned: PlannedRun, iterations: int) -> Route:
+        found = planned.quantities(planned(case.inputs, guess, iterations))
+        call = partial(planned, inputs, guesses, iterations)
+        return Route(name, call, BATCH, found, exact)
+
+    def shifted(theta1: Floats) -> Floats:
+        batch = positions(np.ascontiguousarray(theta1[None, :]), repeated(guess, theta1.size))
+        return np.stack([positions.quantities(batch)[name] for name in POSITIONS])
+
+    long_inputs = inputs[0]
+    return [
+        route("kernel, 1 Newton step", everything, 1),
+        route("kernel, 2 Newton steps", everything, 2),
+        route("kernel, converged", everything, 6),
+        route("kernel, positions only", positions, 6),
+        Route(
+            "kernel and differences",
+            partial(differences, shifted, long_inputs),
+            BATCH,
+            differences(shifted, case.theta1),
+            exact,
+        ),
+    ]
+
+
+def _sweep_routes(size: Dimensions, case: KernelCase) -> list[Route]:
+    exact, everything = exact_solution(size, case), PlannedRun(case, EVERYTHING)
+
+    sweep = case.sweep(everything)
+    analyze = partial(case.model.analyze, EVERYTHING)
+    analysis = analyze()
+    found = {name: analysis[name] for name in EVERYTHING}
+    swept = everything.quantities(sweep())
+    return [
+        Route("sweep, follow and run", sweep, SWEEP_ROWS, swept, exact),
+        Route("sweep, model.analyze()", analyze, SWEEP_ROWS, found, exact),
+    ]
+
+
+def _by_hand_routes(size: Dimensions, case: KernelCase) -> list[Route]:
+    exact, theta1 = exact_solution(size, case), case.theta1
+    d = drawing(size, _double())
+    closure, start = Closure(d), np.array([case.found[name][0] for name in COORDINATES])
+    solved = partial(fsolve_positions, closure, start=start)
+
+    motion = kinematics(d, theta1, [case.found[name] for name in COORDINATES])
+    loads = partial(dense_loads, size, d, motion)
+    positions = dict(zip(POSITIONS, solved(theta1), strict=True))
+    rows = theta1.size
+    return [
+        Route("fsolve on 4x4 matrices", partial(solved, theta1), rows, positions, exact),
+        Route(
+            "fsolve and differences",
+            partial(differences, solved, theta1),
+            rows,
+            differences(solved, theta1),
+            exact,
+        ),
+        Route("dense 24x24 system", loads, rows, loads(), exact),
+    ]
+
+
+def _double() -> Arithmetic:
+    return Arithmetic("double", 2.0**-52, np.float64, np.cos, np.sin)

@@ -1,0 +1,53 @@
+"""The parts of the benchmark in the order they are shown; each is computed when it is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from subprocess import CalledProcessError
+
+from mechkin_cli.benchmark import demand_steps, routes, stress, targets
+from mechkin_cli.benchmark.rcsr import dimensions
+from mechkin_cli.benchmark.report import Table
+from mechkin_cli.benchmark.yardstick import Yardstick, load
+
+RCSR_FILE = Path("mechanisms") / "rcsr.yaml"
+
+
+def timing_tables(folder: Path | None, say: Callable[[str], None]) -> Iterator[Table]:
+    """Routes, demand plan, and the targets as far as their programs are there.
+
+    Args:
+        folder: the yardstick's folder, None to look for it.
+        say: told what is left out and why.
+
+    Raises:
+        UsageError: no yardstick in the folder given.
+    """
+    yardstick = load(folder)
+    size = dimensions()
+    yield routes.table(size)
+    yield demand_steps.table(size)
+    if not isinstance(yardstick, Yardstick):
+        say(f"left out: {yardstick}")
+        return
+    with yardstick:
+        yield targets.table(size, yardstick)
+    yield from _process_table(yardstick.folder, say)
+
+
+def _process_table(folder: Path, say: Callable[[str], None]) -> Iterator[Table]:
+    """The whole process, if the program that does nothing and the mechanism's file are there."""
+    do_nothing, project = folder.parent / "do_nothing.py", folder.parents[2]
+    if not (do_nothing.is_file() and (project / RCSR_FILE).is_file()):
+        say(f"left out: no whole processes, {do_nothing} or {project / RCSR_FILE} is not there")
+        return
+    try:
+        yield targets.process_table(project / RCSR_FILE, do_nothing)
+    except CalledProcessError as error:
+        say(f"left out: no whole processes, {error}")
+
+
+def stress_tables() -> Iterator[Table]:
+    """Sizes and distances to the dead centre."""
+    return stress.tables()

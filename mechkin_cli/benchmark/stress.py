@@ -1,0 +1,137 @@
+"""Extreme cases, each against an independent solution in many digits.
+
+Sizes from micrometres to thousands of kilometres: scaling all lengths changes no error. Positions
+up to 1e-10 degrees from the dead centre: at the distance d (rad) the condition grows as
+1 / sqrt(d); one rounding of the data moves the position by eps * condition, and as rates grow with
+the condition, velocities lose eps * condition^2 of themselves; accelerations and loads follow them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.benchmark.arithmetic import Arithmetic, best
+from mechkin_cli.benchmark.closure import dead_centre, drawing
+from mechkin_cli.benchmark.kernel_case import sweep_rows
+from mechkin_cli.benchmark.rcsr import COORDINATES, SPAN, dimensions, values
+from mechkin_cli.benchmark.reference import EVERYTHING, errors, row_by_row
+from mechkin_cli.benchmark.report import Cell, Column, Table
+from mechkin_cli.interface import Analysis, loads
+from mechkin_cli.status import Status
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+SIZES = tuple(10.0**k for k in range(-6, 7))
+"""Factors on all lengths; at 1 the mechanism is about 9 m long."""
+
+DISTANCES = tuple(10.0**-k for k in range(11))
+"""Distances to the dead centre, degrees."""
+
+SIZE_ROWS = 5
+NEAR_DEAD_CENTRE = {"theta1": 3.58, "theta2": -1.03, "s": -8.9, "theta4": -2.2}
+"""A guess of the dead centre at scale 1, rad and m."""
+
+EPSILON = 2.0**-53
+OTHER_BRANCH = "on the other branch"
+
+_ERRORS = (
+    Column("position", "error:\nposi-\ntion", "error"),
+    Column("velocity", "velo-\ncity", "error"),
+    Column("acceleration", "acceler-\nation", "error"),
+    Column("loads", "\nloads", "error"),
+)
+_VERDICT = (
+    Column("residual", "resi-\ndual", "error"),
+    Column("condition", "condi-\ntion", "error"),
+    Column("status", "\nstatus"),
+)
+
+
+def tables() -> Iterator[Table]:
+    """Both families."""
+    arithmetic = best()
+    yield size_table(arithmetic)
+    yield dead_centre_table(arithmetic)
+
+
+def size_table(arithmetic: Arithmetic) -> Table:
+    """One row per size: worst errors of a sweep in parts of the columns' largest values."""
+    rows: list[dict[str, Cell]] = []
+    theta1 = sweep_rows(SIZE_ROWS)
+    for scale in SIZES:
+        size = dimensions(scale)
+        analysis = loads(size.text(values(theta1.tolist())), "rcsr").analyze(EVERYTHING)
+        solved = np.flatnonzero(np.isfinite(analysis["O4.theta"]))
+        exact = row_by_row(size, theta1[solved], _coordinates(analysis, solved), arithmetic)
+        found = {name: analysis[name][solved] for name in EVERYTHING}
+        result = analysis.result
+        rows.append(
+            {
+                "scale": scale,
+                **vars(errors(found, exact)),
+                "residual": float(np.max(result.residual[solved])),
+                "condition": float(np.max(result.condition[solved])),
+                "status": ", ".join(sorted({Status(int(c)).label for c in result.status})),
+            }
+        )
+    notes = (f"{SIZE_ROWS} rows a size; exact: {arithmetic.name}, 4x4 matrices and 24x24 system.",)
+    columns = (Column("scale", "\nsize", "error"), *_ERRORS, *_VERDICT)
+    return Table("sizes", "lengths times 1e-6 to 1e6", columns, rows, notes)
+
+
+def dead_centre_table(arithmetic: Arithmetic) -> Table:
+    """One row per distance: errors of that position in parts of its own values."""
+    size = dimensions()
+    fold = dead_centre(drawing(size, arithmetic), NEAR_DEAD_CENTRE)
+    theta1 = [float(sweep_rows(2)[0])]
+    theta1 += [float(fold.theta1 - arithmetic.radians(1) * distance) for distance in DISTANCES]
+    analysis = loads(size.text(values(theta1)), "rcsr").analyze(EVERYTHING)
+    rows: list[dict[str, Cell]] = [
+        _position_row(analysis, i, float(theta1[i]), float(fold.theta4), arithmetic)
+        | {"distance": distance}
+        for i, distance in enumerate(DISTANCES, 1)
+    ]
+    degrees = float(fold.theta1 * 180 / arithmetic.radians(180))
+    columns = (
+        Column("distance", "\ndegrees", "error"),
+        *_ERRORS,
+        Column("share", "of\neps c", "ratio"),
+        *_VERDICT,
+    )
+    notes = (
+        f"dead centre at {degrees:.13f} degrees; one sweep from {SPAN[0]:g}",
+        f"exact: {arithmetic.name}; eps c: 2^-53 times the condition (one rounding).",
+    )
+    return Table("dead_centre", "towards the dead centre", columns, rows, notes)
+
+
+def _position_row(
+    analysis: Analysis, i: int, theta1: float, theta4_of_fold: float, arithmetic: Arithmetic
+) -> dict[str, Cell]:
+    result = analysis.result
+    row: dict[str, Cell] = {"status": Status(int(result.status[i])).label}
+    if not np.isfinite(analysis["O4.theta"][i]):
+        return row
+    one = np.array([i])
+    exact = row_by_row(dimensions(), [theta1], _coordinates(analysis, one), arithmetic)
+    found = errors({name: analysis[name][one] for name in EVERYTHING}, exact)
+    if analysis["O4.theta"][i] <= theta4_of_fold:
+        row["status"] = f"{row['status']}, {OTHER_BRANCH}"
+    condition = float(result.condition[i])
+    share = None if found.position is None else found.position / (EPSILON * condition)
+    return row | {
+        **vars(found),
+        "share": share,
+        "residual": float(result.residual[i]),
+        "condition": condition,
+    }
+
+
+def _coordinates(analysis: Analysis, rows: NDArray[np.intp]) -> list[Any]:
+    return [analysis[name][rows] for name in COORDINATES]

@@ -1,0 +1,177 @@
+"""A checked file to its problem: units, parameters, links, joints, points, motion, loads,
+tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mechkin_cli.analysis.problem import Problem
+from mechkin_cli.building.columns import build_tables
+from mechkin_cli.building.coordinates import is_coordinate
+from mechkin_cli.building.fields import Fields, read_parameters, read_units
+from mechkin_cli.building.joints import build_joints, nearest_hint
+from mechkin_cli.building.links import build_links
+from mechkin_cli.building.loads import LoadBuilder
+from mechkin_cli.building.motion import build_motion
+from mechkin_cli.building.source import Source
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile
+from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism
+from mechkin_cli.mechanism.motion import Assembly, Motion
+from mechkin_cli.schema.file import MechanismFile
+from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
+from mechkin_cli.tables.layout import TableLayout, default_table
+from mechkin_cli.units import ANGLE, LENGTH
+
+
+@dataclass(frozen=True)
+class Built:
+    """The problem of a file, its solver graph and its tables."""
+
+    problem: Problem
+    graph: SolverGraph
+    tables: tuple[TableLayout, ...]
+    own_tables: bool
+
+
+def build(source: Source) -> Built:
+    """Builds everything that a file describes.
+
+    Raises:
+        InvalidFile: with every independent error, each at its line.
+    """
+    file, document = source.file, source.document
+    units, wrong_units = read_units(document, _unit_texts(file.units))
+    fields = Fields(document, units, diagnostics=wrong_units)
+    read_parameters(fields, file.parameters)
+    _refuse_unsolved_sections(fields, file)
+    links = build_links(fields, file.links, "unphysical-inertia" in file.accept)
+    joints = build_joints(fields, file.joints, file.links)
+    _check_connected(fields, file.links, file.joints)
+    points = {
+        name: Attached(p.link, fields.vector(("points", name, "at"), p.at, LENGTH))
+        for name, p in file.points.items()
+        if _link_known(fields, ("points", name, "link"), p.link, file.links)
+    }
+    directions = {
+        name: Attached(d.link, fields.direction(("directions", name, "vector"), d.vector))
+        for name, d in file.directions.items()
+        if _link_known(fields, ("directions", name, "link"), d.link, file.links)
+    }
+    loads = LoadBuilder(fields, links, joints, points)
+    loads.add_all(file.loads)
+    motion = build_motion(fields, file.motion, joints)
+    assembly = _assembly(fields, file.assembly, joints)
+    mechanism = Mechanism(
+        name=file.name or document.file,
+        links=links,
+        joints=joints,
+        points=points,
+        directions=directions,
+        loads=tuple(loads.loads),
+        gravity=loads.gravity,
+    )
+    problem = Problem(mechanism, motion, assembly, units, dict(fields.parameters))
+    tables = build_tables(fields, file.tables, problem.quantities())
+    if not file.tables:
+        tables = (default_table(mechanism.coordinates, [i.name for i in motion.inputs]),)
+    graph = _graph(fields, mechanism, motion)
+    errors = [d for d in fields.diagnostics if d.severity == "error"]
+    if errors or graph is None:
+        raise InvalidFile(sorted(fields.diagnostics, key=_by_place))
+    problem = Problem(
+        mechanism, motion, assembly, units, dict(fields.parameters), tuple(fields.diagnostics)
+    )
+    return Built(problem, graph, tables, bool(file.tables))
+
+
+def _unit_texts(section: object) -> dict[str, str]:
+    names = ("length", "angle", "mass", "force", "time", "angular_rate")
+    return {name: getattr(section, name) for name in names}
+
+
+def _by_place(diagnostic: Diagnostic) -> tuple[int, int]:
+    place = diagnostic.place
+    return (place.line, place.column) if place else (0, 0)
+
+
+def _refuse_unsolved_sections(fields: Fields, file: MechanismFile) -> None:
+    for key, what in (
+        ("chain", "loops written as chain rows are"),
+        ("follow", "choosing the loops that are followed is"),
+        ("idle", "holding idle freedoms is"),
+    ):
+        if getattr(file, key):
+            fields.key_error(
+                "not-solved", (key,), f"{what} not part of this version", f"remove {key}:"
+            )
+    for row in file.chain:
+        fields.refused |= {row.joint, row.link}
+
+
+def _link_known(
+    fields: Fields, path: tuple[str, ...], name: str, links: Mapping[str, object]
+) -> bool:
+    if name == GROUND_NAME or name in links:
+        return True
+    fields.refused.add(path[1])
+    hint = nearest_hint(name, [GROUND_NAME, *links])
+    fields.error("unknown-link", path, f"there is no link {name}", hint)
+    return False
+
+
+def _check_connected(
+    fields: Fields, links: Mapping[str, object], joints: Mapping[str, object]
+) -> None:
+    """Every link must be joined, by way of others, to ground."""
+    reached, grown = {GROUND_NAME}, True
+    pairs = [tuple(j.links) for j in joints.values()]  # type: ignore[attr-defined]
+    if any(name not in links and name != GROUND_NAME for pair in pairs for name in pair):
+        return  # a misspelt link, reported at its joint
+    while grown:
+        before = len(reached)
+        for first, second in pairs:
+            if first in reached or second in reached:
+                reached |= {first, second}
+        grown = len(reached) > before
+    for name in links:
+        if name not in reached:
+            fields.key_error(
+                "disconnected-link",
+                ("links", name),
+                f"link {name} is not joined to ground, nor to a link that is",
+                "add a joint, or remove the link",
+            )
+
+
+def _assembly(fields: Fields, section: object, joints: Mapping[str, Joint]) -> Assembly:
+    if section is None:
+        return Assembly()
+    near = {}
+    for name, text in section.near.items():  # type: ignore[attr-defined]
+        path = ("assembly", "near", name)
+        if is_coordinate(fields, path, name, joints):
+            near[name] = fields.number(path, text, ANGLE if name.endswith(".theta") else LENGTH)
+    return Assembly(near, section.mode, section.turns)  # type: ignore[attr-defined]
+
+
+def _graph(fields: Fields, mechanism: Mechanism, motion: Motion) -> SolverGraph | None:
+    """The solver graph; only asked for when the parts are sound, to avoid follow-up errors."""
+    if any(d.severity == "error" for d in fields.diagnostics):
+        return None
+    try:
+        return build_graph(mechanism, motion.driven)
+    except UnsolvableGraph as error:
+        path = ("motion", "inputs") if motion.inputs else ("joints", *error.joints[:1])
+        fields.diagnostics.append(
+            Diagnostic(
+                error.diagnostic.code,
+                "error",
+                error.diagnostic.message,
+                fields.document.place(path),
+                error.diagnostic.measured,
+                error.diagnostic.limit,
+                error.diagnostic.hint,
+            )
+        )
+        return None

@@ -1,0 +1,206 @@
+"""Texts of the file to numbers in SI, collecting what is wrong with its place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.expressions import (
+    ExpressionError,
+    Quantity,
+    constant,
+    constant_in_file_units,
+    evaluate_parameters,
+    literal,
+    lookup,
+    parse,
+)
+from mechkin_cli.expressions import Vector as Components
+from mechkin_cli.mechanism.vectors import ZERO, Vector
+from mechkin_cli.reading.document import Document
+from mechkin_cli.tolerances import LARGEST_NUMBER
+from mechkin_cli.units import Dimension, UnitError, UnitSystem
+
+Path = tuple[str | int, ...]
+
+
+class AlreadyRefused(ExpressionError):
+    """A name that is refused where it is defined: the expression that uses it gets no message.
+
+    It arrives as the cause of the error that the expression raises.
+    """
+
+
+@dataclass
+class Fields:
+    """Evaluates fields of one document; errors are collected in `diagnostics` and stand in as
+    zeros.
+
+    `refused` holds names whose definitions have errors: what uses them is not reported again.
+    """
+
+    document: Document
+    units: UnitSystem
+    parameters: dict[str, Quantity] = field(default_factory=dict)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    refused: set[str] = field(default_factory=set)
+
+    @property
+    def error_count(self) -> int:
+        """Errors so far."""
+        return sum(diagnostic.severity == "error" for diagnostic in self.diagnostics)
+
+    def is_refused(self, name: str) -> bool:
+        """Whether a dotted name, or what it belongs to, is refused where it is defined."""
+        return name in self.refused or name.partition(".")[0] in self.refused
+
+    def resolve(self, name: str) -> Quantity:
+        """The parameter of a name.
+
+        Raises:
+            UnknownName: there is none.
+            AlreadyRefused: its definition has an error.
+        """
+        if self.is_refused(name):
+            raise AlreadyRefused(name)
+        return lookup(self.parameters)(name)
+
+    def error(
+        self, code: str, path: Path, message: str, hint: str | None = None, **more: str
+    ) -> None:
+        """Notes an error at a value of the file."""
+        place = self.document.place(path)
+        self.diagnostics.append(Diagnostic(code, "error", message, place, hint=hint, **more))
+
+    def key_error(self, code: str, path: Path, message: str, hint: str | None = None) -> None:
+        """Notes an error at a key of the file."""
+        place = self.document.key_place(path)
+        self.diagnostics.append(Diagnostic(code, "error", message, place, hint=hint))
+
+    def expression_error(self, path: Path, error: ExpressionError) -> None:
+        """Notes an error inside an expression."""
+        if isinstance(error.__cause__, AlreadyRefused):
+            return
+        place = self.document.place_in(path, error.offset)
+        self.diagnostics.append(
+            Diagnostic("expression", "error", error.message, place, hint=error.hint)
+        )
+
+    def number(self, path: Path, text: str, dimension: Dimension) -> float:
+        """The SI value of a scalar field; a bare number takes the field's unit."""
+        try:
+            return self._bounded(path, constant(text, dimension, self.units, self.resolve))
+        except ExpressionError as error:
+            self.expression_error(path, error)
+            return 0.0
+
+    def written(self, path: Path, text: str, dimension: Dimension) -> float:
+        """The value of a scalar field in the file's units, a bare number exactly as written."""
+        try:
+            value = constant_in_file_units(text, dimension, self.units, self.resolve)
+            return self._bounded(path, value)
+        except ExpressionError as error:
+            self.expression_error(path, error)
+            return 0.0
+
+    def _bounded(self, path: Path, value: float) -> float:
+        if abs(value) <= LARGEST_NUMBER:
+            return value
+        self.error(
+            "too-large",
+            path,
+            "this number is too large to compute with",
+            "check its exponent and unit",
+            measured=f"{value:.4g}",
+            limit=f"{LARGEST_NUMBER:g}",
+        )
+        return 0.0
+
+    def vector(self, path: Path, texts: Sequence[str], dimension: Dimension) -> Vector:
+        """The SI value of a field of three scalars."""
+        x, y, z = (self.number((*path, i), text, dimension) for i, text in enumerate(texts))
+        return (x, y, z)
+
+    def direction(self, path: Path, texts: Sequence[str]) -> Vector:
+        """A direction: three components of one dimension, not all zero; returned as a unit
+        vector."""
+        from mechkin_cli.mechanism.vectors import unit
+
+        values: list[float] = []
+        dimensions: list[Dimension] = []
+        for i, text in enumerate(texts):
+            value, dimension = self._component((*path, i), text)
+            values.append(value)
+            if value != 0.0 or literal(text) is None:
+                dimensions.append(dimension)
+        if any(d != dimensions[0] for d in dimensions):
+            words = " and ".join(dict.fromkeys(d.phrase for d in dimensions))
+            self.error("dimension", path, f"components of a direction must be alike, found {words}")
+            return (1.0, 0.0, 0.0)
+        vector = (values[0], values[1], values[2])
+        if vector == ZERO:
+            self.error(
+                "zero-direction", path, "this direction is zero", "give a vector with a direction"
+            )
+            return (1.0, 0.0, 0.0)
+        return unit(vector)
+
+    def _component(self, path: Path, text: str) -> tuple[float, Dimension]:
+        from mechkin_cli.units import DIMENSIONLESS
+
+        bare = literal(text)
+        if bare is not None:
+            return bare, DIMENSIONLESS
+        try:
+            quantity = parse(text).evaluate(self.resolve, self.units)
+        except ExpressionError as error:
+            self.expression_error(path, error)
+            return 1.0, DIMENSIONLESS
+        if isinstance(quantity.value, Components) or not isinstance(quantity.value, float):
+            self.error("expression", path, "expected one number")
+            return 1.0, quantity.dimension
+        return quantity.value, quantity.dimension
+
+
+def read_units(document: Document, texts: Mapping[str, str]) -> tuple[UnitSystem, list[Diagnostic]]:
+    """The file's unit system, and what is wrong with it."""
+    try:
+        return UnitSystem.from_mapping(texts), []
+    except UnitError as error:
+        path: Path = ("units", error.key) if error.key else ("units",)
+        place = document.place_in(path, error.offset)
+        return UnitSystem(), [Diagnostic("unit", "error", error.message, place, hint=error.hint)]
+
+
+def read_parameters(fields: Fields, texts: Mapping[str, str]) -> None:
+    """Evaluates the parameters into `fields`."""
+    errors: list[ExpressionError] = []
+    fields.parameters.update(evaluate_parameters(texts, fields.units, errors))
+    for error in errors:
+        fields.expression_error(("parameters", error.name or ""), error)
+    _check_overrides(fields, texts)
+    fields.refused |= texts.keys() - fields.parameters
+
+
+def _check_overrides(fields: Fields, texts: Mapping[str, str]) -> None:
+    """A parameter set from outside keeps the dimension that it has in the file."""
+    document = fields.document
+    if not document.overrides:
+        return
+    section = replace(document, overrides={}).data["parameters"]
+    assert isinstance(section, dict)
+    written = {name: str(section[name]) for name in document.overrides}
+    originals = evaluate_parameters({**texts, **written}, fields.units, [])
+    for name in document.overrides:
+        original, new = originals.get(name), fields.parameters.get(name)
+        if original is None or new is None or new.dimension.compatible(original.dimension):
+            continue
+        unit = fields.units.label(original.dimension)
+        fields.error(
+            "dimension",
+            ("parameters", name),
+            f"{name} is {original.dimension.phrase} in the file, this is {new.dimension.phrase}",
+            f"write a value such as {texts[name] if literal(texts[name]) else 1} {unit}".rstrip(),
+        )
+        del fields.parameters[name]

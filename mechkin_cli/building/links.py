@@ -1,0 +1,94 @@
+"""Links of the file to rigid bodies: mass, mass centre, inertia in ground axes of the home
+drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from mechkin_cli import tolerances
+from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.model import Link, Tensor
+from mechkin_cli.mechanism.vectors import ZERO, Vector, cross, dot
+from mechkin_cli.units import INERTIA, LENGTH, MASS
+
+NO_INERTIA: Tensor = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+ENTRIES = ("xx", "yy", "zz", "xy", "xz", "yz")
+
+
+def build_links(fields: Fields, sections: Mapping[str, Any], accepted: bool) -> dict[str, Link]:
+    """All links; unphysical inertias warn unless the file acknowledges them."""
+    links = {}
+    for name, section in sections.items():
+        path: Path = ("links", name)
+        mass, centre, tensor = 0.0, ZERO, NO_INERTIA
+        if section.mass is not None:
+            mass = fields.number((*path, "mass"), section.mass, MASS)
+            if mass < 0.0:
+                fields.error("negative-mass", (*path, "mass"), "a mass is not negative")
+            centre = fields.vector((*path, "center_of_mass"), section.center_of_mass, LENGTH)
+        if section.inertia is not None:
+            tensor = _tensor(fields, (*path, "inertia"), section.inertia)
+            if not accepted:
+                _check_physical(fields, (*path, "inertia"), name, tensor)
+        links[name] = Link(name, mass, centre, tensor)
+    return links
+
+
+def _tensor(fields: Fields, path: Path, section: Any) -> Tensor:
+    entries = tuple(fields.number((*path, e), getattr(section, e), INERTIA) for e in ENTRIES)
+    if section.axes is None:
+        return entries  # type: ignore[return-value]
+    x = fields.direction((*path, "axes", "x"), section.axes.x)
+    y = fields.direction((*path, "axes", "y"), section.axes.y)
+    cosine = dot(x, y)
+    if abs(cosine) > tolerances.AXES_SQUARE:
+        fields.error(
+            "axes-not-square",
+            (*path, "axes"),
+            "the axes of an inertia must be square to each other",
+            "write them as expressions",
+            measured=f"cosine of their angle {cosine:.3g}",
+            limit=f"{tolerances.AXES_SQUARE:g}",
+        )
+    return _in_ground_axes(entries, (x, y, cross(x, y)))
+
+
+def _in_ground_axes(entries: tuple[float, ...], axes: tuple[Vector, Vector, Vector]) -> Tensor:
+    """Sum of I_ij a_i a_j^T over the axes a_i."""
+    xx, yy, zz, xy, xz, yz = entries
+    matrix = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+
+    def entry(p: int, q: int) -> float:
+        total = 0.0
+        for i in range(3):
+            for j in range(3):
+                total += matrix[i][j] * (axes[i][p] * axes[j][q])
+        return total
+
+    return (entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2))
+
+
+def _check_physical(fields: Fields, path: Path, name: str, tensor: tuple[float, ...]) -> None:
+    """Principal moments of a real body are not negative and none exceeds the sum of the others."""
+    import numpy as np
+
+    xx, yy, zz, xy, xz, yz = tensor
+    moments = np.linalg.eigvalsh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
+    slack = tolerances.UNPHYSICAL_INERTIA * float(np.abs(moments).max())
+    if moments[0] >= -slack and moments[2] <= moments[0] + moments[1] + slack:
+        return
+    in_file = [float(fields.units.from_si(float(m), INERTIA)) for m in moments]
+    fields.diagnostics.append(
+        Diagnostic(
+            "unphysical-inertia",
+            "warning",
+            f"the inertia of {name} belongs to no real body",
+            fields.document.place(path),
+            measured=f"principal moments {', '.join(f'{m:.6g}' for m in in_file)} "
+            f"{fields.units.label(INERTIA)}",
+            hint="a principal moment is not negative and not above the sum of the other two; "
+            "accept: [unphysical-inertia] acknowledges it",
+        )
+    )

@@ -1,0 +1,173 @@
+"""Loads of the file to loads of the mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+from mechkin_cli.building.coordinates import CODE, without
+from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.building.joints import nearest_hint
+from mechkin_cli.mechanism.model import (
+    GROUND_NAME,
+    Attached,
+    Damper,
+    Joint,
+    JointLoad,
+    Link,
+    LinkLoad,
+    Load,
+    Spring,
+)
+from mechkin_cli.mechanism.vectors import ZERO, Vector, add
+from mechkin_cli.units import (
+    ACCELERATION,
+    ANGLE,
+    DAMPING,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    STIFFNESS,
+    TORSIONAL_DAMPING,
+    TORSIONAL_STIFFNESS,
+    Dimension,
+)
+
+
+class LoadBuilder:
+    """Turns load sections into loads; what is wrong is noted in `fields`."""
+
+    def __init__(
+        self,
+        fields: Fields,
+        links: Mapping[str, Link],
+        joints: Mapping[str, Joint],
+        points: Mapping[str, Attached],
+    ) -> None:
+        self.fields = fields
+        self.links = links
+        self.joints = joints
+        self.points = points
+        self.gravity: Vector = ZERO
+        self.loads: list[Load] = []
+
+    def add_all(self, sections: Sequence[Any]) -> None:
+        """Reads every load of the file."""
+        for i, section in enumerate(sections):
+            self._add(("loads", i), section)
+
+    def _add(self, path: Path, section: Any) -> None:
+        if section.type == "gravity":
+            g = self.fields.vector((*path, "g"), section.g, ACCELERATION)
+            self.gravity = add(self.gravity, g)
+        elif section.type in ("force", "torque"):
+            if hasattr(section, "joint"):
+                self._add_to_joint(path, section)
+            else:
+                self._add_to_link(path, section)
+        elif hasattr(section, "between"):
+            self._add_between(path, section)
+        else:
+            self._add_at_joint(path, section)
+
+    def _add_to_link(self, path: Path, section: Any) -> None:
+        if not self._known(path, "link", section.link, self.links):
+            return
+        dimension = FORCE if section.type == "force" else MOMENT
+        texts = getattr(section, section.type)
+        value = tuple(
+            self._value((*path, section.type, i), text, dimension) for i, text in enumerate(texts)
+        )
+        point = ZERO
+        if section.type == "force":
+            point = self.fields.vector((*path, "point"), section.point, LENGTH)
+        self.loads.append(LinkLoad(section.type, section.link, value, section.axes, point))  # type: ignore[arg-type]
+
+    def _add_to_joint(self, path: Path, section: Any) -> None:
+        coordinate: Literal["theta", "s"] = "theta" if section.type == "torque" else "s"
+        if not self._has_coordinate(path, section.joint, coordinate):
+            return
+        dimension = MOMENT if coordinate == "theta" else FORCE
+        value = self._value((*path, "value"), section.value, dimension)
+        self.loads.append(JointLoad(section.joint, coordinate, value))
+
+    def _add_between(self, path: Path, section: Any) -> None:
+        first, second = section.between
+        if first == second:
+            self.fields.error(
+                "same-point",
+                (*path, "between", 1),
+                f"a {section.type} from {first} to itself has no direction",
+                "name two points",
+            )
+            return
+        ends = []
+        for i, name in enumerate(section.between):
+            if not self._known((*path, "between"), i, name, self.points):
+                return
+            ends.append(self.points[name])
+        number = self.fields.number
+        if section.type == "spring":
+            stiffness = number((*path, "stiffness"), section.stiffness, STIFFNESS)
+            free = number((*path, "free"), section.free, LENGTH)
+            preload = number((*path, "preload"), section.preload, FORCE)
+            self.loads.append(Spring((ends[0], ends[1]), None, None, stiffness, free, preload))
+        else:
+            damping = number((*path, "damping"), section.damping, DAMPING)
+            self.loads.append(Damper((ends[0], ends[1]), None, None, damping))
+
+    def _add_at_joint(self, path: Path, section: Any) -> None:
+        joint, coordinate = section.joint, section.coordinate
+        if not self._has_coordinate(path, joint, coordinate):
+            return
+        turning = coordinate == "theta"
+        number = self.fields.number
+        if section.type == "spring":
+            stiffness_of = TORSIONAL_STIFFNESS if turning else STIFFNESS
+            stiffness = number((*path, "stiffness"), section.stiffness, stiffness_of)
+            free = number((*path, "free"), section.free, ANGLE if turning else LENGTH)
+            preload = number((*path, "preload"), section.preload, MOMENT if turning else FORCE)
+            self.loads.append(Spring(None, joint, coordinate, stiffness, free, preload))
+        else:
+            damping_of = TORSIONAL_DAMPING if turning else DAMPING
+            damping = number((*path, "damping"), section.damping, damping_of)
+            self.loads.append(Damper(None, joint, coordinate, damping))
+
+    def _value(self, path: Path, text: Any, dimension: Dimension) -> float:
+        if not isinstance(text, str):
+            self.fields.error(
+                "load-table",
+                path,
+                "loads from a table are not read by this version",
+                "give a number or an expression of parameters",
+            )
+            return 0.0
+        return self.fields.number(path, text, dimension)
+
+    def _known(self, path: Path, key: str | int, name: str, known: Mapping[str, object]) -> bool:
+        if name in known or (key == "link" and name == GROUND_NAME):
+            if name == GROUND_NAME:
+                self.fields.error("load-on-ground", (*path, key), "a load on ground moves nothing")
+                return False
+            return True
+        if self.fields.is_refused(name):
+            return False
+        what = "link" if key == "link" else "point"
+        hint = nearest_hint(name, list(known))
+        self.fields.error(f"unknown-{what}", (*path, key), f"there is no {what} {name}", hint)
+        return False
+
+    def _has_coordinate(self, path: Path, name: str, coordinate: str) -> bool:
+        joint = self.joints.get(name)
+        if self.fields.is_refused(name):
+            return False
+        if joint is None:
+            hint = nearest_hint(name, list(self.joints))
+            self.fields.error("unknown-joint", (*path, "joint"), f"there is no joint {name}", hint)
+            return False
+        if coordinate not in joint.type.coordinates:
+            named = (*path, "coordinate")
+            place = named if self.fields.document.node(named) else (*path, "joint")
+            self.fields.error(CODE, place, *without(joint, coordinate))
+            return False
+        return True

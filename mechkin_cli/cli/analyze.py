@@ -1,0 +1,170 @@
+"""`mechkin analyze`: runs mechanism files and writes their tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import Progress, Record, put, refusal, say, say_diagnostics
+from mechkin_cli.cli.options import Files, Json, Quiet, Set, parameters
+from mechkin_cli.diagnostics import InvalidFile, UsageError
+
+if TYPE_CHECKING:
+    from mechkin_cli.interface import Analysis
+
+FORMATS = ("csv", "md", "json")
+DEFAULT_FORMATS = ("csv", "md")
+
+
+@dataclass(frozen=True, slots=True)
+class _Request:
+    """What is wanted of every file."""
+
+    settings: dict[str, str]
+    mode: str | None
+    tables: list[str] | None
+    formats: tuple[str, ...]
+    explain: bool
+    json: bool
+    quiet: bool
+
+
+def analyze(
+    files: Files,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder to write to (out/STEM).")
+    ] = None,
+    format: Annotated[
+        list[str] | None,
+        typer.Option("--format", metavar="FORMAT", help="csv, md or json; may be repeated."),
+    ] = None,
+    set_: Set = None,
+    mode: Annotated[
+        str | None, typer.Option("--mode", metavar="NAME", help="Assembly mode at the first row.")
+    ] = None,
+    table: Annotated[
+        list[str] | None,
+        typer.Option("--table", metavar="NAME", help="Only this table; may be repeated."),
+    ] = None,
+    explain: Annotated[
+        bool, typer.Option("--explain", help="Show the solver graph and what is skipped.")
+    ] = False,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run the sweep of each file and write its tables."""
+    request = _Request(parameters(set_), mode, table, _formats(format), explain, json, quiet)
+    code = ExitCode.OK
+    records: list[Record] = []
+    progress = Progress(len(files), "files", quiet)
+    for number, (path, folder) in enumerate(_folders(files, out).items(), 1):
+        outcome, record = _one(path, folder, request)
+        code = max(code, outcome)
+        records.append(record)
+        progress.step(number)
+    progress.end()
+    if json:
+        from mechkin_cli.tables.json_writer import json_text
+
+        put(json_text(records[0] if len(files) == 1 else {"files": records}))
+    if code:
+        raise typer.Exit(code)
+
+
+def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]:
+    """Runs one file; what is wrong with it does not stop the others."""
+    from mechkin_cli.interface import load
+
+    try:
+        analysis = load(path, request.settings).analyze(tables=request.tables, mode=request.mode)
+        written = _write(folder, analysis, request.formats)
+    except (InvalidFile, UsageError) as error:
+        return refusal(path, error)
+    say_diagnostics(analysis.diagnostics, str(path))
+    record: Record = {}
+    if request.json:
+        record = {"file": str(path)} | _record(analysis)
+        if request.explain:
+            from mechkin_cli.cli.explanation import explanation
+
+            record["explanation"] = explanation(analysis).split("\n")
+    else:
+        _report(path, analysis, folder, written, request)
+    return ExitCode.OK if analysis.result.complete else ExitCode.ROWS_MISSING, record
+
+
+def _formats(given: list[str] | None) -> tuple[str, ...]:
+    formats = tuple(dict.fromkeys(given or DEFAULT_FORMATS))
+    for name in formats:
+        if name not in FORMATS:
+            raise UsageError(f"--format {name}: formats are {', '.join(FORMATS)}")
+    return formats
+
+
+def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
+    """The folder of each file; no two files share one."""
+    folders: dict[Path, Path] = {}
+    for path in files:
+        folder = out if out and len(files) == 1 else (out or Path("out")) / path.stem
+        twin = next((other for other, taken in folders.items() if taken == folder), None)
+        if twin == path:
+            raise UsageError(f"{path} is given twice; name it once")
+        if twin is not None:
+            raise UsageError(
+                f"{twin} and {path} would both be written to {folder}; analyze them one by one, "
+                "each with its own --out"
+            )
+        folders[path] = folder
+    return folders
+
+
+def _write(folder: Path, analysis: Analysis, formats: tuple[str, ...]) -> list[Path]:
+    """Writes the tables and rows.csv, all or none."""
+    from mechkin_cli.tables.csv_writer import csv_bytes
+    from mechkin_cli.tables.files import write_files
+    from mechkin_cli.tables.rows_table import rows_table
+
+    content: dict[str, bytes] = {}
+    for table in analysis.tables:
+        if "csv" in formats:
+            content[f"{table.name}.csv"] = csv_bytes(table)
+        if "md" in formats:
+            from mechkin_cli.tables.markdown import markdown_text
+
+            content[f"{table.name}.md"] = markdown_text(table, analysis.result).encode()
+    if "json" in formats:
+        from mechkin_cli.tables.json_writer import json_text
+
+        content["analysis.json"] = json_text(_record(analysis)).encode()
+    content["rows.csv"] = csv_bytes(rows_table(analysis.result))
+    return write_files(folder, content)
+
+
+def _record(analysis: Analysis) -> Record:
+    from mechkin_cli.tables.json_writer import analysis_record
+
+    name = analysis.model.name
+    return analysis_record(name, analysis.tables, analysis.result, analysis.diagnostics)
+
+
+def _report(
+    path: Path, analysis: Analysis, folder: Path, written: list[Path], request: _Request
+) -> None:
+    from mechkin_cli.cli.summary import summary
+
+    if request.explain:
+        from mechkin_cli.cli.explanation import explanation
+
+        put(f"{explanation(analysis)}\n")
+    if request.quiet:
+        return
+    from mechkin_cli.cli.show import shown_tables
+
+    for part in shown_tables(analysis, folder):
+        put(part)
+    for line in summary(path, analysis, folder, written):
+        say(line)

@@ -1,0 +1,89 @@
+"""`mechkin bench`: run time against error, and extreme cases."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mechkin_cli.cli.messages import say
+from mechkin_cli.cli.options import Json
+
+if TYPE_CHECKING:
+    from rich.table import Table as RichTable
+
+    from mechkin_cli.benchmark.report import Table
+
+
+def bench(
+    yardstick: Annotated[
+        Path | None,
+        typer.Option("--yardstick", metavar="DIR", help="Folder of the C kernel to compare with."),
+    ] = None,
+    stress: Annotated[
+        bool, typer.Option("--stress", help="Extreme sizes and positions instead of timings.")
+    ] = False,
+    json: Json = False,
+) -> None:
+    """Measure time and error on the RCSR mechanism."""
+    from mechkin_cli.benchmark.machine import machine
+    from mechkin_cli.benchmark.runs import stress_tables, timing_tables
+
+    described = machine()
+    tables = stress_tables() if stress else timing_tables(yardstick, say)
+    if json:
+        from mechkin_cli.tables.json_writer import json_text
+
+        record: dict[str, object] = {"machine": described}
+        sys.stdout.write(json_text(record | {table.name: table.record() for table in tables}))
+        return
+    sys.stdout.write(", ".join(f"{name} {value}" for name, value in described.items()) + "\n")
+    _print(tables)
+
+
+def _print(tables: Iterator[Table]) -> None:
+    """Each table as soon as it is there: styled on a terminal wide enough, else aligned text."""
+    from mechkin_cli.benchmark.report import plain_text, width
+
+    if not sys.stdout.isatty():
+        for table in tables:
+            sys.stdout.write("\n" + plain_text(table))
+            sys.stdout.flush()
+        return
+    from rich.console import Console
+
+    console = Console()
+    for table in tables:
+        console.print()
+        # a table that does not fit would lose digits
+        if width(table) > console.width:
+            console.out(plain_text(table), end="", highlight=False)
+            continue
+        console.print(_styled(table))
+        for note in table.notes:
+            console.print(note, style="dim", highlight=False, markup=False)
+
+
+def _styled(table: Table) -> RichTable:
+    from rich import box
+    from rich.table import Table as RichTable
+
+    styled = RichTable(
+        title=table.title,
+        title_justify="left",
+        title_style="bold",
+        header_style="",
+        box=box.SIMPLE_HEAD,
+        show_edge=False,
+        pad_edge=False,
+        padding=(0, 1, 0, 0),
+    )
+    for column in table.columns:
+        justify = "left" if column.kind == "text" else "right"
+        styled.add_column(column.label, justify=justify, vertical="bottom", no_wrap=True)  # type: ignore[arg-type]
+    for row in table.texts():
+        styled.add_row(*row)
+    return styled

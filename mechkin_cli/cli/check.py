@@ -1,0 +1,55 @@
+"""`mechkin check`: validates files and computes nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import Record, put, refusal, say_diagnostics
+from mechkin_cli.cli.options import Files, Json, Quiet, Set, parameters
+from mechkin_cli.diagnostics import InvalidFile, UsageError
+
+if TYPE_CHECKING:
+    from mechkin_cli.interface import Model
+
+
+def check(files: Files, set_: Set = None, json: Json = False, quiet: Quiet = False) -> None:
+    """Validate mechanism files; every error with its line and column."""
+    settings = parameters(set_)
+    code = ExitCode.OK
+    records: list[Record] = []
+    for path in files:
+        outcome, record = _one(path, settings, quiet or json)
+        code = max(code, outcome)
+        records.append(record | {"valid": outcome == ExitCode.OK})
+    if json:
+        from mechkin_cli.tables.json_writer import json_text
+
+        put(json_text({"files": records}))
+    if code:
+        raise typer.Exit(code)
+
+
+def _one(path: Path, settings: dict[str, str], silent: bool) -> tuple[ExitCode, Record]:
+    from mechkin_cli.interface import load
+
+    try:
+        model = load(path, settings)
+    except (InvalidFile, UsageError) as error:
+        return refusal(path, error)
+    say_diagnostics(model.diagnostics)
+    if not silent:
+        put(f"{path}: ok ({_sentence(model)})\n")
+    diagnostics = [diagnostic.record() for diagnostic in model.diagnostics]
+    return ExitCode.OK, {"file": str(path), "diagnostics": diagnostics}
+
+
+def _sentence(model: Model) -> str:
+    counts = (len(model.graph.closings), model.problem.motion.rows, len(model.tables))
+    nouns = ("loop", "row", "table")
+    return ", ".join(
+        f"{count} {noun}{'s' * (count != 1)}" for count, noun in zip(counts, nouns, strict=True)
+    )

@@ -1,0 +1,82 @@
+"""`--explain`: the solver graph, what is computed and what is skipped, as text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import WRENCH_KINDS
+
+if TYPE_CHECKING:
+    from mechkin_cli.interface import Analysis
+    from mechkin_cli.solver.graph import Block, SolverGraph
+
+
+def explanation(analysis: Analysis) -> str:
+    """Tree, closing joints, blocks and the demand plan."""
+    graph = analysis.result.graph
+    lines = [f"solver graph of {analysis.model.name}", "  tree"]
+    for edge in graph.edges:
+        way = "" if edge.forward else ", passed from its second link to its first"
+        lines.append(
+            f"    {edge.parent} -> {edge.child} by {edge.joint.name} ({edge.joint.letter}{way})"
+        )
+    lines.append("  loops closed at" if graph.closings else "  no loops")
+    for closing in graph.closings:
+        joint = closing.joint
+        loop = ", ".join(graph.edges[k].joint.name for k, _ in closing.loop)
+        lines.append(
+            f"    {joint.name} ({joint.letter}, {joint.type.equations} equations) with {loop}"
+        )
+    if graph.blocks:
+        lines.append("  blocks, solved in this order")
+    for number, block in enumerate(graph.blocks, 1):
+        lines.append(f"    {number}: {block.equations} unknowns {_unknowns(graph, block)}")
+    lines.append("demand plan")
+    lines += [f"  {line}" for line in _demand_lines(analysis)]
+    return "\n".join(lines) + "\n"
+
+
+def _unknowns(graph: SolverGraph, block: Block) -> str:
+    names = []
+    for k, freedom in block.unknowns:
+        joint = graph.edges[k].joint
+        coordinates = joint.coordinates
+        name = coordinates[freedom] if coordinates else f"{joint.name} (turn {freedom + 1} of 3)"
+        names.append(name)
+    return ", ".join(names)
+
+
+def _demand_lines(analysis: Analysis) -> list[str]:
+    result = analysis.result
+    demand, mechanism = result.demand, analysis.model.problem.mechanism
+    massless = not any(link.has_mass for link in mechanism.links.values())
+    forces = bool(demand & Demand.FORCES)
+    known = analysis.model.problem.quantities()
+    reactions = any(known[name].kind in WRENCH_KINDS for name in result.slots)
+    lines = [
+        f"positions: {result.rows} rows, {result.nodes} nodes followed, the rest filled in between",
+        _line("velocities", bool(demand & Demand.VELOCITY), "no column reads a rate"),
+        _line("accelerations", bool(demand & Demand.ACCELERATION), _without(forces, massless)),
+        _line("input efforts and closing wrenches", forces, "no column reads a force"),
+        _line("joint wrenches", reactions, "no column reads a reaction"),
+        _line("condition of each row", bool(demand & Demand.CONDITION), "not asked for"),
+        _line(
+            "power balance of each row",
+            bool(demand & Demand.POWER),
+            "no rates are computed" if forces else "no column reads a force",
+        ),
+    ]
+    if forces and massless:
+        lines.append("inertia: skipped, no link has mass")
+    return lines
+
+
+def _without(forces: bool, massless: bool) -> str:
+    if forces and massless:
+        return "no link has mass and no column reads an acceleration"
+    return "no column reads an acceleration or a force"
+
+
+def _line(what: str, computed: bool, why_not: str) -> str:
+    return f"{what}: computed" if computed else f"{what}: skipped, {why_not}"

@@ -1,0 +1,93 @@
+"""The app: registers the commands and turns exceptions into messages and exit codes."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import NoReturn
+
+import typer
+
+from mechkin_cli.cli.analyze import analyze
+from mechkin_cli.cli.bench import bench
+from mechkin_cli.cli.check import check
+from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import put, say, say_diagnostics
+from mechkin_cli.cli.schema import schema
+from mechkin_cli.cli.tables import tables
+from mechkin_cli.diagnostics import InvalidFile, MechkinError
+
+app = typer.Typer(
+    name="mechkin",
+    help="Displacement, rates, reactions and tables of spatial mechanisms from YAML files.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+for command in (analyze, check, tables, schema, bench):
+    app.command()(command)
+
+
+@app.callback(invoke_without_command=True)
+def _options(
+    version: bool = typer.Option(False, "--version", help="Print the version and exit."),
+) -> None:
+    if version:
+        put(f"mechkin {_version()}\n")
+        raise typer.Exit()
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("mechkin")
+    except PackageNotFoundError:
+        return "(source folder, not installed)"
+
+
+def main() -> NoReturn:
+    """Runs the command line and exits with its code."""
+    code = _run()
+    if code == ExitCode.INTERRUPTED:
+        say("mechkin: interrupted; files written so far are whole")
+    sys.exit(code)
+
+
+def _run() -> int:
+    try:
+        code = app(standalone_mode=False, prog_name="mechkin")
+    except InvalidFile as error:
+        say_diagnostics(error.diagnostics)
+        return ExitCode.INVALID_FILE
+    except ImportError as error:
+        return _failed(error)
+    except MechkinError as error:
+        say(f"mechkin: {error}")
+        return ExitCode.USAGE
+    except (KeyboardInterrupt, typer.Abort):
+        return ExitCode.INTERRUPTED
+    except Exception as error:
+        if hasattr(error, "exit_code") and hasattr(error, "show"):
+            error.show()
+            for file in filter(os.path.isfile, sys.argv[1:2]):
+                say(f"To run a mechanism file: mechkin analyze {file}")
+            return int(error.exit_code)
+        return _failed(error)
+    return int(code or 0)
+
+
+def _failed(error: Exception) -> int:
+    from mechkin_cli.kernel import KernelMissing
+
+    if isinstance(error, KernelMissing):
+        say(f"mechkin: {error}")
+        return ExitCode.INTERNAL
+    if os.environ.get("MECHKIN_DEBUG"):
+        raise error
+    say(
+        f"mechkin: internal error, {type(error).__name__}: {error}; this is a defect of mechkin: "
+        "please report it with the file; MECHKIN_DEBUG=1 shows where"
+    )
+    return ExitCode.INTERNAL

@@ -1,0 +1,68 @@
+"""The short summary that a run prints for a person."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.status import Status
+
+if TYPE_CHECKING:
+    from mechkin_cli.interface import Analysis
+
+
+def summary(path: Path, analysis: Analysis, folder: Path, written: list[Path]) -> list[str]:
+    """Lines: mobility, loops, branch, rows, worst residual and power error, files."""
+    result = analysis.result
+    rows = [("mobility", _mobility(analysis)), ("loops", _loops(analysis))]
+    if result.mode:
+        rows.append(("branch", f"mode {result.mode} ({result.how})" if result.how else result.mode))
+    rows += [("rows", _rows(analysis)), ("worst", _worst(analysis))]
+    kinds = Counter(file.suffix.removeprefix(".") for file in written)
+    counts = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
+    rows.append(("files", f"{folder} ({counts})"))
+    return [f"{analysis.model.name} ({path})", *(f"  {name:<9}{text}" for name, text in rows)]
+
+
+def _mobility(analysis: Analysis) -> str:
+    mechanism = analysis.model.problem.mechanism
+    freedoms = sum(joint.type.freedoms for joint in mechanism.joints.values())
+    mobility = freedoms - 6 * len(analysis.result.graph.closings)
+    names = ", ".join(analysis.result.inputs) or "nothing"
+    return f"{mobility}, driven by {names}"
+
+
+def _loops(analysis: Analysis) -> str:
+    graph = analysis.result.graph
+    if not graph.closings:
+        return "none (open chain)"
+    closed = ", ".join(f"{c.joint.name} ({c.joint.letter})" for c in graph.closings)
+    sizes = " then ".join(str(block.equations) for block in graph.blocks)
+    return f"{len(graph.closings)}, closed at {closed}; {sizes} unknowns"
+
+
+def _rows(analysis: Analysis) -> str:
+    result = analysis.result
+    solved = sum(Status(int(code)).has_solution for code in result.status)
+    text = f"{solved} of {result.rows} solved"
+    others = Counter(Status(int(code)).label for code in result.status if code != Status.ok)
+    if others:
+        text += " (" + ", ".join(f"{count} {label}" for label, count in others.items()) + ")"
+    return text
+
+
+def _worst(analysis: Analysis) -> str:
+    result = analysis.result
+    parts = []
+    for name, values in (
+        ("residual", result.residual),
+        ("power error", result.power_error),
+        ("condition", result.condition),
+    ):
+        finite = values[np.isfinite(values)]
+        if finite.size:
+            parts.append(f"{name} {float(finite.max()):.1e}")
+    return ", ".join(parts) or "nothing was solved"

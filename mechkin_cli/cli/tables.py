@@ -1,0 +1,107 @@
+"""`mechkin tables`: regenerates the tables kept beside the mechanisms, or compares them."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import Progress, Record, put, refusal, say, say_diagnostics
+from mechkin_cli.cli.options import Json, Quiet
+from mechkin_cli.diagnostics import InvalidFile, UsageError
+
+MECHANISMS = Path("mechanisms")
+
+
+def tables(
+    path: Annotated[
+        Path, typer.Argument(help="A mechanism file, or a folder of them.", metavar="PATH")
+    ] = MECHANISMS,
+    check: Annotated[
+        bool, typer.Option("--check", help="Compare with the tables on disk, write nothing.")
+    ] = False,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Regenerate the tables kept beside mechanism files.
+
+    FOLDER/STEM.yaml has its tables in FOLDER/STEM/TABLE.csv and .md.
+    """
+    files = _mechanism_files(path)
+    code = ExitCode.OK
+    records: list[Record] = []
+    progress = Progress(len(files), "files", quiet)
+    for number, file in enumerate(files, 1):
+        try:
+            outcome, record = _one(file, check, json, quiet)
+        except (InvalidFile, UsageError) as error:
+            outcome, record = refusal(file, error)
+        code = max(code, outcome)
+        records.append(record)
+        progress.step(number)
+    progress.end()
+    if json:
+        from mechkin_cli.tables.json_writer import json_text
+
+        put(json_text({"files": records}))
+    if code:
+        raise typer.Exit(code)
+
+
+def _mechanism_files(path: Path) -> list[Path]:
+    if path.is_dir():
+        files = sorted(path.glob("*.yaml"))
+        if not files:
+            raise UsageError(f"{path} holds no mechanism files (*.yaml)")
+        return files
+    if not path.exists():
+        raise UsageError(f"{path} does not exist; give a mechanism file or a folder of them")
+    return [path]
+
+
+def _one(file: Path, check: bool, json: bool, quiet: bool) -> tuple[ExitCode, Record]:
+    from mechkin_cli.interface import load
+    from mechkin_cli.tables.csv_writer import COMMITTED_DIGITS, csv_bytes
+    from mechkin_cli.tables.markdown import markdown_text
+
+    analysis = load(file).analyze()
+    say_diagnostics(analysis.diagnostics, str(file))
+    fresh: dict[str, bytes] = {}
+    for table in analysis.tables:
+        fresh[f"{table.name}.csv"] = csv_bytes(table, COMMITTED_DIGITS)
+        fresh[f"{table.name}.md"] = markdown_text(table, analysis.result).encode()
+    code = ExitCode.OK if analysis.result.complete else ExitCode.ROWS_MISSING
+    folder = file.with_suffix("")
+    record: Record = {
+        "file": str(file),
+        "diagnostics": [diagnostic.record() for diagnostic in analysis.diagnostics],
+    }
+    if check:
+        outcome, compared = _compare(folder, fresh, json, quiet)
+        return max(code, outcome), record | {"tables": compared}
+    from mechkin_cli.tables.files import write_files
+
+    written = write_files(folder, fresh)
+    if not quiet:
+        say(f"{folder}: {len(written)} files written")
+    return code, record | {"written": [str(path) for path in written]}
+
+
+def _compare(
+    folder: Path, fresh: dict[str, bytes], json: bool, quiet: bool
+) -> tuple[ExitCode, list[Record]]:
+    from mechkin_cli.tables.compare import compare_files, read_committed
+    from mechkin_cli.tables.comparison_report import report
+
+    comparisons = compare_files(fresh, read_committed(folder))
+    same = all(c.verdict == "equal" for c in comparisons)
+    if same and not quiet:
+        say(f"{folder}: {len(fresh)} files as committed")
+    elif not same:
+        say(f"{folder}: the tables on disk are not what this version computes")
+        if not json:
+            put(report(comparisons))
+    return ExitCode.OK if same else ExitCode.DIFFERENCES, [asdict(c) for c in comparisons]

@@ -1,0 +1,208 @@
+"""The Python interface: load a mechanism file, analyze it, read quantities by name.
+
+The commands are thin calls of these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property, partial
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.analysis.problem import Problem
+from mechkin_cli.analysis.result import Result
+from mechkin_cli.analysis.sweep import analyze as run_sweep
+from mechkin_cli.building.build import Built, build
+from mechkin_cli.building.columns import used_quantities
+from mechkin_cli.building.source import open_file, open_text
+from mechkin_cli.diagnostics import Diagnostic, UsageError
+from mechkin_cli.expressions import Vector, parse
+from mechkin_cli.solver.graph import SolverGraph
+from mechkin_cli.tables.columns import Columns, evaluate
+from mechkin_cli.tables.layout import TableLayout
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_NO_PARAMETERS: Mapping[str, str] = MappingProxyType({})
+
+
+def load(path: str | Path, parameters: Mapping[str, str] = _NO_PARAMETERS) -> Model:
+    """Reads and checks a mechanism file.
+
+    Args:
+        path: the YAML file.
+        parameters: texts that replace values of its `parameters:`, such as {"P1": "0.6 in"}.
+
+    Raises:
+        UsageError: the file cannot be read, or an unknown parameter.
+        InvalidFile: with every independent error and its place.
+
+    Example:
+        >>> load("mechanisms/rcsr.yaml").name
+        'RCSR'
+    """
+    return Model(build(open_file(path, parameters)), Path(path).stem)
+
+
+def loads(text: str, name: str = "text", parameters: Mapping[str, str] = _NO_PARAMETERS) -> Model:
+    """As `load`, for the text of a mechanism file; `name` stands for the file in messages."""
+    return Model(build(open_text(text, name, parameters)), Path(name).stem)
+
+
+class Model:
+    """A checked mechanism file."""
+
+    def __init__(self, built: Built, stem: str) -> None:
+        self._built = built
+        self.stem = stem
+
+    @property
+    def name(self) -> str:
+        """The mechanism's name."""
+        return self.problem.mechanism.name
+
+    @property
+    def problem(self) -> Problem:
+        """The mechanism, its motion and assembly in SI."""
+        return self._built.problem
+
+    @property
+    def graph(self) -> SolverGraph:
+        """Tree, closing joints and blocks."""
+        return self._built.graph
+
+    @property
+    def tables(self) -> tuple[TableLayout, ...]:
+        """Layouts of the file's tables; without any, the one table `sweep`."""
+        return self._built.tables
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Warnings of the file."""
+        return self.problem.diagnostics
+
+    @cached_property
+    def quantities(self) -> frozenset[str]:
+        """Names of all quantities that columns and `Analysis` can use."""
+        return frozenset(self.problem.quantities())
+
+    def analyze(
+        self,
+        quantities: Iterable[str] | None = None,
+        *,
+        tables: Sequence[str] | None = None,
+        mode: str | None = None,
+        closed_at: Sequence[str] | None = None,
+        lanes: int = 0,
+    ) -> Analysis:
+        """Runs the sweep.
+
+        Args:
+            quantities: names to compute beside what the tables read; None: nothing beside them.
+            tables: names of the tables wanted; None: all, [] none.
+            mode: assembly mode at the first row instead of the file's choice.
+            closed_at: closing joints to use (the answers do not depend on them).
+            lanes: width of the kernel's packs, 0 for the widest (nor on this).
+
+        Raises:
+            UsageError: an unknown table or quantity.
+        """
+        problem = self.problem
+        if mode is not None:
+            problem = replace(problem, assembly=replace(problem.assembly, near={}, mode=mode))
+        layouts = self._chosen_tables(tables)
+        names = [*used_quantities(layouts, problem.quantities()), *(quantities or ())]
+        for name in names:
+            if name not in self.quantities:
+                raise UsageError(f"there is no quantity {name}")
+        closings = list(closed_at) if closed_at else None
+        sweep = partial(run_sweep, problem, closed_at=closings, lanes=lanes)
+        return Analysis(self, layouts, sweep, names)
+
+    def _chosen_tables(self, names: Sequence[str] | None) -> tuple[TableLayout, ...]:
+        if names is None:
+            return self.tables
+        known = {table.name: table for table in self.tables}
+        for name in names:
+            if name not in known:
+                raise UsageError(f"there is no table {name}; tables are {', '.join(known)}")
+        return tuple(known[name] for name in dict.fromkeys(names))
+
+
+class Analysis:
+    """Results of a sweep: `r["O2.theta"]` is an array over the rows, in the file's units."""
+
+    def __init__(
+        self,
+        model: Model,
+        layouts: tuple[TableLayout, ...],
+        sweep: Callable[[Iterable[str]], Result],
+        names: Iterable[str],
+    ) -> None:
+        self.model = model
+        self.layouts = layouts
+        self.result = sweep(names)
+        self._sweep = sweep
+        self._more: dict[str, Result] = {}
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return self.result.rows
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Everything that the run has to say."""
+        return self.result.diagnostics
+
+    @cached_property
+    def tables(self) -> tuple[Columns, ...]:
+        """The tables that were asked for, evaluated in the file's units."""
+        return tuple(evaluate(layout, self.result) for layout in self.layouts)
+
+    def __getitem__(self, text: str) -> NDArray[np.float64]:
+        """A quantity or an expression of quantities, in the file's units.
+
+        Returns (rows,), for a vector (rows, 3); nan where a row has no solution. What the run did
+        not compute is computed now.
+
+        Raises:
+            ExpressionError: no such quantity, or dimensions that do not fit.
+        """
+        if text in self.result.inputs:
+            return self.result.inputs[text].copy()
+        expression = parse(text)
+        result = self._with(expression.names)
+        found = expression.evaluate(result.quantity, result.units)
+        if isinstance(found.value, Vector):
+            parts = [found.value.x, found.value.y, found.value.z]
+            columns = [self._column(part, found.dimension) for part in parts]
+            return np.stack(columns, axis=1)
+        return self._column(found.value, found.dimension)
+
+    def _column(self, value: object, dimension: object) -> NDArray[np.float64]:
+        rows = np.array(np.broadcast_to(np.asarray(value, float), (self.rows,)))
+        return np.asarray(self.result.units.from_si(rows, dimension), float)  # type: ignore[arg-type]
+
+    def _with(self, names: Iterable[str]) -> Result:
+        """A result that has all the quantities among some dotted names."""
+        known = self.model.quantities
+        wanted = []
+        for name in names:
+            quantity = name if name in known else name.rpartition(".")[0]
+            if quantity in known and quantity not in self.result.slots:
+                wanted.append(quantity)
+        wanted = [name for name in sorted(wanted) if not name.startswith("row.")]
+        if not wanted:
+            return self.result
+        key = " ".join(wanted)
+        if key not in self._more:
+            every = [*self.result.slots, *wanted]
+            self._more[key] = self._sweep(every)
+        return self._more[key]
