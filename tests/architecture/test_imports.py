@@ -1,0 +1,82 @@
+"""Data flows one way: a room knows only the rooms below it, and few rooms know a heavy library."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from architecture.package import FILES, NAMES, imports, room
+
+BASE = {"diagnostics", "status", "tolerances"}
+KERNEL = BASE | {"kernel"}
+UNITS = BASE | {"units"}
+EXPRESSIONS = KERNEL | UNITS | {"expressions"}
+MECHANISM = KERNEL | UNITS | {"mechanism"}
+SOLVER = MECHANISM | {"solver"}
+ANALYSIS = SOLVER | EXPRESSIONS | {"analysis"}
+BUILDING = (
+    EXPRESSIONS | SOLVER | {"reading", "schema", "building", "analysis.problem", "tables.layout"}
+)
+INTERFACE = BUILDING | {"analysis", "tables", "interface"}
+BENCHMARK = INTERFACE | {"benchmark"}
+ALLOWED = {
+    **dict.fromkeys(BASE, BASE),
+    "kernel": KERNEL,
+    "units": UNITS,
+    "expressions": EXPRESSIONS,
+    "reading": BASE | {"reading"},
+    "schema": BASE | {"schema"},
+    "mechanism": MECHANISM,
+    "solver": SOLVER,
+    "analysis": ANALYSIS,
+    "tables": EXPRESSIONS | {"tables"},
+    "building": BUILDING,
+    "interface": INTERFACE,
+    "benchmark": BENCHMARK,
+    "cli": BENCHMARK | {"cli"},
+    "__init__": INTERFACE,
+    "__main__": {"cli"},
+}
+"""What each room may import: rooms, or single modules of a room."""
+
+HOMES = {
+    "yaml": {"reading"},
+    "pydantic": {"schema"},
+    "pydantic_core": {"schema"},
+    "annotated_types": {"schema"},
+    "typer": {"cli"},
+    "click": {"cli"},
+    "rich": {"cli"},
+    "scipy": {"benchmark"},
+}
+"""Libraries that only one room may import."""
+
+
+def allowed(path: Path, module: str) -> bool:
+    parts = module.split(".")[1:]
+    known = ALLOWED[room(path)]
+    return any(".".join(parts[: k + 1]) in known for k in range(len(parts)))
+
+
+@pytest.mark.parametrize("path", FILES, ids=NAMES)
+def test_no_arrow_points_up(path: Path) -> None:
+    wrong = [
+        f"line {line}: {room(path)} -> {module}"
+        for line, module in imports(path)
+        if module.startswith("mechkin_cli.") and not allowed(path, module)
+    ]
+    assert wrong == []
+
+
+@pytest.mark.parametrize("path", FILES, ids=NAMES)
+def test_libraries_stay_in_their_rooms(path: Path) -> None:
+    wrong = [
+        f"line {line}: {module}"
+        for line, module in imports(path)
+        if room(path) not in HOMES.get(module.split(".")[0], {room(path)})
+    ]
+    assert wrong == []
+
+
+def test_every_room_has_its_arrows() -> None:
+    assert {room(path) for path in FILES} <= set(ALLOWED)

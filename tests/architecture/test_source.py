@@ -1,0 +1,58 @@
+"""Every public name says what it is, its examples run, and no file grows beyond reading."""
+
+from __future__ import annotations
+
+import ast
+import doctest
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+from architecture.package import FILES, NAMES, ROOT, tree
+
+MOST_LINES = 400
+SOURCES = sorted([*FILES, *ROOT.rglob("*.hpp"), *ROOT.rglob("*.cpp")])
+Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
+
+
+def public_definitions(body: list[ast.stmt], owner: str = "") -> list[tuple[str, Definition]]:
+    """Public functions, classes and methods that a module or a class defines."""
+    found = []
+    for node in body:
+        if isinstance(node, Definition) and not node.name.startswith("_"):
+            found.append((owner + node.name, node))
+            if isinstance(node, ast.ClassDef):
+                found.extend(public_definitions(node.body, f"{node.name}."))
+    return found
+
+
+@pytest.mark.parametrize("path", FILES, ids=NAMES)
+def test_public_names_have_docstrings(path: Path) -> None:
+    assert ast.get_docstring(tree(path)), "the module says nothing"
+    bare = [
+        name
+        for name, node in public_definitions(tree(path).body)
+        if not ast.get_docstring(node) and not is_overload(node)
+    ]
+    assert bare == []
+
+
+def is_overload(node: Definition) -> bool:
+    return any(ast.unparse(each).endswith("overload") for each in node.decorator_list)
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=[str(path.relative_to(ROOT)) for path in SOURCES])
+def test_files_are_short(path: Path) -> None:
+    assert len(path.read_text(encoding="utf-8").splitlines()) <= MOST_LINES
+
+
+@pytest.mark.parametrize(
+    "path", [path for path in FILES if ">>>" in path.read_text(encoding="utf-8")], ids=str
+)
+def test_examples_run(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT.parent)
+    parts = path.relative_to(ROOT.parent).with_suffix("").parts
+    module = import_module(".".join(part for part in parts if part != "__init__"))
+    result = doctest.testmod(module)
+    assert result.attempted > 0
+    assert result.failed == 0

@@ -1,0 +1,229 @@
+"""The peers of the benchmark are right: the kernel is timed against no straw men."""
+
+from functools import partial
+from time import perf_counter
+
+import numpy as np
+import pytest
+import references
+from oracle import fold, mp, read
+
+from mechkin_cli.benchmark.arithmetic import Arithmetic, extended
+from mechkin_cli.benchmark.closure import dead_centre, drawing, kinematics
+from mechkin_cli.benchmark.dense_forces import equations
+from mechkin_cli.benchmark.kernel_case import KernelCase, PlannedRun, degree_rows, widths
+from mechkin_cli.benchmark.peers import Closure, dense_loads, differences, fsolve_positions
+from mechkin_cli.benchmark.rcsr import COORDINATES, dimensions
+from mechkin_cli.benchmark.reference import (
+    ACCELERATIONS,
+    EVERYTHING,
+    POSITIONS,
+    VELOCITIES,
+    eliminate,
+    errors,
+    row_by_row,
+    solution,
+)
+from mechkin_cli.benchmark.report import Column, Table, cell_text, plain_text, width
+from mechkin_cli.benchmark.stress import NEAR_DEAD_CENTRE, dead_centre_table, size_table
+from mechkin_cli.benchmark.timing import Timing, in_turns
+from mechkin_cli.benchmark.yardstick import find, load
+from mechkin_cli.diagnostics import UsageError
+
+DOUBLE = Arithmetic("double", 2.0**-52, np.float64, np.cos, np.sin)
+EXACT_MOTION = dict(
+    zip(
+        (*POSITIONS, *VELOCITIES, *ACCELERATIONS),
+        ("theta2", "s2", "theta4", "omega2", "s2_dot", "omega4", "alpha2", "s2_ddot", "alpha4"),
+        strict=True,
+    )
+)
+SIZE = dimensions()
+
+
+def column(name):
+    return np.array(references.exact("rcsr")[name], dtype=np.float64)
+
+
+def vector(prefix):
+    return np.stack([column(f"{prefix}_{axis}") for axis in "xyz"], axis=1)
+
+
+def motion():
+    """The published mechanism's exact motion, angles in rad."""
+    found = {name: column(header) for name, header in EXACT_MOTION.items()}
+    return found | {name: np.radians(found[name]) for name in ("O2.theta", "O4.theta")}
+
+
+@pytest.fixture(scope="module")
+def theta1():
+    return np.radians(column("theta1"))
+
+
+@pytest.fixture(scope="module")
+def exact(theta1):
+    known = motion()
+    return solution(SIZE, theta1, [known[name] for name in COORDINATES])
+
+
+def relative(found, wanted):
+    return float(np.max(np.abs(found - wanted)) / np.max(np.abs(wanted)))
+
+
+@pytest.mark.parametrize("name", EXACT_MOTION)
+def test_reference_motion_is_that_of_the_40_digit_data(exact, name):
+    assert relative(exact[name], motion()[name]) < 3e-15
+
+
+def test_reference_loads_are_the_newton_euler_data(exact):
+    a1 = np.array([1.0, 0.0, 0.0])
+    a4 = np.array([np.cos(np.radians(15)), 0.0, -np.sin(np.radians(15))])
+    crank = vector("ne_F41") + column("ne_FA1")[:, None] * a1
+    rocker = vector("ne_F43") + column("ne_FA4")[:, None] * a4
+    assert relative(exact["O1.force"], crank) < 1e-13
+    assert relative(exact["O2.force"], vector("ne_F21")) < 1e-13
+    assert relative(exact["O4.force"], rocker) < 1e-13
+    assert relative(exact["O1.effort"], -column("ne_MIN")) < 1e-13
+    # the data have moments about the ground origin, the reference about J.point
+    point = np.array([-5.0, 0.0, 0.0])
+    assert relative(exact["O1.moment"] + np.cross(point, crank), vector("ne_M41")) < 1e-13
+
+
+def test_dense_system_in_double_precision_agrees(theta1, exact):
+    known = motion()
+    d = drawing(SIZE, DOUBLE)
+    found = dense_loads(SIZE, d, kinematics(d, theta1, [known[name] for name in COORDINATES]))
+    assert errors(found, exact).loads < 1e-12
+
+
+def test_dense_system_is_24_by_24_and_regular(theta1):
+    known = motion()
+    d = drawing(SIZE, DOUBLE)
+    k = kinematics(d, theta1[:1], [known[name][:1] for name in COORDINATES])
+    matrix, right = equations(SIZE, d, k).arrays(1, np.float64)
+    assert matrix.shape == (1, 24, 24)
+    assert right.shape == (1, 24)
+    assert np.linalg.matrix_rank(matrix[0]) == 24
+
+
+def test_fsolve_agrees(theta1, exact):
+    start = np.array([motion()[name][0] for name in COORDINATES])
+    found = fsolve_positions(Closure(drawing(SIZE, DOUBLE)), theta1, start)
+    assert errors(dict(zip(POSITIONS, found, strict=True)), exact).position < 1e-7
+
+
+def test_differences_agree(theta1, exact):
+    start = np.array([motion()[name][0] for name in COORDINATES])
+    solved = partial(fsolve_positions, Closure(drawing(SIZE, DOUBLE)), start=start)
+    found = errors(differences(solved, theta1), exact)
+    assert found.velocity < 1e-5
+    assert found.acceleration < 1e-4
+
+
+def test_mpmath_and_long_double_agree(exact, theta1):
+    mpmath = pytest.importorskip("mpmath")
+    context = mpmath.MPContext()
+    context.dps = 40
+    forty = Arithmetic("mpmath", 1e-40, context.mpf, context.cos, context.sin)
+    rows = np.array([0, len(theta1) - 1])
+    known = motion()
+    found = row_by_row(SIZE, theta1[rows], [known[name][rows] for name in COORDINATES], forty)
+    tolerance = 1e3 * extended().epsilon
+    for name in (*POSITIONS, *VELOCITIES, *ACCELERATIONS, "O1.effort", "O2.force"):
+        difference = np.asarray(found[name] - exact[name][rows], dtype=np.float64)
+        scale = np.max(np.abs(np.asarray(exact[name][rows], dtype=np.float64)))
+        assert np.max(np.abs(difference)) < tolerance * scale, name
+
+
+def test_dead_centre_of_the_matrices():
+    found = dead_centre(drawing(SIZE, extended()), NEAR_DEAD_CENTRE)
+    guess = {name: mp.mpf(values[-1]) for name, values in motion().items()}
+    guess["O1.theta"] = mp.radians(202)
+    known, _ = fold(read(references.RCSR), "O1.theta", guess)
+    # the oracle takes lengths such as 0.8 as written, the matrices as the nearest double
+    assert abs(known - mp.mpf(str(found.theta1))) < 2**-52
+
+
+def test_elimination_exchanges_rows():
+    matrix = np.array([[[0.0, 2.0], [4.0, 0.0]], [[1.0, 1.0], [1.0, -1.0]]])
+    right = np.array([[6.0, 8.0], [5.0, 1.0]])
+    assert np.array_equal(eliminate(matrix, right), [[2.0, 3.0], [3.0, 2.0]])
+
+
+@pytest.mark.parametrize("lanes", [0, *widths()])
+def test_timed_kernel_call_finds_what_is_right(lanes):
+    case = KernelCase(SIZE, degree_rows())
+    wanted = solution(SIZE, case.theta1, [case.found[name] for name in COORDINATES])
+    run = PlannedRun(case, EVERYTHING)
+    batch = run(case.inputs, case.second_order_guesses(), lanes=lanes)
+    found = errors(run.quantities(batch), wanted)
+    assert found.position < 1e-14
+    assert found.velocity < 2e-14
+    assert found.acceleration < 2e-14
+    assert found.loads < 1e-12
+
+
+def test_sizes_keep_their_errors():
+    rows = size_table(extended()).rows
+    assert {row["status"] for row in rows} == {"ok"}
+    assert max(row["position"] for row in rows) < 1e-14
+    assert max(row["loads"] for row in rows) < 1e-12
+
+
+def test_errors_near_the_dead_centre_grow_with_the_condition():
+    for row in dead_centre_table(extended()).rows:
+        assert row["status"] in ("ok", "near-singular")
+        assert row["residual"] <= 1e-14
+        # a handful of roundings, each moving the position by 2^-53 times the condition
+        assert row["share"] < 5.0
+
+
+def test_timing_takes_medians_and_ratios_round_by_round():
+    fast, slow = Timing((1.0, 2.0, 9.0)), Timing((2.0, 4.0, 27.0))
+    assert fast.median == 2.0
+    assert slow.ratio(fast) == 2.0
+    assert slow.ratio(fast, factor=4.0) == 0.5
+
+
+def test_calls_are_timed_in_turns():
+    order = []
+    slow = 0.001
+
+    def call(name):
+        order.append(name)
+        end = perf_counter() + slow
+        while perf_counter() < end:
+            pass
+
+    times = in_turns({name: partial(call, name) for name in "ab"}, rounds=3)
+    assert order[-6:] == list("ababab")
+    assert len(times["a"].seconds) == 3
+
+
+def test_tables_are_aligned():
+    columns = (Column("name", "name"), Column("us", "time\nus", "time"))
+    table = Table("t", "title", columns, [{"name": "one", "us": 0.0123}, {"name": "b", "us": None}])
+    assert plain_text(table) == "title\n\n       time\nname     us\none   0.012\nb\n"
+    assert width(table) == 11
+
+
+@pytest.mark.parametrize(
+    ("value", "kind", "text"),
+    [
+        (0.07341, "time", "0.073"),
+        (1280.4, "time", "1280"),
+        (1.2345e-15, "error", "1.2e-15"),
+        (0.034, "percent", "3"),
+        (True, "verdict", "yes"),
+        (None, "time", ""),
+    ],
+)
+def test_cells(value, kind, text):
+    assert cell_text(value, kind) == text
+
+
+def test_missing_yardstick(tmp_path, monkeypatch):
+    with pytest.raises(UsageError, match=r"no run\.py and kern\.c"):
+        find(tmp_path)
+    monkeypatch.setattr("mechkin_cli.benchmark.yardstick.DEFAULT", tmp_path)
+    assert "no yardstick" in load(None)

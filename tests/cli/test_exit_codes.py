@@ -1,0 +1,92 @@
+"""Exit codes: 0 ok, 1 differences, 2 usage, 3 invalid file, 4 rows are missing, 70 internal."""
+
+import pytest
+from cli import files
+from references import RCSR
+
+
+@pytest.fixture(autouse=True)
+def _files(write) -> None:
+    write("crank.yaml", files.CRANK)
+    write("invalid.yaml", files.INVALID)
+    write("odd.yaml", files.UNPHYSICAL)
+    write("beyond.yaml", files.beyond_dead_centre())
+    write("apart.yaml", files.WITHOUT_ASSEMBLY)
+
+
+@pytest.mark.parametrize(
+    ("command", "code"),
+    [
+        ("", 2),
+        ("--help", 0),
+        ("--version", 0),
+        ("frobnicate", 2),
+        ("analyze", 2),
+        ("analyze --frobnicate crank.yaml", 2),
+        ("analyze crank.yaml", 0),
+        ("analyze odd.yaml", 0),
+        ("analyze nowhere.yaml", 2),
+        ("analyze .", 2),
+        ("analyze invalid.yaml", 3),
+        ("analyze beyond.yaml", 4),
+        ("analyze apart.yaml", 4),
+        ("analyze crank.yaml --mode Q", 4),
+        ("analyze crank.yaml invalid.yaml beyond.yaml", 4),
+        ("analyze invalid.yaml crank.yaml nowhere.yaml", 3),
+        ("analyze crank.yaml nowhere.yaml", 2),
+        ("analyze crank.yaml --set", 2),
+        ("analyze crank.yaml --set r", 2),
+        ("analyze crank.yaml --set r=", 2),
+        ("analyze crank.yaml --set q=1", 2),
+        ("analyze crank.yaml --set r=1", 3),
+        ("analyze crank.yaml --set r=x", 3),
+        ("analyze crank.yaml --table nothing", 2),
+        ("analyze crank.yaml --format xml", 2),
+        ("analyze crank.yaml --out crank.yaml", 2),
+        ("analyze crank.yaml --out crank.yaml/below", 2),
+        ("check crank.yaml odd.yaml apart.yaml", 0),
+        ("check crank.yaml invalid.yaml nowhere.yaml", 3),
+        ("check nowhere.yaml", 2),
+        ("tables nowhere", 2),
+        ("tables crank.yaml", 0),
+        ("tables crank.yaml --check", 1),
+        ("tables invalid.yaml --check", 3),
+        ("tables .", 4),
+        ("schema", 0),
+        ("schema --check", 2),
+        ("schema --check --out crank.yaml", 1),
+    ],
+)
+def test_exit_code(mechkin, command: str, code: int) -> None:
+    run = mechkin(*command.split())
+    assert run.code == code, run.err
+    assert "internal error" not in run.err
+    assert "Traceback" not in run.err
+
+
+def test_the_rcsr_tables_are_the_ones_kept(mechkin) -> None:
+    assert mechkin("tables", RCSR, "--check").code == 0
+
+
+def test_an_internal_error_asks_for_a_report(mechkin, monkeypatch) -> None:
+    monkeypatch.delenv("MECHKIN_DEBUG", raising=False)
+    monkeypatch.setattr("mechkin_cli.interface.load", lambda *_: 1 / 0)
+    run = mechkin("analyze", "crank.yaml")
+    assert run.code == 70
+    assert run.err.startswith("mechkin: internal error, ZeroDivisionError")
+    assert "please report it" in run.err
+
+
+def test_an_interrupt_ends_with_130(mechkin, monkeypatch) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("mechkin_cli.interface.load", interrupted)
+    run = mechkin("analyze", "crank.yaml")
+    assert (run.code, run.out) == (130, "")
+    assert "interrupted" in run.err
+
+
+def test_version_of_the_installed_package(mechkin, monkeypatch) -> None:
+    monkeypatch.setattr("importlib.metadata.version", lambda name: f"9.9 of {name}")
+    assert mechkin("--version").out == "mechkin 9.9 of mechkin\n"

@@ -1,0 +1,76 @@
+"""`--explain`: the solver graph, what is computed, what is skipped and why."""
+
+import pytest
+from cli import files
+from references import RCSR
+
+
+def lines(mechkin, *arguments: object) -> list[str]:
+    out = mechkin("analyze", *arguments, "--explain", "--quiet").out
+    return [line.strip() for line in out.splitlines()]
+
+
+def test_solver_graph_of_the_rcsr_mechanism(mechkin) -> None:
+    found = lines(mechkin, RCSR)
+    assert found[0] == "solver graph of RCSR"
+    assert "O3 (S, 3 equations) with O4, O1, O2" in found
+    assert any(line.startswith("1: 3 unknowns ") for line in found)
+    (unknowns,) = [line for line in found if line.startswith("1: 3 unknowns ")]
+    names = unknowns.removeprefix("1: 3 unknowns ").split(", ")
+    assert sorted(names) == ["O2.s", "O2.theta", "O4.theta"]
+
+
+@pytest.mark.parametrize(
+    ("table", "computed"),
+    [
+        ("table_04", set()),
+        ("table_06", {"velocities"}),
+        ("table_08", {"velocities", "accelerations"}),
+        (
+            "table_16",
+            {
+                "velocities",
+                "accelerations",
+                "input efforts and closing wrenches",
+                "joint wrenches",
+                "power balance of each row",
+            },
+        ),
+    ],
+)
+def test_only_what_the_tables_need_is_computed(mechkin, table, computed) -> None:
+    plan = lines(mechkin, RCSR, "--table", table)
+    stages = {line.split(":")[0]: line for line in plan[plan.index("demand plan") + 1 :] if line}
+    for stage in (
+        "velocities",
+        "accelerations",
+        "input efforts and closing wrenches",
+        "joint wrenches",
+        "power balance of each row",
+    ):
+        wanted = "computed" if stage in computed else "skipped, no column reads"
+        assert stages[stage].startswith(f"{stage}: {wanted}"), stages[stage]
+
+
+def test_an_open_chain_has_no_loops(mechkin, write) -> None:
+    found = lines(mechkin, write("crank.yaml", files.CRANK))
+    assert "ground -> arm by O (R)" in found
+    assert "no loops" in found
+
+
+def test_a_link_without_mass_needs_no_accelerations(mechkin, write) -> None:
+    massless = files.CRANK.replace("{mass: 1, center_of_mass: [r, 0, 0]}", "{}")
+    found = lines(mechkin, write("crank.yaml", massless))
+    assert "accelerations: skipped, no link has mass and no column reads an acceleration" in found
+    assert "inertia: skipped, no link has mass" in found
+
+
+def test_the_explanation_comes_before_the_tables(mechkin, write) -> None:
+    out = mechkin("analyze", write("crank.yaml", files.CRANK), "--explain").out
+    assert out.startswith("solver graph of crank\n")
+    assert out.index("demand plan") < out.index("sweep: ")
+
+
+def test_json_holds_the_explanation(mechkin, write) -> None:
+    run = mechkin("analyze", write("crank.yaml", files.CRANK), "--explain", "--json")
+    assert run.json["explanation"][0] == "solver graph of crank"

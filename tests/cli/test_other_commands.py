@@ -1,0 +1,153 @@
+"""`check`, `tables`, `schema`, help and version."""
+
+import json
+import shutil
+from pathlib import Path
+
+import jsonschema
+import pytest
+import yaml
+from cli import files
+from references import MECHANISMS, RCSR
+
+COMMANDS = ("analyze", "check", "tables", "schema", "bench")
+
+
+def test_check_says_what_a_file_holds(mechkin, write) -> None:
+    run = mechkin("check", write("crank.yaml", files.CRANK + files.TABLES), RCSR)
+    assert (
+        run.out == f"crank.yaml: ok (0 loops, 3 rows, 2 tables)\n{RCSR}: ok (1 loop, 27 rows, "
+        "11 tables)\n"
+    )
+    assert run.err == ""
+
+
+def test_check_lists_every_error_in_order(mechkin, write) -> None:
+    text = files.CRANK.replace("[ground, arm]", "[ground, amr]").replace("link: arm", "link: rma")
+    run = mechkin("check", write("bad.yaml", text))
+    assert run.out == ""
+    assert [line.split(": ")[0] for line in run.err.splitlines()] == [
+        "bad.yaml:5:39",
+        "bad.yaml:6:22",
+    ]
+
+
+def test_check_quiet_says_nothing_of_a_sound_file(mechkin) -> None:
+    run = mechkin("check", RCSR, "--quiet")
+    assert (run.code, run.out, run.err) == (0, "", "")
+
+
+def test_check_json(mechkin, write) -> None:
+    good, odd = write("good.yaml", files.CRANK), write("odd.yaml", files.UNPHYSICAL)
+    run = mechkin("check", good, odd, write("bad.yaml", files.INVALID), "--json")
+    found = [(record["file"], record["valid"]) for record in run.json["files"]]
+    assert found == [("good.yaml", True), ("odd.yaml", True), ("bad.yaml", False)]
+    codes = [[d["code"] for d in record["diagnostics"]] for record in run.json["files"]]
+    assert codes == [[], ["unphysical-inertia"], ["unknown-link"]]
+
+
+@pytest.fixture
+def committed(folder: Path) -> Path:
+    """A copy of the RCSR tables beside their file, in `mechanisms/`."""
+    shutil.copytree(MECHANISMS / "rcsr", folder / "mechanisms/rcsr")
+    shutil.copy(RCSR, folder / "mechanisms")
+    return folder / "mechanisms/rcsr"
+
+
+def test_tables_as_committed(mechkin, committed) -> None:
+    run = mechkin("tables", "--check")
+    assert (run.code, run.out) == (0, "")
+    assert run.err == "mechanisms/rcsr: 22 files as committed\n"
+    assert mechkin("tables", "--check", "--quiet").err == ""
+
+
+def test_tables_finds_a_changed_digit(mechkin, committed) -> None:
+    path = committed / "table_03.csv"
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    cells = lines[2].split(",")
+    cells[3] = cells[3][:-1] + ("8" if cells[3][-1] == "7" else "7")
+    lines[2] = ",".join(cells)
+    path.write_text("".join(lines), encoding="utf-8")
+    before = path.read_bytes()
+    run = mechkin("tables", "--check")
+    assert run.code == 1
+    assert "table_03.csv: different, 1 cell; largest relative change " in run.out
+    assert f"row 2, theta4: committed {cells[3]}, fresh 36.85" in run.out
+    assert "22 table files: 21 equal, 1 different" in run.out
+    assert path.read_bytes() == before
+    (record,) = mechkin("tables", "--check", "--json").json["files"]
+    verdicts = {table["name"]: table["verdict"] for table in record["tables"]}
+    assert {name for name, verdict in verdicts.items() if verdict != "equal"} == {"table_03.csv"}
+
+
+def test_tables_finds_missing_and_surplus_files(mechkin, committed) -> None:
+    (committed / "table_04.md").unlink()
+    (committed / "old.csv").write_text("a\n1\n", encoding="utf-8")
+    out = mechkin("tables", "mechanisms/rcsr.yaml", "--check").out
+    assert "table_04.md: missing" in out
+    assert "old.csv: extra" in out
+
+
+def test_tables_regenerates_what_is_committed(mechkin, committed) -> None:
+    expected = {path.name: path.read_bytes() for path in committed.iterdir()}
+    shutil.rmtree(committed)
+    run = mechkin("tables")
+    assert (run.code, run.out, run.err) == (0, "", "mechanisms/rcsr: 22 files written\n")
+    assert {path.name: path.read_bytes() for path in committed.iterdir()} == expected
+
+
+def test_committed_cells_have_twelve_digits(mechkin, write, folder) -> None:
+    mechkin("tables", write("crank.yaml", files.CRANK + files.TABLES))
+    cells = (folder / "crank/tip.csv").read_text(encoding="utf-8").split()
+    assert cells[1:3] == ["0,2", "45,1.41421356237"]
+
+
+def test_schema_is_json_schema_and_accepts_the_mechanisms(mechkin) -> None:
+    schema = mechkin("schema").json
+    jsonschema.Draft202012Validator.check_schema(schema)
+    data = yaml.safe_load(RCSR.read_text(encoding="utf-8"))
+    jsonschema.validate(data, schema)
+
+
+def test_schema_check(mechkin, folder) -> None:
+    place = folder / "schemas/mechanism.schema.json"
+    assert mechkin("schema", "--out", place).code == 0
+    assert json.loads(place.read_text(encoding="utf-8")) == mechkin("schema").json
+    run = mechkin("schema", "--check")
+    assert (run.code, run.out) == (0, "")
+    place.write_text(place.read_text(encoding="utf-8").replace("format", "farmat", 1))
+    run = mechkin("schema", "--check")
+    assert run.code == 1
+    assert "is not up to date; run: mechkin schema --out schemas/mechanism.schema.json" in run.err
+
+
+def test_help_names_every_command(mechkin) -> None:
+    for arguments in ((), ("--help",)):
+        run = mechkin(*arguments)
+        text = run.out + run.err
+        assert text.startswith("Usage: mechkin [OPTIONS] COMMAND")
+        listed = text.split("Commands:\n")[1].split()
+        assert all(command in listed for command in COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help(mechkin, command) -> None:
+    run = mechkin(command, "--help")
+    assert run.code == 0
+    assert run.out.startswith(f"Usage: mechkin {command} [OPTIONS]")
+    options = run.out.split("Options:\n")[1].splitlines()
+    bare = [line for line in options if line.startswith("  --") and len(line.split("  ")) < 3]
+    assert not bare, "options without help"
+
+
+def test_an_unknown_option_is_named(mechkin) -> None:
+    run = mechkin("analyze", RCSR, "--quite")
+    assert run.out == ""
+    assert "No such option: --quite" in run.err
+    assert "--quiet" in run.err
+
+
+def test_a_file_without_a_command_gets_the_cure(mechkin, write) -> None:
+    run = mechkin(write("crank.yaml", files.CRANK))
+    assert run.code == 2
+    assert run.err.endswith("To run a mechanism file: mechkin analyze crank.yaml\n")

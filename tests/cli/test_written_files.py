@@ -1,0 +1,166 @@
+"""What `mechkin analyze` writes, and where."""
+
+import json
+from pathlib import Path
+
+import pytest
+from cli import files
+from references import RCSR
+
+CRANK = files.CRANK + files.TABLES
+
+TIP_MD = """\
+# The tip
+
+| O.theta [deg] | x [m] |
+| ------------: | ----: |
+|             0 |  2.00 |
+|            45 |  1.41 |
+|            90 |  0.00 |
+"""
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+
+
+def test_tables_and_rows_stand_in_out_stem(mechkin, write, folder) -> None:
+    assert mechkin("analyze", write("crank.yaml", CRANK)).code == 0
+    assert names(folder / "out") == [
+        "crank/drive.csv",
+        "crank/drive.md",
+        "crank/rows.csv",
+        "crank/tip.csv",
+        "crank/tip.md",
+    ]
+
+
+def test_content_of_a_table(mechkin, write, folder) -> None:
+    mechkin("analyze", write("crank.yaml", CRANK), "--table", "tip")
+    header, *rows = (folder / "out/crank/tip.csv").read_text(encoding="utf-8").splitlines()
+    cells = [row.split(",") for row in rows]
+    assert header == "O.theta,x"
+    assert [theta for theta, _ in cells] == ["0", "45", "90"]
+    # 2 cos(theta)
+    assert [float(x) for _, x in cells] == pytest.approx([2, 2**0.5, 0], abs=1e-15)
+    assert (folder / "out/crank/tip.md").read_text(encoding="utf-8") == TIP_MD
+
+
+def test_labels_with_commas_are_quoted(mechkin, write, folder) -> None:
+    mechkin("analyze", write("crank.yaml", CRANK))
+    content = (folder / "out/crank/drive.csv").read_bytes()
+    assert content.startswith(b'"torque, motor"\n')
+    assert b"\r" not in content
+
+
+def test_rows_say_what_each_row_is_worth(mechkin, write, folder) -> None:
+    mechkin("analyze", write("beyond.yaml", files.beyond_dead_centre()))
+    lines = (folder / "out/beyond/rows.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "row,O1.theta,mode,status,residual,condition,power_error"
+    rows = [line.split(",") for line in lines[1:]]
+    assert [(row[0], row[1]) for row in rows] == [(str(i + 1), str(150 + 2 * i)) for i in range(31)]
+    assert [row[3] for row in rows] == ["ok"] * 28 + ["beyond-dead-centre"] * 3
+    assert all(float(row[4]) <= 1e-14 and float(row[6]) <= 1e-12 for row in rows[:28])
+    assert all(row[4:] == ["", "", ""] for row in rows[28:])
+
+
+def test_rows_that_are_missing_keep_their_inputs(mechkin, write, folder) -> None:
+    mechkin("analyze", write("beyond.yaml", files.beyond_dead_centre()), "--table", "table_05")
+    lines = (folder / "out/beyond/table_05.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[-3:] == ["206,,,,,,", "208,,,,,,", "210,,,,,,"]
+    markdown = (folder / "out/beyond/table_05.md").read_text(encoding="utf-8")
+    assert "\n- Rows 29-31 (O1.theta 206 to 210 deg): beyond-dead-centre: " in markdown
+
+
+def test_a_file_without_tables_gives_the_table_sweep(mechkin, write, folder) -> None:
+    assert mechkin("analyze", write("crank.yaml", files.CRANK)).code == 0
+    assert names(folder / "out/crank") == ["rows.csv", "sweep.csv", "sweep.md"]
+    lines = (folder / "out/crank/sweep.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[:2] == ["O.theta,O.theta_dot,O.effort", "0,3,0"]
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        ("--format csv", ["drive.csv", "rows.csv", "tip.csv"]),
+        ("--format md", ["drive.md", "rows.csv", "tip.md"]),
+        ("--format json", ["analysis.json", "rows.csv"]),
+        ("--format md --format csv --format md --table tip", ["rows.csv", "tip.csv", "tip.md"]),
+        ("--table tip --table drive --format csv", ["drive.csv", "rows.csv", "tip.csv"]),
+    ],
+)
+def test_formats_and_tables_wanted(mechkin, write, folder, options, expected) -> None:
+    run = mechkin("analyze", write("crank.yaml", CRANK), "--out", "here", *options.split())
+    assert run.code == 0
+    assert names(folder / "here") == expected
+
+
+def test_the_json_file_is_what_json_prints(mechkin, write, folder) -> None:
+    path = write("crank.yaml", CRANK)
+    printed = mechkin("analyze", path, "--json", "--format", "json").json
+    written = json.loads((folder / "out/crank/analysis.json").read_text(encoding="utf-8"))
+    assert {"file": "crank.yaml"} | written == printed
+
+
+def test_out_names_the_folder_of_one_file(mechkin, write, folder) -> None:
+    mechkin("analyze", write("crank.yaml", files.CRANK), "--out", "a/b")
+    assert names(folder / "a") == ["b/rows.csv", "b/sweep.csv", "b/sweep.md"]
+
+
+@pytest.mark.parametrize(("options", "place"), [([], "out"), (["--out", "all"], "all")])
+def test_several_files_have_a_folder_each(mechkin, write, folder, options, place) -> None:
+    one, two = write("one.yaml", files.CRANK), write("deep/two.yaml", files.CRANK)
+    assert mechkin("analyze", one, two, "--format", "csv", *options).code == 0
+    assert names(folder / place) == [
+        "one/rows.csv",
+        "one/sweep.csv",
+        "two/rows.csv",
+        "two/sweep.csv",
+    ]
+
+
+def test_one_bad_file_does_not_stop_the_others(mechkin, write, folder) -> None:
+    bad, good = write("bad.yaml", files.INVALID), write("good.yaml", files.CRANK)
+    run = mechkin("analyze", bad, "nowhere.yaml", good)
+    assert run.code == 3
+    assert names(folder / "out") == ["good/rows.csv", "good/sweep.csv", "good/sweep.md"]
+    assert "bad.yaml:5:39: error: there is no link amr" in run.err
+    assert "mechkin: there is no file nowhere.yaml" in run.err
+
+
+def test_two_files_never_share_a_folder(mechkin, write, folder) -> None:
+    one, two = write("a/crank.yaml", files.CRANK), write("b/crank.yaml", files.CRANK)
+    run = mechkin("analyze", one, two)
+    assert run.code == 2
+    assert run.err.startswith("mechkin: a/crank.yaml and b/crank.yaml would both be written to")
+    assert (
+        mechkin("analyze", one, one).err == "mechkin: a/crank.yaml is given twice; name it once\n"
+    )
+    assert not (folder / "out").exists()
+
+
+@pytest.mark.parametrize("place", ["crank.yaml", "crank.yaml/below", "/proc/mechkin"])
+def test_a_place_that_cannot_be_written_to(mechkin, write, folder, place) -> None:
+    run = mechkin("analyze", write("crank.yaml", files.CRANK), "--out", place)
+    assert run.code == 2
+    assert run.err.startswith(f"mechkin: cannot write {place}/sweep.csv: ")
+    assert "--out" in run.err
+    assert names(folder) == ["crank.yaml"]
+
+
+def test_a_second_run_replaces_the_files_whole(mechkin, write, folder) -> None:
+    path = write("crank.yaml", CRANK)
+    mechkin("analyze", path)
+    before = {name: (folder / "out" / name).read_bytes() for name in names(folder / "out")}
+    assert mechkin("analyze", path, "--set", "r=1 m").code == 0
+    assert names(folder / "out") == sorted(before)
+    changed = {name for name in before if (folder / "out" / name).read_bytes() != before[name]}
+    assert changed == {"crank/tip.csv", "crank/tip.md"}
+    mechkin("analyze", path)
+    assert all((folder / "out" / name).read_bytes() == content for name, content in before.items())
+
+
+def test_nothing_is_written_for_a_file_that_is_refused(mechkin, write, folder) -> None:
+    mechkin("analyze", write("bad.yaml", files.INVALID))
+    mechkin("check", RCSR)
+    assert names(folder) == ["bad.yaml"]

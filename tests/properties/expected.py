@@ -1,0 +1,67 @@
+"""The oracle's answers for one row by the quantities' names: 40-digit numbers in arrays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from oracle import Mechanism, Reactions, Solution
+from oracle.vectors import add, apply, cross, product, scale, transpose
+
+_COORDINATE_OF = {"torque": "theta", "force": "s"}
+
+
+def expected(mechanism: Mechanism, solution: Solution, loads: Reactions) -> dict[str, np.ndarray]:
+    """Coordinates, points, links, joints, reactions, efforts, what ground feels."""
+    found: dict[str, Any] = {}
+    for name, joint in mechanism.joints.items():
+        for coordinate in joint.coordinates:
+            for suffix in ("", "_dot", "_ddot"):
+                found[f"{name}.{coordinate}{suffix}"] = solution[f"{name}.{coordinate}{suffix}"]
+        if joint.axes:
+            found[f"{name}.axis"] = solution.joint_axis(name)
+        found[f"{name}.point"] = solution.joint_point(name)
+        found[f"{name}.force"] = loads.force[name]
+        found[f"{name}.moment"] = loads.moment[name]
+        found[f"{name}.moment_about_origin"] = loads.moment_about_origin[name]
+    for name in mechanism.points:
+        words = ("position", "velocity", "acceleration")
+        found |= {f"{name}.{w}": v for w, v in zip(words, solution.point(name), strict=False)}
+    for name in mechanism.links:
+        found |= {f"{name}.omega": solution.omega(name), f"{name}.alpha": solution.alpha(name)}
+    found |= {f"{name}.effort": effort for name, effort in loads.effort.items()}
+    shaking = _on_ground(mechanism, solution, loads)
+    inertia = _inertia(mechanism, solution)
+    found |= {"ground.shaking_force": shaking[:3], "ground.shaking_moment": shaking[3:]}
+    found |= {"ground.inertia_force": inertia[:3], "ground.inertia_moment": inertia[3:]}
+    return {name: np.array(value, dtype=object, ndmin=1) for name, value in found.items()}
+
+
+def _on_ground(mechanism: Mechanism, solution: Solution, loads: Reactions) -> list[Any]:
+    """Force and moment about the origin: joints at ground, with their drives and joint loads."""
+    total: list[Any] = [0] * 6
+    for name, joint in mechanism.joints.items():
+        sign = (joint.second == "ground") - (joint.first == "ground")
+        wrench = [*loads.force[name], *loads.moment_about_origin[name]]
+        along = [(c.split(".")[1], e) for c, e in loads.effort.items() if c.split(".")[0] == name]
+        along += [(_COORDINATE_OF[x.type], x.value) for x in mechanism.loads if x.joint == name]
+        for coordinate, value in along:
+            axis = scale(solution.joint_axis(name), value)
+            lever = cross(solution.joint_point(name), axis)
+            wrench = add(wrench, [*axis, *lever] if coordinate == "s" else [0, 0, 0, *axis])
+        total = add(total, scale(wrench, sign))
+    return total
+
+
+def _inertia(mechanism: Mechanism, solution: Solution) -> list[Any]:
+    """The sum of -m a, and of -(r x m a + I alpha + omega x I omega)."""
+    total: list[Any] = [0] * 6
+    for name, link in mechanism.links.items():
+        place, _, acceleration, _ = solution.motion(name, link.mass_centre)
+        force = scale(acceleration, -link.mass)
+        rotation = solution.rotation(name)[0]
+        tensor = product(rotation, link.inertia, transpose(rotation))
+        omega, alpha = solution.omega(name), solution.alpha(name)
+        spin = add(apply(tensor, alpha), cross(omega, apply(tensor, omega)))
+        total = add(total, [*force, *add(cross(place, force), scale(spin, -1))])
+    return total
