@@ -118,5 +118,5 @@ body."""
 # --- numbers of the file ------------------------------------------------------------------------
 
 LARGEST_NUMBER: Final = 1e100
-"""SI value of a field above which it is a slip of the pen: its third power would leave the doubles
-(1.8e308), and rows would be empty without a reason."""
+"""SI value of a field above which it is a slip of the pen: products of three such values are the
+last that stay doubles (1.8e308); beyond, cells would be empty without a reason."""

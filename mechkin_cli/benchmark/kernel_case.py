@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,12 +55,13 @@ class PlannedRun:
         lanes: int = 0,
     ) -> Batch:
         """Runs all rows; inputs (1, rows), guess (states, rows)."""
+        rates, accelerations = driven(inputs.shape[1])
         return run(
             self.plan,
             inputs,
             guess,
-            rates=np.full_like(inputs, RATE),
-            accelerations=np.full_like(inputs, ACCELERATION),
+            rates=rates,
+            accelerations=accelerations,
             demand=self.demand,
             outputs=True,
             iterations=iterations,
@@ -122,6 +124,12 @@ class KernelCase:
             return planned(self.inputs, followed.guess, lanes=lanes)
 
         return timed
+
+
+@cache
+def driven(rows: int) -> tuple[Floats, Floats]:
+    """Rates and accelerations of the input (1, rows), made once as the motion of a file is."""
+    return np.full((1, rows), RATE), np.full((1, rows), ACCELERATION)
 
 
 def degree_rows() -> Floats:

@@ -1,7 +1,9 @@
 """What a file says is checked before anything is computed: place, what is wrong, what to do."""
 
 import pytest
-from building.bad_mechanisms import BAD_MECHANISMS, SOUND, BadMechanism
+from building.bad_parts import BAD_PARTS
+from building.bad_uses import BAD_USES
+from building.sound import SOUND, BadMechanism
 
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import Diagnostic
@@ -21,7 +23,9 @@ def test_the_file_they_are_made_from_is_sound() -> None:
     assert mk.loads(SOUND).diagnostics == ()
 
 
-@pytest.mark.parametrize("bad", BAD_MECHANISMS, ids=lambda bad: f"{bad.code} {bad.new.strip()}")
+@pytest.mark.parametrize(
+    "bad", [*BAD_PARTS, *BAD_USES], ids=lambda bad: f"{bad.code} {bad.new.strip()}"
+)
 def test_one_error_at_the_place_of_the_mistake(bad: BadMechanism) -> None:
     (error,) = errors(bad.text)
     line, column = bad.place

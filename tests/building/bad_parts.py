@@ -1,0 +1,101 @@
+"""Mistakes in units, parameters, links, joints, points, and sections that are not solved."""
+
+from building.sound import added, changed, joint
+
+UNITS_AND_PARAMETERS = [
+    changed("{length: mm}", "{length: »parsec}", "unit", "parsec"),
+    changed("{length: mm}", "{length: mm, force: »kg}", "unit", "force", "mass"),
+    changed("r: 40 mm", "r: 40 »mmm", "expression", "mmm", "mm"),
+    changed("k: 2", "k: 2*»kk", "expression", "kk", "did you mean k"),
+    changed("k: 2", "k: r + »2", "expression", "length", "dimensionless"),
+    changed("k: 2", "k: 2*j, j: »k", "expression", "depend on themselves", "k -> j -> k"),
+    changed("k: 2", "k: 1/»0", "expression", "zero"),
+    changed("k: 2", "k: sin(»12)", "expression", "angle", "12 deg"),
+]
+
+LINKS = [
+    changed("mass: 1,", "mass: »-1,", "negative-mass", "negative"),
+    changed("mass: 1,", "mass: »1 N,", "expression", "expected a mass", "force"),
+    changed("mass: 1,", "mass: »1e101,", "too-large", "1e+101 (limit 1e+100)"),
+    changed("[0, 20, 0]", "[0, »k, 0]", "expression", "expected a length", "1 mm"),
+    changed("zz: 1}", "zz: »1 kg}", "expression", "moment of inertia", "mass"),
+    changed(
+        "zz: 1}",
+        "zz: 1, axes: »{x: [1, 0, 0], y: [0.001, 1, 0]}}",
+        "axes-not-square",
+        "cosine of their angle 0.001",
+        "limit 1e-09",
+    ),
+    changed(
+        "zz: 1}",
+        "zz: 1, axes: {x: »[0, 0, 0], y: [0, 1, 0]}}",
+        "zero-direction",
+        "direction is zero",
+    ),
+    changed("  slider: {}", "  slider: {}\n  »spare: {}", "disconnected-link", "spare", "ground"),
+]
+
+JOINTS = [
+    changed("[crank, rod]", "[»crnk, rod]", "unknown-link", "no link crnk", "did you mean crank?"),
+    changed("[crank, rod]", "[crank, »r]", "unknown-link", "no link r"),
+    changed("axis: [0, 0, 1]", "axis: »[0, 0, 0]", "zero-direction", "direction is zero"),
+    changed("axis: [0, 0, 1]", "axis: »[0, r, k]", "dimension", "alike", "length"),
+    changed("axis: [0, 0, 1]", "axis: [0, 0, »c]", "expression", "c"),
+    changed("[0, r, 10]", "[0, »r*r, 10]", "expression", "expected a length", "area"),
+    joint(
+        "{type: R, LINKS, point: [0, 0, 0], axis: {ground: [0, 0, 1], crank: »[0, 0, 0]}}",
+        "zero-direction",
+        "direction is zero",
+    ),
+    joint(
+        "{type: R, LINKS, point: [0, 0, 0], axis: [0, 0, 1], "
+        "zero: {ground: »[0, 0, 2], crank: [1, 0, 0]}}",
+        "zero-parallel",
+        "parallel to the joint's axis",
+    ),
+    joint(
+        "{type: H, LINKS, point: [0, 0, 0], axis: [0, 0, 1], lead: »0}",
+        "zero-lead",
+        "lead is zero",
+    ),
+    joint(
+        "{type: H, LINKS, point: [0, 0, 0], axis: [0, 0, 1], lead: »90 deg}",
+        "expression",
+        "expected a length",
+        "angle",
+    ),
+    joint(
+        "{type: »U, LINKS, point: [0, 0, 0], axis: [1, 0, 0], axis2: [0, 1, 0]}",
+        "joint-type",
+        "type U",
+        "it solves R, P",
+    ),
+    joint(
+        "{type: »E, LINKS, point: [0, 0, 0], normal: [0, 0, 1], x: [1, 0, 0]}",
+        "joint-type",
+        "type E",
+    ),
+    joint("{type: »Sp, LINKS, point: [0, 0, 0], normal: [0, 0, 1]}", "joint-type", "type Sp"),
+    joint("{type: »Sg, LINKS, point: [0, 0, 0], groove: [0, 0, 1]}", "joint-type", "type Sg"),
+    joint("{type: »W, LINKS}", "joint-type", "type W"),
+]
+
+POINTS = [
+    changed("{p: {link: crank", "{p: {link: »cran", "unknown-link", "no link cran", "crank"),
+    changed("{n: {link: crank", "{n: {link: »crink", "unknown-link", "no link crink", "crank"),
+    changed("vector: [0, 1, 0]", "vector: »[0, 0, 0]", "zero-direction", "direction is zero"),
+    changed("at: [0, 40, 0]", "at: [0, »40 deg, 0]", "expression", "expected a length", "angle"),
+]
+
+SECTIONS = [
+    added(
+        "»chain: [{joint: J, type: R, link: ground}]",
+        "not-solved",
+        "chain rows",
+        "not part of this version",
+    ),
+    added("»follow: [A]", "not-solved", "not part of this version", "remove follow:"),
+    added("»idle: hold", "not-solved", "not part of this version", "remove idle:"),
+]
+
+BAD_PARTS = [*UNITS_AND_PARAMETERS, *LINKS, *JOINTS, *POINTS, *SECTIONS]

@@ -1,0 +1,150 @@
+"""Mistakes in what uses the parts: motion, assembly, loads and columns."""
+
+from building.sound import added, changed, column, inputs, load
+
+MOTION = [
+    inputs(
+        "{»O.s: {at: 0}}",
+        "unknown-coordinate",
+        "type R and has no coordinate s",
+        "its coordinates: theta",
+    ),
+    inputs("{»A.theta: {at: 0}}", "unknown-coordinate", "type S and has no coordinate theta"),
+    inputs("{»Q.theta: {at: 0}}", "unknown-coordinate", "Q.theta is no coordinate", "O.theta"),
+    inputs("{O.theta: {from: 0, to: 9, step: »0}}", "zero-step", "step is zero"),
+    inputs("{O.theta: {from: 0, to: 9, step: »1e-7}}", "too-many-rows", "rows", "10000000"),
+    inputs("{O.theta: {at: »1e308}}", "too-large", "1e+308 (limit 1e+100)"),
+    inputs("{O.theta: {from: 0, to: 9, count: »99999999}}", "too-many-rows", "rows", "10000000"),
+    inputs("{O.theta: {from: 0, to: »9 mm, step: 1}}", "expression", "expected an angle", "length"),
+    inputs(
+        "{O.theta: {from: 0, to: 9, step: 1, rate: »1 mm/s}}",
+        "expression",
+        "expected an angular rate",
+        "velocity",
+    ),
+    inputs(
+        "»{O.theta: {values: [0, 1, 2]}, D.s: {values: [0, 1]}}",
+        "row-counts",
+        "equally many rows",
+        "O.theta 3, D.s 2",
+    ),
+    inputs("{O.theta: {values: [0, k*»mm]}}", "expression", "right behind a number: 1 mm"),
+    inputs(
+        "{O.theta: {from: 0, to: 9, step: 1}, D.s: {with: »r}}",
+        "following-input",
+        "not computed by this version",
+    ),
+    inputs(
+        "»{O.theta: {from: 0, to: 9, step: 1}, D.theta: {at: 0}}",
+        "overconstrained",
+        "1 more closing equation",
+        "drive fewer coordinates",
+    ),
+    changed(
+        "{inputs: {O.theta: {from: -70, to: 70, step: 5}}}",
+        "{time: »{from: 0, to: 1, step: 0.1}, "
+        "inputs: {O.theta: {law: constant-rate, at: 0, rate: 1}}}",
+        "time-laws",
+        "laws over time are not computed",
+    ),
+]
+
+ASSEMBLY = [
+    added("assembly: {near: {»A.theta: 3}}", "unknown-coordinate", "A is of type S", "none"),
+    added("assembly: {near: {»D.ss: 3}}", "unknown-coordinate", "no coordinate ss", "theta, s"),
+    added("assembly: {near: {D.s: »3 deg}}", "expression", "expected a length", "angle"),
+]
+
+LOADS = [
+    load("{type: gravity, g: [0, »-9810 mm, 0]}", "expression", "acceleration", "length"),
+    load(
+        "{type: force, link: »rods, point: [0, 0, 0], force: [1, 0, 0]}",
+        "unknown-link",
+        "no link rods",
+        "did you mean rod?",
+    ),
+    load(
+        "{type: force, link: »ground, point: [0, 0, 0], force: [1, 0, 0]}",
+        "load-on-ground",
+        "ground",
+    ),
+    load(
+        "{type: force, link: rod, point: [0, 0, 0], force: [1, »2 mm, 0]}",
+        "expression",
+        "expected a force",
+        "length",
+    ),
+    load(
+        "{type: torque, link: rod, torque: [1, 0, »2 N]}",
+        "expression",
+        "expected a moment",
+        "force",
+    ),
+    load("{type: torque, joint: »C, value: 1}", "unknown-joint", "no joint C"),
+    load(
+        "{type: force, joint: »O, value: 1}",
+        "unknown-coordinate",
+        "type R and has no coordinate s",
+        "theta",
+    ),
+    load(
+        "{type: torque, joint: »A, value: 1}",
+        "unknown-coordinate",
+        "type S and has no coordinate theta",
+        "none",
+    ),
+    load(
+        "{type: spring, joint: D, coordinate: »phi, stiffness: 1}",
+        "unknown-coordinate",
+        "no coordinate phi",
+        "theta, s",
+    ),
+    load(
+        "{type: spring, joint: D, coordinate: s, stiffness: »1 N*m}",
+        "expression",
+        "stiffness",
+    ),
+    load(
+        "{type: spring, between: [p, »qq], stiffness: 1, free: 1}",
+        "unknown-point",
+        "no point qq",
+        "did you mean q?",
+    ),
+    load(
+        "{type: spring, between: [q, »q], stiffness: 1, free: 1}",
+        "same-point",
+        "from q to itself",
+    ),
+    load(
+        "{type: damper, between: [»n, q], damping: 1}",
+        "unknown-point",
+        "no point n",
+    ),
+    load(
+        "{type: damper, joint: O, coordinate: theta, damping: »1 N}",
+        "expression",
+        "damping",
+        "force",
+    ),
+    load(
+        "{type: force, joint: D, value: »{table: force.csv}}",
+        "load-table",
+        "not read by this version",
+    ),
+    load("{type: force, joint: D, value: »D.s}", "expression", "D.s"),
+]
+
+COLUMNS = [
+    column("»O.thetta", "expression", "O.thetta", "O.theta"),
+    column("»O.force", "expression", "vector", ".x, .y or .z"),
+    column("»D.theta.effort", "expression", "D.theta.effort"),
+    column("O.theta + »D.s", "expression", "angle", "length"),
+    column('"1 + »row.status"', "expression", "row.status"),
+    column('"dot(O.force, »2)"', "expression", "vector"),
+    column("{label: a, value: »pp.position.x}", "expression", "pp.position", "p.position"),
+    column("{label: a, value: sin(»D.s)}", "expression", "sin takes an angle", "length"),
+    column("»A.axis.x", "expression", "A.axis"),
+    column("»row.residuum", "expression", "row.residual"),
+]
+
+BAD_USES = [*MOTION, *ASSEMBLY, *LOADS, *COLUMNS]
