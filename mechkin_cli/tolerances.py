@@ -14,13 +14,13 @@ RESIDUAL_TIGHT: Final = 1e-16
 """A Newton iteration ends here at once: half a rounding of 1. Measured floor on RCSR: 1e-16 ...
 3e-16."""
 
-RESIDUAL_COARSE: Final = 1e-9
-"""One more Newton step from here squares the error and reaches rounding level for every condition
-up to about 1e8, so the iteration ends after that step without asking for more than arithmetic can
-give."""
+STEP_COARSE: Final = 1e-8
+"""A Newton step shorter than this (rad, length units) is the last: it leaves an error of about half
+its square times condition and curvature, below the rounding that the condition magnifies."""
 
 RESIDUAL_ACCEPT: Final = 1e-14
-"""Largest residual of a row that counts as assembled: about 50 roundings, what long chains need."""
+"""Largest residual of a row that counts as assembled: about 50 roundings, what long chains need.
+Lengths of a loop that reaches farther than the size count in parts of its reach."""
 
 NEWTON_ITERATIONS: Final = 6
 """From a prediction that passes the jump test Newton needs 2 to 4; a seventh means the guess was
@@ -76,6 +76,10 @@ branch is farther than twice the distance to the fold, a tenth of a step cannot 
 
 INFILL_LIMIT: Final = 0.02
 """Largest correction of a row filled in between two nodes, in parts of the nodes' distance."""
+
+LONGEST_STEP: Final = 0.5
+"""Longest step along the path (rad, length units): 13 nodes a turn at least, so that no pair of
+folds hides in one."""
 
 LEAST_STEP: Final = 1e-15
 """Step (in parts of max(1, |path|)) below which a branch cannot be followed in double precision."""

@@ -160,7 +160,9 @@ def _run_rows(
         outputs=True,
         lanes=lanes,
     )
-    failed = rows.reached & (~batch.good | (batch.correction > rows.limit))
+    first = int(np.argmax(rows.reached))
+    turned = batch.orientation != batch.orientation[first]
+    failed = rows.reached & (~batch.good | turned | ~(batch.correction <= rows.limit))
     rows.status[failed] = Status.not_converged
     rows.reached &= ~failed
     return batch
@@ -175,6 +177,7 @@ def _no_rows(plan: Plan, count: int) -> Batch:
         second=None,
         residual=nothing,
         correction=nothing.copy(),
+        orientation=nothing.copy(),
         condition=nothing.copy(),
         power_error=nothing.copy(),
         flags=np.zeros(count, dtype=np.uint8),

@@ -85,6 +85,7 @@ class Plan:
         second: Floats | None,
         residual: Floats,
         correction: Floats,
+        orientation: Floats | None,
         condition: Floats | None,
         power_error: Floats | None,
         flags: NDArray[np.uint8],

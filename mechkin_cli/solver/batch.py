@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 RESIDUAL_TESTS = (
     tolerances.RESIDUAL_TIGHT,
-    tolerances.RESIDUAL_COARSE,
+    tolerances.STEP_COARSE,
     tolerances.RESIDUAL_ACCEPT,
 )
 
@@ -39,6 +39,7 @@ class Batch:
     second: Floats | None
     residual: Floats
     correction: Floats
+    orientation: Floats
     condition: Floats | None
     power_error: Floats | None
     flags: NDArray[np.uint8]
@@ -83,7 +84,7 @@ def run(
     values = np.empty((plan.slots, rows)) if outputs else None
     first = np.empty((plan.columns, rows)) if derivatives else None
     second = np.empty((plan.columns, rows)) if derivatives else None
-    residual, correction = np.empty(rows), np.empty(rows)
+    residual, correction, orientation = np.empty(rows), np.empty(rows), np.ones(rows)
     condition = np.empty(rows) if demand & Demand.CONDITION else None
     power_error = np.empty(rows) if demand & Demand.POWER else None
     flags = np.empty(rows, dtype=np.uint8)
@@ -98,6 +99,7 @@ def run(
         second,
         residual,
         correction,
+        orientation,
         condition,
         power_error,
         flags,
@@ -106,4 +108,5 @@ def run(
         tests,
         lanes,
     )
-    return Batch(states, values, first, second, residual, correction, condition, power_error, flags)
+    measured = (residual, correction, orientation, condition, power_error)
+    return Batch(states, values, first, second, *measured, flags)

@@ -29,9 +29,10 @@ LIMITS = (
     tolerances.BEND_WANTED,
     tolerances.JUMP_LIMIT,
     tolerances.INFILL_LIMIT,
+    tolerances.LONGEST_STEP,
     tolerances.LEAST_STEP,
     float(tolerances.MOST_STEPS),
-    *(tolerances.RESIDUAL_TIGHT, tolerances.RESIDUAL_COARSE, tolerances.RESIDUAL_ACCEPT),
+    *(tolerances.RESIDUAL_TIGHT, tolerances.STEP_COARSE, tolerances.RESIDUAL_ACCEPT),
 )
 
 SAME_LINE = 1e-12

@@ -156,12 +156,13 @@ def run(
         result.second,
         result.residual,
         np.empty(rows),
+        None,
         result.condition,
         np.empty(rows),
         result.flags,
         int(demand),
         iterations,
-        (1e-16, 1e-9, accept),
+        (1e-16, 1e-8, accept),
         0,
     )
     return result

@@ -1,4 +1,4 @@
-"""Texts of hard cases, all made of mechanisms/rcsr.yaml: sizes, dead centres, far drawings, sweeps."""
+"""Texts of hard cases made of mechanisms/rcsr.yaml: sizes, dead centres, far drawings, sweeps."""
 
 from __future__ import annotations
 
@@ -85,8 +85,12 @@ def _home_places() -> dict[tuple[str, ...], np.ndarray]:
     turned4 = np.array([[np.cos(a4), 0, np.sin(a4)], [0, 1, 0], [-np.sin(a4), 0, np.cos(a4)]])
     centre, o1 = np.array([0.5, 1.0, 1.0]), np.array([-5.0, 0.0, 0.0])
     o2, o4 = o1 - [0, 0.5, 0], turned4 @ [4.0, 0.5, 0.0]
-    sphere = o2 - [0, 0.8, 0], o4 + [0, 0.4, 0]
-    centres = {"crank": o1 + centre, "coupler": o2 + turned1 @ centre, "rocker": o4 + turned4 @ centre}
+    sphere = o2 - [0, 0.8, 0], o4 - [0, -0.4, 0]
+    centres = {
+        "crank": o1 + centre,
+        "coupler": o2 + turned1 @ centre,
+        "rocker": o4 + turned4 @ centre,
+    }
     places: dict[tuple[str, ...], Any] = {
         ("joints", "O1", "point"): o1,
         ("joints", "O2", "point"): o2,

@@ -1,6 +1,6 @@
 """Loops whose branches come close to each other, or whose slides grow long: the same rows always.
 
-The places of the dead centres are the oracle's, reached from home in sixty small steps.
+The places of the dead centres are the oracle's, reached from home in small steps.
 """
 
 from __future__ import annotations

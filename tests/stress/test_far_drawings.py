@@ -17,9 +17,7 @@ EPS = 2.0**-52
 PLACES = [label for _, label in labels(("table_04", "table_05"))]
 AT_ORIGIN = [label for _, label in labels(LOADS) if label.startswith("M") and label != "MIN"]
 SAME = [
-    (table, label)
-    for table, label in labels(KINEMATICS + LOADS)
-    if label not in PLACES + AT_ORIGIN
+    (table, label) for table, label in labels(KINEMATICS + LOADS) if label not in PLACES + AT_ORIGIN
 ]
 
 

@@ -34,10 +34,7 @@ def cells(factor: float) -> dict[tuple[str, str], np.ndarray]:
 
 @pytest.mark.parametrize("decade", range(-6, 7))
 def test_errors_do_not_depend_on_the_size(decade):
-    """Against 40 digits; the limits are those of the mechanism in its own inches.
-
-    FD stands on the difference of two larger loads; all others keep ten times more.
-    """
+    """Against 40 digits, with the limits of the mechanism in its own inches."""
     factor = 10.0**decade
     found = cells(factor)
     for table, label in COLUMNS:

@@ -87,6 +87,14 @@ MECHKIN_INLINE void solve_transposed_sized(Factors f, int runtime, Pack* b) {
     case 6: return FUNCTION<6>(f, 6 __VA_ARGS__);    \
     default: return FUNCTION<0>(f, f.n __VA_ARGS__); \
   }
+// +1 or -1: the sign of the determinant of a factored matrix.
+inline Pack determinant_sign(Factors f) {
+  Pack sign = 1.0;
+  for (int k = 0; k < f.n; ++k) sign *= copysign(Pack(1.0), f.a[k * f.n + k]);
+  for (int s = 0; s < f.n * (f.n - 1) / 2; ++s) sign = select(f.swap[s], -sign, sign);
+  return sign;
+}
+
 #define MECHKIN_AND_B , b
 // Factors f.a in place.
 inline void factor(Factors f) { MECHKIN_SIZED(factor_sized, ) }

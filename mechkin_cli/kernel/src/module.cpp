@@ -60,7 +60,8 @@ void check_demand(const PlanStore& store, const Request& r) {
 
 void run(const PlanStore& store, Array2 inputs, std::optional<Array2> rates, std::optional<Array2> accelerations,
          Array2 guess, Array2 states, std::optional<Array2> outputs, std::optional<Array2> first,
-         std::optional<Array2> second, Array1 residual, Array1 correction, std::optional<Array1> condition,
+         std::optional<Array2> second, Array1 residual, Array1 correction, std::optional<Array1> orientation,
+         std::optional<Array1> condition,
          std::optional<Array1> power_error, Flags flags, unsigned demand, int iterations,
          std::array<double, 3> tests, int lanes) {
   const Plan& p = store.view();
@@ -77,6 +78,7 @@ void run(const PlanStore& store, Array2 inputs, std::optional<Array2> rates, std
   r.second = columns(second, p.columns, r.rows, "second");
   r.residual = per_row(residual, r.rows, "residual");
   r.correction = per_row(correction, r.rows, "correction");
+  r.orientation = per_row(orientation, r.rows, "orientation");
   r.condition = per_row(condition, r.rows, "condition");
   r.power_error = per_row(power_error, r.rows, "power_error");
   r.flags = row_flags(flags, r.rows);
@@ -113,7 +115,7 @@ void search(const PlanStore& store, int block, Array2 inputs, Array2 states, Arr
 // limits in the order of TrackLimits; returns (end, rows reached, steps, rejected, sigma, refused step);
 // `last` receives the states of the last node.
 nb::tuple track(const PlanStore& store, std::vector<double> x0, std::vector<double> u, Array1 sigma, Array1 start,
-                Array2 guess, Array1 limit, Array1 last, std::array<double, 10> l) {
+                Array2 guess, Array1 limit, Array1 last, std::array<double, 11> l) {
   const Plan& p = store.view();
   const long rows = (long)sigma.shape(0);
   if ((int)x0.size() != p.inputs || (int)u.size() != p.inputs) throw nb::value_error("one start and rate per input");
@@ -121,7 +123,7 @@ nb::tuple track(const PlanStore& store, std::vector<double> x0, std::vector<doub
   double* const end_state = per_row(last, p.states, "last");
   double* const guess_data = columns(guess, p.states, rows, "guess");
   double* const limit_data = per_row(limit, rows, "limit");
-  const TrackLimits limits = {l[0], l[1], l[2], l[3], l[4], l[5], (int)l[6], l[7], l[8], l[9], 6};
+  const TrackLimits limits = {l[0], l[1], l[2], l[3], l[4], l[5], l[6], (int)l[7], l[8], l[9], l[10], 6};
   const KernelUnit& unit = unit_or_throw(2);
   Track t;
   {
@@ -206,7 +208,7 @@ NB_MODULE(_kernel, m) {
       .def_prop_ro("slots", [](const PlanStore& s) { return s.view().slots; })
       .def("run", &run, "inputs"_a, "rates"_a.none(), "accelerations"_a.none(), "guess"_a, "states"_a,
            "outputs"_a.none(), "first"_a.none(), "second"_a.none(), "residual"_a, "correction"_a,
-           "condition"_a.none(), "power_error"_a.none(), "flags"_a, "demand"_a, "iterations"_a, "tests"_a, "lanes"_a)
+           "orientation"_a.none(), "condition"_a.none(), "power_error"_a.none(), "flags"_a, "demand"_a, "iterations"_a, "tests"_a, "lanes"_a)
       .def("search", &search, "block"_a, "inputs"_a, "states"_a, "residual"_a, "flags"_a, "iterations"_a,
            "accept"_a, "lanes"_a)
       .def("track", &track, "x0"_a, "u"_a, "sigma"_a, "start"_a, "guess"_a, "limit"_a, "last"_a, "limits"_a);

@@ -160,12 +160,14 @@ struct Request {
   double* second;               // columns x rows, may be null
   double* residual;             // rows
   double* correction;           // rows: largest change of an unknown against its guess, lengths in units
+  double* orientation;          // rows, may be null: product of the signs of the square blocks' determinants;
+                                // it changes where a fold lies between two places. Needs a demand.
   double* condition;            // rows, with DEMAND_CONDITION
   double* power_error;          // rows, with DEMAND_POWER
   unsigned char* flags;         // rows
   unsigned demand;
   int iterations;               // at most
-  double tight, coarse, accept;  // residual tests, see tolerances.py
+  double tight, coarse, accept;  // residual, step, residual: see tolerances.py
 };
 
 enum RowFlag : unsigned char {

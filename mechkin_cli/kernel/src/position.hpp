@@ -1,7 +1,7 @@
 // Poses of the links and the closure of the loops, block by block, by Newton's method.
 //
-// A lane runs until its residual test holds: at rounding level (`tight`), or one step after it was
-// small enough for that step to reach rounding level (`coarse`, quadratic convergence). A finished lane is
+// A lane runs until its residual is at rounding level (`tight`) or its last step was so short that what it left is
+// below rounding (`coarse`, quadratic convergence). A finished lane is
 // frozen, so its bits do not depend on its neighbours.
 #pragma once
 
@@ -88,9 +88,26 @@ MECHKIN_INLINE Closure closure_of(const Plan& p, const Workspace& w, int c) {
   return k;
 }
 
-// Closing equations of a block into w.right; returns the largest, lengths in parts of the size.
-inline Pack block_residual(const Plan& p, Workspace& w, const Block& b) {
-  Pack worst = 0.0;
+// The largest closing equation, lengths in parts of the size; `test` the same with the lengths of a loop that reaches
+// farther than the size in parts of its reach, since coordinates round by their own size.
+struct Residual {
+  Pack size, test;
+};
+
+// Largest coordinate of the joints' places.
+inline Pack block_reach(const Plan& p, const Workspace& w, const Block& b) {
+  Pack reach = 0.0;
+  for (int o = b.joint_begin; o < b.joint_end; ++o) {
+    const Vec3 at = w.pose[p.order[o]].o;
+    reach = max(max(reach, abs(at.x)), max(abs(at.y), abs(at.z)));
+  }
+  return reach;
+}
+
+// Closing equations of a block into w.right.
+inline Residual block_residual(const Plan& p, Workspace& w, const Block& b) {
+  Residual worst = {Pack(0.0), Pack(0.0)};
+  const Pack per_reach = Pack(1.0) / max(Pack(1.0), Pack(p.row_weight) * block_reach(p, w, b));
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
     w.closure[c] = closure_of(p, w, c);
@@ -98,8 +115,11 @@ inline Pack block_residual(const Plan& p, Workspace& w, const Block& b) {
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       entry.residual(w.closure[c], r);
       for (int i = 0; i < entry.equations; ++i) {
-        const Pack size = i < entry.lengths ? Pack(p.row_weight) * abs(r[i]) : abs(r[i]);
-        worst = select(size <= worst, worst, size);  // a NaN wins
+        const bool length = i < entry.lengths;
+        const Pack size = length ? Pack(p.row_weight) * abs(r[i]) : abs(r[i]);
+        const Pack test = length ? per_reach * size : size;
+        worst.size = select(size <= worst.size, worst.size, size);  // a NaN wins
+        worst.test = select(test <= worst.test, worst.test, test);
       }
     });
   }
@@ -209,29 +229,30 @@ inline Closed close_block(const Plan& p, Workspace& w, int index, const Request&
   const Block& b = p.block[index];
   const BlockPlaces at = places_of(p, w, index);
   Mask polished = all_lanes(false), done = all_lanes(false);
-  Pack residual = 0.0, correction = 0.0;
+  Residual residual = {};
+  Pack correction = 0.0;
   for (int iteration = 0;; ++iteration) {
     place_block(p, w, b);
     residual = block_residual(p, w, b);
-    done = done | polished | (residual <= Pack(r.tight));
+    done = done | polished | (residual.test <= Pack(r.tight));
     if (all(done) || iteration == r.iterations) break;
     block_screws(p, w, b);
     block_jacobian(p, w, index, at.jacobian);
     const Factors f = {at.jacobian, at.swap, b.size};
     factor(f);
     solve(f, w.right);
-    polished = residual <= Pack(r.coarse);
     Pack length = 0.0;
     for (int u = 0; u < b.size; ++u) {
       w.right[u] = -w.right[u];
       length = select(abs(w.right[u]) <= length, length, abs(w.right[u]));  // a NaN wins
     }
+    polished = length <= Pack(r.coarse);
     // where the Jacobian is singular there is no step: the lane stays where it is
     done = done | ~(length < Pack(1e100));
     correction += select(done, Pack(0.0), length);
     advance_block(p, w, index, w.right, ~done);
   }
-  return {residual, correction, residual <= Pack(r.accept), block_side_conditions(p, w, b)};
+  return {residual.size, correction, residual.test <= Pack(r.accept), block_side_conditions(p, w, b)};
 }
 
 }  // namespace

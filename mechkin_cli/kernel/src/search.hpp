@@ -48,7 +48,7 @@ inline Pack search_block(const Plan& p, Workspace& w, int index, int iterations,
   Pack damping = scale.start, residual = 0.0;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     place_block(p, w, b);
-    residual = block_residual(p, w, b);
+    residual = block_residual(p, w, b).size;
     const Mask ended = (residual <= Pack(accept)) | (damping > Pack(scale.stuck));
     if (all(ended)) break;
     block_screws(p, w, b);
@@ -64,7 +64,7 @@ inline Pack search_block(const Plan& p, Workspace& w, int index, int iterations,
     damping = select(better, max(Pack(scale.success) * damping, Pack(scale.least)), Pack(scale.failure) * damping);
   }
   place_block(p, w, b);
-  return block_residual(p, w, b);
+  return block_residual(p, w, b).size;
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ class Stepper {
     r.guess = guess;
     r.states = node->state.data();
     r.velocities = node->first.data(), r.second = node->second.data();
-    r.residual = &residual, r.correction = correction, r.flags = &flags;
+    r.residual = &residual, r.correction = correction, r.orientation = &node->orientation, r.flags = &flags;
     r.demand = DEMAND_VELOCITY | DEMAND_ACCELERATION;
     r.iterations = limits_.iterations;
     r.tight = limits_.tight, r.coarse = limits_.coarse, r.accept = limits_.accept;
@@ -105,17 +105,26 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
 // The inputs are columns too, so the first derivatives hold the whole tangent of the branch.
 double wanted_step(const Node& n, const TrackLimits& limits) {
   const double t2 = product(n.first, n.first), b2 = product(n.second, n.second);
-  if (b2 == 0.0) return HUGE_VAL;
+  if (b2 == 0.0) return limits.longest_step;
   const double along = product(n.first, n.second);
   const double across = std::sqrt(std::fmax(b2 - along * along / t2, 0.0));
   const double by_bend = limits.bend * std::sqrt(t2 / b2);
   const double by_turn = across > 0.0 ? limits.turn * std::sqrt(t2) / across : HUGE_VAL;
-  return std::fmin(by_bend, by_turn);
+  return std::fmin(limits.longest_step, std::fmin(by_bend, by_turn));
 }
 
 bool turned_too_far(const Node& a, const Node& b, const TrackLimits& limits) {
   const double cosine = product(a.first, b.first) / std::sqrt(product(a.first, a.first) * product(b.first, b.first));
   return !(cosine >= limits.turn_cosine);
+}
+
+// Prediction of a from b: a place on another branch does not look back at where it was predicted from.
+bool looks_back(const Stepper& stepper, const Node& a, const Node& b, double tolerance) {
+  std::vector<double> back;
+  stepper.predict(b, a.sigma - b.sigma, &back);
+  for (std::size_t s = 0; s < back.size(); ++s)
+    if (!(std::fabs(back[s] - a.state[s]) <= tolerance)) return false;
+  return true;
 }
 
 // Guesses for the rows from `row` on that lie between two nodes; returns the first row beyond.
@@ -177,7 +186,9 @@ Track follow(const Plan& plan, const KernelUnit& unit, const double* x0, const d
     stepper.predict(node, step, &predicted);
     const double length = step * std::sqrt(product(node.first, node.first));
     const bool good = stepper.close(last ? end : node.sigma + step, predicted.data(), &next, &correction) &&
-                      correction <= limits.jump * length && !turned_too_far(node, next, limits);
+                      correction <= limits.jump * length && next.orientation == node.orientation &&
+                      !turned_too_far(node, next, limits) &&
+                      looks_back(stepper, node, next, limits.jump * length);
     if (!good) {
       ++track.rejected;
       h = 0.5 * step;

@@ -15,6 +15,7 @@ struct TrackLimits {
   double bend;          // wanted ratio of the quadratic to twice the linear part of a step
   double jump;          // largest Newton correction in parts of the step's length
   double infill;        // largest correction of an infilled row in parts of the nodes' distance
+  double longest_step;  // largest step, rad or length units of the path
   double least_step;    // smallest step in parts of max(1, |sigma|)
   int most_steps;
   double tight, coarse, accept;
@@ -24,7 +25,7 @@ struct TrackLimits {
 enum class TrackEnd : int { finished = 0, stalled = 1, exhausted = 2, start_not_closed = 3 };
 
 struct Node {
-  double sigma;
+  double sigma, orientation;
   std::vector<double> state, first, second;              // states, columns, columns
   std::vector<double> state_first, state_second;         // derivatives of the raw states
 };
