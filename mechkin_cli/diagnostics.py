@@ -7,14 +7,12 @@ A diagnostic names the place, what was measured, the limit and what to do. Unusa
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 Severity = Literal["error", "warning", "note"]
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
+class Place(NamedTuple):
     """A position in a text file; `line` and `column` count from 1."""
 
     file: str
@@ -25,8 +23,7 @@ class Place:
         return f"{self.file}:{self.line}:{self.column}"
 
 
-@dataclass(frozen=True, slots=True)
-class Diagnostic:
+class Diagnostic(NamedTuple):
     """One message.
 
     `code` is stable and made for programs (`unknown-key`, `dead-centre`, ...); `message` says what

@@ -21,10 +21,11 @@ from mechkin_cli.building.build import Built, build
 from mechkin_cli.building.columns import used_quantities
 from mechkin_cli.building.source import open_file, open_text
 from mechkin_cli.diagnostics import Diagnostic, UsageError
-from mechkin_cli.expressions import Vector, parse
+from mechkin_cli.expressions import Expression, Vector, parse
 from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.tables.columns import Columns, evaluate
 from mechkin_cli.tables.layout import TableLayout
+from mechkin_cli.tables.uniqueness import unique_cells
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -179,12 +180,19 @@ class Analysis:
             return self.result.inputs[text].copy()
         expression = parse(text)
         result = self._with(expression.names)
+        columns = self._columns(expression, result)
+        others = [self._columns(expression, other) for other in result.alternatives]
+        settled = [
+            unique_cells(column, [other[i] for other in others]) for i, column in enumerate(columns)
+        ]
+        return np.stack(settled, axis=1) if len(settled) > 1 else settled[0]
+
+    def _columns(self, expression: Expression, result: Result) -> list[NDArray[np.float64]]:
+        """The value of an expression in the file's units: one column, or three of a vector."""
         found = expression.evaluate(result.quantity, result.units)
-        if isinstance(found.value, Vector):
-            parts = [found.value.x, found.value.y, found.value.z]
-            columns = [self._column(part, found.dimension) for part in parts]
-            return np.stack(columns, axis=1)
-        return self._column(found.value, found.dimension)
+        value = found.value
+        parts = [value.x, value.y, value.z] if isinstance(value, Vector) else [value]
+        return [self._column(part, found.dimension) for part in parts]
 
     def _column(self, value: object, dimension: object) -> NDArray[np.float64]:
         rows = np.array(np.broadcast_to(np.asarray(value, float), (self.rows,)))

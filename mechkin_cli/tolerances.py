@@ -108,6 +108,11 @@ has."""
 RANK_GAP: Final = 1e3
 """Ratio of neighbouring singular values that separates rank from noise."""
 
+UNIQUE_CELL: Final = 1e-9
+"""Change of a cell, in parts of its column's largest value, when a part of the null space is added
+to the reactions: above it the cell is not unique. Rounding leaves 1e-13, a cell that moves moves by
+about its own size."""
+
 AXES_SQUARE: Final = 1e-9
 """Inertia axes must be square to this (cosine): typed numbers have nine digits and more."""
 

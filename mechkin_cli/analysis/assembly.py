@@ -11,11 +11,13 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.problem import Problem
+from mechkin_cli.analysis.rows import MAY_BE_RIGID, in_file_units
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.solver.batch import run
-from mechkin_cli.solver.demand import OutputPlan, joint_points
+from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.follow import TrackEnd, follow
-from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.graph import ANGLES, SolverGraph, is_redundant
+from mechkin_cli.solver.layout import Layout, is_slide
 from mechkin_cli.solver.search import Found, assemblies
 from mechkin_cli.status import Status
 
@@ -50,7 +52,7 @@ class Probe:
         self.coordinates = list(problem.mechanism.coordinates)
         for name in self.coordinates:
             self.outputs.add(quantities[name])
-        self.points = [at for _, at in joint_points(layout) if at.link != "ground"]
+        self.points = [at for _, at in layout.mechanism.joint_points() if at.link != "ground"]
         self.point_slots = [self.outputs.add_point(at, 0) for at in self.points]
 
     def read(self, inputs: Floats, states: Floats) -> tuple[dict[str, Floats], Floats]:
@@ -67,7 +69,7 @@ class Probe:
     def size(self, inputs: Floats, state: Floats) -> float:
         """Diagonal of the box of all joint points, in m; 1 if they coincide."""
         _, points = self.read(inputs, state[:, None])
-        fixed = [at.vector for _, at in joint_points(self.layout) if at.link == "ground"]
+        fixed = [at.vector for _, at in self.layout.mechanism.joint_points() if at.link == "ground"]
         every = np.concatenate([points[:, :, 0], np.array(fixed).reshape(-1, 3)])
         extent = every.max(axis=0) - every.min(axis=0)
         x, y, z = (float(e) for e in extent)
@@ -76,10 +78,10 @@ class Probe:
 
 def home_state(layout: Layout) -> Floats:
     """States of the home drawing: every coordinate zero."""
-    state = np.zeros(sum(e.joint.type.states for e in layout.graph.edges))
-    for k, edge in enumerate(layout.graph.edges):
-        if edge.joint.letter == "S":
-            state[layout.first_state[k]] = 1.0
+    state = np.zeros(layout.states)
+    for carrier in layout.carriers:
+        if carrier.part.letter == "S":
+            state[carrier.state] = 1.0
     return state
 
 
@@ -99,15 +101,15 @@ def choose_start(
     if not wanted.near and wanted.mode is None and is_home_assembled(layout, plan):
         return _from_home(problem, layout, plan, inputs)
     found = assemblies(layout, plan, inputs, wanted.turns)
-    if found.count == 0:
-        return Start(None, "", "", [_nothing_found(problem, found)])
+    if found.number == 0:
+        return Start(None, "", "", [_nothing_found(problem, layout.graph, found)])
     coordinates, points = probe.read(inputs, found.states)
-    order = _mode_order(problem, coordinates, found.count)
+    order = _mode_order(problem, coordinates, found.number)
     letters = {i: mode_name(rank) for rank, i in enumerate(order)}
     if wanted.mode is not None:
         return _by_name(found, letters, wanted.mode)
     if wanted.near:
-        distances, how = _distances_near(problem, layout, coordinates, found.count), "near"
+        distances, how = _distances_near(problem, layout, coordinates, found.number), "near"
     else:
         distances, how = _distances_home(layout, probe, points), "nearest to home"
     return _nearest(found, letters, distances, how)
@@ -128,27 +130,33 @@ def _from_home(problem: Problem, layout: Layout, plan: Plan, inputs: Floats) -> 
     followed = follow(plan, path, home_state(layout))
     if followed.end == TrackEnd.FINISHED:
         return Start(followed.state, "home", "followed from the home drawing")
-    names = ", ".join(
-        f"{i.name} = {place:.9g}"
-        for i, place in zip(problem.motion.inputs, followed.inputs, strict=True)
+    places = ", ".join(
+        f"{item.name} = {in_file_units(problem, layout, k, float(followed.inputs[k]))}"
+        for k, item in enumerate(problem.motion.inputs)
     )
+    rigid = f"; {MAY_BE_RIGID}" if is_redundant(layout.graph) else ""
     diagnostic = Diagnostic(
         "home-branch-ends",
         "error",
         "the assembly drawn at home ends before the first row",
-        measured=f"followed up to {names} (rad, kernel units)",
-        hint="choose another assembly with assembly: {near: ...}",
+        measured=f"followed up to {places}",
+        hint=f"choose another assembly with assembly: {{near: ...}}{rigid}",
     )
     return Start(None, "home", "", [diagnostic], Status.beyond_dead_centre)
 
 
-def _nothing_found(problem: Problem, found: Found) -> Diagnostic:
+def _nothing_found(problem: Problem, graph: SolverGraph, found: Found) -> Diagnostic:
+    hint = "check the dimensions, or start the sweep at another input"
+    if is_redundant(graph):
+        hint = "dimensions of an overconstrained loop must be exact (write expressions)"
     return Diagnostic(
         "not-assembled",
         "error",
         f"{problem.mechanism.name} cannot be assembled at the first row",
-        measured=f"none of {found.starts} random starts closed the loops",
-        hint="check the dimensions, or start the sweep at another input",
+        measured=f"none of {found.starts} random starts closed the loops, "
+        f"the best to {found.closest:.2g} of the size",
+        limit=f"{tolerances.RESIDUAL_ACCEPT:g}",
+        hint=hint,
     )
 
 
@@ -168,7 +176,7 @@ def _mode_order(problem: Problem, coordinates: dict[str, Floats], count: int) ->
 
 def _is_angle(problem: Problem, name: str) -> bool:
     joint, _, coordinate = name.partition(".")
-    return coordinate == "theta" and problem.mechanism.joints[joint].letter != "H"
+    return coordinate in ANGLES and problem.mechanism.joints[joint].letter != "H"
 
 
 def wrapped(angle: float) -> float:
@@ -189,7 +197,7 @@ def _distances_near(
             miss = float(coordinates[name][i]) - target
             if _is_angle(problem, name):
                 miss = wrapped(miss)
-            elif name.endswith(".s"):
+            elif is_slide(name.partition(".")[2]):
                 miss /= size
             total += miss * miss
         distances.append(sqrt(total))
@@ -214,14 +222,14 @@ def _by_name(found: Found, letters: dict[int, str], name: str) -> Start:
         "no-such-mode",
         "error",
         f"there is no mode {name} at the first row",
-        measured=f"{found.count} modes found: {', '.join(sorted(letters.values()))}",
+        measured=f"modes {', '.join(sorted(letters.values()))}",
         hint="take one of these",
     )
     return Start(None, name, "", [diagnostic])
 
 
 def _nearest(found: Found, letters: dict[int, str], distances: list[float], how: str) -> Start:
-    order = sorted(range(found.count), key=lambda i: distances[i])
+    order = sorted(range(found.number), key=lambda i: distances[i])
     best = order[0]
     notes = []
     if len(order) > 1:
@@ -237,4 +245,4 @@ def _nearest(found: Found, letters: dict[int, str], distances: list[float], how:
                     hint="give more coordinates under assembly: near",
                 )
             )
-    return Start(found.states[:, best], letters[best], f"{how}, 1 of {found.count} found", notes)
+    return Start(found.states[:, best], letters[best], f"{how}, 1 of {found.number} found", notes)

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.problem import Problem
-from mechkin_cli.analysis.rows import KernelInputs, RowStates
+from mechkin_cli.analysis.rows import MAY_BE_RIGID, KernelInputs, RowStates, in_file_units
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.dead_centre import DeadCentre, locate
 from mechkin_cli.solver.follow import Followed
+from mechkin_cli.solver.graph import is_redundant
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.status import Status
-from mechkin_cli.units import ANGLE, LENGTH
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -25,6 +24,9 @@ if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
 
     Floats = NDArray[np.float64]
+
+
+MAY_BE_SPECIAL = "this may be a branch point or a special position; sweep from its other side"
 
 
 def explain_end(
@@ -89,17 +91,6 @@ def _fill_before(
         row += 1
 
 
-def _in_file_units(problem: Problem, layout: Layout, number: int, value: float) -> str:
-    item = problem.motion.inputs[number]
-    if item.coordinate == "theta":
-        dimension, si = ANGLE, value
-    else:
-        joint = problem.mechanism.joints[item.joint]
-        dimension = LENGTH
-        si = value * (joint.lead / (2.0 * pi) if joint.letter == "H" else layout.length)
-    return f"{float(problem.units.from_si(si, dimension)):.12g} {problem.units.label(dimension)}"
-
-
 def _row_span(rows: RowStates) -> str:
     missing = np.flatnonzero(~rows.reached) + 1
     return f"row {missing[0]}" if missing.size == 1 else f"rows {missing[0]} to {missing[-1]}"
@@ -113,14 +104,14 @@ def _dead_centre_note(
         "dead-centre",
         "warning",
         f"the branch ends at a dead centre; {_row_span(rows)} lie beyond it and stay empty",
-        measured=f"{name} = {_in_file_units(problem, layout, number, fold.value)}",
+        measured=f"{name} = {in_file_units(problem, layout, number, fold.value)}",
         hint="end the sweep before it, or choose another assembly",
     )
 
 
 def _lost_note(problem: Problem, layout: Layout, followed: Followed, rows: RowStates) -> Diagnostic:
     places = ", ".join(
-        f"{item.name} = {_in_file_units(problem, layout, k, float(followed.inputs[k]))}"
+        f"{item.name} = {in_file_units(problem, layout, k, float(followed.inputs[k]))}"
         for k, item in enumerate(problem.motion.inputs)
     )
     return Diagnostic(
@@ -128,5 +119,5 @@ def _lost_note(problem: Problem, layout: Layout, followed: Followed, rows: RowSt
         "error",
         f"the branch could not be followed further; {_row_span(rows)} stay empty",
         measured=f"last place {places}",
-        hint="this may be a branch point or a special position; sweep from its other side",
+        hint=MAY_BE_RIGID if is_redundant(layout.graph) else MAY_BE_SPECIAL,
     )

@@ -15,6 +15,7 @@ from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.follow import follow
+from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def unwrap_closing_angles(
         quantity
         for quantity in wanted
         if quantity.kind == "coordinate"
-        and quantity.coordinate == "theta"
+        and quantity.coordinate in ANGLES
         and quantity.order == 0
         and layout.joint_reference[quantity.owner] < 0
     ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -43,6 +43,7 @@ class Result:
     slots: Mapping[str, Slot]
     nodes: int
     diagnostics: tuple[Diagnostic, ...]
+    shifted: tuple[Floats, ...] = ()
 
     @cached_property
     def _known(self) -> dict[str, Wanted]:
@@ -67,6 +68,12 @@ class Result:
     def inputs(self) -> Mapping[str, Floats]:
         """Input values in the file's units, exactly as written."""
         return {i.name: i.written for i in self.problem.motion.inputs}
+
+    @cached_property
+    def alternatives(self) -> tuple[Result, ...]:
+        """The same rows with other reactions that are in equilibrium too (redundant
+        constraints)."""
+        return tuple(replace(self, outputs=outputs, shifted=()) for outputs in self.shifted)
 
     @property
     def complete(self) -> bool:

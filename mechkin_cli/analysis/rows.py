@@ -4,18 +4,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.graph import ANGLES
+from mechkin_cli.solver.layout import Layout, is_slide
+from mechkin_cli.units import ANGLE, LENGTH
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
+
+MAY_BE_RIGID = (
+    "an overconstrained loop moves only if its dimensions are exact (write expressions); else "
+    "this is a branch point or a special position"
+)
 
 
 @dataclass
@@ -30,8 +37,7 @@ class RowStates:
     diagnostics: list[Diagnostic]
 
 
-@dataclass(frozen=True)
-class KernelInputs:
+class KernelInputs(NamedTuple):
     """Values, rates and accelerations (inputs, rows) in kernel units."""
 
     values: Floats
@@ -48,9 +54,21 @@ def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
         for item in inputs:
             joint = problem.mechanism.joints[item.joint]
             unit = 1.0
-            if item.coordinate == "s":
+            if is_slide(item.coordinate):
                 unit = joint.lead / (2.0 * pi) if joint.letter == "H" else layout.length
             columns.append(getattr(item, name) / unit)
         return np.ascontiguousarray(np.stack(columns)) if columns else np.empty((0, rows))
 
     return KernelInputs(table("values"), table("rates"), table("accelerations"))
+
+
+def in_file_units(problem: Problem, layout: Layout, number: int, value: float) -> str:
+    """A value of input `number` in kernel units as text in the file's units."""
+    item = problem.motion.inputs[number]
+    if item.coordinate in ANGLES:
+        dimension, si = ANGLE, value
+    else:
+        joint = problem.mechanism.joints[item.joint]
+        dimension = LENGTH
+        si = value * (joint.lead / (2.0 * pi) if joint.letter == "H" else layout.length)
+    return f"{float(problem.units.from_si(si, dimension)):.12g} {problem.units.label(dimension)}"

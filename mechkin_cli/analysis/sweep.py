@@ -12,16 +12,16 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly import Probe, Start, choose_start
 from mechkin_cli.analysis.branch_end import explain_end
 from mechkin_cli.analysis.closing_angles import unwrap_closing_angles
+from mechkin_cli.analysis.notes import not_converged_note, redundancy_note
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.result import Result
 from mechkin_cli.analysis.rows import KernelInputs, RowStates, kernel_inputs
-from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.batch import Batch, run
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import OutputPlan, demand_of
+from mechkin_cli.solver.demand import WRENCH_KINDS, OutputPlan, demand_of
 from mechkin_cli.solver.follow import TrackEnd, follow
-from mechkin_cli.solver.graph import build_graph
+from mechkin_cli.solver.graph import SolverGraph, build_graph, is_redundant
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.status import Status
 
@@ -59,7 +59,7 @@ def analyze(
     layout = Layout(problem.mechanism, graph)
     known = problem.quantities()
     wanted = [known[name] for name in dict.fromkeys(quantities)]
-    demand = _demand(problem, wanted, verdicts)
+    demand = _demand(problem, graph, wanted, verdicts)
     inputs = kernel_inputs(problem, layout)
     probe = Probe(problem, layout)
     start = choose_start(problem, layout, layout.build(), inputs.values[:, 0], probe)
@@ -81,12 +81,15 @@ def analyze(
     if batch.condition is not None:
         _empty_what_is_unclear(rows, batch.condition, outputs, wanted, values)
     if (rows.status == Status.not_converged).any():
-        rows.diagnostics.append(_not_converged_note(rows, batch))
+        rows.diagnostics.append(not_converged_note(rows, batch))
     missing = ~rows.reached
     nothing = np.full(problem.motion.rows, np.nan)
     for array in (values.T, batch.residual, batch.condition, batch.power_error):
         if array is not None:
             array[missing] = np.nan
+    shifted = _shifted_outputs(plan, graph, inputs, rows, demand, lanes, outputs, wanted, values)
+    if shifted:
+        rows.diagnostics.append(redundancy_note(graph))
     return Result(
         problem=problem,
         graph=graph,
@@ -100,13 +103,14 @@ def analyze(
         outputs=values,
         slots=outputs.slots,
         nodes=rows.nodes,
+        shifted=shifted,
         diagnostics=(*problem.diagnostics, *start.diagnostics, *rows.diagnostics),
     )
 
 
-def _demand(problem: Problem, wanted: list[Wanted], verdicts: bool) -> Demand:
+def _demand(problem: Problem, graph: SolverGraph, wanted: list[Wanted], verdicts: bool) -> Demand:
     demand = demand_of(problem.mechanism, wanted)
-    if verdicts:
+    if verdicts and graph.blocks:
         demand |= Demand.CONDITION
         if demand & Demand.FORCES and demand & Demand.VELOCITY:
             demand |= Demand.POWER
@@ -126,8 +130,7 @@ def _follow(
     status = np.full(count, int(Status.ok), dtype=np.int8)
     if start.state is None:
         status[:] = start.status
-        states = sum(edge.joint.type.states for edge in layout.graph.edges)
-        empty = np.zeros((states, count))
+        empty = np.zeros((layout.states, count))
         return RowStates(empty, np.zeros(count), np.zeros(count, dtype=bool), status, 0, [])
     followed = follow(plan, inputs.values, start.state, every_row=every_row)
     reached = np.arange(count) < followed.reached
@@ -138,7 +141,12 @@ def _follow(
 
 
 def _run_rows(
-    plan: Plan, inputs: KernelInputs, rows: RowStates, demand: Demand, lanes: int
+    plan: Plan,
+    inputs: KernelInputs,
+    rows: RowStates,
+    demand: Demand,
+    lanes: int,
+    shift: int = 0,
 ) -> Batch:
     """The batched run of all rows; rows without a guess repeat a neighbour's and are emptied
     later."""
@@ -158,6 +166,7 @@ def _run_rows(
         accelerations=inputs.accelerations,
         demand=demand,
         outputs=True,
+        shift=shift,
         lanes=lanes,
     )
     first = int(np.argmax(rows.reached))
@@ -198,14 +207,30 @@ def _empty_what_is_unclear(
             values[slot.first : slot.first + slot.width, unclear] = np.nan
 
 
-def _not_converged_note(rows: RowStates, batch: Batch) -> Diagnostic:
-    failed = np.flatnonzero(rows.status == Status.not_converged)
-    worst = float(np.max(batch.residual[failed]))
-    return Diagnostic(
-        "not-converged",
-        "error",
-        f"{failed.size} rows did not close, the first is row {failed[0] + 1}",
-        measured=f"residual {worst:.2g}",
-        limit=f"{tolerances.RESIDUAL_ACCEPT:g}",
-        hint="this may be a special position; move the sweep by a fraction of its step",
-    )
+def _shifted_outputs(
+    plan: Plan,
+    graph: SolverGraph,
+    inputs: KernelInputs,
+    rows: RowStates,
+    demand: Demand,
+    lanes: int,
+    outputs: OutputPlan,
+    wanted: list[Wanted],
+    values: Floats,
+) -> tuple[Floats, ...]:
+    """The outputs for two other reactions in equilibrium, where constraints are redundant."""
+    # efforts and what acts on ground are unique where the motion is
+    reactions = [quantity for quantity in wanted if quantity.kind in WRENCH_KINDS]
+    if not (is_redundant(graph) and reactions and rows.reached.any()):
+        return ()
+    found = []
+    for shift in (1, 2):
+        fresh = _run_rows(plan, inputs, rows, demand, lanes, shift).outputs
+        assert fresh is not None
+        changed = values.copy()
+        for slot in (outputs.slots[quantity.name] for quantity in reactions):
+            changed[slot.first : slot.first + slot.width] = fresh[
+                slot.first : slot.first + slot.width
+            ]
+        found.append(changed)
+    return tuple(found)

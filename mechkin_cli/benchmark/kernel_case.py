@@ -15,7 +15,6 @@ from mechkin_cli.solver.batch import Batch, run
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import OutputPlan, demand_of
 from mechkin_cli.solver.follow import follow
-from mechkin_cli.solver.graph import freedom_of
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
@@ -99,7 +98,7 @@ class KernelCase:
         for k, edge in enumerate(self.layout.graph.edges):
             for kind in edge.joint.type.coordinates:
                 unit = self.layout.length if kind == "s" else 1.0
-                place = self.layout.first_state[k] + freedom_of(edge.joint, kind)
+                place = self.layout.state(k, edge.joint.type.freedom_of[kind])
                 states[place] = known[f"{edge.joint.name}.{kind}"] / unit
         return states
 

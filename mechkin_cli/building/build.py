@@ -4,7 +4,7 @@ tables."""
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.building.columns import build_tables
@@ -24,8 +24,7 @@ from mechkin_cli.tables.layout import TableLayout, default_table
 from mechkin_cli.units import ANGLE, LENGTH
 
 
-@dataclass(frozen=True)
-class Built:
+class Built(NamedTuple):
     """The problem of a file, its solver graph and its tables."""
 
     problem: Problem

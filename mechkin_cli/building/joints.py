@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.expressions.errors import nearest
 from mechkin_cli.mechanism.frames import (
     GROUND,
     Frame,
@@ -13,11 +14,13 @@ from mechkin_cli.mechanism.frames import (
     perpendicular,
     turned_shortest,
 )
-from mechkin_cli.mechanism.joint_types import joint_types
-from mechkin_cli.mechanism.model import GROUND_NAME, Joint
-from mechkin_cli.mechanism.vectors import Vector, cross, norm
+from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Part
+from mechkin_cli.mechanism.vectors import Vector, cross, norm, scale, unit
 from mechkin_cli.tolerances import PARALLEL
 from mechkin_cli.units import LENGTH
+
+Frames = tuple[Frame, Frame, tuple[Part, ...]]
+"""On the first link, on the second link, and the joint's parts."""
 
 
 def build_joints(
@@ -26,41 +29,34 @@ def build_joints(
     """All joints that can be built; the rest is noted in `fields`."""
     joints = {}
     for name, section in sections.items():
-        joint = _build(fields, name, section, links)
-        if joint is None:
-            fields.refused.add(name)
+        if _links_known(fields, ("joints", name), section, links):
+            joints[name] = _build(fields, name, section)
         else:
-            joints[name] = joint
+            fields.refused.add(name)
     return joints
 
 
-def _build(fields: Fields, name: str, section: Any, links: Mapping[str, Any]) -> Joint | None:
-    path: Path = ("joints", name)
+def _links_known(fields: Fields, path: Path, section: Any, links: Mapping[str, Any]) -> bool:
     known = True
     for i, link in enumerate(section.links):
         if link != GROUND_NAME and link not in links:
-            fields.error(
-                "unknown-link",
-                (*path, "links", i),
-                f"there is no link {link}",
-                nearest_hint(link, [GROUND_NAME, *links]),
-            )
+            hint = nearest_hint(link, [GROUND_NAME, *links])
+            fields.error("unknown-link", (*path, "links", i), f"there is no link {link}", hint)
             known = False
-    if section.type not in joint_types():
-        supported = ", ".join(joint_types())
-        fields.error(
-            "joint-type",
-            (*path, "type"),
-            f"joints of type {section.type} are not solved by this version",
-            f"it solves {supported}",
-        )
-        return None
-    if not known:
-        return None
+    return known
+
+
+def nearest_hint(name: str, known: list[str]) -> str | None:
+    """The nearest known name as a hint."""
+    return nearest(name, known)
+
+
+def _build(fields: Fields, name: str, section: Any) -> Joint:
+    path: Path = ("joints", name)
     first, second = section.links
-    on_first, on_second = _frames(fields, path, section)
+    on_first, on_second, parts = _FRAMES[section.type](fields, path, section)
     lead = _lead(fields, (*path, "lead"), section.lead) if section.type == "H" else 0.0
-    return Joint(name, section.type, first, second, on_first, on_second, lead)
+    return Joint(name, section.type, first, second, on_first, on_second, parts, lead)
 
 
 def _lead(fields: Fields, path: Path, text: str) -> float:
@@ -71,23 +67,108 @@ def _lead(fields: Fields, path: Path, text: str) -> float:
     return lead
 
 
-def nearest_hint(name: str, known: list[str]) -> str | None:
-    """The nearest known name as a hint."""
-    from mechkin_cli.expressions.errors import nearest
-
-    return nearest(name, known)
+def _points(fields: Fields, path: Path, section: Any) -> tuple[Vector, Vector]:
+    return _per_link(fields, (*path, "point"), section.point, section.links, False)
 
 
-def _frames(fields: Fields, path: Path, section: Any) -> tuple[Frame, Frame]:
-    points = _per_link(fields, (*path, "point"), section.point, section.links, False)
-    if section.type == "S":
-        return (
-            Frame(GROUND.x, GROUND.y, GROUND.z, points[0]),
-            Frame(GROUND.x, GROUND.y, GROUND.z, points[1]),
-        )
+def _axis_frames(fields: Fields, path: Path, section: Any) -> Frames:
+    """R, P, C, H: z along the axis on either link."""
+    points = _points(fields, path, section)
     axes = _per_link(fields, (*path, "axis"), section.axis, section.links, True)
     x_first, x_second = _zero_directions(fields, path, section, axes)
-    return frame_about(axes[0], x_first, points[0]), frame_about(axes[1], x_second, points[1])
+    on_first = frame_about(axes[0], x_first, points[0])
+    on_second = frame_about(axes[1], x_second, points[1])
+    return on_first, on_second, (Part(section.type, on_first, on_second),)
+
+
+def _spheric_frames(fields: Fields, path: Path, section: Any) -> Frames:
+    """S: ground axes at the sphere's centre."""
+    first, second = _points(fields, path, section)
+    on_first, on_second = _upright(first), _upright(second)
+    return on_first, on_second, (Part("S", on_first, on_second),)
+
+
+def _plane_frames(fields: Fields, path: Path, section: Any) -> Frames:
+    """Sp: turns about the sphere's centre, then slides in the plane of the second link."""
+    first, second = _points(fields, path, section)
+    normal = _per_link(fields, (*path, "normal"), section.normal, section.links, True)[1]
+    x = perpendicular(normal)
+    on_second = frame_about(normal, x, second)
+    slides = [frame_about(axis, normal, second) for axis in (on_second.x, on_second.y)]
+    turn = Part("S", _upright(first), _upright(second))
+    return _upright(first), on_second, (turn, *(Part("P", f, f) for f in slides))
+
+
+def _groove_frames(fields: Fields, path: Path, section: Any) -> Frames:
+    """Sg: turns about the sphere's centre; where s grows the second link runs back along its
+    groove."""
+    first, second = _points(fields, path, section)
+    groove = _per_link(fields, (*path, "groove"), section.groove, section.links, True)[1]
+    on_second = frame_about(groove, perpendicular(groove), second)
+    back = frame_about(scale(-1.0, groove), on_second.x, second)
+    turn = Part("S", _upright(first), _upright(second))
+    return _upright(first), on_second, (turn, Part("P", back, back))
+
+
+def _universal_frames(fields: Fields, path: Path, section: Any) -> Frames:
+    """U: about `axis` of the first link, then about `axis2` of the second; x square to both."""
+    first, second = _points(fields, path, section)
+    one = fields.direction((*path, "axis"), section.axis)
+    two = fields.direction((*path, "axis2"), section.axis2)
+    common = cross(one, two)
+    if norm(common) <= PARALLEL:
+        fields.error(
+            "parallel-axes",
+            (*path, "axis2"),
+            "the two axes of a universal joint are parallel",
+            "turn one of them, or use type R",
+        )
+        common = perpendicular(one)
+    x = unit(common)
+    on_first, on_second = frame_about(one, x, first), frame_about(two, x, second)
+    between = frame_about(one, x, second)
+    return on_first, on_second, (Part("R", on_first, between), Part("R", on_second, on_second))
+
+
+def _planar_frames(fields: Fields, path: Path, section: Any) -> Frames:
+    """E: slides along x and y of the first link, then turns about the normal."""
+    points = _points(fields, path, section)
+    normals = _per_link(fields, (*path, "normal"), section.normal, section.links, True)
+    x = _per_link(fields, (*path, "x"), section.x, section.links, True)
+    directions: list[Vector] = []
+    for i, link in enumerate(section.links):
+        if i == 1 and (normals[1], x[1]) == (normals[0], x[0]):
+            directions.append(directions[0])
+            continue
+        place: Path = (*path, "x", link) if isinstance(section.x, Mapping) else (*path, "x")
+        directions.append(_square(fields, place, normals[i], x[i], "x", "normal"))
+    frames = [frame_about(n, d, p) for n, d, p in zip(normals, directions, points, strict=True)]
+    on_first, on_second = frames
+    slides = [frame_about(axis, on_first.z, points[0]) for axis in (on_first.x, on_first.y)]
+    return on_first, on_second, (*(Part("P", f, f) for f in slides), Part("R", on_first, on_second))
+
+
+def _weld_frames(fields: Fields, path: Path, section: Any) -> Frames:
+    """W: one body."""
+    return GROUND, GROUND, (Part("W", GROUND, GROUND),)
+
+
+_FRAMES = {
+    "R": _axis_frames,
+    "P": _axis_frames,
+    "C": _axis_frames,
+    "H": _axis_frames,
+    "S": _spheric_frames,
+    "Sp": _plane_frames,
+    "Sg": _groove_frames,
+    "U": _universal_frames,
+    "E": _planar_frames,
+    "W": _weld_frames,
+}
+
+
+def _upright(point: Vector) -> Frame:
+    return Frame(GROUND.x, GROUND.y, GROUND.z, point)
 
 
 def _per_link(
@@ -112,15 +193,23 @@ def _zero_directions(
         x = perpendicular(axes[0])
         return x, turned_shortest(axes[0], axes[1], x)
     given = _per_link(fields, (*path, "zero"), section.zero, section.links, True)
-    found = []
-    for link, axis, vector in zip(section.links, axes, given, strict=True):
-        if norm(cross(axis, vector)) <= PARALLEL:
-            fields.error(
-                "zero-parallel",
-                (*path, "zero", link),
-                "this direction is parallel to the joint's axis",
-                "give one that is square to it, or nearly so",
-            )
-            vector = perpendicular(axis)
-        found.append(vector)
-    return found[0], found[1]
+    first, second = (
+        _square(fields, (*path, "zero", link), axis, vector, "this direction", "axis")
+        for link, axis, vector in zip(section.links, axes, given, strict=True)
+    )
+    return first, second
+
+
+def _square(
+    fields: Fields, path: Path, axis: Vector, vector: Vector, what: str, line: str
+) -> Vector:
+    """A reference direction, refused where it is parallel to the axis it should stand square to."""
+    if norm(cross(axis, vector)) > PARALLEL:
+        return vector
+    fields.error(
+        "zero-parallel",
+        path,
+        f"{what} is parallel to the joint's {line}",
+        "give one that is square to it, or nearly so",
+    )
+    return perpendicular(axis)

@@ -20,6 +20,7 @@ from mechkin_cli.mechanism.model import (
     Spring,
 )
 from mechkin_cli.mechanism.vectors import ZERO, Vector, add
+from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.units import (
     ACCELERATION,
     ANGLE,
@@ -120,7 +121,7 @@ class LoadBuilder:
         joint, coordinate = section.joint, section.coordinate
         if not self._has_coordinate(path, joint, coordinate):
             return
-        turning = coordinate == "theta"
+        turning = coordinate in ANGLES
         number = self.fields.number
         if section.type == "spring":
             stiffness_of = TORSIONAL_STIFFNESS if turning else STIFFNESS

@@ -31,6 +31,8 @@ _DIMENSIONS = {
     "theta": (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION),
     "s": (LENGTH, VELOCITY, ACCELERATION),
 }
+_DIMENSIONS |= dict.fromkeys(("theta1", "theta2"), _DIMENSIONS["theta"])
+_DIMENSIONS |= dict.fromkeys(("x", "y"), _DIMENSIONS["s"])
 
 
 def build_motion(fields: Fields, section: Any, joints: Mapping[str, Joint]) -> Motion:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
+from typing import NamedTuple
 
 from mechkin_cli.diagnostics import InvalidFile
 from mechkin_cli.reading.document import Document, document_from_text, read_document
@@ -16,8 +16,7 @@ from mechkin_cli.schema.validate import InvalidDataError, validate
 _NONE: Mapping[str, str] = MappingProxyType({})
 
 
-@dataclass(frozen=True, slots=True)
-class Source:
+class Source(NamedTuple):
     """The content of a mechanism file, and the document that knows the place of each value."""
 
     file: MechanismFile

@@ -28,11 +28,14 @@ def summary(path: Path, analysis: Analysis, folder: Path, written: list[Path]) -
 
 
 def _mobility(analysis: Analysis) -> str:
+    """Every input is a freedom; a count by Kutzbach's formula that differs is told too."""
     mechanism = analysis.model.problem.mechanism
     freedoms = sum(joint.type.freedoms for joint in mechanism.joints.values())
-    mobility = freedoms - 6 * len(analysis.result.graph.closings)
-    names = ", ".join(analysis.result.inputs) or "nothing"
-    return f"{mobility}, driven by {names}"
+    count = freedoms - 6 * len(analysis.result.graph.closings)
+    inputs = analysis.result.inputs
+    names = ", ".join(inputs) or "nothing"
+    text = f"{len(inputs)}, driven by {names}"
+    return text if count == len(inputs) else f"{text} (Kutzbach's count: {count})"
 
 
 def _loops(analysis: Analysis) -> str:

@@ -6,9 +6,9 @@ A function is added by one entry of `FUNCTIONS`.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,8 +20,7 @@ from mechkin_cli.kernel import functions as kernel
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, Dimension
 
 
-@dataclass(frozen=True, slots=True)
-class Function:
+class Function(NamedTuple):
     """A function of `fewest` arguments, or of any larger number where `variadic`."""
 
     usage: str

@@ -5,13 +5,12 @@ Postfix order makes evaluation a loop over a stack, so long sums need no recursi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from mechkin_cli.units import CompoundUnit
 
 
-@dataclass(frozen=True, slots=True)
-class Number:
+class Number(NamedTuple):
     """A number as written, with the unit behind it if there is one."""
 
     value: float
@@ -22,16 +21,14 @@ class Number:
     """Unit words that follow `*` or `/`, with offsets: they could be meant as parameters."""
 
 
-@dataclass(frozen=True, slots=True)
-class Name:
+class Name(NamedTuple):
     """A name with dots; a last part `x`, `y` or `z` may be a component of what comes before it."""
 
     text: str
     offset: int
 
 
-@dataclass(frozen=True, slots=True)
-class Operation:
+class Operation(NamedTuple):
     """An operation or function on the `arity` values before it; `symbol` is its table key."""
 
     symbol: str

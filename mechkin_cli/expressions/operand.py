@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from mechkin_cli.expressions.errors import ExpressionError
 from mechkin_cli.expressions.limits import MAX_QUOTED
@@ -39,8 +40,7 @@ class Operand:
         return self.quantity.phrase
 
 
-@dataclass(frozen=True, slots=True)
-class Site:
+class Site(NamedTuple):
     """An operation in its text: its name, where it stands, and the units of its hints."""
 
     symbol: str

@@ -7,7 +7,6 @@ From weakest to strongest: `+ -`, `* /`, sign, `^` (right to left; `**` is the s
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from mechkin_cli.expressions.errors import ExpressionError, nearest
 from mechkin_cli.expressions.functions import FUNCTIONS
@@ -132,7 +131,7 @@ class _Parser:
         last = self.nodes[-1]
         if isinstance(last, Number) and len(self.nodes) == first + 1:
             text = last.text.removeprefix("-") if last.text[0] == "-" else "-" + last.text
-            self.nodes[-1] = replace(last, value=-last.value, text=text)
+            self.nodes[-1] = last._replace(value=-last.value, text=text)
         else:
             self.emit(Operation("negate", 1, token.start))
 

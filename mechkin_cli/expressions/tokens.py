@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from mechkin_cli.expressions.errors import ExpressionError
 from mechkin_cli.expressions.limits import MAX_TEXT_LENGTH
@@ -45,8 +44,7 @@ _INSTEAD = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Token:
+class Token(NamedTuple):
     """A piece of text from `start` to `end` (exclusive), both counted from the text's start."""
 
     kind: Kind

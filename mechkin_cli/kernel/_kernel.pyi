@@ -15,14 +15,18 @@ widest: Final[int]
 class JointTableRow(TypedDict):
     letter: str
     code: int
+    parts: str
+    coordinates: str
+    equations: int
+
+class TreeTableRow(TypedDict):
+    code: int
     freedoms: int
     states: int
-    equations: int
     slides: int
-    theta: bool
-    s: bool
 
 def joint_table() -> list[JointTableRow]: ...
+def tree_table() -> list[TreeTableRow]: ...
 def elementwise(operation: int, x: Floats, y: Floats, lanes: int = 0) -> Floats: ...
 def number_text(x: float, significant_digits: int = 0) -> str: ...
 def fixed_texts(values: Floats, decimals: int) -> list[str]: ...
@@ -33,11 +37,6 @@ def csv_text(
     significant_digits: int = 0,
 ) -> bytes: ...
 
-class Place:
-    def __init__(
-        self, first: int, second: int, point: Triple, axis: Triple, sign: float
-    ) -> None: ...
-
 class Plan:
     def __init__(self, length: float, origin: Triple, size: float) -> None: ...
     @property
@@ -46,9 +45,7 @@ class Plan:
     def columns(self) -> int: ...
     @property
     def slots(self) -> int: ...
-    def add_tree_joint(
-        self, type: int, parent: int, pitch: float, at: Sequence[float], place: Place
-    ) -> None: ...
+    def add_tree_joint(self, type: int, parent: int, pitch: float, at: Sequence[float]) -> None: ...
     def add_closing_joint(
         self,
         type: int,
@@ -56,22 +53,37 @@ class Plan:
         second: int,
         on_first: Sequence[float],
         on_second: Sequence[float],
+        parameter: float,
         loop: Sequence[tuple[int, float]],
-        place: Place,
     ) -> None: ...
+    def add_place(
+        self, reference: int, first: int, second: int, point_on: int, point: Triple, sign: float
+    ) -> int: ...
+    def add_axis(
+        self, place: int, slide: bool, link: int, vector: Triple, other: int, other_vector: Triple
+    ) -> int: ...
     def add_block(
         self, closing_joints: int, joints: Sequence[int], unknown: Sequence[int]
     ) -> None: ...
     def set_rest(self, joints: Sequence[int]) -> None: ...
-    def add_input(self, column: int, along_s: bool) -> None: ...
+    def add_input(self, column: int, axis: int, scale: float) -> None: ...
     def set_inertia(
         self, link: int, mass: float, centre: Triple, tensor: Sequence[float]
     ) -> None: ...
     def set_gravity(self, g: Triple) -> None: ...
     def add_load(
-        self, type: int, link: int, other: int, point: Triple, other_point: Triple, vector: Triple
+        self,
+        type: int,
+        link: int,
+        other: int,
+        freedom: int,
+        point: Triple,
+        other_point: Triple,
+        vector: Triple,
     ) -> None: ...
-    def add_output(self, type: int, index: int, order: int, data: Triple, factor: float) -> int: ...
+    def add_output(
+        self, type: int, index: int, freedom: int, order: int, data: Triple, factor: float
+    ) -> int: ...
     def finish(self) -> None: ...
     def run(
         self,
@@ -90,6 +102,7 @@ class Plan:
         power_error: Floats | None,
         flags: NDArray[np.uint8],
         demand: int,
+        shift: int,
         iterations: int,
         tests: tuple[float, float, float],
         lanes: int,

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from mechkin_cli.mechanism.vectors import ZERO, Vector, add, cross, dot, scale, subtract, unit
 
 
-@dataclass(frozen=True, slots=True)
-class Frame:
+class Frame(NamedTuple):
     """Axes x, y, z and origin o."""
 
     x: Vector

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from mechkin_cli.mechanism.frames import Frame
 from mechkin_cli.mechanism.joint_types import JointType, joint_types
-from mechkin_cli.mechanism.vectors import ZERO, Vector
+from mechkin_cli.mechanism.vectors import ZERO, Vector, dot
 
 GROUND_NAME = "ground"
 
@@ -20,8 +20,7 @@ Tensor = tuple[float, float, float, float, float, float]
 """xx, yy, zz, xy, xz, yz."""
 
 
-@dataclass(frozen=True, slots=True)
-class Link:
+class Link(NamedTuple):
     """A rigid body; mass in kg, mass centre in m, inertia about the mass centre in kg m^2."""
 
     name: str
@@ -35,12 +34,27 @@ class Link:
         return self.mass != 0.0 or any(self.inertia)
 
 
-@dataclass(frozen=True, slots=True)
-class Joint:
+class Part(NamedTuple):
+    """An elementary displacement of a joint's chain; its frame as drawn on the body before and
+    after it."""
+
+    letter: str
+    before: Frame
+    after: Frame
+
+    def reversed(self) -> Part:
+        """The same part passed the other way: the same coordinate about the reversed axis."""
+        if self.letter in "SW":
+            return Part(self.letter, self.after, self.before)
+        return Part(self.letter, self.after.flipped(), self.before.flipped())
+
+
+class Joint(NamedTuple):
     """A pair between two links.
 
-    `on_first` and `on_second` are the joint's frame as drawn for either link: z the axis, the
-    frames coincide where all coordinates are zero. `lead` (H) is the slide per turn in m.
+    `on_first` and `on_second` are the pair's frames as drawn on either link: z the axis (normal,
+    groove); they coincide where all coordinates are zero (U: but for the axes). `parts` is the
+    same as a chain of elementary displacements. `lead` (H) is the slide per turn in m.
     """
 
     name: str
@@ -49,6 +63,7 @@ class Joint:
     second: str
     on_first: Frame
     on_second: Frame
+    parts: tuple[Part, ...]
     lead: float = 0.0
 
     @property
@@ -61,17 +76,28 @@ class Joint:
         """Full names of the coordinates: `O2.theta`, `O2.s`."""
         return tuple(f"{self.name}.{coordinate}" for coordinate in self.type.coordinates)
 
+    @property
+    def point(self) -> Attached:
+        """The joint's point: a sphere's centre rides on the first link, other points on the
+        second."""
+        if self.letter in ("Sp", "Sg"):
+            return Attached(self.first, self.on_first.o)
+        return Attached(self.second, self.on_second.o)
 
-@dataclass(frozen=True, slots=True)
-class Attached:
+    @property
+    def parameter(self) -> float:
+        """U: cosine of the angle between its axes."""
+        return dot(self.on_first.z, self.on_second.z) if self.letter == "U" else 0.0
+
+
+class Attached(NamedTuple):
     """A point or a direction carried by a link, as drawn at home."""
 
     link: str
     vector: Vector
 
 
-@dataclass(frozen=True, slots=True)
-class LinkLoad:
+class LinkLoad(NamedTuple):
     """A force (N, at a point of the link) or torque (N m) on a link, in ground or link axes."""
 
     kind: Literal["force", "torque"]
@@ -81,8 +107,7 @@ class LinkLoad:
     point: Vector = ZERO
 
 
-@dataclass(frozen=True, slots=True)
-class JointLoad:
+class JointLoad(NamedTuple):
     """A torque on a joint's theta (N m) or a force on its s (N): on the second link, opposite on
     the first."""
 
@@ -91,25 +116,23 @@ class JointLoad:
     value: float
 
 
-@dataclass(frozen=True, slots=True)
-class Spring:
+class Spring(NamedTuple):
     """A spring between two points (N/m) or on a joint coordinate (N/m or N m/rad)."""
 
     between: tuple[Attached, Attached] | None
     joint: str | None
-    coordinate: Literal["theta", "s"] | None
+    coordinate: str | None
     stiffness: float
     free: float
     preload: float
 
 
-@dataclass(frozen=True, slots=True)
-class Damper:
+class Damper(NamedTuple):
     """A viscous damper between two points (N s/m) or on a joint coordinate (or N m s/rad)."""
 
     between: tuple[Attached, Attached] | None
     joint: str | None
-    coordinate: Literal["theta", "s"] | None
+    coordinate: str | None
     damping: float
 
 
@@ -135,8 +158,17 @@ class Mechanism:
 
     def box_diagonal(self) -> float:
         """Diagonal of the box of all joint points as drawn, in m; 1 if they all coincide."""
-        points = [f.o for j in self.joints.values() for f in (j.on_first, j.on_second)]
+        points = [at.vector for _, at in self.joint_points()]
         return diagonal(points)
+
+    def joint_points(self) -> list[tuple[str, Attached]]:
+        """Every joint's point on each of its links, by joint name; welds have none."""
+        found = []
+        for joint in self.joints.values():
+            if joint.letter != "W":
+                found.append((joint.name, Attached(joint.first, joint.on_first.o)))
+                found.append((joint.name, Attached(joint.second, joint.on_second.o)))
+        return found
 
 
 def diagonal(points: list[Vector]) -> float:
@@ -144,6 +176,8 @@ def diagonal(points: list[Vector]) -> float:
     lengths)."""
     from mechkin_cli.mechanism.vectors import norm, subtract
 
+    if not points:
+        return 1.0
     low = tuple(min(p[i] for p in points) for i in range(3))
     high = tuple(max(p[i] for p in points) for i in range(3))
     return norm(subtract(high, low)) or 1.0  # type: ignore[arg-type]

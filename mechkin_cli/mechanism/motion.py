@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     import numpy as np
@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class DrivenInput:
+class DrivenInput(NamedTuple):
     """One driven coordinate: values over the rows in rad or m, and as written in the file's
     units."""
 
@@ -31,8 +30,7 @@ class DrivenInput:
         return f"{self.joint}.{self.coordinate}"
 
 
-@dataclass(frozen=True)
-class Motion:
+class Motion(NamedTuple):
     """All inputs; a mechanism without inputs has one row."""
 
     inputs: tuple[DrivenInput, ...]

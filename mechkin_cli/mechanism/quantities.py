@@ -7,8 +7,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism
 from mechkin_cli.units import (
@@ -32,6 +31,7 @@ Kind = Literal[
     "alpha",
     "axis",
     "joint_point",
+    "slip",
     "force",
     "moment",
     "moment_about_origin",
@@ -46,8 +46,7 @@ Kind = Literal[
 ]
 
 
-@dataclass(frozen=True, slots=True)
-class Wanted:
+class Wanted(NamedTuple):
     """One quantity: its kind, whose it is, which derivative, dimension, whether it is a vector."""
 
     name: str
@@ -63,6 +62,9 @@ _DERIVATIVES = {
     "theta": (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION),
     "s": (LENGTH, VELOCITY, ACCELERATION),
 }
+_DERIVATIVES |= dict.fromkeys(("theta1", "theta2"), _DERIVATIVES["theta"])
+_DERIVATIVES |= dict.fromkeys(("x", "y"), _DERIVATIVES["s"])
+_WITH_AXIS = ("R", "P", "C", "H", "Sp", "Sg", "E")
 _SUFFIXES = ("", "_dot", "_ddot")
 _GROUND: dict[str, tuple[Kind, Dimension]] = {
     "shaking_force": ("shaking_force", FORCE),
@@ -98,17 +100,22 @@ def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
             for order, dimension in enumerate(_DERIVATIVES[coordinate]):
                 name = f"{joint.name}.{coordinate}{_SUFFIXES[order]}"
                 yield Wanted(name, "coordinate", joint.name, dimension, False, coordinate, order)
-        yield Wanted(f"{joint.name}.point", "joint_point", joint.name, LENGTH, True)
-        if joint.letter != "S":
+        if joint.letter != "W":
+            yield Wanted(f"{joint.name}.point", "joint_point", joint.name, LENGTH, True)
+        if joint.letter in ("Sp", "Sg"):
+            yield Wanted(f"{joint.name}.slip", "slip", joint.name, LENGTH, True)
+        if joint.letter in _WITH_AXIS:
             yield Wanted(f"{joint.name}.axis", "axis", joint.name, DIMENSIONLESS, True)
         for word, (kind, dimension) in _JOINT_WRENCH.items():
+            if kind == "moment" and joint.letter == "W":
+                continue  # a weld has no point of its own
             yield Wanted(f"{joint.name}.{word}", kind, joint.name, dimension, True)
 
 
 def _of_efforts(inputs: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
     joints = [joint for joint, _ in inputs]
     for joint, coordinate in inputs:
-        dimension = MOMENT if coordinate == "theta" else FORCE
+        dimension = MOMENT if coordinate.startswith("theta") else FORCE
         if joints.count(joint) == 1:
             yield Wanted(f"{joint}.effort", "effort", joint, dimension, False, coordinate)
         yield Wanted(f"{joint}.{coordinate}.effort", "effort", joint, dimension, False, coordinate)

@@ -6,7 +6,6 @@ guesses.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple, TypeAlias
 
@@ -27,8 +26,7 @@ class Style(Enum):
     BLOCK = "block"
 
 
-@dataclass(frozen=True, slots=True)
-class Scalar:
+class Scalar(NamedTuple):
     """One value as text; `mark` is its first character (the quote, where there is one)."""
 
     text: str
@@ -36,24 +34,21 @@ class Scalar:
     style: Style
 
 
-@dataclass(frozen=True, slots=True)
-class Sequence:
+class Sequence(NamedTuple):
     """A list; `mark` is its bracket, or its first dash in block style."""
 
     items: tuple[Node, ...]
     mark: Mark
 
 
-@dataclass(frozen=True, slots=True)
-class Entry:
+class Entry(NamedTuple):
     """One `key: value` of a mapping; `mark` is the first character of the key."""
 
     mark: Mark
     value: Node
 
 
-@dataclass(frozen=True, slots=True)
-class Mapping:
+class Mapping(NamedTuple):
     """Keys and values in the order written; `mark` is the brace, in block style the first key."""
 
     entries: dict[str, Entry]

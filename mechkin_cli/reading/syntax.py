@@ -7,7 +7,7 @@ they have in common. Whatever it doesn't know gets one general message, never th
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from yaml import MarkedYAMLError, YAMLError
 
@@ -17,8 +17,7 @@ _QUOTE = "put the text in quotes"
 _INDENT = "indent keys of one mapping equally, and put a value that holds ': ' in quotes"
 
 
-@dataclass(frozen=True, slots=True)
-class _Rule:
+class _Rule(NamedTuple):
     pattern: re.Pattern[str]
     message: str
     hint: str

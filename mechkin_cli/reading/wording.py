@@ -7,8 +7,7 @@ what is written in the file, never of the validator's types.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from mechkin_cli.reading.nearest import nearest
 from mechkin_cli.reading.nodes import Mapping, Node, Scalar, Sequence
@@ -17,8 +16,7 @@ _LONGEST_LIST = 12
 """A message lists the known words up to this many."""
 
 
-@dataclass(frozen=True, slots=True)
-class Wording:
+class Wording(NamedTuple):
     """The code, message and hint of a diagnostic."""
 
     code: str

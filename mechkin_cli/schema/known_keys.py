@@ -6,9 +6,8 @@ Used only on the way to a message: the validation reports an unknown key, but no
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from types import UnionType
-from typing import Annotated, Any, Union, get_args, get_origin
+from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
 
 from pydantic import Tag
 
@@ -16,8 +15,7 @@ from mechkin_cli.schema.base import Section
 from mechkin_cli.schema.descriptions import field_descriptions
 
 
-@dataclass(frozen=True, slots=True)
-class KnownKeys:
+class KnownKeys(NamedTuple):
     """The keys of one kind of mapping: what each is for, and answers for keys it doesn't have."""
 
     descriptions: dict[str, str]

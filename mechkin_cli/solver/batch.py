@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -24,8 +23,7 @@ RESIDUAL_TESTS = (
 )
 
 
-@dataclass(frozen=True)
-class Batch:
+class Batch(NamedTuple):
     """What the kernel found, row by row; arrays over rows, or (columns, rows).
 
     `states` and `outputs` as planned; `first` and `second` are the derivatives of the columns
@@ -60,6 +58,7 @@ def run(
     demand: Demand = Demand.POSITION,
     outputs: bool = False,
     derivatives: bool = False,
+    shift: int = 0,
     iterations: int = tolerances.NEWTON_ITERATIONS,
     tests: tuple[float, float, float] = RESIDUAL_TESTS,
     lanes: int = 0,
@@ -75,6 +74,7 @@ def run(
         demand: what to compute beyond positions.
         outputs: fill the plan's outputs.
         derivatives: return the columns' first and second derivatives.
+        shift: 1 or 2 adds a fixed part of the null space to reactions that are not unique.
         iterations: Newton steps at most.
         tests: residual tests (tight, coarse, accept).
         lanes: width of the packs, 0 for the widest; the results do not depend on it.
@@ -104,6 +104,7 @@ def run(
         power_error,
         flags,
         int(demand),
+        shift,
         iterations,
         tests,
         lanes,

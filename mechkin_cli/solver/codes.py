@@ -12,14 +12,11 @@ class LoadCode(IntEnum):
     FORCE_LINK = 1
     TORQUE_GROUND = 2
     TORQUE_LINK = 3
-    JOINT_TORQUE = 4
-    JOINT_FORCE = 5
-    SPRING = 6
-    DAMPER = 7
-    JOINT_SPRING_THETA = 8
-    JOINT_SPRING_S = 9
-    JOINT_DAMPER_THETA = 10
-    JOINT_DAMPER_S = 11
+    COORDINATE = 4
+    SPRING = 5
+    DAMPER = 6
+    COORDINATE_SPRING = 7
+    COORDINATE_DAMPER = 8
 
 
 class OutputCode(IntEnum):
@@ -28,8 +25,8 @@ class OutputCode(IntEnum):
     STATE = 0
     RATE = 1
     ACCELERATION = 2
-    CLOSING_THETA = 3
-    CLOSING_S = 4
+    CLOSING = 3
+    SLIP = 4
     POINT = 5
     VECTOR = 6
     OMEGA = 7

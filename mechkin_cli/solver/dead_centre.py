@@ -7,8 +7,7 @@ Newton with the second derivative from the same factorisation; never a minimum o
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -31,8 +30,7 @@ LARGEST_STEP = 0.2
 MOTION = Demand.VELOCITY | Demand.ACCELERATION
 
 
-@dataclass(frozen=True)
-class Exchanged:
+class Exchanged(NamedTuple):
     """The same mechanism with coordinate `driven` (a column) in place of input number `input`."""
 
     plan: Plan
@@ -62,8 +60,7 @@ class Exchanged:
         )
 
 
-@dataclass(frozen=True)
-class DeadCentre:
+class DeadCentre(NamedTuple):
     """A fold: the input's value there (kernel units), the states, and the shape of the branch
     about it.
 
@@ -121,35 +118,31 @@ def exchange(
     inputs = set(graph.inputs)
     candidates = []
     for k, edge in enumerate(graph.edges):
-        for freedom in range(edge.joint.type.freedoms):
-            if (k, freedom) not in inputs and edge.joint.type.coordinates:
-                column = layout.first_column[k] + freedom
-                candidates.append((-abs(float(first[column])), column, k, freedom))
+        for coordinate, freedom in edge.joint.type.freedom_of.items():
+            if (k, freedom) not in inputs and edge.joint.letter + coordinate != "Hs":
+                speed = abs(float(first[layout.column(k, freedom)]))
+                candidates.append((-speed, k, freedom, coordinate))
     closed_at = [closing.joint.name for closing in graph.closings]
-    for _, column, k, freedom in sorted(candidates):
-        joint = graph.edges[k].joint
-        coordinate = joint.type.coordinates[freedom]
+    for _, k, freedom, coordinate in sorted(candidates):
         swapped = list(names)
-        swapped[number] = (joint.name, coordinate)
+        swapped[number] = (graph.edges[k].joint.name, coordinate)
         try:
             other = build_graph(layout.mechanism, swapped, closed_at)
         except UnsolvableGraph:
             continue
-        return _exchanged(layout, other, number, column, k, freedom)
+        return _exchanged(layout, other, number, k, freedom)
     return None
 
 
-def _exchanged(
-    layout: Layout, other: SolverGraph, number: int, column: int, k: int, freedom: int
-) -> Exchanged:
+def _exchanged(layout: Layout, other: SolverGraph, number: int, k: int, freedom: int) -> Exchanged:
     edge, input_freedom = layout.graph.inputs[number]
     return Exchanged(
         Layout(layout.mechanism, other).build(),
         number,
-        layout.first_column[edge] + input_freedom,
-        column,
-        layout.first_state[k] + freedom,
-        layout.first_state[edge] + input_freedom,
+        layout.column(edge, input_freedom),
+        layout.column(k, freedom),
+        layout.state(k, freedom),
+        layout.state(edge, input_freedom),
     )
 
 

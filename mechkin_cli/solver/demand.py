@@ -7,16 +7,14 @@ where something is damped; an effort needs no joint reactions (design section 8)
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Damper, Mechanism
+from mechkin_cli.mechanism.model import Attached, Damper, Mechanism
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO, Vector
 from mechkin_cli.solver.codes import Demand, OutputCode
-from mechkin_cli.solver.graph import freedom_of
-from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.layout import Layout, is_slide
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
@@ -54,8 +52,7 @@ def forces_demand(mechanism: Mechanism) -> Demand:
     return demand
 
 
-@dataclass(frozen=True, slots=True)
-class Slot:
+class Slot(NamedTuple):
     """Where a quantity stands in the kernel's output array: first column, and how many."""
 
     first: int
@@ -82,26 +79,33 @@ class OutputPlan:
         self.slots[wanted.name] = Slot(first, 3 if wanted.vector else 1)
 
     def _output(
-        self, code: OutputCode, index: int, factor: float, order: int = 0, data: Vector = ZERO
+        self,
+        code: OutputCode,
+        index: int,
+        factor: float,
+        order: int = 0,
+        data: Vector = ZERO,
+        freedom: int = 0,
     ) -> int:
-        return self.plan.add_output(int(code), index, order, data, factor)
+        return self.plan.add_output(int(code), index, freedom, order, data, factor)
 
     def _add_coordinate(self, wanted: Wanted) -> int:
         layout = self.layout
-        reference = layout.joint_reference[wanted.owner]
         joint = layout.mechanism.joints[wanted.owner]
-        slide = wanted.coordinate == "s"
+        slide = is_slide(wanted.coordinate)
         factor = layout.length if slide else 1.0
+        freedom = joint.type.freedom_of[wanted.coordinate]
+        reference = layout.joint_reference[wanted.owner]
         if reference < 0:
-            code = OutputCode.CLOSING_S if slide else OutputCode.CLOSING_THETA
-            return self._output(code, -1 - reference, factor, wanted.order)
+            number = -1 - reference
+            return self._output(OutputCode.CLOSING, number, factor, wanted.order, freedom=freedom)
         if joint.letter == "H" and slide:
             factor = joint.lead / (2.0 * pi)
-        freedom = freedom_of(joint, wanted.coordinate)
+        edge = next(k for k, e in enumerate(layout.graph.edges) if e.joint is joint)
         if wanted.order == 0:
-            return self._output(OutputCode.STATE, layout.first_state[reference] + freedom, factor)
+            return self._output(OutputCode.STATE, layout.state(edge, freedom), factor)
         code = (OutputCode.RATE, OutputCode.ACCELERATION)[wanted.order - 1]
-        return self._output(code, layout.first_column[reference] + freedom, factor)
+        return self._output(code, layout.column(edge, freedom), factor)
 
     def _add_other(self, wanted: Wanted) -> int:
         layout, mechanism = self.layout, self.layout.mechanism
@@ -115,7 +119,11 @@ class OutputPlan:
             joint = mechanism.joints[owner]
             if kind == "axis":
                 return self._vector(Attached(joint.second, joint.on_second.z))
-            return self.add_point(Attached(joint.second, joint.on_second.o), 0)
+            return self.add_point(joint.point, 0)
+        if kind == "slip":
+            joint = mechanism.joints[owner]
+            contact = layout.point(Attached(joint.second, joint.on_second.o))
+            return self._output(OutputCode.SLIP, layout.place_number[owner], length, 0, contact)
         if kind in ("omega", "alpha"):
             code = OutputCode.OMEGA if kind == "omega" else OutputCode.ALPHA
             return self._output(code, layout.link_number[owner], 1.0)
@@ -126,11 +134,11 @@ class OutputPlan:
                 "moment_about_origin": OutputCode.JOINT_MOMENT_ORIGIN,
             }[kind]
             factor = length if kind == "force" else length * length
-            return self._output(code, layout.joint_reference[owner], factor)
+            return self._output(code, layout.place_number[owner], factor)
         if kind == "effort":
             number = self.inputs.index((owner, wanted.coordinate))
             joint = mechanism.joints[owner]
-            factor = length if wanted.coordinate == "s" else length * length
+            factor = length if is_slide(wanted.coordinate) else length * length
             if joint.letter == "H" and wanted.coordinate == "s":
                 # a force along s does the work of the torque force * slide per radian
                 factor = length * length / (joint.lead / (2.0 * pi))
@@ -146,12 +154,3 @@ class OutputPlan:
     def _vector(self, at: Attached) -> int:
         number = self.layout.link_number[at.link]
         return self._output(OutputCode.VECTOR, number, 1.0, 0, self.layout.vector(at))
-
-
-def joint_points(layout: Layout) -> list[tuple[str, Attached]]:
-    """Every joint's point on each of its links, ground first where both are meant."""
-    points = []
-    for joint in layout.mechanism.joints.values():
-        for link, frame in ((joint.first, joint.on_first), (joint.second, joint.on_second)):
-            points.append((joint.name, Attached(link, frame.o)))
-    return sorted(points, key=lambda entry: entry[1].link != GROUND_NAME)

@@ -8,9 +8,8 @@ kernel's tracker follows with a few careful nodes and fills in (design section 4
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -48,8 +47,7 @@ class TrackEnd(IntEnum):
     START_NOT_CLOSED = 3
 
 
-@dataclass(frozen=True)
-class Followed:
+class Followed(NamedTuple):
     """Guesses for the rows that were reached.
 
     `guess` (states, rows) and `limit` (rows: largest correction that a fill-in row may still need)
@@ -112,6 +110,12 @@ def _runs(inputs: Floats, every_row: bool) -> Iterator[tuple[int, int, Floats]]:
     """Runs (first row, end, direction); the direction's largest part is 1, zero for repeated
     rows."""
     rows = inputs.shape[1]
+    if len(inputs) == 1 and rows > 1 and not every_row:
+        steps = np.diff(inputs[0])
+        for sign in (1.0, -1.0):
+            if (sign * steps > 0.0).all():
+                yield 1, rows, np.array([sign])
+                return
     begin = 1
     while begin < rows:
         step = inputs[:, begin] - inputs[:, begin - 1]

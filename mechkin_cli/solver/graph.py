@@ -9,11 +9,14 @@ the one with the smallest largest block (RCSR: closed at S, 3 unknowns).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import combinations, islice
+from typing import NamedTuple
 
 from mechkin_cli.diagnostics import Diagnostic, MechkinError
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism, Spring
+
+ANGLES = ("theta", "theta1", "theta2")
+"""Coordinates that are angles."""
 
 MOST_TREES = 20000
 """Choices of closing joints that are compared; mechanisms with more have their first ones
@@ -30,8 +33,7 @@ class UnsolvableGraph(MechkinError):
         super().__init__(str(diagnostic))
 
 
-@dataclass(frozen=True, slots=True)
-class TreeEdge:
+class TreeEdge(NamedTuple):
     """A joint of the tree: it carries `child`; `forward` where the child is the joint's second
     link."""
 
@@ -45,8 +47,7 @@ class TreeEdge:
         return self.child == self.joint.second
 
 
-@dataclass(frozen=True, slots=True)
-class Closing:
+class Closing(NamedTuple):
     """A closing joint; `loop` holds the tree edges on the way to its second (+1) and first link
     (-1)."""
 
@@ -54,8 +55,7 @@ class Closing:
     loop: tuple[tuple[int, int], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Block:
+class Block(NamedTuple):
     """Closing joints (by index) that are solved together for unknown coordinates (edge,
     freedom)."""
 
@@ -64,8 +64,7 @@ class Block:
     equations: int
 
 
-@dataclass(frozen=True, slots=True)
-class SolverGraph:
+class SolverGraph(NamedTuple):
     """Tree edges in placing order (edge k carries link k), closings in block order, blocks.
 
     `inputs` are (edge, freedom), `driven` the same as (joint, coordinate).
@@ -84,10 +83,9 @@ class SolverGraph:
         return next(k for k, edge in enumerate(self.edges) if edge.child == link)
 
 
-def freedom_of(joint: Joint, coordinate: str) -> int:
-    """Index of a named coordinate among a joint's freedoms (H: theta and s are one freedom)."""
-    names = joint.type.coordinates
-    return min(names.index(coordinate), joint.type.freedoms - 1)
+def is_redundant(graph: SolverGraph) -> bool:
+    """Whether some loop has more closing equations than unknowns (redundant constraints)."""
+    return any(block.equations > len(block.unknowns) for block in graph.blocks)
 
 
 def build_graph(
@@ -135,7 +133,7 @@ def _choices(
     kept = {joint for joint, _ in inputs} | {
         load.joint
         for load in mechanism.loads
-        if isinstance(load, Spring) and load.coordinate == "theta"
+        if isinstance(load, Spring) and load.coordinate in ANGLES
     }
     able = [
         name
@@ -150,8 +148,8 @@ def _no_closing_joint(mechanism: Mechanism) -> UnsolvableGraph:
     diagnostic = Diagnostic(
         "no-closing-joint",
         "error",
-        f"the loops of {mechanism.name} cannot be closed: every loop needs an R, P, C or S "
-        "that is not an input and has no spring on its theta",
+        f"the loops of {mechanism.name} cannot be closed: every loop needs a joint "
+        "other than H that is not an input and has no spring on its angle",
         hint="drive another coordinate, or put the spring on another joint",
     )
     return UnsolvableGraph(diagnostic, tuple(mechanism.joints))
@@ -207,14 +205,14 @@ def _with_blocks(
     for name, coordinate in inputs:
         if name not in number:
             raise _no_closing_joint(mechanism)
-        driven.append((number[name], freedom_of(edges[number[name]].joint, coordinate)))
+        driven.append((number[name], edges[number[name]].joint.type.freedom_of[coordinate]))
     closings = [Closing(mechanism.joints[n], _loop(edges, mechanism.joints[n])) for n in names]
     blocks: list[Block] = []
     order: list[Closing] = []
     solved = set(driven)
     left = list(closings)
     while left:
-        group = _smallest_square(edges, left, solved)
+        group = _smallest_group(edges, left, solved)
         if group is None:
             raise _not_square(edges, left, solved)
         unknowns = _unknowns(edges, group, solved)
@@ -238,14 +236,17 @@ def _unknowns(
     return [freedom for freedom in freedoms if freedom not in solved]
 
 
-def _smallest_square(
+def _smallest_group(
     edges: Sequence[TreeEdge], left: Sequence[Closing], solved: set[tuple[int, int]]
 ) -> tuple[Closing, ...] | None:
-    """The smallest group of closing joints with as many equations as unknowns."""
+    """The smallest group of closing joints with at least as many equations as unknowns.
+
+    Where there are more equations (overconstrained loops) the dimensions decide whether they close.
+    """
     for size in range(1, len(left) + 1):
         for group in combinations(left, size):
             equations = sum(c.joint.type.equations for c in group)
-            if len(_unknowns(edges, group, solved)) == equations:
+            if 0 < len(_unknowns(edges, group, solved)) <= equations:
                 return group
     return None
 
@@ -260,13 +261,12 @@ def _not_square(
     members = {edges[k].joint.name for c in left for k, _ in c.loop}
     joints = sorted(members | {c.joint.name for c in left})
     diagnostic = Diagnostic(
-        "overconstrained",
+        "driven-solid",
         "error",
-        f"the loop through {', '.join(joints)} has {equations - len(unknowns)} more closing "
-        "equations than unknowns (an overconstrained mechanism, or too many inputs)",
-        measured=f"{equations} equations, {len(unknowns)} unknowns",
-        hint="drive fewer coordinates or free a joint; overconstrained loops are not solved by "
-        "this version",
+        f"nothing is left to close the loop through {', '.join(joints)}: "
+        "all its other freedoms are driven",
+        measured=f"{equations} equations, no unknowns",
+        hint="drive fewer coordinates",
     )
     return UnsolvableGraph(diagnostic, tuple(joints))
 

@@ -9,9 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import frexp, ldexp, pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.mechanism.frames import GROUND, Frame
+from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.mechanism.model import (
     GROUND_NAME,
     Attached,
@@ -20,18 +21,35 @@ from mechkin_cli.mechanism.model import (
     JointLoad,
     LinkLoad,
     Mechanism,
+    Part,
     Spring,
 )
 from mechkin_cli.mechanism.vectors import ZERO, Vector, norm, scale, subtract
+from mechkin_cli.solver.axes import coordinate_axis
 from mechkin_cli.solver.codes import LoadCode
-from mechkin_cli.solver.graph import SolverGraph
+from mechkin_cli.solver.graph import SolverGraph, TreeEdge
 
 if TYPE_CHECKING:
-    from mechkin_cli.kernel._kernel import Place, Plan
+    from mechkin_cli.kernel._kernel import Plan
 
 FAR_DRAWING = 4.0
 """Distance of the drawing from the ground origin, in sizes, beyond which the kernel works about
 its own origin."""
+
+
+class Carrier(NamedTuple):
+    """A kernel joint: one part of a tree edge, passed outward. It carries the body of its own
+    number.
+
+    `first_freedom` is the number of its first freedom among the user's freedoms of the joint.
+    """
+
+    edge: int
+    part: Part
+    parent: int
+    first_freedom: int
+    column: int
+    state: int
 
 
 @dataclass(frozen=True)
@@ -50,39 +68,87 @@ class Layout:
     @cached_property
     def origin(self) -> Vector:
         """The kernel's origin in m."""
-        points = [j.on_first.o for j in self.mechanism.joints.values()]
+        points = [at.vector for _, at in self.mechanism.joint_points()]
         centre = scale(1.0 / len(points), _sum(points)) if points else ZERO
         return centre if norm(centre) > FAR_DRAWING * self.mechanism.box_diagonal() else ZERO
 
     @cached_property
+    def carriers(self) -> tuple[Carrier, ...]:
+        """The kernel's tree joints; bodies between the parts of a joint have no name."""
+        found: list[Carrier] = []
+        body = {GROUND_NAME: -1}
+        column = state = 0
+        for number, edge in enumerate(self.graph.edges):
+            parent = body[edge.parent]
+            for part, first_freedom in _outward(edge):
+                found.append(Carrier(number, part, parent, first_freedom, column, state))
+                parent = len(found) - 1
+                column += tree_types()[part.letter].freedoms
+                state += tree_types()[part.letter].states
+            body[edge.child] = parent
+        return tuple(found)
+
+    @cached_property
     def link_number(self) -> dict[str, int]:
-        """Number of each link; ground is -1."""
-        return {GROUND_NAME: -1} | {e.child: k for k, e in enumerate(self.graph.edges)}
+        """The kernel's body of each link; ground is -1."""
+        last = {carrier.edge: k for k, carrier in enumerate(self.carriers)}
+        return {GROUND_NAME: -1} | {e.child: last[n] for n, e in enumerate(self.graph.edges)}
+
+    @cached_property
+    def body_frame(self) -> tuple[Frame, ...]:
+        """Frame of each body in its own drawing (m): the far side of its part; last: ground."""
+        ground = Frame(GROUND.x, GROUND.y, GROUND.z, self.origin)
+        return (*(carrier.part.after for carrier in self.carriers), ground)
 
     @cached_property
     def link_frame(self) -> dict[str, Frame]:
-        """Frame of each link in its own drawing (m): the child side of its tree joint."""
-        frames = {GROUND_NAME: Frame(GROUND.x, GROUND.y, GROUND.z, self.origin)}
-        for edge in self.graph.edges:
-            side = edge.joint.on_second if edge.forward else edge.joint.on_first
-            frames[edge.child] = side if edge.forward else _reversed(edge.joint, side)
-        return frames
+        """Frame of each link in its own drawing (m)."""
+        return {name: self.body_frame[number] for name, number in self.link_number.items()}
 
     @cached_property
     def joint_reference(self) -> dict[str, int]:
-        """The kernel's number of a joint: k for a tree joint, -1-c for a closing joint."""
-        tree = {e.joint.name: k for k, e in enumerate(self.graph.edges)}
+        """The kernel's number of a joint: k of its last part for a tree joint, -1-c for a closing
+        joint."""
+        tree = {e.joint.name: self.link_number[e.child] for e in self.graph.edges}
         return tree | {c.joint.name: -1 - k for k, c in enumerate(self.graph.closings)}
 
     @cached_property
-    def first_column(self) -> tuple[int, ...]:
-        """First column of each tree joint."""
-        return _running(e.joint.type.freedoms for e in self.graph.edges)
+    def place_number(self) -> dict[str, int]:
+        """Number of each joint's place in the kernel."""
+        return {name: k for k, name in enumerate(self.mechanism.joints)}
 
     @cached_property
-    def first_state(self) -> tuple[int, ...]:
-        """First state of each tree joint."""
-        return _running(e.joint.type.states for e in self.graph.edges)
+    def axis_number(self) -> dict[tuple[str, str], int]:
+        """Number of the axis of each coordinate (joint, name)."""
+        pairs = [
+            (joint.name, coordinate)
+            for joint in self.mechanism.joints.values()
+            for coordinate in joint.type.coordinates
+        ]
+        return {pair: k for k, pair in enumerate(pairs)}
+
+    def carrier_of(self, edge: int, freedom: int) -> tuple[int, int]:
+        """The kernel joint that has a user's freedom of a tree edge, and its freedom there."""
+        for k, carrier in enumerate(self.carriers):
+            count = tree_types()[carrier.part.letter].freedoms
+            if carrier.edge == edge and 0 <= freedom - carrier.first_freedom < count:
+                return k, freedom - carrier.first_freedom
+        raise IndexError(f"edge {edge} has no freedom {freedom}")
+
+    def column(self, edge: int, freedom: int) -> int:
+        """Column of a user's freedom of a tree edge."""
+        k, local = self.carrier_of(edge, freedom)
+        return self.carriers[k].column + local
+
+    def state(self, edge: int, freedom: int) -> int:
+        """State of a user's scalar freedom of a tree edge."""
+        k, local = self.carrier_of(edge, freedom)
+        return self.carriers[k].state + local
+
+    @property
+    def states(self) -> int:
+        """Length of the state vector."""
+        return sum(tree_types()[c.part.letter].states for c in self.carriers)
 
     def point(self, at: Attached) -> Vector:
         """A point of a link in the link's frame, in length units."""
@@ -92,80 +158,95 @@ class Layout:
         """A direction of a link in the link's frame."""
         return self.link_frame[at.link].components(at.vector)
 
-    def frame_on(self, link: str, frame: Frame) -> list[float]:
-        """A frame drawn on a link, in the link's frame and length units, as the kernel takes it."""
-        inner = self.link_frame[link].of(frame)
+    def frame_on(self, body: int, frame: Frame) -> list[float]:
+        """A frame drawn on a body, in the body's frame and length units, as the kernel takes it."""
+        inner = self.body_frame[body].of(frame)
         return [*inner.x, *inner.y, *inner.z, *scale(1.0 / self.length, inner.o)]
-
-    def place(self, joint: Joint, sign: float) -> Place:
-        """The joint as its user sees it; point and axis ride on the second link."""
-        from mechkin_cli.kernel import _kernel
-
-        return _kernel.Place(
-            self.link_number[joint.first],
-            self.link_number[joint.second],
-            self.point(Attached(joint.second, joint.on_second.o)),
-            self.vector(Attached(joint.second, joint.on_second.z)),
-            sign,
-        )
 
     def build(self, size: float | None = None) -> Plan:
         """The kernel's plan without outputs; `size` (m) normalises residual and condition."""
         from mechkin_cli.kernel import _kernel
 
         plan = _kernel.Plan(self.length, self.origin, size or self.mechanism.box_diagonal())
-        for edge in self.graph.edges:
-            joint = edge.joint
-            side = joint.on_first if edge.forward else _reversed(joint, joint.on_second)
+        for carrier in self.carriers:
+            lead = self.graph.edges[carrier.edge].joint.lead
             plan.add_tree_joint(
-                joint.type.code,
-                self.link_number[edge.parent],
-                joint.lead / (2.0 * pi) / self.length,
-                self.frame_on(edge.parent, side),
-                self.place(joint, 1.0 if edge.forward else -1.0),
+                tree_types()[carrier.part.letter].code,
+                carrier.parent,
+                lead / (2.0 * pi) / self.length,
+                self.frame_on(carrier.parent, carrier.part.before),
             )
         for closing in self.graph.closings:
             joint = closing.joint
+            first, second = self.link_number[joint.first], self.link_number[joint.second]
             plan.add_closing_joint(
                 joint.type.code,
-                self.link_number[joint.first],
-                self.link_number[joint.second],
-                self.frame_on(joint.first, joint.on_first),
-                self.frame_on(joint.second, joint.on_second),
-                list(closing.loop),
-                self.place(joint, 1.0),
+                first,
+                second,
+                self.frame_on(first, joint.on_first),
+                self.frame_on(second, joint.on_second),
+                joint.parameter,
+                [(k, s) for e, s in closing.loop for k in self._parts_of(e)],
             )
+        self._add_places(plan)
         self._add_blocks(plan)
-        for (number, freedom), (_, coordinate) in zip(
+        for (edge, freedom), (name, coordinate) in zip(
             self.graph.inputs, self.graph.driven, strict=True
         ):
-            plan.add_input(self.first_column[number] + freedom, coordinate == "s")
+            joint = self.mechanism.joints[name]
+            along_thread = joint.letter == "H" and coordinate == "s"
+            force_per_torque = 2.0 * pi * self.length / joint.lead if along_thread else 1.0
+            axis = self.axis_number[name, coordinate]
+            plan.add_input(self.column(edge, freedom), axis, force_per_torque)
         self._add_inertias(plan)
         for load in self.mechanism.loads:
             self._add_load(plan, load)
         plan.finish()
         return plan
 
+    def _parts_of(self, edge: int) -> list[int]:
+        return [k for k, carrier in enumerate(self.carriers) if carrier.edge == edge]
+
+    def _add_places(self, plan: Plan) -> None:
+        backward = {e.joint.name for e in self.graph.edges if not e.forward}
+        for name, joint in self.mechanism.joints.items():
+            plan.add_place(
+                self.joint_reference[name],
+                self.link_number[joint.first],
+                self.link_number[joint.second],
+                self.link_number[joint.point.link],
+                self.point(joint.point),
+                -1.0 if name in backward else 1.0,
+            )
+        for name, coordinate in self.axis_number:
+            axis = coordinate_axis(self.mechanism.joints[name], coordinate)
+            (one, two) = axis.terms
+            plan.add_axis(
+                self.place_number[name],
+                axis.slide,
+                self.link_number[one.link],
+                self.vector(one),
+                self.link_number[two.link],
+                self.vector(two),
+            )
+
     def _add_blocks(self, plan: Plan) -> None:
         placed: set[int] = set()
         for block in self.graph.blocks:
-            needed = {
-                k for c in block.closings for k in self._carriers(self.graph.closings[c].joint)
-            }
-            fresh = sorted(needed - placed)
-            unknown = [self.first_column[k] + f for k, f in block.unknowns]
-            plan.add_block(len(block.closings), fresh, unknown)
+            needed = {k for c in block.closings for k in self._ways(self.graph.closings[c].joint)}
+            unknown = [self.column(k, f) for k, f in block.unknowns]
+            plan.add_block(len(block.closings), sorted(needed - placed), unknown)
             placed |= needed
-        plan.set_rest([k for k in range(len(self.graph.edges)) if k not in placed])
+        plan.set_rest([k for k in range(len(self.carriers)) if k not in placed])
 
-    def _carriers(self, joint: Joint) -> set[int]:
-        """Tree joints on the ways from ground to both links of a joint."""
+    def _ways(self, joint: Joint) -> set[int]:
+        """Kernel joints on the ways from ground to both links of a joint."""
         found = set()
         for link in (joint.first, joint.second):
             k = self.link_number[link]
             while k >= 0:
                 found.add(k)
-                k = self.link_number[self.graph.edges[k].parent]
+                k = self.carriers[k].parent
         return found
 
     def _add_inertias(self, plan: Plan) -> None:
@@ -175,7 +256,8 @@ class Layout:
                 continue
             centre = self.point(Attached(name, link.center_of_mass))
             tensor = [
-                i / self.length**2 for i in _turned_tensor(link.inertia, self.link_frame[name])
+                i / (self.length * self.length)
+                for i in _turned_tensor(link.inertia, self.link_frame[name])
             ]
             plan.set_inertia(self.link_number[name], link.mass, centre, tensor)
 
@@ -184,10 +266,9 @@ class Layout:
         if isinstance(load, LinkLoad):
             self._add_link_load(plan, load)
         elif isinstance(load, JointLoad):
-            slide = load.coordinate == "s"
-            code = LoadCode.JOINT_FORCE if slide else LoadCode.JOINT_TORQUE
-            value = load.value / (unit if slide else unit**2)
-            plan.add_load(code, self.joint_reference[load.joint], -1, ZERO, ZERO, (value, 0.0, 0.0))
+            axis, reference, freedom, slide = self._coordinate(load.joint, load.coordinate)
+            value = (load.value / (unit if slide else (unit * unit)), 0.0, 0.0)
+            plan.add_load(LoadCode.COORDINATE, axis, reference, freedom, ZERO, ZERO, value)
         elif load.between:
             p, q = load.between
             if isinstance(load, Spring):
@@ -196,7 +277,7 @@ class Layout:
             else:
                 data, code = (load.damping, 0.0, 0.0), LoadCode.DAMPER
             links = self.link_number[p.link], self.link_number[q.link]
-            plan.add_load(code, *links, self.point(p), self.point(q), data)
+            plan.add_load(code, *links, 0, self.point(p), self.point(q), data)
         else:
             self._add_joint_spring(plan, load)
 
@@ -211,27 +292,51 @@ class Layout:
             )
         else:
             code = LoadCode.TORQUE_LINK if own_axes else LoadCode.TORQUE_GROUND
-            value, point = scale(1.0 / self.length**2, value), ZERO
-        plan.add_load(code, self.link_number[load.link], -1, point, ZERO, value)
+            value, point = scale(1.0 / (self.length * self.length), value), ZERO
+        plan.add_load(code, self.link_number[load.link], -1, 0, point, ZERO, value)
+
+    def _coordinate(self, name: str, coordinate: str) -> tuple[int, int, int, bool]:
+        """Axis, kernel joint and freedom there of a joint's coordinate, and whether it is a
+        slide."""
+        joint = self.mechanism.joints[name]
+        freedom = joint.type.freedom_of[coordinate]
+        slide = is_slide(coordinate)
+        axis = self.axis_number[name, coordinate]
+        for number, edge in enumerate(self.graph.edges):
+            if edge.joint.name == name:
+                return axis, *self.carrier_of(number, freedom), slide
+        return axis, self.joint_reference[name], freedom, slide
 
     def _add_joint_spring(self, plan: Plan, load: Spring | Damper) -> None:
-        slide = load.coordinate == "s"
-        per = 1.0 if slide else self.length**2
-        reference = self.joint_reference[load.joint or ""]
+        axis, reference, freedom, slide = self._coordinate(load.joint or "", load.coordinate or "")
+        per = 1.0 if slide else (self.length * self.length)
         if isinstance(load, Spring):
-            code = LoadCode.JOINT_SPRING_S if slide else LoadCode.JOINT_SPRING_THETA
+            code = LoadCode.COORDINATE_SPRING
             free = load.free / self.length if slide else load.free
-            preload = load.preload / (self.length if slide else self.length**2)
+            preload = load.preload / (self.length if slide else (self.length * self.length))
             data = (load.stiffness / per, free, preload)
         else:
-            code = LoadCode.JOINT_DAMPER_S if slide else LoadCode.JOINT_DAMPER_THETA
+            code = LoadCode.COORDINATE_DAMPER
             data = (load.damping / per, 0.0, 0.0)
-        plan.add_load(code, reference, -1, ZERO, ZERO, data)
+        plan.add_load(code, axis, reference, freedom, ZERO, ZERO, data)
 
 
-def _reversed(joint: Joint, frame: Frame) -> Frame:
-    """A joint's frame for a tree that passes the joint backwards: the same coordinate about -z."""
-    return frame if joint.letter == "S" else frame.flipped()
+def is_slide(coordinate: str) -> bool:
+    """Whether a coordinate is a length; the s of a helical joint is one though its freedom is an
+    angle."""
+    return coordinate in ("s", "x", "y")
+
+
+def _outward(edge: TreeEdge) -> list[tuple[Part, int]]:
+    """The parts of an edge from parent to child, each with its first freedom in the user's
+    count."""
+    parts, first = [], 0
+    for part in edge.joint.parts:
+        parts.append((part, first))
+        first += tree_types()[part.letter].freedoms
+    if edge.forward:
+        return parts
+    return [(part.reversed(), start) for part, start in reversed(parts)]
 
 
 def _sum(points: list[Vector]) -> Vector:
@@ -239,14 +344,6 @@ def _sum(points: list[Vector]) -> Vector:
     for p in points:
         total = subtract(total, scale(-1.0, p))
     return total
-
-
-def _running(counts: object) -> tuple[int, ...]:
-    starts, total = [], 0
-    for count in counts:  # type: ignore[attr-defined]
-        starts.append(total)
-        total += count
-    return tuple(starts)
 
 
 def _turned_tensor(tensor: tuple[float, ...], frame: Frame) -> tuple[float, ...]:

@@ -1,6 +1,7 @@
 """Random numbers for the search of assemblies: the same on every machine and with every NumPy.
 
-NumPy keeps the raw stream of PCG64, not what its generators make of it.
+SplitMix64 (Steele, Lea, Flood 2014): the words are a hash of a counter, so a whole array of them
+costs a few operations, and NumPy's random module need not be imported.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 SEED = 20_240_229
 """Fixed, so that the same file gives the same starts."""
 
+STEP = 0x9E3779B97F4A7C15
+MIXERS = ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB))
 ROUNDING = ldexp(1.0, -53)
 
 
@@ -27,12 +30,20 @@ class RandomStarts:
     """A stream of random coordinates."""
 
     def __init__(self) -> None:
-        self._bits = np.random.PCG64(SEED)
+        self._counter = 0
+
+    def words(self, count: int) -> NDArray[np.uint64]:
+        """The next words of the stream."""
+        numbers = np.arange(self._counter + 1, self._counter + count + 1, dtype=np.uint64)
+        self._counter += count
+        z = np.uint64(SEED) + numbers * np.uint64(STEP)
+        for shift, factor in MIXERS:
+            z = (z ^ (z >> np.uint64(shift))) * np.uint64(factor)
+        return z ^ (z >> np.uint64(31))
 
     def fractions(self, count: int) -> Floats:
         """Uniform in [0, 1): the upper 53 bits of each word."""
-        words = np.atleast_1d(self._bits.random_raw(count))
-        return (words >> np.uint64(11)).astype(np.float64) * ROUNDING
+        return (self.words(count) >> np.uint64(11)).astype(np.float64) * ROUNDING
 
     def between(self, half: float, count: int) -> Floats:
         """Uniform in [-half, half)."""

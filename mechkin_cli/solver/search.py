@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import functions
+from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.layout import Layout
@@ -30,12 +31,11 @@ SLIDE_RANGE = 2.0
 """Bound of random slides in sizes of the home drawing: a chain of links reaches no farther."""
 
 
-@dataclass(frozen=True)
-class Found:
+class Found(NamedTuple):
     """Assemblies (columns of `states`), their condition, and how the search went.
 
     `closed` starts of `starts` ended on an assembly; `chance` estimates that one more start finds
-    a new one.
+    a new one; `closest` is the least closing residual of any start.
     """
 
     states: Floats
@@ -44,9 +44,10 @@ class Found:
     starts: int
     closed: int
     chance: float
+    closest: float
 
     @property
-    def count(self) -> int:
+    def number(self) -> int:
         """Number of assemblies."""
         return int(self.states.shape[1])
 
@@ -58,6 +59,7 @@ class _Clusters:
     states: list[Floats]
     keys: list[Floats]
     met: list[int]
+    closest: float = float("inf")
 
     def add(self, state: Floats, key: Floats) -> None:
         for i, known in enumerate(self.keys):
@@ -87,7 +89,7 @@ def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Fo
     partial: list[Floats] = [np.zeros((plan.states, 1))]
     partial[0][_quaternion_scalars(layout), 0] = 1.0
     starts = closed = 0
-    chance = 0.0
+    chance = closest = 0.0
     for number in range(len(layout.graph.blocks)):
         continued: list[Floats] = []
         for base in partial:
@@ -95,8 +97,9 @@ def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Fo
             continued.extend(state[:, None] for state in clusters.states)
             starts, closed = starts + tried, closed + sum(clusters.met)
             chance = max(chance, clusters.chance if clusters.met else 0.0)
+            closest = max(closest, clusters.closest)
         partial = continued
-    return _polished(layout, plan, inputs, partial, starts, closed, chance)
+    return _polished(layout, plan, inputs, partial, (starts, closed, chance, closest))
 
 
 def _search_block(
@@ -118,6 +121,7 @@ def _search_block(
         residual, flags = np.empty(size), np.empty(size, dtype=np.uint8)
         limits = (tolerances.SEARCH_ITERATIONS, tolerances.SEARCH_RESIDUAL)
         plan.search(number, values, states, residual, flags, *limits, 0)
+        clusters.closest = min(clusters.closest, float(np.min(residual)))
         good = np.flatnonzero(flags == 0)
         keys = pose_keys(layout, states[:, good])
         for i, column in enumerate(good):
@@ -134,37 +138,36 @@ def _randomise(
     """Fills the unknown states of a block with random starts."""
     rows = states.shape[1]
     reach = SLIDE_RANGE * layout.mechanism.box_diagonal() / layout.length
-    for k, freedom in layout.graph.blocks[number].unknowns:
-        joint = layout.graph.edges[k].joint
-        state = layout.first_state[k]
-        if joint.letter == "S":
-            if freedom == 0:
+    for edge, freedom in layout.graph.blocks[number].unknowns:
+        k, local = layout.carrier_of(edge, freedom)
+        carrier = layout.carriers[k]
+        state = carrier.state + local
+        if carrier.part.letter == "S":
+            if local == 0:
                 states[state : state + 4] = generator.quaternions(rows)
-        elif joint.type.slides[freedom]:
-            states[state + freedom] = generator.between(reach, rows)
+        elif tree_types()[carrier.part.letter].slides[local]:
+            states[state] = generator.between(reach, rows)
         else:
-            half = pi * (2 * turns + 1) if joint.letter == "H" else pi
-            states[state + freedom] = generator.between(half, rows)
+            half = pi * (2 * turns + 1) if carrier.part.letter == "H" else pi
+            states[state] = generator.between(half, rows)
 
 
 def _quaternion_scalars(layout: Layout) -> list[int]:
-    spheres = (k for k, edge in enumerate(layout.graph.edges) if edge.joint.letter == "S")
-    return [layout.first_state[k] for k in spheres]
+    return [carrier.state for carrier in layout.carriers if carrier.part.letter == "S"]
 
 
 def pose_keys(layout: Layout, states: Floats) -> Floats:
-    """What tells assemblies apart: direction cosines of turns, slides, rotation matrices'
-    quaternion products."""
+    """What tells assemblies apart: cosines and sines of turns, slides, products of quaternions."""
     keys: list[Floats] = []
-    for k, edge in enumerate(layout.graph.edges):
-        state = layout.first_state[k]
-        if edge.joint.letter == "S":
+    for carrier in layout.carriers:
+        state = carrier.state
+        if carrier.part.letter == "S":
             q = states[state : state + 4]
             keys.extend(q[i] * q[j] for i in range(4) for j in range(i, 4))
             continue
-        for freedom, slide in enumerate(edge.joint.type.slides):
+        for freedom, slide in enumerate(tree_types()[carrier.part.letter].slides):
             value = np.ascontiguousarray(states[state + freedom])
-            if slide or edge.joint.letter == "H":
+            if slide or carrier.part.letter == "H":
                 keys.append(value)
             else:
                 keys.extend((functions.cos(value), functions.sin(value)))
@@ -176,14 +179,12 @@ def _polished(
     plan: Plan,
     inputs: Floats,
     partial: list[Floats],
-    starts: int,
-    closed: int,
-    chance: float,
+    how: tuple[int, int, float, float],
 ) -> Found:
     """Newton on the whole mechanism, singular ends and doubles dropped, angles wrapped."""
     empty = np.empty(0)
     if not partial:
-        return Found(np.empty((plan.states, 0)), empty, empty, starts, closed, chance)
+        return Found(np.empty((plan.states, 0)), empty, empty, *how)
     states = np.concatenate(partial, axis=1)
     values = np.repeat(inputs[:, None], states.shape[1], axis=1)
     batch = run(plan, values, states, demand=Demand.CONDITION, iterations=20)
@@ -200,15 +201,15 @@ def _polished(
     for i in range(states.shape[1]):
         if all(np.max(np.abs(keys[:, i] - keys[:, j])) >= tolerances.SAME_MODE for j in chosen):
             chosen.append(i)
-    return Found(states[:, chosen], residual[chosen], condition[chosen], starts, closed, chance)
+    return Found(states[:, chosen], residual[chosen], condition[chosen], *how)
 
 
 def wrap_angles(layout: Layout, states: Floats) -> None:
-    """Brings the angles of unknown R and C joints into (-pi, pi], in place."""
-    driven = set(layout.graph.inputs)
-    for k, edge in enumerate(layout.graph.edges):
-        if edge.joint.letter not in "RC" or (k, 0) in driven:
+    """Brings the angles of unknown turns into (-pi, pi], in place; threads keep their turns."""
+    driven = {layout.state(edge, freedom) for edge, freedom in layout.graph.inputs}
+    for carrier in layout.carriers:
+        if carrier.part.letter not in "RC" or carrier.state in driven:
             continue
-        row = states[layout.first_state[k]]
+        row = states[carrier.state]
         turns = np.ceil((row - pi) / (2.0 * pi))
         row -= turns * (2.0 * pi)

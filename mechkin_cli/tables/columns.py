@@ -15,6 +15,7 @@ from mechkin_cli.expressions import ExpressionError, Quantity, Vector
 from mechkin_cli.status import Status
 from mechkin_cli.tables.layout import ROW_NUMBERS, ROW_TEXTS, ColumnLayout, TableLayout
 from mechkin_cli.tables.source import FloatArray, Source
+from mechkin_cli.tables.uniqueness import unique_cells
 from mechkin_cli.units import DIMENSIONLESS
 
 _HAS_SOLUTION = np.array([status.has_solution for status in Status])
@@ -86,7 +87,10 @@ def _column(layout: ColumnLayout, source: Source) -> Column:
     if name in source.inputs:
         unit = source.units.label(source.quantity(name).dimension)
         return Column(layout.label, unit, source.inputs[name], layout.decimals)
-    return _evaluated(layout, source)
+    column = _evaluated(layout, source)
+    others = [_evaluated(layout, other).values for other in source.alternatives]
+    values = unique_cells(column.values, others)  # type: ignore[arg-type]
+    return Column(column.label, column.unit, values, column.decimals)
 
 
 def _evaluated(layout: ColumnLayout, source: Source) -> Column:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from mechkin_cli.expressions import Expression
@@ -17,8 +16,7 @@ ROW_NUMBERS = ("row.residual", "row.condition", "row.power_error")
 """Quantities of a row that are dimensionless numbers."""
 
 
-@dataclass(frozen=True, slots=True)
-class ColumnLayout:
+class ColumnLayout(NamedTuple):
     """One column; `decimals` holds for Markdown alone, None leaves them to the values."""
 
     label: str
@@ -26,8 +24,7 @@ class ColumnLayout:
     decimals: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class TableLayout:
+class TableLayout(NamedTuple):
     """One table; `name` is the stem of its files, `title` its heading in Markdown."""
 
     name: str

@@ -64,6 +64,11 @@ class Source(Protocol):
         """Units of the mechanism file; tables are written in them."""
         ...
 
+    @property
+    def alternatives(self) -> Sequence[Source]:
+        """The same rows with other reactions in equilibrium, where constraints are redundant."""
+        ...
+
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by its dotted name, in SI.
 

@@ -10,13 +10,12 @@ import csv
 import io
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 _UNESCAPED_BAR = re.compile(r"(?<!\\)\|")
 
 
-@dataclass(frozen=True, slots=True)
-class TableText:
+class TableText(NamedTuple):
     """Labels and rows of cells; `lines` are the lines outside the table that are not blank."""
 
     labels: tuple[str, ...] = ()

@@ -7,9 +7,8 @@ untouched. Only in the other cases is the factor itself rounded.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +18,7 @@ from mechkin_cli.units.errors import UnitError
 Number = TypeVar("Number", float, NDArray[np.float64])
 
 
-@dataclass(frozen=True, slots=True)
-class Conversion:
+class Conversion(NamedTuple):
     """Values times `multiplier` over `divisor`, of which at least one is exactly 1."""
 
     multiplier: float

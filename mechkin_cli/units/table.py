@@ -8,8 +8,8 @@ value rounded once.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
 from mechkin_cli.units.dimension import (
     ACCELERATION,
@@ -28,8 +28,7 @@ from mechkin_cli.units.dimension import (
 PI = Fraction(3141592653589793238462643383279502884197169399375105820974945, 10**60)
 
 
-@dataclass(frozen=True, slots=True)
-class Unit:
+class Unit(NamedTuple):
     """A named unit: one of it is `factor` SI units (m, kg, s, rad) of its dimension."""
 
     symbol: str

@@ -1,6 +1,6 @@
 """Mistakes in units, parameters, links, joints, points, and sections that are not solved."""
 
-from building.sound import added, changed, joint
+from building.sound import added, between, changed, joint
 
 UNITS_AND_PARAMETERS = [
     changed("{length: mm}", "{length: »parsec}", "unit", "parsec"),
@@ -64,20 +64,28 @@ JOINTS = [
         "expected a length",
         "angle",
     ),
-    joint(
-        "{type: »U, LINKS, point: [0, 0, 0], axis: [1, 0, 0], axis2: [0, 1, 0]}",
-        "joint-type",
-        "type U",
-        "it solves R, P",
+    between(
+        "{type: U, LINKS, point: [0, r, 10], axis: [0, 0, 1], axis2: »[0, 0, -2]}",
+        "parallel-axes",
+        "universal joint are parallel",
+        "use type R",
     ),
-    joint(
-        "{type: »E, LINKS, point: [0, 0, 0], normal: [0, 0, 1], x: [1, 0, 0]}",
-        "joint-type",
-        "type E",
+    between(
+        "{type: E, LINKS, point: [0, r, 10], normal: [0, 0, 1], "
+        "x: {crank: [1, 0, 0], rod: »[0, 0, 3]}}",
+        "zero-parallel",
+        "x is parallel to the joint's normal",
     ),
-    joint("{type: »Sp, LINKS, point: [0, 0, 0], normal: [0, 0, 1]}", "joint-type", "type Sp"),
-    joint("{type: »Sg, LINKS, point: [0, 0, 0], groove: [0, 0, 1]}", "joint-type", "type Sg"),
-    joint("{type: »W, LINKS}", "joint-type", "type W"),
+    between(
+        "{type: Sp, LINKS, point: [0, r, 10], normal: »[0, 0, 0]}",
+        "zero-direction",
+        "direction is zero",
+    ),
+    between(
+        "{type: Sg, LINKS, point: [0, r, 10], groove: »[0, 0, 0]}",
+        "zero-direction",
+        "direction is zero",
+    ),
 ]
 
 POINTS = [

@@ -34,12 +34,6 @@ MOTION = [
         "following-input",
         "not computed by this version",
     ),
-    inputs(
-        "»{O.theta: {from: 0, to: 9, step: 1}, D.theta: {at: 0}}",
-        "overconstrained",
-        "1 more closing equation",
-        "drive fewer coordinates",
-    ),
     changed(
         "{inputs: {O.theta: {from: -70, to: 70, step: 5}}}",
         "{time: »{from: 0, to: 1, step: 0.1}, "

@@ -65,6 +65,12 @@ def joint(new: str, code: str, *words: str) -> BadMechanism:
     return BadMechanism(old, new.replace("LINKS", "links: [ground, crank]"), code, words)
 
 
+def between(new: str, code: str, *words: str) -> BadMechanism:
+    """The sound file with another joint A, of the links crank and rod."""
+    old = "{type: S, links: [crank, rod], point: [0, r, 10]}"
+    return BadMechanism(old, new.replace("LINKS", "links: [crank, rod]"), code, words)
+
+
 def inputs(new: str, code: str, *words: str) -> BadMechanism:
     """The sound file with other inputs."""
     return BadMechanism("{O.theta: {from: -70, to: 70, step: 5}}", new, code, words)

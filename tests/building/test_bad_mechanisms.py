@@ -79,6 +79,12 @@ tables:
     assert [error.code for error in errors(text.replace(old, new) + users)] == [code]
 
 
+def test_one_direction_for_both_links_of_a_planar_joint_is_one_mistake() -> None:
+    planar = "{type: E, links: [crank, rod], point: [0, r, 10], normal: [0, 0, 1], x: [0, 0, 3]}"
+    text = SOUND.replace("{type: S, links: [crank, rod], point: [0, r, 10]}", planar)
+    assert places(text) == [("zero-parallel", 10)]
+
+
 HELICAL = """\
 format: 1
 links: {nut: {}}

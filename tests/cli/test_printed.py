@@ -135,7 +135,7 @@ def test_mode_chooses_the_assembly(mechkin) -> None:
 
 def test_an_unknown_mode_names_those_there_are(mechkin) -> None:
     run = mechkin("analyze", RCSR, "--mode", "Q", "--quiet")
-    assert "there is no mode Q at the first row: 2 modes found: A, B" in run.err
+    assert "there is no mode Q at the first row: modes A, B" in run.err
 
 
 def test_an_unknown_table_names_those_there_are(mechkin, write) -> None:

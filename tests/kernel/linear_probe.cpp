@@ -1,27 +1,58 @@
-// The kernel's linear algebra for one pack, behind a plain C function for the tests.
-#include "linear.hpp"
+// The kernel's linear algebra for one pack, behind plain C functions for the tests.
+#include "factors.hpp"
 
 namespace {
+
 constexpr int LARGEST = 16;
+
+// Arrays lie lane after lane.
+void load(int count, const double* from, Pack* to) {
+  for (int lane = 0; lane < LANES; ++lane)
+    for (int i = 0; i < count; ++i) to[i].v[lane] = from[lane * count + i];
+}
+void store(int count, const Pack* from, double* to) {
+  for (int lane = 0; lane < LANES; ++lane)
+    for (int i = 0; i < count; ++i) to[lane * count + i] = from[i].v[lane];
 }
 
-// Arrays lane after lane: a (n x n, row-major), b (n) -> x = A^-1 b, y = A^-T b, sigma.
-extern "C" __attribute__((visibility("default"))) void linear_probe(int n, const double* a, const double* b, double* x,
-                                                                    double* y, double* sigma) {
-  Pack matrix[LARGEST * LARGEST], copy[LARGEST * LARGEST], first[LARGEST], second[LARGEST];
+}  // namespace
+
+#define EXPORTED extern "C" __attribute__((visibility("default")))
+
+// a (n x n, row-major), b (n) -> x = A^-1 b, y = A^-T b.
+EXPORTED void solve_square(int n, const double* a, const double* b, double* x, double* y) {
+  Pack matrix[LARGEST * LARGEST], first[LARGEST], second[LARGEST];
   Mask swap[LARGEST * LARGEST];
-  for (int lane = 0; lane < LANES; ++lane) {
-    for (int i = 0; i < n * n; ++i) matrix[i].v[lane] = a[lane * n * n + i];
-    for (int i = 0; i < n; ++i) first[i].v[lane] = second[i].v[lane] = b[lane * n + i];
-  }
-  for (int i = 0; i < n * n; ++i) copy[i] = matrix[i];
+  load(n * n, a, matrix);
+  load(n, b, first);
+  load(n, b, second);
   const Factors factors = {matrix, swap, n};
   factor(factors);
   solve(factors, first);
   solve_transposed(factors, second);
-  const Pack least = smallest_singular_value(copy, n);
-  for (int lane = 0; lane < LANES; ++lane) {
-    for (int i = 0; i < n; ++i) x[lane * n + i] = first[i].v[lane], y[lane * n + i] = second[i].v[lane];
-    sigma[lane] = least.v[lane];
-  }
+  store(n, first, x);
+  store(n, second, y);
+}
+
+// a (m x n, row-major), b (m), c (n) -> least-squares x (n) of a x = b, y (m) of a^T y = c with a shift.
+EXPORTED void solve_tall(int m, int n, const double* a, const double* b, const double* c, int shift, double* x,
+                         double* y) {
+  Pack matrix[LARGEST * LARGEST], first[LARGEST], second[LARGEST], pivot[LARGEST], beta[LARGEST];
+  load(m * n, a, matrix);
+  load(m, b, first);
+  load(n, c, second);
+  const Reflectors factors = {matrix, pivot, beta, m, n};
+  reflect(factors);
+  solve(factors, first);
+  solve_transposed(factors, second, shift);
+  store(n, first, x);
+  store(m, second, y);
+}
+
+// a (m x n, row-major) -> its smallest singular value.
+EXPORTED void least_singular_value(int m, int n, const double* a, double* sigma) {
+  Pack matrix[LARGEST * LARGEST];
+  load(m * n, a, matrix);
+  const Pack least = smallest_singular_value(matrix, m, n);
+  store(1, &least, sigma);
 }

@@ -10,12 +10,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from kernel.pairs import PAIRS, PITCH, O, Z, exponential, mp, vector
+from kernel.pairs import ELEMENTARY, PITCH, O, Z, exponential, mp, vector
 
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.solver.codes import Demand, OutputCode
 
 TABLE = {entry["letter"]: entry for entry in _kernel.joint_table()}
+TREE_LETTERS = "RPHCSW"
+"""Elementary displacements in the order of the kernel's codes."""
 LENGTH = 2.0
 ORIGIN = (0.5, -1.25, 0.75)
 EVERYTHING = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
@@ -35,6 +37,10 @@ def random_pose(generator: np.random.Generator) -> Any:
     return doubles(turned)
 
 
+def floats(values: Any) -> tuple[float, ...]:
+    return tuple(float(v) for v in values)
+
+
 def frame(m: Any) -> list[float]:
     """A pose as the kernel takes frames: axes x, y, z, origin."""
     return [float(c) for column in range(4) for c in vector(m, column)]
@@ -42,7 +48,8 @@ def frame(m: Any) -> list[float]:
 
 @dataclass(frozen=True)
 class TreeJoint:
-    """A joint of a chain: its letter, the link that carries it and its frame in that link."""
+    """An elementary displacement of a chain: its letter, the body that carries it and its frame
+    there."""
 
     letter: str
     parent: int
@@ -51,37 +58,49 @@ class TreeJoint:
 
 @dataclass
 class Chain:
-    """A plan under construction with what the tests must know of it."""
+    """A plan under construction with what the tests must know of it.
+
+    Every tree joint has a place (its own number) with the point at its frame's origin, and every
+    column that is no turn of a sphere has an axis there.
+    """
 
     plan: Any
     joints: list[TreeJoint]
+    axes: dict[int, int]
 
     @staticmethod
     def of(joints: list[TreeJoint]) -> Chain:
-        plan = _kernel.Plan(LENGTH, ORIGIN, LENGTH)
-        for number, joint in enumerate(joints):
-            place = _kernel.Place(joint.parent, number, O, Z, 1.0)
-            code = TABLE[joint.letter]["code"]
+        chain = Chain(_kernel.Plan(LENGTH, ORIGIN, LENGTH), joints, {})
+        for joint in joints:
             pitch = PITCH if joint.letter == "H" else 0.0
-            plan.add_tree_joint(code, joint.parent, pitch, frame(joint.at), place)
-        return Chain(plan, joints)
+            code = TREE_LETTERS.index(joint.letter)
+            chain.plan.add_tree_joint(code, joint.parent, pitch, frame(joint.at))
+        for number, joint in enumerate(joints):
+            chain.plan.add_place(number, joint.parent, number, number, floats(O), 1.0)
+            for column, (angular, _) in zip(
+                chain.columns_of(number), ELEMENTARY[joint.letter].screws, strict=True
+            ):
+                if joint.letter != "S":
+                    along = not any(angular)
+                    chain.axes[column] = chain.axis(number, number, Z, along_axis=along)
+        return chain
 
-    def drive(self, column: int, *, along_axis: bool | None = None) -> None:
-        """Makes a column an input; the drive acts along the axis of a slide, else about it."""
-        if along_axis is None:
-            number = next(k for k in range(len(self.joints)) if column in self.columns_of(k))
-            freedom = column - self.columns_of(number)[0]
-            along_axis = bool(TABLE[self.joints[number].letter]["slides"] >> freedom & 1)
-        self.plan.add_input(column, along_axis)
+    def axis(self, place: int, link: int, direction: Any, *, along_axis: bool) -> int:
+        """Adds an axis of a place, carried by a link: a force along it or a couple about it."""
+        return int(self.plan.add_axis(place, along_axis, link, floats(direction), link, floats(O)))
+
+    def drive(self, column: int) -> None:
+        """Makes a column an input."""
+        self.plan.add_input(column, self.axes[column], 1.0)
 
     def columns_of(self, number: int) -> range:
         """Columns of a tree joint."""
-        sizes = [TABLE[joint.letter]["freedoms"] for joint in self.joints]
+        sizes = [len(ELEMENTARY[joint.letter].screws) for joint in self.joints]
         return range(sum(sizes[:number]), sum(sizes[: number + 1]))
 
     def states_of(self, number: int) -> range:
         """States of a tree joint."""
-        sizes = [TABLE[joint.letter]["states"] for joint in self.joints]
+        sizes = [ELEMENTARY[joint.letter].states for joint in self.joints]
         return range(sum(sizes[:number]), sum(sizes[: number + 1]))
 
     def poses(self, states: Any, first: Any = None, second: Any = None, time: Any = 0) -> list[Any]:
@@ -97,16 +116,18 @@ class Chain:
             v = [mp.mpf(0 if first is None else float(first[c])) for c in columns]
             a = [mp.mpf(0 if second is None else float(second[c])) for c in columns]
             home = joint.at if joint.parent < 0 else homes[joint.parent] * joint.at
-            local = PAIRS[joint.letter].moving(q, v, a, time)
+            local = ELEMENTARY[joint.letter].moving(q, v, a, time)
             about_home = home * local * mp.inverse(home)
             before = mp.eye(4) if joint.parent < 0 else moves[joint.parent]
             homes.append(home)
             moves.append(before * about_home)
         return [move * home for move, home in zip(moves, homes, strict=True)]
 
-    def output(self, code: OutputCode, index: int, order: int = 0, data: Any = O) -> slice:
+    def output(
+        self, code: OutputCode, index: int, order: int = 0, data: Any = O, freedom: int = 0
+    ) -> slice:
         """Plans an output without scaling; returns its slots."""
-        begin = self.plan.add_output(int(code), index, order, tuple(map(float, data)), 1.0)
+        begin = self.plan.add_output(int(code), index, freedom, order, floats(data), 1.0)
         return slice(begin, self.plan.slots)
 
 
@@ -131,6 +152,8 @@ def run(
     rates: Any = None,
     accelerations: Any = None,
     demand: Demand = Demand.POSITION,
+    shift: int = 0,
+    lanes: int = 0,
     iterations: int = 6,
     accept: float = 1e-14,
 ) -> Run:
@@ -146,23 +169,24 @@ def run(
         np.zeros(rows, dtype=np.uint8),
     )
     plan.run(
-        inputs,
-        rates,
-        accelerations,
-        guess,
-        result.states,
-        result.outputs,
-        result.first,
-        result.second,
-        result.residual,
-        np.empty(rows),
-        None,
-        result.condition,
-        np.empty(rows),
-        result.flags,
-        int(demand),
-        iterations,
-        (1e-16, 1e-8, accept),
-        0,
+        inputs=inputs,
+        rates=rates,
+        accelerations=accelerations,
+        guess=guess,
+        states=result.states,
+        outputs=result.outputs,
+        first=result.first,
+        second=result.second,
+        residual=result.residual,
+        correction=np.empty(rows),
+        orientation=None,
+        condition=result.condition,
+        power_error=np.empty(rows),
+        flags=result.flags,
+        demand=int(demand),
+        shift=shift,
+        iterations=iterations,
+        tests=(1e-16, 1e-8, accept),
+        lanes=lanes,
     )
     return result

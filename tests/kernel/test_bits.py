@@ -72,10 +72,9 @@ def rcsr(closed_at: str) -> tuple[Any, Rows]:
     assert followed.reached == ROWS
     generator = np.random.default_rng(2)
     guess = followed.guess
-    for number, edge in enumerate(graph.edges):
-        if edge.joint.letter != "S":
-            errors = 10.0 ** generator.uniform(-14, -2, ROWS)
-            guess[layout.first_state[number]] += errors
+    for carrier in layout.carriers:
+        if carrier.part.letter != "S":
+            guess[carrier.state] += 10.0 ** generator.uniform(-14, -2, ROWS)
     rates, accelerations = generator.uniform(-1, 1, (2, 1, ROWS))
     return plan, Rows(inputs, rates, accelerations, guess)
 
@@ -96,7 +95,7 @@ def compute(plan: Any, rows: Rows, lanes: int = 0) -> Batch:
 
 def assert_same_bits(found: Batch, expected: Batch, rows: Any = slice(None)) -> None:
     """Every array of `found` holds the bytes of the chosen rows of `expected`."""
-    for name, array in vars(expected).items():
+    for name, array in expected._asdict().items():
         assert getattr(found, name).tobytes() == array[..., rows].tobytes(), name
 
 
@@ -147,7 +146,7 @@ def test_nonsense_in_the_neighbouring_rows(closed_at: str, lanes: int) -> None:
     found = compute(plan, spoilt, lanes)
     whole = compute(plan, rows)
     good = np.arange(0, ROWS, 3)
-    for name, array in vars(whole).items():
+    for name, array in whole._asdict().items():
         assert getattr(found, name)[..., good].tobytes() == array[..., good].tobytes(), name
     assert np.all(found.flags[1::3] != 0)
 

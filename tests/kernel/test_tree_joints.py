@@ -1,14 +1,16 @@
-"""Every joint type as a tree joint: displacement, twist, acceleration, transmitted wrench.
+"""Every joint type in the tree: displacement, twist, acceleration, transmitted wrench.
 
-The joint under test is carried by a link that moves. Where its state is a quaternion its rates
+The pair under test is carried by a link that moves. Where its state has a quaternion its rates
 cannot be prescribed, so a loop around it prescribes them.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
-from kernel.pairs import PAIRS, PITCH, Z, derivative, mp, vector
+from kernel.pairs import COSINE, PAIRS, PITCH, O, X, Y, Z, derivative, mp, vector
 from kernel.plans import (
     EVERYTHING,
     LENGTH,
@@ -17,96 +19,127 @@ from kernel.plans import (
     Chain,
     TreeJoint,
     doubles,
+    floats,
     frame,
     random_pose,
     run,
 )
 
-from mechkin_cli.kernel import _kernel
 from mechkin_cli.solver.codes import LoadCode, OutputCode
 
-LETTERS = list(TABLE)
 SEEDS = 3
 POINT, DIRECTION = (0.3, -0.7, 0.45), (0.6, 0.0, -0.8)
+DUAL, CROSSED = 1 / (1 - COSINE**2), -COSINE / (1 - COSINE**2)
+"""Dual basis of two oblique unit vectors: (a - (a.b) b) / (1 - (a.b)^2)."""
+DRIVES = {
+    "R": [(False, O, Z)],
+    "P": [(True, O, Z)],
+    "H": [(False, O, Z)],
+    "C": [(False, O, Z), (True, O, Z)],
+    "U": [(False, (0, 0, DUAL), (0, 0, CROSSED)), (False, (0, 0, CROSSED), (0, 0, DUAL))],
+    "E": [(True, X, O), (True, Y, O), (False, O, Z)],
+    "W": [],
+}
+"""What works on a freedom and on no other: a force or not, its parts in the first link's frame of
+the pair and in the second's."""
 
 
-def helpers_for(letter: str) -> list[str]:
-    """Joints that let a closing R prescribe all rates of a joint whose state is no list of
-    scalars."""
-    if TABLE[letter]["freedoms"] == TABLE[letter]["states"]:
-        return []
-    return ["R", "P"][: 5 - TABLE[letter]["freedoms"]]
+class Subject:
+    """The chain: R (driven), helpers, the pair under test.
 
+    With the helpers a closing R prescribes all rates of a pair whose state is no list of scalars.
+    """
 
-def chain_with(letter: str, generator: np.random.Generator) -> tuple[Chain, int]:
-    """R (driven), helpers, the joint under test; returns the chain and the tested joint's
-    number."""
-    letters = ["R", *helpers_for(letter), letter]
-    joints = [TreeJoint(each, k - 1, random_pose(generator)) for k, each in enumerate(letters)]
-    return Chain.of(joints), len(letters) - 1
+    def __init__(self, letter: str, generator: np.random.Generator) -> None:
+        self.pair = PAIRS[letter]
+        self.open = self.pair.states == self.pair.freedoms
+        helpers = "" if self.open else "RP"[: 5 - self.pair.freedoms]
+        letters = ["R", *helpers]
+        joints = [TreeJoint(each, k - 1, random_pose(generator)) for k, each in enumerate(letters)]
+        self.carrier = len(joints) - 1
+        self.on_carrier = random_pose(generator)
+        before = self.on_carrier
+        for each, at in self.pair.chain:
+            home = doubles(before * at)
+            joints.append(TreeJoint(each, len(joints) - 1, home))
+            before = mp.inverse(at)
+        self.on_last = before * self.pair.home
+        self.last = len(joints) - 1
+        self.chain = Chain.of(joints)
+        point_on_first = self.pair.point_on_first
+        self.place = self.chain.plan.add_place(
+            self.last,
+            self.carrier,
+            self.last,
+            self.carrier if point_on_first else self.last,
+            floats(vector(self.on_carrier if point_on_first else self.on_last, 3)),
+            1.0,
+        )
 
+    def random_states(self, generator: np.random.Generator) -> np.ndarray:
+        helpers = generator.uniform(-1.5, 1.5, self.carrier + 1)
+        return np.array([*helpers, *self.pair.random_state(generator)])
 
-def random_states(chain: Chain, generator: np.random.Generator) -> np.ndarray:
-    states = generator.uniform(-1.5, 1.5, chain.plan.states)
-    for number, joint in enumerate(chain.joints):
-        if PAIRS[joint.letter].quaternion:
-            own = chain.states_of(number)
-            states[own] = states[own] / np.linalg.norm(states[own])
-    return states
+    def own_states(self, states: np.ndarray) -> list[float]:
+        return states[self.carrier + 1 :].tolist()
 
+    def drive(self, letter: str, *, along_thread: bool) -> None:
+        """Drives all freedoms of the pair."""
+        for freedom, (slide, one, two) in enumerate(DRIVES[letter]):
+            on_first = vector(self.on_carrier * mp.matrix([*one, 0]), 0)
+            on_second = vector(self.on_last * mp.matrix([*two, 0]), 0)
+            axis = self.chain.plan.add_axis(
+                self.place,
+                slide or along_thread,
+                self.carrier,
+                floats(on_first),
+                self.last,
+                floats(on_second),
+            )
+            scale = 1 / PITCH if along_thread else 1.0
+            self.chain.plan.add_input(self.carrier + 1 + freedom, axis, scale)
 
-def close(
-    chain: Chain,
-    states: np.ndarray,
-    generator: np.random.Generator,
-    along_axis: bool | None = None,
-) -> None:
-    """Closes the chain by an R to ground where it stands; a chain of driven joints stays open."""
-    last = len(chain.joints) - 1
-    if len(chain.joints) == 2:
-        for column in range(chain.plan.columns):
-            chain.drive(column, along_axis=along_axis if column else None)
-        chain.plan.set_rest([0, 1])
-    else:
+    def close(self, states: np.ndarray, generator: np.random.Generator) -> None:
+        """Closes the chain by an R to ground where it stands."""
         on_link = random_pose(generator)
-        on_ground = doubles(chain.poses(states)[last] * on_link)
-        place = _kernel.Place(-1, last, vector_of(on_link, 3), vector_of(on_link, 2), 1.0)
-        loop = [(k, 1.0) for k in range(last + 1)]
-        closing = TABLE["R"]["code"]
+        on_ground = doubles(self.chain.poses(states)[self.last] * on_link)
+        loop = [(k, 1.0) for k in range(self.last + 1)]
         ends = frame(on_ground), frame(on_link)
-        chain.plan.add_closing_joint(closing, -1, last, *ends, loop, place)
-        chain.plan.add_block(1, list(range(last + 1)), list(range(1, chain.plan.columns)))
-        chain.drive(0)
-    chain.plan.finish()
-
-
-def vector_of(m: object, column: int) -> tuple[float, ...]:
-    return tuple(float(c) for c in vector(m, column))
+        plan = self.chain.plan
+        plan.add_closing_joint(TABLE["R"]["code"], -1, self.last, *ends, 0.0, loop)
+        plan.add_block(1, list(range(self.last + 1)), list(range(1, plan.columns)))
 
 
 class Moved:
-    """A joint's chain, run once with random states, rates and accelerations."""
+    """A pair's chain, run once with random states, rates and accelerations."""
 
-    def __init__(self, letter: str, seed: int, along_axis: bool | None = None) -> None:
+    def __init__(self, letter: str, seed: int, *, along_thread: bool = False) -> None:
         generator = np.random.default_rng(seed)
-        self.chain, self.number = chain_with(letter, generator)
-        states = random_states(self.chain, generator)
+        self.tested = tested = Subject(letter, generator)
+        self.chain, self.number = tested.chain, tested.last
+        states = tested.random_states(generator)
         centre, tensor = (0.2, 0.1, -0.3), (1.5, 1.2, 0.9, 0.1, -0.2, 0.05)
-        for link in range(len(self.chain.joints)):
+        for link in [*range(tested.carrier + 1), tested.last]:  # none between a pair's parts
             self.chain.plan.set_inertia(link, 1.0 + link, centre, tensor)
         self.chain.plan.set_gravity((1.0, -2.0, 3.0))
         force = int(LoadCode.FORCE_LINK)
-        self.chain.plan.add_load(force, self.number, -1, POINT, (0.0, 0.0, 0.0), (4.0, -3.0, 2.0))
-        close(self.chain, states, generator, along_axis)
+        self.chain.plan.add_load(force, self.number, -1, 0, POINT, floats(O), (4.0, -3.0, 2.0))
+        self.chain.drive(0)
+        if tested.open:
+            tested.drive(letter, along_thread=along_thread)
+            self.chain.plan.set_rest(list(range(len(self.chain.joints))))
+        else:
+            tested.close(states, generator)
+        self.chain.plan.finish()
         output, number = self.chain.output, self.number
         self.points = [output(OutputCode.POINT, number, order, POINT) for order in range(3)]
         self.vector = output(OutputCode.VECTOR, number, 0, DIRECTION)
         self.turning = [output(OutputCode.OMEGA, number), output(OutputCode.ALPHA, number)]
-        self.force = output(OutputCode.JOINT_FORCE, number)
-        self.moment = output(OutputCode.JOINT_MOMENT, number)
+        self.slip = output(OutputCode.SLIP, tested.place, 0, POINT)
+        self.force = output(OutputCode.JOINT_FORCE, tested.place)
+        self.moment = output(OutputCode.JOINT_MOMENT, tested.place)
         self.axis = output(OutputCode.VECTOR, number, 0, Z)
-        columns = range(self.chain.plan.columns)
-        driven = [c for c in columns if len(self.chain.joints) == 2 or c == 0]
+        driven = list(range(self.chain.plan.columns)) if tested.open else [0]
         self.run = run(
             self.chain,
             np.ascontiguousarray(states[driven, None]),
@@ -116,8 +149,9 @@ class Moved:
             demand=EVERYTHING,
         )
         assert self.run.flags[0] == 0
+        assert np.all(np.isfinite([*self.run.first, *self.run.second]))
 
-    def pose(self, time: object) -> object:
+    def pose(self, time: Any) -> Any:
         """Pose of the moved link by the product of exponentials."""
         r = self.run
         return self.chain.poses(r.states[:, 0], r.first[:, 0], r.second[:, 0], time)[self.number]
@@ -126,12 +160,12 @@ class Moved:
         return self.run.outputs[slots, 0]
 
 
-@pytest.fixture(params=[(letter, seed) for letter in LETTERS for seed in range(SEEDS)], ids=str)
+@pytest.fixture(params=[(letter, seed) for letter in PAIRS for seed in range(SEEDS)], ids=str)
 def moved(request: pytest.FixtureRequest) -> Moved:
     return Moved(*request.param)
 
 
-def in_metres(position: object) -> list[float]:
+def in_metres(position: Any) -> list[float]:
     return [float(LENGTH * c + o) for c, o in zip(position, ORIGIN, strict=True)]
 
 
@@ -164,24 +198,42 @@ def test_omega_and_alpha_are_the_derivatives_of_the_rotation(moved: Moved, order
     np.testing.assert_allclose(measured, expected, rtol=0, atol=2e-14 * scale)
 
 
+def test_a_chain_displaces_as_its_pair(moved: Moved) -> None:
+    """The second frame against the first, whatever bodies lie between."""
+    tested = moved.tested
+    poses = moved.chain.poses(moved.run.states[:, 0])
+    first = poses[tested.carrier] * tested.on_carrier
+    second = first * tested.pair.displacement(tested.own_states(moved.run.states[:, 0]))
+    at = vector(second * mp.inverse(tested.on_last) * mp.matrix([*POINT, 1]), 0)
+    np.testing.assert_allclose(moved.measured(moved.points[0]), in_metres(at), rtol=0, atol=1e-14)
+
+
+def test_slip_is_the_joint_point_seen_from_a_point_of_the_second_link(moved: Moved) -> None:
+    tested = moved.tested
+    poses = moved.chain.poses(moved.run.states[:, 0])
+    first, last = poses[tested.carrier] * tested.on_carrier, poses[tested.last]
+    point = first if tested.pair.point_on_first else last * tested.on_last
+    contact = vector(last * mp.matrix([*POINT, 1]), 0)
+    expected = [float(c - b) for c, b in zip(vector(point, 3), contact, strict=True)]
+    np.testing.assert_allclose(moved.measured(moved.slip), expected, rtol=0, atol=1e-14)
+
+
 def test_the_transmitted_wrench_does_no_work_on_the_freedoms(moved: Moved) -> None:
-    """Drives and joint loads set aside; moments in N m about the joint's point, as screws are."""
-    force = LENGTH * moved.measured(moved.force)
-    moment = LENGTH**2 * moved.measured(moved.moment)
-    joint = moved.chain.joints[moved.number]
-    carrier = moved.chain.poses(moved.run.states[:, 0])[joint.parent] * joint.at
-    axes = np.array([[float(carrier[i, j]) for j in range(3)] for i in range(3)])
-    scale = np.abs(force).max() * LENGTH + np.abs(moment).max()
-    assert scale > 1
-    for angular, linear in PAIRS[joint.letter].screws:
-        power = (axes @ angular) @ moment + LENGTH * (axes @ linear) @ force
+    """Drives and joint loads set aside; about the joint's point."""
+    tested, states = moved.tested, moved.run.states[:, 0]
+    carrier = moved.chain.poses(states)[tested.carrier] * tested.on_carrier
+    axes = np.array([[float(carrier[i, j]) for i in range(3)] for j in range(3)])
+    force, moment = axes @ moved.measured(moved.force), axes @ moved.measured(moved.moment)
+    scale = np.abs(force).max() + np.abs(moment).max()
+    assert scale > 0.1
+    for power in tested.pair.powers(tested.own_states(states), force, moment):
         assert abs(power) <= 1e-13 * scale
 
 
 @pytest.mark.parametrize("seed", range(SEEDS))
 def test_a_screw_may_be_driven_by_a_torque_or_by_a_force(seed: int) -> None:
     """Either drive is set aside as what it is; force times pitch is torque."""
-    turned, pushed = (Moved("H", seed, along_axis) for along_axis in (False, True))
+    turned, pushed = (Moved("H", seed, along_thread=along_thread) for along_thread in (False, True))
     axis = turned.measured(turned.axis)
     torque = pushed.measured(pushed.moment) - turned.measured(turned.moment)
     force = turned.measured(turned.force) - pushed.measured(pushed.force)

@@ -29,6 +29,7 @@ class HandWritten:
     residual: np.ndarray = field(default_factory=lambda: np.array([0.0, 1e-16, 2e-16, NAN]))
     condition: np.ndarray = field(default_factory=lambda: np.array([2.0, 2.5, 1e7, NAN]))
     power_error: np.ndarray = field(default_factory=lambda: np.array([NAN, NAN, NAN, NAN]))
+    alternatives: tuple = ()
 
     def quantity(self, name: str) -> Quantity:
         if name not in self.quantities:

@@ -105,17 +105,17 @@ inline void solve_transposed(Factors f, Pack* b) { MECHKIN_SIZED(solve_transpose
 #undef MECHKIN_AND_B
 #undef MECHKIN_SIZED
 
-// Smallest singular value of the n x n matrix a (destroyed), by one-sided Jacobi rotations of its
+// Smallest singular value of the m x n matrix a (destroyed), by one-sided Jacobi rotations of its
 // columns (Demmel and Veselic 1992: accurate to high relative precision). A pair of columns that is
 // orthogonal to rounding is left alone, lane by lane.
-inline Pack smallest_singular_value(Pack* a, int n) {
+inline Pack smallest_singular_value(Pack* a, int m, int n) {
   const Pack negligible = 1e-15;
   for (int sweep = 0; sweep < 30; ++sweep) {
     bool rotated = false;
     for (int p = 0; p < n; ++p)
       for (int q = p + 1; q < n; ++q) {
         Pack alpha = 0.0, beta = 0.0, gamma = 0.0;
-        for (int i = 0; i < n; ++i) {
+        for (int i = 0; i < m; ++i) {
           const Pack x = a[i * n + p], y = a[i * n + q];
           alpha += x * x, beta += y * y, gamma += x * y;
         }
@@ -125,7 +125,7 @@ inline Pack smallest_singular_value(Pack* a, int n) {
         const Pack zeta = (beta - alpha) / (Pack(2.0) * select(turn, gamma, Pack(1.0)));
         const Pack t = copysign(Pack(1.0), zeta) / (abs(zeta) + sqrt(Pack(1.0) + zeta * zeta));
         const Pack c = Pack(1.0) / sqrt(Pack(1.0) + t * t), s = c * t;
-        for (int i = 0; i < n; ++i) {
+        for (int i = 0; i < m; ++i) {
           const Pack x = a[i * n + p], y = a[i * n + q];
           a[i * n + p] = select(turn, c * x - s * y, x);
           a[i * n + q] = select(turn, s * x + c * y, y);
@@ -136,7 +136,7 @@ inline Pack smallest_singular_value(Pack* a, int n) {
   Pack least = 0.0;
   for (int j = 0; j < n; ++j) {
     Pack square = 0.0;
-    for (int i = 0; i < n; ++i) square += a[i * n + j] * a[i * n + j];
+    for (int i = 0; i < m; ++i) square += a[i * n + j] * a[i * n + j];
     least = j ? min(least, square) : square;
   }
   return sqrt(least);

@@ -61,8 +61,8 @@ void check_demand(const PlanStore& store, const Request& r) {
 void run(const PlanStore& store, Array2 inputs, std::optional<Array2> rates, std::optional<Array2> accelerations,
          Array2 guess, Array2 states, std::optional<Array2> outputs, std::optional<Array2> first,
          std::optional<Array2> second, Array1 residual, Array1 correction, std::optional<Array1> orientation,
-         std::optional<Array1> condition,
-         std::optional<Array1> power_error, Flags flags, unsigned demand, int iterations,
+         std::optional<Array1> condition, std::optional<Array1> power_error, Flags flags, unsigned demand, int shift,
+         int iterations,
          std::array<double, 3> tests, int lanes) {
   const Plan& p = store.view();
   const KernelUnit& unit = unit_or_throw(lanes);
@@ -83,6 +83,7 @@ void run(const PlanStore& store, Array2 inputs, std::optional<Array2> rates, std
   r.power_error = per_row(power_error, r.rows, "power_error");
   r.flags = row_flags(flags, r.rows);
   r.demand = demand;
+  r.shift = shift;
   r.iterations = iterations;
   r.tight = tests[0], r.coarse = tests[1], r.accept = tests[2];
   check_demand(store, r);
@@ -153,27 +154,34 @@ NewValues elementwise(int operation, Values x, Values y, int lanes) {
   return NewValues(out, {n}, owner);
 }
 
-// The constants of the joint table, code by code.
+// The joint table and the tree displacements that its pairs are chains of.
 nb::list joint_table() {
   nb::list table;
-  for (int code = 0; code < JOINT_CODES; ++code) {
-    const JointType& t = kernel_unit()->joint_types[code];
+  for (int code = 0; code < PAIR_CODES; ++code) {
+    const PairType& t = kernel_unit()->pair_types[code];
     nb::dict entry;
     entry["letter"] = t.letter;
     entry["code"] = code;
-    entry["freedoms"] = t.freedoms;
-    entry["states"] = t.states;
+    entry["parts"] = t.parts;
+    entry["coordinates"] = t.coordinates;
     entry["equations"] = t.equations;
-    entry["slides"] = t.slides;
-    entry["theta"] = t.theta;
-    entry["s"] = t.s;
     table.append(entry);
   }
   return table;
 }
 
-PlaceData place_data(int first, int second, Triple point, Triple axis, double sign) {
-  return {first, second, point, axis, sign};
+nb::list tree_table() {
+  nb::list table;
+  for (int code = 0; code < TREE_CODES; ++code) {
+    const TreeType& t = kernel_unit()->tree_types[code];
+    nb::dict entry;
+    entry["code"] = code;
+    entry["freedoms"] = t.freedoms;
+    entry["states"] = t.states;
+    entry["slides"] = t.slides;
+    table.append(entry);
+  }
+  return table;
 }
 
 }  // namespace
@@ -182,33 +190,32 @@ NB_MODULE(_kernel, m) {
   m.doc() = "Compiled core of mechkin: closure, motion and reactions of a planned mechanism, in lanes.";
   m.attr("widest") = kernel_unit()->lanes;
   m.def("joint_table", &joint_table);
+  m.def("tree_table", &tree_table);
   m.def("elementwise", &elementwise, "operation"_a, "x"_a, "y"_a, "lanes"_a = 0);
   bind_text(m);
 
-  nb::class_<PlaceData>(m, "Place")
-      .def("__init__", [](PlaceData* self, int first, int second, Triple point, Triple axis, double sign) {
-        new (self) PlaceData(place_data(first, second, point, axis, sign));
-      }, "first"_a, "second"_a, "point"_a, "axis"_a, "sign"_a);
-
   nb::class_<PlanStore>(m, "Plan")
       .def(nb::init<double, Triple, double>(), "length"_a, "origin"_a, "size"_a)
-      .def("add_tree_joint", &PlanStore::add_tree_joint, "type"_a, "parent"_a, "pitch"_a, "at"_a, "place"_a)
+      .def("add_tree_joint", &PlanStore::add_tree_joint, "type"_a, "parent"_a, "pitch"_a, "at"_a)
       .def("add_closing_joint", &PlanStore::add_closing_joint, "type"_a, "first"_a, "second"_a, "on_first"_a,
-           "on_second"_a, "loop"_a, "place"_a)
+           "on_second"_a, "parameter"_a, "loop"_a)
+      .def("add_place", &PlanStore::add_place, "reference"_a, "first"_a, "second"_a, "point_on"_a, "point"_a, "sign"_a)
+      .def("add_axis", &PlanStore::add_axis, "place"_a, "slide"_a, "link"_a, "vector"_a, "other"_a, "other_vector"_a)
       .def("add_block", &PlanStore::add_block, "closing_joints"_a, "joints"_a, "unknown"_a)
       .def("set_rest", &PlanStore::set_rest, "joints"_a)
-      .def("add_input", &PlanStore::add_input, "column"_a, "along_s"_a)
+      .def("add_input", &PlanStore::add_input, "column"_a, "axis"_a, "scale"_a)
       .def("set_inertia", &PlanStore::set_inertia, "link"_a, "mass"_a, "centre"_a, "tensor"_a)
       .def("set_gravity", &PlanStore::set_gravity, "g"_a)
-      .def("add_load", &PlanStore::add_load, "type"_a, "link"_a, "other"_a, "point"_a, "other_point"_a, "vector"_a)
-      .def("add_output", &PlanStore::add_output, "type"_a, "index"_a, "order"_a, "data"_a, "factor"_a)
+      .def("add_load", &PlanStore::add_load, "type"_a, "link"_a, "other"_a, "freedom"_a, "point"_a, "other_point"_a, "vector"_a)
+      .def("add_output", &PlanStore::add_output, "type"_a, "index"_a, "freedom"_a, "order"_a, "data"_a, "factor"_a)
       .def("finish", &PlanStore::finish)
       .def_prop_ro("states", [](const PlanStore& s) { return s.view().states; })
       .def_prop_ro("columns", [](const PlanStore& s) { return s.view().columns; })
       .def_prop_ro("slots", [](const PlanStore& s) { return s.view().slots; })
       .def("run", &run, "inputs"_a, "rates"_a.none(), "accelerations"_a.none(), "guess"_a, "states"_a,
            "outputs"_a.none(), "first"_a.none(), "second"_a.none(), "residual"_a, "correction"_a,
-           "orientation"_a.none(), "condition"_a.none(), "power_error"_a.none(), "flags"_a, "demand"_a, "iterations"_a, "tests"_a, "lanes"_a)
+           "orientation"_a.none(), "condition"_a.none(), "power_error"_a.none(), "flags"_a, "demand"_a, "shift"_a,
+           "iterations"_a, "tests"_a, "lanes"_a)
       .def("search", &search, "block"_a, "inputs"_a, "states"_a, "residual"_a, "flags"_a, "iterations"_a,
            "accept"_a, "lanes"_a)
       .def("track", &track, "x0"_a, "u"_a, "sigma"_a, "start"_a, "guess"_a, "limit"_a, "last"_a, "limits"_a);

@@ -48,7 +48,7 @@ inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* righ
     }
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       Pack r[MAX_CLOSING_ROWS];
-      entry.column(k, a.angular, a.at(k.B.o), r);
+      entry.column(k, a, r);
       for (int i = 0; i < entry.equations; ++i) right[j.row + i] = -r[i];
     });
   }
@@ -56,9 +56,9 @@ inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* righ
 
 inline void block_velocities(const Plan& p, Workspace& w, int index) {
   const Block& b = p.block[index];
-  const BlockPlaces at = places_of(p, w, index);
+  const BlockMatrices at = matrices_of(p, w, index);
   known_rates(p, w, index, w.right);
-  solve({at.jacobian, at.swap, b.size}, w.right);
+  at.solve_equations(w.right);
   for (int u = 0; u < b.size; ++u) w.rate[p.unknown[b.column_begin + u]] = w.right[u];
   for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], false);
 }
@@ -67,7 +67,7 @@ inline void block_velocities(const Plan& p, Workspace& w, int index) {
 // closing equations, then with the ones that cancel it.
 inline void block_accelerations(const Plan& p, Workspace& w, int index) {
   const Block& b = p.block[index];
-  const BlockPlaces at = places_of(p, w, index);
+  const BlockMatrices at = matrices_of(p, w, index);
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = 0.0;
   for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
@@ -78,7 +78,7 @@ inline void block_accelerations(const Plan& p, Workspace& w, int index) {
       for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];
     });
   }
-  solve({at.jacobian, at.swap, b.size}, w.right);
+  at.solve_equations(w.right);
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = w.right[u];
   for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
 }

@@ -35,11 +35,22 @@ inline Vec3 ground_moment(const Plan& p, Wrench r) {
 }
 
 inline Vec3 output_joint(const Plan& p, const Workspace& w, const Output& o) {
-  const JointView j = view_joint(p, w, o.index);
-  const Wrench r = joint_wrench(w, o.index, j);
+  const JointPlace& j = p.place[o.index];
+  const Wrench r = joint_wrench(p, w, j);
   if (o.type == OUT_JOINT_FORCE) return r.force;
-  if (o.type == OUT_JOINT_MOMENT) return r.moment - cross(j.point, r.force);
+  if (o.type == OUT_JOINT_MOMENT) return r.moment - cross(carried_point(w, j.point_on, j.point), r.force);
   return ground_moment(p, r);
+}
+
+inline Vec3 output_slip(const Plan& p, const Workspace& w, const Output& o) {
+  const JointPlace& j = p.place[o.index];
+  return carried_point(w, j.point_on, j.point) - carried_point(w, j.second, o.data);
+}
+
+inline Pack output_closing(const Plan& p, const Workspace& w, const Output& o) {
+  Pack k[3];
+  closing_coordinate(p, w, o.index, o.freedom, o.order, k);
+  return k[o.order];
 }
 
 inline void write_output(const Plan& p, const Workspace& w, const Balance* balance, const Output& o,
@@ -49,13 +60,10 @@ inline void write_output(const Plan& p, const Workspace& w, const Balance* balan
     case OUT_STATE: return out.put(o.slot, factor * w.q[o.index]);
     case OUT_RATE: return out.put(o.slot, factor * w.rate[o.index]);
     case OUT_ACCELERATION: return out.put(o.slot, factor * w.acceleration[o.index]);
-    case OUT_CLOSING_THETA:
-      return out.put(o.slot, closing_coordinate(p, w, o.index, o.order).theta[o.order]);
-    case OUT_CLOSING_S:
-      return out.put(o.slot, factor * closing_coordinate(p, w, o.index, o.order).s[o.order]);
+    case OUT_CLOSING: return out.put(o.slot, factor * output_closing(p, w, o));
+    case OUT_SLIP: return out.put(o.slot, factor * output_slip(p, w, o));
     case OUT_POINT: return out.put(o.slot, output_point(p, w, o));
-    case OUT_VECTOR:
-      return out.put(o.slot, o.index < 0 ? constant(o.data) : w.pose[o.index].vector(o.data));
+    case OUT_VECTOR: return out.put(o.slot, carried_vector(w, o.index, o.data));
     case OUT_OMEGA: return out.put(o.slot, w.motion[o.index].velocity.angular);
     case OUT_ALPHA: return out.put(o.slot, w.motion[o.index].acceleration.angular);
     case OUT_JOINT_FORCE:

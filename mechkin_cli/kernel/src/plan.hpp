@@ -5,7 +5,23 @@
 // carried by tree joint k; ground is -1. Link frames: the frame of the link's tree joint, moved.
 #pragma once
 
-enum JointCode : int { JOINT_R = 0, JOINT_P = 1, JOINT_H = 2, JOINT_C = 3, JOINT_S = 4, JOINT_CODES = 5 };
+// Displacements that carry links in the tree; other pairs are chains of these (joint_types.py).
+enum TreeCode : int { TREE_R = 0, TREE_P = 1, TREE_H = 2, TREE_C = 3, TREE_S = 4, TREE_W = 5, TREE_CODES = 6 };
+
+// Pairs, in the order of the joint table (pairs.hpp).
+enum PairCode : int {
+  PAIR_R = 0,
+  PAIR_P = 1,
+  PAIR_H = 2,
+  PAIR_C = 3,
+  PAIR_S = 4,
+  PAIR_SP = 5,
+  PAIR_SG = 6,
+  PAIR_U = 7,
+  PAIR_E = 8,
+  PAIR_W = 9,
+  PAIR_CODES = 10
+};
 
 // Axes (columns of the rotation) and origin of a frame, in a link's frame or in ground axes.
 struct Frame {
@@ -25,6 +41,7 @@ struct ClosingJoint {
   int type;
   int first, second;        // links, -1: ground
   Frame on_first, on_second;
+  double parameter;         // U: cosine of the angle between its axes
   int row;                  // first closing equation within its block
   int loop_begin, loop_end;  // into Plan::loop
 };
@@ -35,12 +52,12 @@ struct LoopEntry {
   double sign;
 };
 
-// A smallest set of closing equations and unknowns that is solved together: n equations, n columns.
+// A smallest set of closing equations and unknowns that is solved together: `rows` equations, `size` unknowns.
 struct Block {
   int joint_begin, joint_end;    // into Plan::order: tree joints placed by this block
   int closing_begin, closing_end;  // closing joints
   int column_begin, column_end;  // into Plan::unknown
-  int size;
+  int rows, size;                // rows > size: overconstrained
 };
 
 struct LinkInertia {
@@ -55,19 +72,17 @@ enum LoadCode : int {
   LOAD_FORCE_LINK = 1,    // force in link axes
   LOAD_TORQUE_GROUND = 2,
   LOAD_TORQUE_LINK = 3,
-  LOAD_JOINT_TORQUE = 4,  // couple about a joint's axis, on the second link, opposite on the first
-  LOAD_JOINT_FORCE = 5,   // force along a joint's axis, likewise
-  LOAD_SPRING = 6,        // between two points; data: stiffness, free length, preload
-  LOAD_DAMPER = 7,        // between two points; data: damping
-  LOAD_JOINT_SPRING_THETA = 8,
-  LOAD_JOINT_SPRING_S = 9,
-  LOAD_JOINT_DAMPER_THETA = 10,
-  LOAD_JOINT_DAMPER_S = 11
+  LOAD_COORDINATE = 4,  // along a joint's coordinate, on the second link, opposite on the first
+  LOAD_SPRING = 5,      // between two points; data: stiffness, free length, preload
+  LOAD_DAMPER = 6,      // between two points; data: damping
+  LOAD_COORDINATE_SPRING = 7,
+  LOAD_COORDINATE_DAMPER = 8
 };
 
 struct Load {
   int type;
-  int link, other;    // LOAD_JOINT_*: link = joint reference (tree k >= 0, closing c as -1-c)
+  int link, other;    // LOAD_COORDINATE*: link = axis, other = joint reference of the coordinate
+  int freedom;        // of the coordinate in that joint
   double point[3], other_point[3];
   double vector[3];   // force, torque, or the data of springs and dampers
 };
@@ -76,13 +91,13 @@ enum OutputCode : int {
   OUT_STATE = 0,         // index: state
   OUT_RATE = 1,          // index: column
   OUT_ACCELERATION = 2,  // index: column
-  OUT_CLOSING_THETA = 3,  // index: closing joint; order 0, 1, 2
-  OUT_CLOSING_S = 4,
+  OUT_CLOSING = 3,       // index: closing joint; freedom; order 0, 1, 2
+  OUT_SLIP = 4,          // index: place; its point minus the point `data` of the second link
   OUT_POINT = 5,         // index: link; order 0, 1, 2
   OUT_VECTOR = 6,        // index: link
   OUT_OMEGA = 7,
   OUT_ALPHA = 8,
-  OUT_JOINT_FORCE = 9,   // index: joint reference
+  OUT_JOINT_FORCE = 9,   // index: place
   OUT_JOINT_MOMENT = 10,  // about the joint's point
   OUT_JOINT_MOMENT_ORIGIN = 11,
   OUT_EFFORT = 12,       // index: input
@@ -96,6 +111,7 @@ struct Output {
   int type;
   int index;
   int order;
+  int freedom;
   int slot;        // first column of the output array
   double data[3];  // local point or vector
   double factor;   // to SI
@@ -110,22 +126,39 @@ enum Demand : unsigned {
   DEMAND_POWER = 16
 };
 
-// The joint as users know it: which frame carries its point and axis, which way it is in the tree.
+// A joint as its user knows it: where its wrench is read off, and where its point rides.
 struct JointPlace {
-  int first, second;         // links
-  double point[3], axis[3];  // in the second link's frame
-  double sign;               // +1: the tree (or the closing joint) goes from the first link to the second
-  int effort_theta, effort_s;  // input whose drive acts on this coordinate, or -1
-  double force_per_effort;     // of a drive on s
+  int reference;        // tree joint k >= 0 (of a chain of parts, any), or closing joint c as -1-c
+  int first, second;    // links
+  int point_on;         // link that carries the point (a sphere's centre rides on the first link)
+  double point[3];
+  double sign;          // +1: the tree joint runs from the first link to the second
+  int drive_begin, drive_end;  // into Plan::drive
+};
+
+// The unit wrench on the second link that does work on one coordinate of a joint and none on its others: a couple or,
+// for a slide, a force through the joint's point, along the sum of two vectors carried by two links.
+struct CoordinateAxis {
+  int place;
+  int slide;
+  int link[2];
+  double vector[2][3];
+};
+
+// A drive: input and the axis it works on; an H driven along s has force = effort / pitch.
+struct Drive {
+  int input, axis;
+  double scale;
 };
 
 struct Plan {
   int links, states, columns, closings, blocks, inputs, loads, outputs, slots;
-  int largest_block;
+  int largest_block;  // rows
   const TreeJoint* joints;
-  const JointPlace* tree_places;
   const ClosingJoint* closing;
-  const JointPlace* closing_places;
+  const JointPlace* place;
+  const CoordinateAxis* axis;
+  const Drive* drive;
   const LoopEntry* loop;
   const Block* block;
   const int* order;
@@ -166,6 +199,7 @@ struct Request {
   double* power_error;          // rows, with DEMAND_POWER
   unsigned char* flags;         // rows
   unsigned demand;
+  int shift;                    // 0, or 1 and 2: parts of the null space added to reactions
   int iterations;               // at most
   double tight, coarse, accept;  // residual, step, residual: see tolerances.py
 };

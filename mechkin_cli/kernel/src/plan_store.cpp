@@ -7,7 +7,8 @@
 
 namespace {
 
-const JointType& joint_type(int code) { return kernel_unit()->joint_types[code]; }
+const TreeType& tree_type(int code) { return kernel_unit()->tree_types[code]; }
+const PairType& pair_type(int code) { return kernel_unit()->pair_types[code]; }
 
 void require(bool condition, const char* message) {
   if (!condition) throw std::invalid_argument(message);
@@ -21,14 +22,7 @@ Frame frame(const FrameData& f) {
   return r;
 }
 
-JointPlace joint_place(const PlaceData& p) {
-  JointPlace r = {p.first, p.second, {}, {}, p.sign, -1, -1, 1.0};
-  copy(p.point, r.point);
-  copy(p.axis, r.axis);
-  return r;
-}
-
-bool is_slide(int type, int freedom) { return joint_type(type).slides >> freedom & 1; }
+bool is_slide(int type, int freedom) { return tree_type(type).slides >> freedom & 1; }
 
 // Columns of the output array that an output fills.
 int width(int type) {
@@ -36,8 +30,7 @@ int width(int type) {
     case OUT_STATE:
     case OUT_RATE:
     case OUT_ACCELERATION:
-    case OUT_CLOSING_THETA:
-    case OUT_CLOSING_S:
+    case OUT_CLOSING:
     case OUT_EFFORT: return 1;
     default: return 3;
   }
@@ -72,40 +65,60 @@ PlanStore::PlanStore(double length, Triple origin, double size) : size_(size) {
   plan_.row_weight = length / size;
 }
 
-void PlanStore::add_tree_joint(int type, int parent, double pitch, const FrameData& at, const PlaceData& place) {
+void PlanStore::add_tree_joint(int type, int parent, double pitch, const FrameData& at) {
   require(!finished_, "the plan is finished");
-  require(type >= 0 && type < JOINT_CODES, "unknown joint type");
+  require(type >= 0 && type < TREE_CODES, "unknown displacement");
   const int k = (int)joints_.size();
   require(parent >= -1 && parent < k, "a tree joint's parent must come before it");
   const int state = plan_.states, column = plan_.columns;
   joints_.push_back({type, parent, state, column, pitch, frame(at)});
-  tree_places_.push_back(joint_place(place));
-  for (int f = 0; f < joint_type(type).freedoms; ++f) {
-    column_state_.push_back(type == JOINT_S ? -1 : state + f);
+  for (int f = 0; f < tree_type(type).freedoms; ++f) {
+    column_state_.push_back(type == TREE_S ? -1 : state + f);
     column_joint_.push_back(k);
     column_weight_.push_back(is_slide(type, f) ? size_ / plan_.length : 1.0);
     column_block_.push_back(-1);
     column_place_.push_back(-1);
   }
-  plan_.states += joint_type(type).states;
-  plan_.columns += joint_type(type).freedoms;
+  plan_.states += tree_type(type).states;
+  plan_.columns += tree_type(type).freedoms;
   inertia_.push_back({});
 }
 
 void PlanStore::add_closing_joint(int type, int first, int second, const FrameData& on_first,
-                                  const FrameData& on_second, const std::vector<std::pair<int, double>>& loop,
-                                  const PlaceData& place) {
+                                  const FrameData& on_second, double parameter,
+                                  const std::vector<std::pair<int, double>>& loop) {
   require(!finished_, "the plan is finished");
-  require(type >= 0 && type < JOINT_CODES && joint_type(type).equations > 0, "this joint type cannot close a loop");
-  const int links = (int)joints_.size();
-  require(first >= -1 && first < links && second >= -1 && second < links, "closing joint on an unknown link");
+  require(type >= 0 && type < PAIR_CODES && pair_type(type).equations > 0, "this pair cannot close a loop");
+  check_link(first);
+  check_link(second);
   const int begin = (int)loop_.size();
   for (const auto& entry : loop) {
-    require(entry.first >= 0 && entry.first < links, "loop through an unknown joint");
+    require(entry.first >= 0 && entry.first < (int)joints_.size(), "loop through an unknown joint");
     loop_.push_back({entry.first, entry.second});
   }
-  closing_.push_back({type, first, second, frame(on_first), frame(on_second), 0, begin, (int)loop_.size()});
-  closing_places_.push_back(joint_place(place));
+  closing_.push_back({type, first, second, frame(on_first), frame(on_second), parameter, 0, begin, (int)loop_.size()});
+}
+
+int PlanStore::add_place(int reference, int first, int second, int point_on, const Triple& point, double sign) {
+  require(reference >= -(int)closing_.size() && reference < (int)joints_.size(), "unknown joint reference");
+  check_link(first);
+  check_link(second);
+  check_link(point_on);
+  JointPlace place = {reference, first, second, point_on, {}, sign, 0, 0};
+  copy(point, place.point);
+  place_.push_back(place);
+  return (int)place_.size() - 1;
+}
+
+int PlanStore::add_axis(int place, bool slide, int link, const Triple& vector, int other, const Triple& other_vector) {
+  require(place >= 0 && place < (int)place_.size(), "axis of an unknown joint");
+  check_link(link);
+  check_link(other);
+  CoordinateAxis axis = {place, slide, {link, other}, {}};
+  copy(vector, axis.vector[0]);
+  copy(other_vector, axis.vector[1]);
+  axis_.push_back(axis);
+  return (int)axis_.size() - 1;
 }
 
 void PlanStore::add_block(int closing_joints, const std::vector<int>& joints, const std::vector<int>& unknown) {
@@ -113,11 +126,11 @@ void PlanStore::add_block(int closing_joints, const std::vector<int>& joints, co
   const int index = (int)block_.size();
   const int closing_begin = block_.empty() ? 0 : block_.back().closing_end;
   require(closing_joints > 0 && closing_begin + closing_joints <= (int)closing_.size(), "block of unknown joints");
-  Block b = {(int)order_.size(), 0, closing_begin, closing_begin + closing_joints, (int)unknown_.size(), 0, 0};
+  Block b = {(int)order_.size(), 0, closing_begin, closing_begin + closing_joints, (int)unknown_.size(), 0, 0, 0};
   int rows = 0;
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     closing_[c].row = rows;
-    rows += joint_type(closing_[c].type).equations;
+    rows += pair_type(closing_[c].type).equations;
   }
   for (int k : joints) {
     require(k >= 0 && k < (int)joints_.size(), "block places an unknown joint");
@@ -131,8 +144,9 @@ void PlanStore::add_block(int closing_joints, const std::vector<int>& joints, co
   }
   b.joint_end = (int)order_.size();
   b.column_end = (int)unknown_.size();
-  b.size = rows;
-  require(rows == (int)unknown.size(), "a block needs as many unknowns as equations");
+  b.rows = rows;
+  b.size = (int)unknown.size();
+  require(b.rows >= b.size, "a block needs as many equations as unknowns");
   block_.push_back(b);
 }
 
@@ -141,19 +155,11 @@ void PlanStore::set_rest(const std::vector<int>& joints) {
   rest_ = joints;
 }
 
-void PlanStore::add_input(int column, bool along_s) {
+void PlanStore::add_input(int column, int axis, double scale) {
   require(!finished_, "the plan is finished");
   require(column >= 0 && column < plan_.columns && column_state_[column] >= 0, "an input must be a scalar coordinate");
-  JointPlace& place = tree_places_[column_joint_[column]];
-  const TreeJoint& joint = joints_[column_joint_[column]];
-  const int input = (int)input_column_.size();
-  if (!along_s) {
-    place.effort_theta = input;
-  } else {
-    place.effort_s = input;
-    // the effort of an H is a torque: the force along s that does its work is torque / pitch
-    if (joint.type == JOINT_H) place.force_per_effort = 1.0 / joint.pitch;
-  }
+  require(axis >= 0 && axis < (int)axis_.size(), "unknown axis");
+  drive_.push_back({(int)input_column_.size(), axis, scale});
   input_column_.push_back(column);
 }
 
@@ -168,47 +174,48 @@ void PlanStore::set_inertia(int link, double mass, const Triple& centre, const s
 
 void PlanStore::set_gravity(const Triple& g) { copy(g, plan_.gravity); }
 
-void PlanStore::check_reference(int joint) const {
-  require(joint >= -(int)closing_.size() && joint < (int)joints_.size(), "unknown joint reference");
+void PlanStore::check_link(int link) const {
+  require(link >= -1 && link < (int)joints_.size(), "unknown link");
 }
 
-void PlanStore::add_load(int type, int link, int other, const Triple& point, const Triple& other_point,
+void PlanStore::add_load(int type, int link, int other, int freedom, const Triple& point, const Triple& other_point,
                          const Triple& vector) {
-  const int links = (int)joints_.size();
-  const bool on_joint = type == LOAD_JOINT_TORQUE || type == LOAD_JOINT_FORCE || type >= LOAD_JOINT_SPRING_THETA;
   require(!finished_, "the plan is finished");
-  const bool between = type == LOAD_SPRING || type == LOAD_DAMPER;
-  if (on_joint)
-    check_reference(link);
-  else
-    require(link >= (between ? -1 : 0) && link < links && other >= -1 && other < links, "load on an unknown link");
-  Load l = {type, link, other, {}, {}, {}};
+  if (type == LOAD_COORDINATE || type == LOAD_COORDINATE_SPRING || type == LOAD_COORDINATE_DAMPER) {
+    require(link >= 0 && link < (int)axis_.size(), "load along an unknown axis");
+    require(other >= -(int)closing_.size() && other < (int)joints_.size(), "load on an unknown joint");
+  } else {
+    check_link(link);
+    check_link(other);
+    require(link >= 0 || type == LOAD_SPRING || type == LOAD_DAMPER, "a load on ground moves nothing");
+  }
+  Load l = {type, link, other, freedom, {}, {}, {}};
   copy(point, l.point);
   copy(other_point, l.other_point);
   copy(vector, l.vector);
   load_.push_back(l);
 }
 
-int PlanStore::add_output(int type, int index, int order, const Triple& data, double factor) {
+int PlanStore::add_output(int type, int index, int freedom, int order, const Triple& data, double factor) {
   require(order >= 0 && order <= 2, "outputs go to second order");
   const int links = (int)joints_.size();
   switch (type) {
     case OUT_STATE: require(index >= 0 && index < plan_.states, "unknown state"); break;
     case OUT_RATE:
     case OUT_ACCELERATION: require(index >= 0 && index < plan_.columns, "unknown column"); break;
-    case OUT_CLOSING_THETA:
-    case OUT_CLOSING_S: require(index >= 0 && index < (int)closing_.size(), "unknown closing joint"); break;
+    case OUT_CLOSING: require(index >= 0 && index < (int)closing_.size(), "unknown closing joint"); break;
     case OUT_POINT:
-    case OUT_VECTOR: require(index >= -1 && index < links, "unknown link"); break;
+    case OUT_VECTOR: check_link(index); break;
     case OUT_OMEGA:
     case OUT_ALPHA: require(index >= 0 && index < links, "unknown link"); break;
+    case OUT_SLIP:
     case OUT_JOINT_FORCE:
     case OUT_JOINT_MOMENT:
-    case OUT_JOINT_MOMENT_ORIGIN: check_reference(index); break;
+    case OUT_JOINT_MOMENT_ORIGIN: require(index >= 0 && index < (int)place_.size(), "unknown joint"); break;
     case OUT_EFFORT: require(index >= 0 && index < (int)input_column_.size(), "unknown input"); break;
     default: break;
   }
-  Output o = {type, index, order, plan_.slots, {}, factor};
+  Output o = {type, index, order, freedom, plan_.slots, {}, factor};
   copy(data, o.data);
   output_.push_back(o);
   demand_ |= demand_of(type, order);
@@ -225,6 +232,14 @@ void PlanStore::finish() {
   }
   require(block_.empty() ? closing_.empty() : block_.back().closing_end == (int)closing_.size(),
           "every closing joint must belong to a block");
+  std::vector<Drive> by_place;
+  for (std::size_t j = 0; j < place_.size(); ++j) {
+    place_[j].drive_begin = (int)by_place.size();
+    for (const Drive& d : drive_)
+      if (axis_[d.axis].place == (int)j) by_place.push_back(d);
+    place_[j].drive_end = (int)by_place.size();
+  }
+  drive_ = by_place;
   finished_ = true;
   point_view_at_arrays();
 }
@@ -239,9 +254,9 @@ void PlanStore::point_view_at_arrays() {
   p.outputs = (int)output_.size();
   p.rest_count = (int)rest_.size();
   p.largest_block = 0;
-  for (const Block& b : block_) p.largest_block = b.size > p.largest_block ? b.size : p.largest_block;
-  p.joints = joints_.data(), p.tree_places = tree_places_.data();
-  p.closing = closing_.data(), p.closing_places = closing_places_.data();
+  for (const Block& b : block_) p.largest_block = b.rows > p.largest_block ? b.rows : p.largest_block;
+  p.joints = joints_.data(), p.closing = closing_.data();
+  p.place = place_.data(), p.axis = axis_.data(), p.drive = drive_.data();
   p.loop = loop_.data(), p.block = block_.data();
   p.order = order_.data(), p.unknown = unknown_.data(), p.rest = rest_.data();
   p.input_column = input_column_.data();

@@ -9,29 +9,25 @@
 using Triple = std::array<double, 3>;
 using FrameData = std::array<double, 12>;  // x, y, z axes, origin
 
-// Which links a joint joins, as its user sees it: point and axis in the second link's frame (ground axes
-// if that is ground), sign +1 if the kernel's joint runs from the first link to the second.
-struct PlaceData {
-  int first, second;
-  Triple point, axis;
-  double sign;
-};
-
 class PlanStore {
  public:
   PlanStore(double length, Triple origin, double size);
 
-  void add_tree_joint(int type, int parent, double pitch, const FrameData& at, const PlaceData& place);
+  void add_tree_joint(int type, int parent, double pitch, const FrameData& at);
   void add_closing_joint(int type, int first, int second, const FrameData& on_first, const FrameData& on_second,
-                         const std::vector<std::pair<int, double>>& loop, const PlaceData& place);
+                         double parameter, const std::vector<std::pair<int, double>>& loop);
+  // The next joint as its user knows it, see JointPlace; returns its number.
+  int add_place(int reference, int first, int second, int point_on, const Triple& point, double sign);
+  // An axis of a joint's coordinate, see CoordinateAxis; returns its number.
+  int add_axis(int place, bool slide, int link, const Triple& vector, int other, const Triple& other_vector);
   void add_block(int closing_joints, const std::vector<int>& joints, const std::vector<int>& unknown);
   void set_rest(const std::vector<int>& joints);
-  // The drive acts on s rather than theta: a force along the axis, for H as well.
-  void add_input(int column, bool along_s);
+  // `scale`: effort along the axis per generalised force of the column.
+  void add_input(int column, int axis, double scale);
   void set_inertia(int link, double mass, const Triple& centre, const std::array<double, 6>& tensor);
   void set_gravity(const Triple& g);
-  void add_load(int type, int link, int other, const Triple& point, const Triple& other_point, const Triple& vector);
-  int add_output(int type, int index, int order, const Triple& data, double factor);
+  void add_load(int type, int link, int other, int freedom, const Triple& point, const Triple& other_point, const Triple& vector);
+  int add_output(int type, int index, int freedom, int order, const Triple& data, double factor);
   // Checks that the parts fit together (std::invalid_argument otherwise); no changes but outputs after it.
   void finish();
 
@@ -42,14 +38,16 @@ class PlanStore {
 
  private:
   void point_view_at_arrays();
-  void check_reference(int joint) const;
+  void check_link(int link) const;
 
   Plan plan_{};
   bool finished_ = false;
   unsigned demand_ = 0;
   double size_;
   std::vector<TreeJoint> joints_;
-  std::vector<JointPlace> tree_places_, closing_places_;
+  std::vector<JointPlace> place_;
+  std::vector<CoordinateAxis> axis_;
+  std::vector<Drive> drive_;
   std::vector<ClosingJoint> closing_;
   std::vector<LoopEntry> loop_;
   std::vector<Block> block_;

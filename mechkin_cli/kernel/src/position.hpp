@@ -5,8 +5,8 @@
 // frozen, so its bits do not depend on its neighbours.
 #pragma once
 
-#include "joints.hpp"
-#include "linear.hpp"
+#include "factors.hpp"
+#include "pairs.hpp"
 
 namespace {
 
@@ -21,8 +21,9 @@ struct Workspace {
   Wrench* carried;                // links: wrench on the link and all that the tree hangs on it
   Closure* closure;               // closing joints
   Wrench* reaction;               // closing joints: on the second link
-  Pack* jacobian;                 // per block n x n, factored in place
+  Pack* jacobian;                 // per block rows x size, factored in place
   Mask* swap;
+  Pack* reflector;                // per block 2 x size: pivots and betas of a QR
   Pack* multiplier;               // closing rows
   Pack* right;                    // largest block
   Pack* scratch;                  // largest block squared
@@ -38,10 +39,10 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
     used += (bytes + 63) / 64 * 64;
     return here;
   };
-  long squares = 0, pairs = 0, rows = 0;
+  long squares = 0, pairs = 0, rows = 0, unknowns = 0;
   for (int b = 0; b < p.blocks; ++b) {
-    const long n = p.block[b].size;
-    squares += n * n, pairs += n * (n - 1) / 2, rows += n;
+    const long n = p.block[b].size, m = p.block[b].rows;
+    squares += m * n, pairs += n * (n - 1) / 2, rows += m, unknowns += n;
   }
   const long pack = sizeof(Pack), largest = p.largest_block;
   w->q = (Pack*)take(p.states * pack);
@@ -55,6 +56,7 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->reaction = (Wrench*)take(p.closings * sizeof(Wrench));
   w->jacobian = (Pack*)take(squares * pack);
   w->swap = (Mask*)take(pairs * sizeof(Mask));
+  w->reflector = (Pack*)take(2 * unknowns * pack);
   w->multiplier = (Pack*)take(rows * pack);
   w->right = (Pack*)take((largest + MAX_CLOSING_ROWS) * pack);
   w->scratch = (Pack*)take(largest * largest * pack);
@@ -85,6 +87,7 @@ MECHKIN_INLINE Closure closure_of(const Plan& p, const Workspace& w, int c) {
   k.A = placed(j.on_first, pose_of(w, j.first));
   k.B = placed(j.on_second, pose_of(w, j.second));
   k.d = k.B.o - k.A.o;
+  k.parameter = j.parameter;
   return k;
 }
 
@@ -144,22 +147,33 @@ MECHKIN_INLINE void closing_columns(const Plan& p, const Workspace& w, int c, co
     for (int i = 0; i < tree.freedoms; ++i) {
       const Twist s = sign * w.screw[t.column + i];
       with_closing_joint(p.closing[c].type, [&](auto entry) __attribute__((always_inline)) {
-        entry.column(k, s.angular, s.at(k.B.o), out + i * MAX_CLOSING_ROWS);
+        entry.column(k, s, out + i * MAX_CLOSING_ROWS);
       });
     }
   });
 }
 
-// Where a block keeps its matrices.
-struct BlockPlaces {
-  Pack *jacobian, *multiplier;
+// A block's matrices and their factors.
+struct BlockMatrices {
+  Pack *jacobian, *multiplier, *reflector;
   Mask* swap;
+  int m, n;
+
+  MECHKIN_INLINE Factors lu() const { return {jacobian, swap, n}; }
+  MECHKIN_INLINE Reflectors qr() const { return {jacobian, reflector, reflector + n, m, n}; }
+  void factor_jacobian() const { m == n ? factor(lu()) : reflect(qr()); }
+  // The unknowns from the equations' right-hand sides, in place.
+  void solve_equations(Pack* b) const { m == n ? solve(lu(), b) : solve(qr(), b); }
+  // The equations' multipliers from the unknowns' generalised forces, in place.
+  void solve_multipliers(Pack* b, int shift) const {
+    m == n ? solve_transposed(lu(), b) : solve_transposed(qr(), b, shift);
+  }
 };
-inline BlockPlaces places_of(const Plan& p, const Workspace& w, int block) {
-  BlockPlaces r = {w.jacobian, w.multiplier, w.swap};
+inline BlockMatrices matrices_of(const Plan& p, const Workspace& w, int block) {
+  BlockMatrices r = {w.jacobian, w.multiplier, w.reflector, w.swap, p.block[block].rows, p.block[block].size};
   for (int b = 0; b < block; ++b) {
-    const int n = p.block[b].size;
-    r.jacobian += n * n, r.swap += n * (n - 1) / 2, r.multiplier += n;
+    const int m = p.block[b].rows, n = p.block[b].size;
+    r.jacobian += m * n, r.swap += n * (n - 1) / 2, r.multiplier += m, r.reflector += 2 * n;
   }
   return r;
 }
@@ -169,7 +183,7 @@ MECHKIN_INLINE int unknown_index(const Plan& p, int block, int column) {
   return p.column_block[column] == block ? p.column_place[column] : -1;
 }
 
-// Jacobian of a block's equations with respect to its unknowns (n x n, row-major).
+// Jacobian of a block's equations with respect to its unknowns (rows x size, row-major).
 inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
   const Block& b = p.block[index];
   const int n = b.size;
@@ -227,7 +241,7 @@ struct Closed {
 // Closes one block from the guess in w.q.
 inline Closed close_block(const Plan& p, Workspace& w, int index, const Request& r) {
   const Block& b = p.block[index];
-  const BlockPlaces at = places_of(p, w, index);
+  const BlockMatrices at = matrices_of(p, w, index);
   Mask polished = all_lanes(false), done = all_lanes(false);
   Residual residual = {};
   Pack correction = 0.0;
@@ -238,9 +252,8 @@ inline Closed close_block(const Plan& p, Workspace& w, int index, const Request&
     if (all(done) || iteration == r.iterations) break;
     block_screws(p, w, b);
     block_jacobian(p, w, index, at.jacobian);
-    const Factors f = {at.jacobian, at.swap, b.size};
-    factor(f);
-    solve(f, w.right);
+    at.factor_jacobian();
+    at.solve_equations(w.right);
     Pack length = 0.0;
     for (int u = 0; u < b.size; ++u) {
       w.right[u] = -w.right[u];

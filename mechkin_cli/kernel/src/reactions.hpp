@@ -70,69 +70,61 @@ inline void apply_inertia(Balance& balance, bool accelerating) {
   }
 }
 
-// A joint as its loads and results see it, in ground axes.
-struct JointView {
-  const JointPlace* place;
-  Vec3 point, axis;
-};
-MECHKIN_INLINE JointView view_joint(const Plan& p, const Workspace& w, int reference) {
-  const JointPlace& place = reference >= 0 ? p.tree_places[reference] : p.closing_places[-1 - reference];
-  if (place.second < 0) return {&place, constant(place.point), constant(place.axis)};
-  const Pose& pose = w.pose[place.second];
-  return {&place, pose.point(place.point), pose.vector(place.axis)};
+MECHKIN_INLINE Vec3 carried_point(const Workspace& w, int link, const double* at) {
+  return link < 0 ? constant(at) : w.pose[link].point(at);
+}
+MECHKIN_INLINE Vec3 carried_vector(const Workspace& w, int link, const double* a) {
+  return link < 0 ? constant(a) : w.pose[link].vector(a);
 }
 
-// Angle and slide of a closing joint and their derivatives.
-struct ClosingCoordinate {
-  Pack theta[3], s[3];
-};
-inline ClosingCoordinate closing_coordinate(const Plan& p, const Workspace& w, int c, int order) {
+// The wrench `value` along a coordinate, on the joint's second link.
+inline Wrench along_coordinate(const Plan& p, const Workspace& w, int axis, Pack value) {
+  const CoordinateAxis& c = p.axis[axis];
+  const Vec3 direction = carried_vector(w, c.link[0], c.vector[0]) + carried_vector(w, c.link[1], c.vector[1]);
+  if (!c.slide) return {value * direction, zero3()};
+  const JointPlace& j = p.place[c.place];
+  return force_at(carried_point(w, j.point_on, j.point), value * direction);
+}
+
+// A coordinate of a closing joint and its derivatives up to `order`.
+inline void closing_coordinate(const Plan& p, const Workspace& w, int c, int freedom, int order, Pack* out) {
   const ClosingJoint& j = p.closing[c];
-  const Closure& k = w.closure[c];
-  ClosingCoordinate r;
-  r.theta[0] = atan2(dot(k.A.Y, k.B.X), dot(k.A.X, k.B.X));
-  r.s[0] = dot(k.A.Z, k.d);
-  if (order < 1) return r;
-  const Motion a = motion_of(w, j.first), b = motion_of(w, j.second);
-  const Vec3 d1 = b.velocity.at(k.B.o) - a.velocity.at(k.A.o);
-  r.theta[1] = dot(k.A.Z, b.velocity.angular - a.velocity.angular);
-  r.s[1] = dot(k.A.Z, d1) + dot(a.rate(k.A.Z), k.d);
-  if (order < 2) return r;
-  r.theta[2] = dot(k.A.Z, b.acceleration.angular - a.acceleration.angular) +
-               dot(a.rate(k.A.Z), b.velocity.angular - a.velocity.angular);
-  r.s[2] = second_along(k.A.Z, k, a, b);
-  return r;
+  PairMotion motion = {};
+  motion.order = order;
+  if (order > 0) motion.a = motion_of(w, j.first), motion.b = motion_of(w, j.second);
+  with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+    entry.coordinate(w.closure[c], motion, freedom, out);
+  });
 }
 
-// Value and rate of the coordinate that a joint's spring or damper works on.
-inline void joint_coordinate(const Plan& p, const Workspace& w, int reference, bool slide, bool moving,
-                             Pack* value, Pack* rate) {
+// Value and rate of the coordinate that a spring or damper works on.
+inline void joint_coordinate(const Plan& p, const Workspace& w, const Load& l, bool moving, Pack* value, Pack* rate) {
   *rate = 0.0;
-  if (reference < 0) {
-    const ClosingCoordinate k = closing_coordinate(p, w, -1 - reference, moving ? 1 : 0);
-    *value = slide ? k.s[0] : k.theta[0];
-    if (moving) *rate = slide ? k.s[1] : k.theta[1];
+  if (l.other < 0) {
+    Pack k[3];
+    closing_coordinate(p, w, -1 - l.other, l.freedom, moving ? 1 : 0, k);
+    *value = k[0];
+    if (moving) *rate = k[1];
     return;
   }
-  const TreeJoint& j = p.joints[reference];
-  const Pack scale = slide && j.type == JOINT_H ? Pack(j.pitch) : Pack(1.0);
-  const int offset = slide && j.type == JOINT_C ? 1 : 0;
-  *value = scale * w.q[j.state + offset];
-  if (moving) *rate = scale * w.rate[j.column + offset];
+  const TreeJoint& j = p.joints[l.other];
+  const Pack scale = j.type == TREE_H && p.axis[l.link].slide ? Pack(j.pitch) : Pack(1.0);
+  *value = scale * w.q[j.state + l.freedom];
+  if (moving) *rate = scale * w.rate[j.column + l.freedom];
 }
 
-inline void apply_along_joint(Balance& balance, int reference, bool slide, Pack value) {
-  const JointView j = view_joint(balance.p, balance.w, reference);
-  const Wrench load = slide ? force_at(j.point, value * j.axis) : Wrench{value * j.axis, zero3()};
-  balance.apply(j.place->second, load);
-  balance.apply(j.place->first, Pack(-1.0) * load);
+inline void apply_along_coordinate(Balance& balance, int axis, Pack value) {
+  const Plan& p = balance.p;
+  const JointPlace& j = p.place[p.axis[axis].place];
+  const Wrench load = along_coordinate(p, balance.w, axis, value);
+  balance.apply(j.second, load);
+  balance.apply(j.first, Pack(-1.0) * load);
 }
 
 // Tension of a spring or damper between two points acts on both along their line.
 inline void apply_between_points(Balance& balance, const Load& l) {
   const Workspace& w = balance.w;
-  const auto point = [&](int link, const double* at) { return link < 0 ? constant(at) : w.pose[link].point(at); };
-  const Vec3 p = point(l.link, l.point), q = point(l.other, l.other_point), d = q - p;
+  const Vec3 p = carried_point(w, l.link, l.point), q = carried_point(w, l.other, l.other_point), d = q - p;
   const Pack length = sqrt(dot(d, d));
   // where the ends meet the line is lost: no force if there is no tension, else no number
   const Mask apart = length > Pack(0.0);
@@ -163,38 +155,31 @@ inline void apply_load(Balance& balance, const Load& l) {
     }
     case LOAD_TORQUE_GROUND: return balance.apply_outside(l.link, {constant(l.vector), zero3()});
     case LOAD_TORQUE_LINK: return balance.apply_outside(l.link, {w.pose[l.link].vector(l.vector), zero3()});
-    case LOAD_JOINT_TORQUE: return apply_along_joint(balance, l.link, false, Pack(l.vector[0]));
-    case LOAD_JOINT_FORCE: return apply_along_joint(balance, l.link, true, Pack(l.vector[0]));
+    case LOAD_COORDINATE: return apply_along_coordinate(balance, l.link, Pack(l.vector[0]));
     case LOAD_SPRING:
     case LOAD_DAMPER: return apply_between_points(balance, l);
-    case LOAD_JOINT_SPRING_THETA:
-    case LOAD_JOINT_SPRING_S: {
-      const bool slide = l.type == LOAD_JOINT_SPRING_S;
-      joint_coordinate(p, w, l.link, slide, balance.moving, &value, &rate);
-      return apply_along_joint(balance, l.link, slide,
-                               -(Pack(l.vector[0]) * (value - Pack(l.vector[1])) + Pack(l.vector[2])));
-    }
-    case LOAD_JOINT_DAMPER_THETA:
-    case LOAD_JOINT_DAMPER_S: {
+    case LOAD_COORDINATE_SPRING:
+      joint_coordinate(p, w, l, balance.moving, &value, &rate);
+      return apply_along_coordinate(balance, l.link,
+                                    -(Pack(l.vector[0]) * (value - Pack(l.vector[1])) + Pack(l.vector[2])));
+    case LOAD_COORDINATE_DAMPER:
       if (!balance.moving) return;
-      const bool slide = l.type == LOAD_JOINT_DAMPER_S;
-      joint_coordinate(p, w, l.link, slide, true, &value, &rate);
-      return apply_along_joint(balance, l.link, slide, -(Pack(l.vector[0]) * rate));
-    }
+      joint_coordinate(p, w, l, true, &value, &rate);
+      return apply_along_coordinate(balance, l.link, -(Pack(l.vector[0]) * rate));
   }
 }
 
 // Closing wrenches block by block, last first: the unknowns of a block appear only in its own equations
 // and in those of later blocks, whose wrenches are in the sums already.
-inline void closing_wrenches(const Plan& p, Workspace& w) {
+inline void closing_wrenches(const Plan& p, Workspace& w, int shift) {
   for (int index = p.blocks - 1; index >= 0; --index) {
     const Block& b = p.block[index];
-    const BlockPlaces at = places_of(p, w, index);
+    const BlockMatrices at = matrices_of(p, w, index);
     for (int u = 0; u < b.size; ++u) {
       const int column = p.unknown[b.column_begin + u];
       at.multiplier[u] = power(w.screw[column], w.carried[p.column_joint[column]]);
     }
-    solve_transposed({at.jacobian, at.swap, b.size}, at.multiplier);
+    at.solve_multipliers(at.multiplier, shift);
     for (int c = b.closing_begin; c < b.closing_end; ++c) {
       const ClosingJoint& j = p.closing[c];
       with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
@@ -207,14 +192,15 @@ inline void closing_wrenches(const Plan& p, Workspace& w) {
 }
 
 // Applies everything, solves for the closing wrenches and the efforts; returns the ledger.
-inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool accelerating) {
+inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool accelerating,
+                              int shift) {
   const Pack zero = 0.0;
   Balance balance = {p, w, {zero, zero}, zero_wrench(), zero_wrench(), moving};
   apply_inertia(balance, accelerating);
   for (int l = 0; l < p.loads; ++l) apply_load(balance, p.load[l]);
   for (int k = p.links - 1; k >= 0; --k)
     if (p.joints[k].parent >= 0) w.carried[p.joints[k].parent] += w.carried[k];
-  closing_wrenches(p, w);
+  closing_wrenches(p, w, shift);
   for (int i = 0; i < p.inputs; ++i) {
     const int column = p.input_column[i];
     w.effort[i] = power(w.screw[column], w.carried[p.column_joint[column]]);
@@ -224,12 +210,12 @@ inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool acc
 }
 
 // Constraint wrench that a joint's first link exerts on the second, without drives and joint loads.
-inline Wrench joint_wrench(const Workspace& w, int reference, const JointView& j) {
-  const Wrench carried = reference >= 0 ? w.carried[reference] : w.reaction[-1 - reference];
-  Wrench r = Pack(j.place->sign) * carried;
-  if (j.place->effort_theta >= 0) r.moment -= w.effort[j.place->effort_theta] * j.axis;
-  if (j.place->effort_s >= 0)
-    r -= force_at(j.point, (Pack(j.place->force_per_effort) * w.effort[j.place->effort_s]) * j.axis);
+inline Wrench joint_wrench(const Plan& p, const Workspace& w, const JointPlace& j) {
+  Wrench r = j.reference < 0 ? w.reaction[-1 - j.reference] : Pack(j.sign) * w.carried[j.reference];
+  for (int d = j.drive_begin; d < j.drive_end; ++d) {
+    const Drive& drive = p.drive[d];
+    r -= along_coordinate(p, w, drive.axis, Pack(drive.scale) * w.effort[drive.input]);
+  }
   return r;
 }
 

@@ -19,17 +19,18 @@ MECHKIN_INLINE Pack sum_of_squares(const Pack* r, int n) {
 }
 
 // One damped step from the Jacobian in `a` and the residual in w.right; the step replaces w.right.
-inline void damped_step(Workspace& w, const BlockPlaces& at, int n, Pack damping) {
+inline void damped_step(Workspace& w, const BlockMatrices& at, Pack damping) {
   const Pack* a = at.jacobian;
+  const int m = at.m, n = at.n;
   Pack* normal = w.scratch;
   Pack* gradient = at.multiplier;
   for (int i = 0; i < n; ++i) {
     Pack g = 0.0;
-    for (int k = 0; k < n; ++k) g += a[k * n + i] * w.right[k];
+    for (int k = 0; k < m; ++k) g += a[k * n + i] * w.right[k];
     gradient[i] = -g;
     for (int j = 0; j < n; ++j) {
       Pack s = 0.0;
-      for (int k = 0; k < n; ++k) s += a[k * n + i] * a[k * n + j];
+      for (int k = 0; k < m; ++k) s += a[k * n + i] * a[k * n + j];
       normal[i * n + j] = s;
     }
   }
@@ -43,7 +44,7 @@ inline void damped_step(Workspace& w, const BlockPlaces& at, int n, Pack damping
 // Runs one pack of starts in w.q to the end; returns the residuals.
 inline Pack search_block(const Plan& p, Workspace& w, int index, int iterations, double accept) {
   const Block& b = p.block[index];
-  const BlockPlaces at = places_of(p, w, index);
+  const BlockMatrices at = matrices_of(p, w, index);
   const SearchScales scale;
   Pack damping = scale.start, residual = 0.0;
   for (int iteration = 0; iteration < iterations; ++iteration) {
@@ -53,13 +54,13 @@ inline Pack search_block(const Plan& p, Workspace& w, int index, int iterations,
     if (all(ended)) break;
     block_screws(p, w, b);
     block_jacobian(p, w, index, at.jacobian);
-    const Pack before = sum_of_squares(w.right, b.size);
-    damped_step(w, at, b.size, damping);
+    const Pack before = sum_of_squares(w.right, b.rows);
+    damped_step(w, at, damping);
     for (int s = 0; s < p.states; ++s) w.saved[s] = w.q[s];
     advance_block(p, w, index, w.right, ~ended);
     place_block(p, w, b);
     block_residual(p, w, b);
-    const Mask better = sum_of_squares(w.right, b.size) < before;
+    const Mask better = sum_of_squares(w.right, b.rows) < before;
     for (int s = 0; s < p.states; ++s) w.q[s] = select(better, w.q[s], w.saved[s]);
     damping = select(better, max(Pack(scale.success) * damping, Pack(scale.least)), Pack(scale.failure) * damping);
   }

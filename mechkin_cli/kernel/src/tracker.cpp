@@ -49,7 +49,7 @@ class Stepper {
 
   void normalise_quaternions(double* state, long stride) const {
     for (int k = 0; k < plan_.links; ++k) {
-      if (plan_.joints[k].type != JOINT_S) continue;
+      if (plan_.joints[k].type != TREE_S) continue;
       double* q = state + plan_.joints[k].state * stride;
       const double n = std::sqrt(q[0] * q[0] + q[stride] * q[stride] + q[2 * stride] * q[2 * stride] +
                                  q[3 * stride] * q[3 * stride]);
@@ -66,8 +66,8 @@ class Stepper {
     for (int k = 0; k < plan_.links; ++k) {
       const TreeJoint& j = plan_.joints[k];
       const double *first = &n->first[j.column], *second = &n->second[j.column];
-      if (j.type != JOINT_S) {
-        const int freedoms = unit_.joint_types[j.type].freedoms;
+      if (j.type != TREE_S) {
+        const int freedoms = unit_.tree_types[j.type].freedoms;
         for (int f = 0; f < freedoms; ++f) {
           n->state_first[j.state + f] = first[f];
           n->state_second[j.state + f] = second[f];

@@ -33,7 +33,7 @@ void write_flags(unsigned char* flags, const Reader& in, Mask converged, Mask si
 // Smallest singular value of the block's Jacobian with lengths in parts of the size, as 1 / sigma.
 Pack block_condition(const Plan& p, Workspace& w, int index) {
   const Block& b = p.block[index];
-  const int n = b.size;
+  const int m = b.rows, n = b.size;
   block_jacobian(p, w, index, w.scratch);
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
@@ -44,9 +44,9 @@ Pack block_condition(const Plan& p, Workspace& w, int index) {
   }
   for (int u = 0; u < n; ++u) {
     const Pack weight = p.column_weight[p.unknown[b.column_begin + u]];
-    for (int i = 0; i < n; ++i) w.scratch[i * n + u] *= weight;
+    for (int i = 0; i < m; ++i) w.scratch[i * n + u] *= weight;
   }
-  return Pack(1.0) / smallest_singular_value(w.scratch, n);
+  return Pack(1.0) / smallest_singular_value(w.scratch, m, n);
 }
 
 void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
@@ -64,12 +64,12 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     converged = converged & closed.converged;
     side = side & closed.side;
     if (!r.demand) continue;
-    const BlockPlaces at = places_of(p, w, b);
+    const BlockMatrices at = matrices_of(p, w, b);
     block_screws(p, w, p.block[b]);
     if (r.demand & DEMAND_CONDITION) condition = max(block_condition(p, w, b), condition);
     block_jacobian(p, w, b, at.jacobian);
-    factor({at.jacobian, at.swap, p.block[b].size});
-    orientation *= determinant_sign({at.jacobian, at.swap, p.block[b].size});
+    at.factor_jacobian();
+    if (at.m == at.n) orientation *= determinant_sign(at.lu());
   }
   for (int k = 0; k < p.rest_count; ++k) {
     place_joint(p, w, p.rest[k]);
@@ -103,7 +103,7 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int o = 0; o < p.outputs; ++o) write_output(p, w, balance, p.output[o], out);
   };
   if (r.demand & DEMAND_FORCES) {
-    const Balance balance = balance_forces(p, w, velocities, accelerations);
+    const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift);
     if (r.demand & DEMAND_POWER) {
       const Mask none = balance.powers.size == Pack(0.0);
       const Pack size = select(none, Pack(1.0), balance.powers.size);
@@ -151,14 +151,24 @@ void search(const Plan& p, const SearchRequest& r, char* memory) {
 }
 
 template <class Entry>
-constexpr JointType constants() {
-  return {Entry::letter, Entry::freedoms, Entry::states, Entry::equations, Entry::slides, Entry::theta, Entry::s};
+constexpr TreeType tree_type() {
+  return {Entry::freedoms, Entry::states, Entry::slides};
 }
-// in the order of JointCode
-constexpr JointType joint_types[JOINT_CODES] = {constants<Revolute>(), constants<Prismatic>(), constants<Helical>(),
-                                                constants<Cylindric>(), constants<Spheric>()};
+// in the order of TreeCode
+constexpr TreeType tree_types[TREE_CODES] = {tree_type<Turn>(),         tree_type<Slide>(),       tree_type<Screw>(),
+                                             tree_type<TurnAndSlide>(), tree_type<Orientation>(), tree_type<Fixed>()};
 
-const KernelUnit unit = {LANES, joint_types, workspace_size, run, search, elementwise};
+template <class Entry>
+constexpr PairType pair_type() {
+  return {Entry::letter, Entry::parts, Entry::coordinates, Entry::equations};
+}
+// in the order of PairCode
+constexpr PairType pair_types[PAIR_CODES] = {
+    pair_type<Revolute>(),      pair_type<Prismatic>(),      pair_type<Helical>(),   pair_type<Cylindric>(),
+    pair_type<Spheric>(),       pair_type<SphereOnPlane>(),  pair_type<SphereInGroove>(),
+    pair_type<Universal>(),     pair_type<Planar>(),         pair_type<Weld>()};
+
+const KernelUnit unit = {LANES, tree_types, pair_types, workspace_size, run, search, elementwise};
 
 }  // namespace
 

@@ -3,18 +3,20 @@
 
 #include "plan.hpp"
 
-// The constants of a joint type, read off its entry in the joint table (joints.hpp).
-struct JointType {
-  const char* letter;
+// The constants of a tree displacement and of a pair, read off their entries.
+struct TreeType {
   int freedoms, states;
+  int slides;  // bit f: freedom f is a length
+};
+struct PairType {
+  const char *letter, *parts, *coordinates;
   int equations;  // as a closing joint; 0: closes no loop
-  int slides;     // bit f: freedom f is a length
-  bool theta, s;  // coordinates that the user sees
 };
 
 struct KernelUnit {
   int lanes;
-  const JointType* joint_types;  // JOINT_CODES of them
+  const TreeType* tree_types;  // TREE_CODES
+  const PairType* pair_types;  // PAIR_CODES
   long (*workspace_size)(const Plan&);
   void (*run)(const Plan&, const Request&, char* workspace);
   void (*search)(const Plan&, const SearchRequest&, char* workspace);

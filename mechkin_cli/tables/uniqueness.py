@@ -1,0 +1,27 @@
+"""Uniqueness of cells: with redundant constraints some reactions are arbitrary, others are not.
+
+A cell is evaluated for the reactions of least norm and for two others that are in equilibrium too;
+where it changes it is not unique and becomes nan. So sums of reactions that are unique stay,
+though each part is not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mechkin_cli.tables.source import FloatArray
+from mechkin_cli.tolerances import UNIQUE_CELL
+
+
+def unique_cells(values: FloatArray, others: Sequence[FloatArray]) -> FloatArray:
+    """The values with nan where another admissible value differs; all of shape (rows,)."""
+    if not others:
+        return values
+    sizes = [np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in (values, *others)]
+    limit = UNIQUE_CELL * max(sizes)
+    settled = values.copy()
+    for other in others:
+        settled[~(np.abs(other - values) <= limit)] = np.nan
+    return settled
