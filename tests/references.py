@@ -3,7 +3,8 @@
 `exact/rcsr.csv`: 17 significant digits computed at 40; angles in degrees, rates in rad/s, lengths
 in in, forces in lbm in/s^2, moments in lbm in^2/s^2 about the ground origin. Columns `ne_*` are
 Newton-Euler; `author_*` follow the inertia couples of the dissertation, which are wrong but
-reproduce its print. `published/table_*.csv`: cells as printed.
+reproduce its print. Other files of `exact/` have kinematics only, angles in degrees; how their
+branches are chosen is said where they are used. `published/*.csv`: cells as printed.
 """
 
 from __future__ import annotations
