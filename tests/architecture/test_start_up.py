@@ -26,7 +26,7 @@ print(json.dumps(sorted(sys.modules)))
 
 @cache
 def loaded_by(script: str) -> set[str]:
-    command = [sys.executable, "-c", script, str(RCSR)]
+    command = [sys.executable, "-P", "-c", script, str(RCSR)]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     return {name.split(".")[0] for name in json.loads(done.stdout)}
 

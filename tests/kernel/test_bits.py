@@ -219,7 +219,7 @@ MACHINES = {
 
 @cache
 def tables_of(closed_at: str, machine: str | None) -> bytes:
-    command = [sys.executable, "-c", SCRIPT, str(RCSR), closed_at]
+    command = [sys.executable, "-P", "-c", SCRIPT, str(RCSR), closed_at]
     environment = os.environ | (MACHINES[machine] if machine else {})
     return subprocess.run(command, check=True, capture_output=True, env=environment).stdout
 
