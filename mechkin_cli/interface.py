@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,8 +23,8 @@ from mechkin_cli.building.source import open_file, open_text
 from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.expressions import Expression, Vector, parse
 from mechkin_cli.solver.graph import SolverGraph
-from mechkin_cli.tables.columns import Columns, evaluate
-from mechkin_cli.tables.layout import TableLayout
+from mechkin_cli.tables.columns import Columns, evaluate, mode_words, status_words
+from mechkin_cli.tables.layout import ROW_TEXTS, TableLayout
 from mechkin_cli.tables.uniqueness import unique_cells
 
 if TYPE_CHECKING:
@@ -33,12 +33,21 @@ if TYPE_CHECKING:
 _NO_PARAMETERS: Mapping[str, str] = MappingProxyType({})
 
 
-def load(path: str | Path, parameters: Mapping[str, str] = _NO_PARAMETERS) -> Model:
+Setting = str | float
+
+
+def _texts(parameters: Mapping[str, Setting]) -> dict[str, str]:
+    """Parameters as texts; a number stands for itself, without a unit."""
+    return {k: v if isinstance(v, str) else repr(float(v)) for k, v in parameters.items()}
+
+
+def load(path: str | Path, parameters: Mapping[str, Setting] = _NO_PARAMETERS) -> Model:
     """Reads and checks a mechanism file.
 
     Args:
         path: the YAML file.
-        parameters: texts that replace values of its `parameters:`, such as {"P1": "0.6 in"}.
+        parameters: what replaces values of its `parameters:`, such as {"P1": "0.6 in"}; a number
+            has no unit.
 
     Raises:
         UsageError: the file cannot be read, or an unknown parameter.
@@ -48,12 +57,14 @@ def load(path: str | Path, parameters: Mapping[str, str] = _NO_PARAMETERS) -> Mo
         >>> load("mechanisms/rcsr.yaml").name
         'RCSR'
     """
-    return Model(build(open_file(path, parameters)), Path(path).stem)
+    return Model(build(open_file(path, _texts(parameters))), Path(path).stem)
 
 
-def loads(text: str, name: str = "text", parameters: Mapping[str, str] = _NO_PARAMETERS) -> Model:
+def loads(
+    text: str, name: str = "text", parameters: Mapping[str, Setting] = _NO_PARAMETERS
+) -> Model:
     """As `load`, for the text of a mechanism file; `name` stands for the file in messages."""
-    return Model(build(open_text(text, name, parameters)), Path(name).stem)
+    return Model(build(open_text(text, name, _texts(parameters))), Path(name).stem)
 
 
 class Model:
@@ -112,7 +123,7 @@ class Model:
             lanes: width of the kernel's packs, 0 for the widest (nor on this).
 
         Raises:
-            UsageError: an unknown table or quantity.
+            UsageError: an unknown table, quantity or mode.
         """
         problem = self.problem
         if mode is not None:
@@ -124,7 +135,11 @@ class Model:
                 raise UsageError(f"there is no quantity {name}")
         closings = list(closed_at) if closed_at else None
         sweep = partial(run_sweep, problem, closed_at=closings, lanes=lanes)
-        return Analysis(self, layouts, sweep, names)
+        analysis = Analysis(self, layouts, sweep, names)
+        for diagnostic in analysis.diagnostics if mode is not None else ():
+            if diagnostic.code == "no-such-mode":
+                raise UsageError(f"{diagnostic.message}: {diagnostic.measured}")
+        return analysis
 
     def _chosen_tables(self, names: Sequence[str] | None) -> tuple[TableLayout, ...]:
         if names is None:
@@ -167,15 +182,19 @@ class Analysis:
         """The tables that were asked for, evaluated in the file's units."""
         return tuple(evaluate(layout, self.result) for layout in self.layouts)
 
-    def __getitem__(self, text: str) -> NDArray[np.float64]:
+    def __getitem__(self, text: str) -> NDArray[Any]:
         """A quantity or an expression of quantities, in the file's units.
 
-        Returns (rows,), for a vector (rows, 3); nan where a row has no solution. What the run did
+        Returns (rows,), for a vector (rows, 3); nan where a row has no solution; `row.status` and
+        `row.mode` are arrays of words. What the run did
         not compute is computed now.
 
         Raises:
             ExpressionError: no such quantity, or dimensions that do not fit.
         """
+        if text in ROW_TEXTS:
+            words = mode_words if text == "row.mode" else status_words
+            return np.array(words(self.result).texts())
         if text in self.result.inputs:
             return self.result.inputs[text].copy()
         expression = parse(text)

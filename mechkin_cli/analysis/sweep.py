@@ -112,8 +112,8 @@ def _demand(problem: Problem, graph: SolverGraph, wanted: list[Wanted], verdicts
     demand = demand_of(problem.mechanism, wanted)
     if verdicts and graph.blocks:
         demand |= Demand.CONDITION
-        if demand & Demand.FORCES and demand & Demand.VELOCITY:
-            demand |= Demand.POWER
+    if verdicts and demand & Demand.FORCES and demand & Demand.VELOCITY:
+        demand |= Demand.POWER
     return demand
 
 

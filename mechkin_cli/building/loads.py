@@ -8,6 +8,7 @@ from typing import Any, Literal
 from mechkin_cli.building.coordinates import CODE, without
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.joints import nearest_hint
+from mechkin_cli.expressions import ExpressionError, parse
 from mechkin_cli.mechanism.model import (
     GROUND_NAME,
     Attached,
@@ -143,7 +144,23 @@ class LoadBuilder:
                 "give a number or an expression of parameters",
             )
             return 0.0
+        if self._varies(text):
+            self.fields.error(
+                "varying-load",
+                path,
+                "loads that vary with coordinates, rates or time are not computed by this version",
+                "give a number or an expression of parameters; springs and dampers are loads too",
+            )
+            return 0.0
         return self.fields.number(path, text, dimension)
+
+    def _varies(self, text: str) -> bool:
+        """Whether an expression names time or a joint's quantity."""
+        try:
+            names = parse(text).names
+        except ExpressionError:
+            return False
+        return any(n == "time" or n.partition(".")[0] in self.joints for n in names)
 
     def _known(self, path: Path, key: str | int, name: str, known: Mapping[str, object]) -> bool:
         if name in known or (key == "link" and name == GROUND_NAME):

@@ -125,7 +125,7 @@ LOADS = [
         "load-table",
         "not read by this version",
     ),
-    load("{type: force, joint: D, value: »D.s}", "expression", "D.s"),
+    load("{type: force, joint: D, value: »D.s}", "varying-load", "vary"),
 ]
 
 COLUMNS = [

@@ -30,7 +30,7 @@ def _files(write) -> None:
         ("analyze invalid.yaml", 3),
         ("analyze beyond.yaml", 4),
         ("analyze apart.yaml", 4),
-        ("analyze crank.yaml --mode Q", 4),
+        ("analyze crank.yaml --mode Q", 2),
         ("analyze crank.yaml invalid.yaml beyond.yaml", 4),
         ("analyze invalid.yaml crank.yaml nowhere.yaml", 3),
         ("analyze crank.yaml nowhere.yaml", 2),
