@@ -23,8 +23,8 @@ RESIDUAL_ACCEPT: Final = 1e-14
 Lengths of a loop that reaches farther than the size count in parts of its reach."""
 
 NEWTON_ITERATIONS: Final = 6
-"""From a prediction that passes the jump test Newton needs 2 to 4; a seventh means the guess was
-wrong."""
+"""A prediction that passes the jump test is within a tenth of a step; squared four times that is
+rounding, and a sixth step allows for a large constant. More would mean that the guess was wrong."""
 
 # --- search for assemblies -------------------------------------------------------------------
 
@@ -32,7 +32,8 @@ SEARCH_RESIDUAL: Final = 1e-10
 """Where the Levenberg-Marquardt search hands over to Newton; well inside its quadratic region."""
 
 SEARCH_ITERATIONS: Final = 80
-"""Steps of one start; 95 % of the starts that close do so within 30."""
+"""Steps of one start. Measured with 2048 starts on RCSR, RCSR-CSR, 7R, RCHCH, RCRCR, PHCHC and
+R-Sg-C: of those that close within 160 steps at least 96 % do so within 30, 99.8 % within 80."""
 
 SEARCH_STARTS: Final = 512
 """Fewest random starts; more follow until one more start finds a new mode with chance < 1e-3."""
@@ -85,7 +86,8 @@ LEAST_STEP: Final = 1e-15
 """Step (in parts of max(1, |path|)) below which a branch cannot be followed in double precision."""
 
 MOST_STEPS: Final = 20000
-"""Steps of one path: a turn takes about 50; a path that needs more is not a sweep."""
+"""Steps of one path. Measured: R-Sg-C takes 32 for 315 degrees; a path that needs thousands is no
+sweep."""
 
 # --- dead centres ------------------------------------------------------------------------------
 
@@ -104,9 +106,6 @@ CONDITION_NEAR_SINGULAR: Final = 1e7
 CONDITION_RANK_UNCLEAR: Final = 1e12
 """Above it rates and reactions of a row have no digit that means anything; its position still
 has."""
-
-RANK_GAP: Final = 1e3
-"""Ratio of neighbouring singular values that separates rank from noise."""
 
 UNIQUE_CELL: Final = 1e-9
 """Change of a cell, in parts of its column's largest value, when a part of the null space is added

@@ -10,12 +10,13 @@ from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.building.columns import build_tables
 from mechkin_cli.building.coordinates import is_coordinate
 from mechkin_cli.building.fields import Fields, read_parameters, read_units
-from mechkin_cli.building.joints import build_joints, nearest_hint
+from mechkin_cli.building.joints import build_joints
 from mechkin_cli.building.links import build_links
 from mechkin_cli.building.loads import LoadBuilder
 from mechkin_cli.building.motion import build_motion
 from mechkin_cli.building.source import Source
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
+from mechkin_cli.expressions.errors import nearest
 from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
 from mechkin_cli.schema.file import MechanismFile
@@ -114,7 +115,7 @@ def _link_known(
     if name == GROUND_NAME or name in links:
         return True
     fields.refused.add(path[1])
-    hint = nearest_hint(name, [GROUND_NAME, *links])
+    hint = nearest(name, [GROUND_NAME, *links])
     fields.error("unknown-link", path, f"there is no link {name}", hint)
     return False
 

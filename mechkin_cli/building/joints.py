@@ -40,15 +40,10 @@ def _links_known(fields: Fields, path: Path, section: Any, links: Mapping[str, A
     known = True
     for i, link in enumerate(section.links):
         if link != GROUND_NAME and link not in links:
-            hint = nearest_hint(link, [GROUND_NAME, *links])
+            hint = nearest(link, [GROUND_NAME, *links])
             fields.error("unknown-link", (*path, "links", i), f"there is no link {link}", hint)
             known = False
     return known
-
-
-def nearest_hint(name: str, known: list[str]) -> str | None:
-    """The nearest known name as a hint."""
-    return nearest(name, known)
 
 
 def _build(fields: Fields, name: str, section: Any) -> Joint:

@@ -7,8 +7,8 @@ from typing import Any, Literal
 
 from mechkin_cli.building.coordinates import CODE, without
 from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.building.joints import nearest_hint
 from mechkin_cli.expressions import ExpressionError, parse
+from mechkin_cli.expressions.errors import nearest
 from mechkin_cli.mechanism.model import (
     GROUND_NAME,
     Attached,
@@ -171,7 +171,7 @@ class LoadBuilder:
         if self.fields.is_refused(name):
             return False
         what = "link" if key == "link" else "point"
-        hint = nearest_hint(name, list(known))
+        hint = nearest(name, list(known))
         self.fields.error(f"unknown-{what}", (*path, key), f"there is no {what} {name}", hint)
         return False
 
@@ -180,7 +180,7 @@ class LoadBuilder:
         if self.fields.is_refused(name):
             return False
         if joint is None:
-            hint = nearest_hint(name, list(self.joints))
+            hint = nearest(name, list(self.joints))
             self.fields.error("unknown-joint", (*path, "joint"), f"there is no joint {name}", hint)
             return False
         if coordinate not in joint.type.coordinates:

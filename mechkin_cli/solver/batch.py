@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.codes import Demand, RowFlag
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,7 +45,7 @@ class Batch(NamedTuple):
     @property
     def good(self) -> NDArray[np.bool_]:
         """Rows that are closed."""
-        return np.equal(self.flags, 0)
+        return np.equal(self.flags, RowFlag.GOOD)
 
 
 def run(
