@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli.analysis.idle import spin_errors
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.result import Result
 from mechkin_cli.analysis.sweep import analyze as run_sweep
@@ -22,6 +23,8 @@ from mechkin_cli.building.columns import used_quantities
 from mechkin_cli.building.source import open_file, open_text
 from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.expressions import Expression, Vector, parse
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.tables.columns import Columns, evaluate, mode_words, status_words
 from mechkin_cli.tables.layout import ROW_TEXTS, TableLayout
@@ -133,6 +136,7 @@ class Model:
         for name in names:
             if name not in self.quantities:
                 raise UsageError(f"there is no quantity {name}")
+        self._refuse_loaded_spin(problem, names)
         closings = list(closed_at) if closed_at else None
         sweep = partial(run_sweep, problem, closed_at=closings, lanes=lanes)
         analysis = Analysis(self, layouts, sweep, names)
@@ -140,6 +144,13 @@ class Model:
             if diagnostic.code == "no-such-mode":
                 raise UsageError(f"{diagnostic.message}: {diagnostic.measured}")
         return analysis
+
+    def _refuse_loaded_spin(self, problem: Problem, names: Iterable[str]) -> None:
+        """Forces need what spins freely to have no cause to spin."""
+        known = problem.quantities()
+        if demand_of(problem.mechanism, [known[name] for name in names]) & Demand.FORCES:
+            for _, diagnostic in spin_errors(problem):
+                raise UsageError(str(diagnostic))
 
     def _chosen_tables(self, names: Sequence[str] | None) -> tuple[TableLayout, ...]:
         if names is None:

@@ -115,6 +115,10 @@ about its own size."""
 AXES_SQUARE: Final = 1e-9
 """Inertia axes must be square to this (cosine): typed numbers have nine digits and more."""
 
+ON_LINE: Final = 1e-9
+"""Parts of a leg's length (of the largest entry of a tensor) up to which a mass centre lies on the
+line of its spheres (a tensor is symmetric about it): written numbers have nine digits and more."""
+
 PARALLEL: Final = 1e-9
 """Sine of the angle below which a reference direction is parallel to the axis it should stand
 square to."""

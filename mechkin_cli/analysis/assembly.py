@@ -31,14 +31,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Start:
-    """States at the first row and the mode's name; without states `status` says why there are
-    none."""
+    """States at a row (the first, or the one nearest to an assembled home) and the mode's name;
+    without states `status` says why there are none."""
 
     state: Floats | None
     mode: str
     how: str
     diagnostics: list[Diagnostic] = field(default_factory=list)
     status: Status = Status.not_assembled
+    row: int = 0
 
 
 class Probe:
@@ -93,13 +94,12 @@ def is_home_assembled(layout: Layout, plan: Plan) -> bool:
     return bool(batch.good[0])
 
 
-def choose_start(
-    problem: Problem, layout: Layout, plan: Plan, inputs: Floats, probe: Probe
-) -> Start:
-    """The assembly at the first row, `inputs` (inputs,) in kernel units."""
+def choose_start(problem: Problem, layout: Layout, plan: Plan, path: Floats, probe: Probe) -> Start:
+    """The assembly that the file means; `path` (inputs, rows) in kernel units."""
     wanted = problem.assembly
     if not wanted.near and wanted.mode is None and is_home_assembled(layout, plan):
-        return _from_home(problem, layout, plan, inputs)
+        return _from_home(problem, layout, plan, path)
+    inputs = path[:, 0]
     found = assemblies(layout, plan, inputs, wanted.turns)
     if found.number == 0:
         return Start(None, "", "", [_nothing_found(problem, layout.graph, found)])
@@ -125,11 +125,13 @@ def mode_name(rank: int) -> str:
     return name
 
 
-def _from_home(problem: Problem, layout: Layout, plan: Plan, inputs: Floats) -> Start:
-    path = np.stack([np.zeros_like(inputs), inputs], axis=1)
-    followed = follow(plan, path, home_state(layout))
+def _from_home(problem: Problem, layout: Layout, plan: Plan, path: Floats) -> Start:
+    """Followed from the drawing to the row whose inputs are nearest to it."""
+    row = int(np.argmin(np.max(np.abs(path), axis=0))) if path.size else 0
+    way = np.stack([np.zeros_like(path[:, row]), path[:, row]], axis=1)
+    followed = follow(plan, way, home_state(layout))
     if followed.end == TrackEnd.FINISHED:
-        return Start(followed.state, "home", "followed from the home drawing")
+        return Start(followed.state, "home", "followed from the home drawing", row=row)
     places = ", ".join(
         f"{item.name} = {in_file_units(problem, layout, k, float(followed.inputs[k]))}"
         for k, item in enumerate(problem.motion.inputs)
@@ -138,7 +140,7 @@ def _from_home(problem: Problem, layout: Layout, plan: Plan, inputs: Floats) -> 
     diagnostic = Diagnostic(
         "home-branch-ends",
         "error",
-        "the assembly drawn at home ends before the first row",
+        "the assembly drawn at home ends before it comes to a row",
         measured=f"followed up to {places}",
         hint=f"choose another assembly with assembly: {{near: ...}}{rigid}",
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.problem import Problem
-from mechkin_cli.analysis.rows import MAY_BE_RIGID, KernelInputs, RowStates, in_file_units
+from mechkin_cli.analysis.rows import MAY_BE_RIGID, RowStates, in_file_units
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.codes import Demand
@@ -33,11 +33,14 @@ def explain_end(
     problem: Problem,
     layout: Layout,
     plan: Plan,
-    inputs: KernelInputs,
+    path: Floats,
     followed: Followed,
     rows: RowStates,
 ) -> None:
-    """Finds why a branch ended; rows before a dead centre get their guesses from its shape."""
+    """Finds why a branch ended; rows before a dead centre get their guesses from its shape.
+
+    `path` (inputs, rows) in kernel units and `rows` are in the order in which they were followed.
+    """
     moving = np.flatnonzero(followed.direction)
     fold = None
     if moving.size == 1:
@@ -48,7 +51,7 @@ def explain_end(
                 layout, problem.motion.driven, number, followed.inputs, followed.state, first
             )
         if fold is not None and _lies_ahead(fold, followed, number):
-            _fill_before(fold, inputs, followed, number, rows)
+            _fill_before(fold, path, followed, number, rows)
             rows.status[~rows.reached] = Status.beyond_dead_centre
             rows.diagnostics.append(_dead_centre_note(problem, layout, fold, number, rows))
             return
@@ -78,11 +81,11 @@ def _lies_ahead(fold: DeadCentre, followed: Followed, number: int) -> bool:
 
 
 def _fill_before(
-    fold: DeadCentre, inputs: KernelInputs, followed: Followed, number: int, rows: RowStates
+    fold: DeadCentre, path: Floats, followed: Followed, number: int, rows: RowStates
 ) -> None:
     row = followed.reached
     while row < rows.reached.size:
-        guess = fold.guess(float(inputs.values[number, row]), followed.state)
+        guess = fold.guess(float(path[number, row]), followed.state)
         if guess is None:
             return
         rows.guess[:, row] = guess
@@ -92,7 +95,7 @@ def _fill_before(
 
 
 def _row_span(rows: RowStates) -> str:
-    missing = np.flatnonzero(~rows.reached) + 1
+    missing = np.sort(rows.numbers[~rows.reached]) + 1
     return f"row {missing[0]}" if missing.size == 1 else f"rows {missing[0]} to {missing[-1]}"
 
 

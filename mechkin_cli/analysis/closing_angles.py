@@ -21,6 +21,8 @@ from mechkin_cli.solver.layout import Layout
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.kernel._kernel import Plan
+
     Floats = NDArray[np.float64]
 
 FINEST_STEP = 0.1
@@ -35,12 +37,13 @@ def unwrap_closing_angles(
     values: Floats,
     inputs: Floats,
     start: Floats,
-    reached: int,
+    row: int,
+    reached: NDArray[np.bool_],
 ) -> None:
     """Makes the angles of closing joints in `values` (slots, rows) continuous, in place.
 
-    `inputs` (inputs, rows) in kernel units, `start` the states at the first row, `reached` the
-    number of leading rows that have a solution.
+    `inputs` (inputs, rows) in kernel units, `start` the states at row number `row`, `reached` tells
+    the rows that have a solution.
     """
     angles = [
         quantity
@@ -50,13 +53,34 @@ def unwrap_closing_angles(
         and quantity.order == 0
         and layout.joint_reference[quantity.owner] < 0
     ]
-    if not angles or reached < 2:
+    if not angles or not reached[row]:
         return
-    path, rows = refined(inputs[:, :reached])
     plan = layout.build()
     own = OutputPlan(layout, plan, outputs.inputs)
     for quantity in angles:
         own.add(quantity)
+    slots = [own.slots[quantity.name].first for quantity in angles]
+    turns = np.zeros((len(angles), reached.size))
+    for way in (slice(row, None), slice(row, None, -1)):
+        count = _leading(reached[way])
+        part = turns[:, way]
+        part[:, :count] = _turns(plan, inputs[:, way][:, :count], start, slots)
+    first = int(np.argmax(reached))
+    for quantity, counted in zip(angles, turns, strict=True):
+        values[outputs.slots[quantity.name].first] -= (counted - counted[first]) * (2.0 * pi)
+
+
+def _leading(reached: NDArray[np.bool_]) -> int:
+    """How many rows have a solution before the first that has none."""
+    return int(reached.size if reached.all() else np.argmin(reached))
+
+
+def _turns(plan: Plan, inputs: Floats, start: Floats, slots: list[int]) -> Floats:
+    """Whole turns by which the arctangents have jumped back since the first row (slots, rows)."""
+    turns = np.zeros((len(slots), inputs.shape[1]))
+    if inputs.shape[1] < 2:
+        return turns
+    path, rows = refined(inputs)
     followed = follow(plan, path, start)
     count = followed.reached
     batch = run(
@@ -67,11 +91,11 @@ def unwrap_closing_angles(
     )
     assert batch.outputs is not None
     rows = rows[rows < count]
-    for quantity in angles:
-        along = batch.outputs[own.slots[quantity.name].first]
-        turns = np.cumsum(np.rint(np.diff(along, prepend=along[:1]) / (2.0 * pi)))
-        row = values[outputs.slots[quantity.name].first]
-        row[: rows.size] -= turns[rows] * (2.0 * pi)
+    for number, slot in enumerate(slots):
+        along = batch.outputs[slot]
+        jumps = np.cumsum(np.rint(np.diff(along, prepend=along[:1]) / (2.0 * pi)))
+        turns[number, : rows.size] = jumps[rows]
+    return turns
 
 
 def refined(inputs: Floats) -> tuple[Floats, NDArray[np.int64]]:

@@ -26,6 +26,8 @@ class Problem:
     units: UnitSystem
     parameters: Mapping[str, Quantity] = field(default_factory=dict)
     diagnostics: tuple[Diagnostic, ...] = ()
+    hold_idle: bool = False
+    follow: tuple[str, ...] | None = None
 
     def quantities(self) -> dict[str, Wanted]:
         """The quantities that the mechanism has, by name."""

@@ -27,7 +27,8 @@ MAY_BE_RIGID = (
 
 @dataclass
 class RowStates:
-    """Guesses for the rows and what is known about those that have none."""
+    """Guesses for the rows and what is known about those that have none; `numbers` counts them
+    from 0 as the file does."""
 
     guess: Floats
     limit: Floats
@@ -35,6 +36,12 @@ class RowStates:
     status: NDArray[np.int8]
     nodes: int
     diagnostics: list[Diagnostic]
+    numbers: NDArray[np.int64]
+
+    def part(self, rows: slice) -> RowStates:
+        """Some of the rows, in the slice's order: views of the same arrays."""
+        arrays = (self.guess[:, rows], self.limit[rows], self.reached[rows], self.status[rows])
+        return RowStates(*arrays, self.nodes, self.diagnostics, self.numbers[rows])
 
 
 class KernelInputs(NamedTuple):

@@ -12,10 +12,13 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly import Probe, Start, choose_start
 from mechkin_cli.analysis.branch_end import explain_end
 from mechkin_cli.analysis.closing_angles import unwrap_closing_angles
+from mechkin_cli.analysis.followed import followed_part
+from mechkin_cli.analysis.idle import conventional_notes, holding_notes
 from mechkin_cli.analysis.notes import not_converged_note, redundancy_note
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.result import Result
 from mechkin_cli.analysis.rows import KernelInputs, RowStates, kernel_inputs
+from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.batch import Batch, run
 from mechkin_cli.solver.codes import Demand
@@ -23,6 +26,7 @@ from mechkin_cli.solver.demand import WRENCH_KINDS, OutputPlan, demand_of
 from mechkin_cli.solver.follow import TrackEnd, follow
 from mechkin_cli.solver.graph import SolverGraph, build_graph, is_redundant
 from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.search import wrap_angles
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
@@ -55,15 +59,22 @@ def analyze(
         UnsolvableGraph: the mechanism cannot be solved as it is driven.
         KeyError: an unknown quantity.
     """
-    graph = build_graph(problem.mechanism, problem.motion.driven, closed_at)
-    layout = Layout(problem.mechanism, graph)
     known = problem.quantities()
     wanted = [known[name] for name in dict.fromkeys(quantities)]
+    graph = build_graph(problem.mechanism, problem.motion.driven, closed_at)
+    followed = followed_part(problem, graph, wanted)
+    if followed is not problem:
+        problem = followed
+        graph = build_graph(problem.mechanism, problem.motion.driven, closed_at)
+    layout = Layout(problem.mechanism, graph)
+    if problem.hold_idle and demand_of(problem.mechanism, wanted) & Demand.FORCES:
+        held = {known[f"{leg.body}.holding_moment"] for leg in find_legs(problem.mechanism)}
+        wanted += sorted(held.difference(wanted))
     demand = _demand(problem, graph, wanted, verdicts)
     inputs = kernel_inputs(problem, layout)
     probe = Probe(problem, layout)
-    start = choose_start(problem, layout, layout.build(), inputs.values[:, 0], probe)
-    size = None if start.state is None else probe.size(inputs.values[:, 0], start.state)
+    start = choose_start(problem, layout, layout.build(), inputs.values, probe)
+    size = None if start.state is None else probe.size(inputs.values[:, start.row], start.state)
     plan = layout.build(size)
     outputs = OutputPlan(layout, plan, problem.motion.driven)
     for quantity in wanted:
@@ -76,17 +87,21 @@ def analyze(
         batch = _run_rows(plan, inputs, rows, demand, lanes)
     values = batch.outputs if batch.outputs is not None else np.empty((0, problem.motion.rows))
     if start.state is not None:
-        leading = int(np.argmin(rows.reached)) if not rows.reached.all() else rows.reached.size
-        unwrap_closing_angles(layout, outputs, wanted, values, inputs.values, start.state, leading)
+        unwrap_closing_angles(
+            layout, outputs, wanted, values, inputs.values, start.state, start.row, rows.reached
+        )
     if batch.condition is not None:
         _empty_what_is_unclear(rows, batch.condition, outputs, wanted, values)
     if (rows.status == Status.not_converged).any():
         rows.diagnostics.append(not_converged_note(rows, batch))
+    rows.diagnostics += conventional_notes(problem, wanted)
     missing = ~rows.reached
     nothing = np.full(problem.motion.rows, np.nan)
     for array in (values.T, batch.residual, batch.condition, batch.power_error):
         if array is not None:
             array[missing] = np.nan
+    if problem.hold_idle:
+        rows.diagnostics += holding_notes(problem, outputs.slots, values)
     shifted = _shifted_outputs(plan, graph, inputs, rows, demand, lanes, outputs, wanted, values)
     if shifted:
         rows.diagnostics.append(redundancy_note(graph))
@@ -131,13 +146,33 @@ def _follow(
     if start.state is None:
         status[:] = start.status
         empty = np.zeros((layout.states, count))
-        return RowStates(empty, np.zeros(count), np.zeros(count, dtype=bool), status, 0, [])
-    followed = follow(plan, inputs.values, start.state, every_row=every_row)
-    reached = np.arange(count) < followed.reached
-    rows = RowStates(followed.guess, followed.limit, reached, status, followed.steps, [])
-    if followed.end != TrackEnd.FINISHED:
-        explain_end(problem, layout, plan, inputs, followed, rows)
+        none = np.zeros(count, dtype=bool)
+        return RowStates(empty, np.zeros(count), none, status, 0, [], np.arange(count))
+    arrays = (np.empty((layout.states, count)), np.empty(count), np.zeros(count, dtype=bool))
+    rows = RowStates(*arrays, status, 0, [], np.arange(count))
+    onward, backward = slice(start.row, None), slice(start.row, None, -1)
+    for way in (backward, onward) if start.row else (onward,):
+        path = np.ascontiguousarray(inputs.values[:, way])
+        followed = follow(plan, path, start.state, every_row=every_row)
+        part = rows.part(way)
+        part.guess[:], part.limit[:] = followed.guess, followed.limit
+        part.reached[:] = np.arange(part.reached.size) < followed.reached
+        rows.nodes += followed.steps
+        if followed.end != TrackEnd.FINISHED:
+            explain_end(problem, layout, plan, path, followed, part)
+    _wrap_from_first(layout, rows)
     return rows
+
+
+def _wrap_from_first(layout: Layout, rows: RowStates) -> None:
+    """Angles are continuous from the first row, which lies in (-180, 180] degrees."""
+    if not rows.reached.any():
+        return
+    first = int(np.argmax(rows.reached))
+    before = rows.guess[:, first].copy()
+    wrapped = before[:, None].copy()
+    wrap_angles(layout, wrapped)
+    rows.guess += wrapped - before[:, None]
 
 
 def _run_rows(

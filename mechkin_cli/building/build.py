@@ -3,11 +3,13 @@ tables."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
+from mechkin_cli.analysis.idle import spin_errors
 from mechkin_cli.analysis.problem import Problem
-from mechkin_cli.building.columns import build_tables
+from mechkin_cli.building.columns import build_tables, used_quantities
 from mechkin_cli.building.coordinates import is_coordinate
 from mechkin_cli.building.fields import Fields, read_parameters, read_units
 from mechkin_cli.building.joints import build_joints
@@ -20,6 +22,8 @@ from mechkin_cli.expressions.errors import nearest
 from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
 from mechkin_cli.schema.file import MechanismFile
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
 from mechkin_cli.tables.layout import TableLayout, default_table
 from mechkin_cli.units import ANGLE, LENGTH
@@ -75,14 +79,35 @@ def build(source: Source) -> Built:
     tables = build_tables(fields, file.tables, problem.quantities())
     if not file.tables:
         tables = (default_table(mechanism.coordinates, [i.name for i in motion.inputs]),)
+    follow = _followed(fields, file.follow, joints)
+    problem = replace(problem, hold_idle=file.idle == "hold", follow=follow)
     graph = _graph(fields, mechanism, motion)
+    if graph is not None and needs_forces(problem, tables):
+        for link, diagnostic in spin_errors(problem):
+            place = fields.document.place(("links", link))
+            fields.diagnostics.append(diagnostic._replace(place=place))
     errors = [d for d in fields.diagnostics if d.severity == "error"]
     if errors or graph is None:
         raise InvalidFile(sorted(fields.diagnostics, key=_by_place))
-    problem = Problem(
-        mechanism, motion, assembly, units, dict(fields.parameters), tuple(fields.diagnostics)
-    )
+    problem = replace(problem, diagnostics=tuple(fields.diagnostics))
     return Built(problem, graph, tables, bool(file.tables))
+
+
+def _followed(
+    fields: Fields, names: tuple[str, ...] | None, joints: Mapping[str, Joint]
+) -> tuple[str, ...] | None:
+    for i, name in enumerate(names or ()):
+        if name not in joints and not fields.is_refused(name):
+            hint = nearest(name, list(joints))
+            fields.error("unknown-joint", ("follow", i), f"there is no joint {name}", hint)
+    return names
+
+
+def needs_forces(problem: Problem, tables: Sequence[TableLayout]) -> bool:
+    """Whether some column reads a force."""
+    quantities = problem.quantities()
+    wanted = [quantities[name] for name in used_quantities(tables, quantities)]
+    return bool(demand_of(problem.mechanism, wanted) & Demand.FORCES)
 
 
 def _unit_texts(section: object) -> dict[str, str]:
@@ -96,11 +121,7 @@ def _by_place(diagnostic: Diagnostic) -> tuple[int, int]:
 
 
 def _refuse_unsolved_sections(fields: Fields, file: MechanismFile) -> None:
-    for key, what in (
-        ("chain", "loops written as chain rows are"),
-        ("follow", "choosing the loops that are followed is"),
-        ("idle", "holding idle freedoms is"),
-    ):
+    for key, what in (("chain", "loops written as chain rows are"),):
         if getattr(file, key):
             fields.key_error(
                 "not-solved", (key,), f"{what} not part of this version", f"remove {key}:"

@@ -13,6 +13,7 @@ from mechkin_cli.mechanism.frames import (
     frame_about,
     perpendicular,
     turned_shortest,
+    upright,
 )
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Part
 from mechkin_cli.mechanism.vectors import Vector, cross, norm, scale, unit
@@ -79,7 +80,7 @@ def _axis_frames(fields: Fields, path: Path, section: Any) -> Frames:
 def _spheric_frames(fields: Fields, path: Path, section: Any) -> Frames:
     """S: ground axes at the sphere's centre."""
     first, second = _points(fields, path, section)
-    on_first, on_second = _upright(first), _upright(second)
+    on_first, on_second = upright(first), upright(second)
     return on_first, on_second, (Part("S", on_first, on_second),)
 
 
@@ -90,8 +91,8 @@ def _plane_frames(fields: Fields, path: Path, section: Any) -> Frames:
     x = perpendicular(normal)
     on_second = frame_about(normal, x, second)
     slides = [frame_about(axis, normal, second) for axis in (on_second.x, on_second.y)]
-    turn = Part("S", _upright(first), _upright(second))
-    return _upright(first), on_second, (turn, *(Part("P", f, f) for f in slides))
+    turn = Part("S", upright(first), upright(second))
+    return upright(first), on_second, (turn, *(Part("P", f, f) for f in slides))
 
 
 def _groove_frames(fields: Fields, path: Path, section: Any) -> Frames:
@@ -101,8 +102,8 @@ def _groove_frames(fields: Fields, path: Path, section: Any) -> Frames:
     groove = _per_link(fields, (*path, "groove"), section.groove, section.links, True)[1]
     on_second = frame_about(groove, perpendicular(groove), second)
     back = frame_about(scale(-1.0, groove), on_second.x, second)
-    turn = Part("S", _upright(first), _upright(second))
-    return _upright(first), on_second, (turn, Part("P", back, back))
+    turn = Part("S", upright(first), upright(second))
+    return upright(first), on_second, (turn, Part("P", back, back))
 
 
 def _universal_frames(fields: Fields, path: Path, section: Any) -> Frames:
@@ -160,10 +161,6 @@ _FRAMES = {
     "E": _planar_frames,
     "W": _weld_frames,
 }
-
-
-def _upright(point: Vector) -> Frame:
-    return Frame(GROUND.x, GROUND.y, GROUND.z, point)
 
 
 def _per_link(

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mechkin_cli.mechanism.joint_types import FREE
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS
 
 if TYPE_CHECKING:
     from mechkin_cli.interface import Analysis
+    from mechkin_cli.mechanism.model import Joint
     from mechkin_cli.solver.graph import Block, SolverGraph
 
 
@@ -18,16 +20,16 @@ def explanation(analysis: Analysis) -> str:
     lines = [f"solver graph of {analysis.model.name}", "  tree"]
     for edge in graph.edges:
         way = "" if edge.forward else ", passed from its second link to its first"
-        lines.append(
-            f"    {edge.parent} -> {edge.child} by {edge.joint.name} ({edge.joint.letter}{way})"
-        )
+        way = ", hung between its spheres" if edge.hung else way
+        lines.append(f"    {edge.parent} -> {edge.child} by {_joint(edge.joint, way)}")
     lines.append("  loops closed at" if graph.closings else "  no loops")
     for closing in graph.closings:
-        joint = closing.joint
         loop = ", ".join(graph.edges[k].joint.name for k, _ in closing.loop)
-        lines.append(
-            f"    {joint.name} ({joint.letter}, {joint.type.equations} equations) with {loop}"
-        )
+        count = closing.equations
+        equations = f", {count} equation{'s' * (count > 1)}"
+        if closing.leg is not None:
+            equations = f", 1 equation: the distance {'-'.join(closing.leg.joints)}"
+        lines.append(f"    {_joint(closing.joint, equations)}" + f" with {loop}" * bool(loop))
     if graph.blocks:
         lines.append("  blocks, solved in this order")
     for number, block in enumerate(graph.blocks, 1):
@@ -38,13 +40,21 @@ def explanation(analysis: Analysis) -> str:
 
 
 def _unknowns(graph: SolverGraph, block: Block) -> str:
-    names = []
-    for k, freedom in block.unknowns:
-        joint = graph.edges[k].joint
-        coordinates = joint.coordinates
-        name = coordinates[freedom] if coordinates else f"{joint.name} (turn {freedom + 1} of 3)"
-        names.append(name)
-    return ", ".join(names)
+    return ", ".join(_freedom(graph.edges[k].joint, freedom) for k, freedom in block.unknowns)
+
+
+def _freedom(joint: Joint, freedom: int) -> str:
+    """A coordinate's name; turns of a sphere have none of their own."""
+    names = {number: name for name, number in reversed(joint.type.freedom_of.items())}
+    if freedom in names:
+        return f"{joint.name}.{names[freedom]}"
+    turns = [f for f, slide in enumerate(joint.type.slides) if not slide]
+    return f"{joint.name} (turn {turns.index(freedom) + 1} of {len(turns)})"
+
+
+def _joint(joint: Joint, words: str) -> str:
+    kind = "six unknowns" if joint.letter == FREE else joint.letter
+    return f"{joint.name} ({kind}{words})"
 
 
 def _demand_lines(analysis: Analysis) -> list[str]:

@@ -8,10 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
     from mechkin_cli.interface import Analysis
+
+
+IDLE_SHOWN = 2
+"""Idle freedoms that are named one by one."""
 
 
 def summary(path: Path, analysis: Analysis, folder: Path, written: list[Path]) -> list[str]:
@@ -31,20 +36,26 @@ def _mobility(analysis: Analysis) -> str:
     """Every input is a freedom; a count by Kutzbach's formula that differs is told too."""
     mechanism = analysis.model.problem.mechanism
     freedoms = sum(joint.type.freedoms for joint in mechanism.joints.values())
-    count = freedoms - 6 * len(analysis.result.graph.closings)
+    count = freedoms - 6 * mechanism.loops
     inputs = analysis.result.inputs
     names = ", ".join(inputs) or "nothing"
     text = f"{len(inputs)}, driven by {names}"
-    return text if count == len(inputs) else f"{text} (Kutzbach's count: {count})"
+    idle = "".join(f"; {leg.words}" for leg in find_legs(mechanism)[:IDLE_SHOWN])
+    more = len(find_legs(mechanism)) - IDLE_SHOWN
+    idle += f"; and {more} more idle" if more > 0 else ""
+    return (text if count == len(inputs) else f"{text} (Kutzbach's count: {count})") + idle
 
 
 def _loops(analysis: Analysis) -> str:
     graph = analysis.result.graph
     if not graph.closings:
         return "none (open chain)"
-    closed = ", ".join(f"{c.joint.name} ({c.joint.letter})" for c in graph.closings)
+    closed = ", ".join(
+        "-".join(c.leg.joints) if c.leg else f"{c.joint.name} ({c.joint.letter})"
+        for c in graph.closings
+    )
     sizes = " then ".join(str(block.equations) for block in graph.blocks)
-    return f"{len(graph.closings)}, closed at {closed}; {sizes} unknowns"
+    return f"{analysis.model.problem.mechanism.loops}, closed at {closed}; {sizes} unknowns"
 
 
 def _rows(analysis: Analysis) -> str:

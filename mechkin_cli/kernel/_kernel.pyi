@@ -56,6 +56,19 @@ class Plan:
         parameter: float,
         loop: Sequence[tuple[int, float]],
     ) -> None: ...
+    def add_leg(
+        self,
+        body: int,
+        rod: int,
+        first: int,
+        second: int,
+        on_first: Sequence[float],
+        on_second: Sequence[float],
+        length: float,
+        line: Triple,
+        slide_sign: float,
+        loop: Sequence[tuple[int, float]],
+    ) -> None: ...
     def add_place(
         self, reference: int, first: int, second: int, point_on: int, point: Triple, sign: float
     ) -> int: ...

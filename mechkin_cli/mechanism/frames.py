@@ -40,6 +40,11 @@ class Frame(NamedTuple):
 GROUND = Frame((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), ZERO)
 
 
+def upright(point: Vector) -> Frame:
+    """The frame along the ground's axes with its origin at a point."""
+    return Frame(GROUND.x, GROUND.y, GROUND.z, point)
+
+
 def perpendicular(z: Vector) -> Vector:
     """A unit vector square to the unit vector z: from the ground axis that is farthest from z."""
     sizes = [abs(c) for c in z]

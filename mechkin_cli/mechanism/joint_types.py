@@ -9,8 +9,11 @@ from __future__ import annotations
 from functools import cache
 from typing import NamedTuple
 
-TREE_LETTERS = "RPHCSW"
-"""Elementary displacements in the order of the kernel's codes."""
+TREE_LETTERS = "RPHCSWL"
+"""Elementary displacements in the order of the kernel's codes; L hangs a leg between two points."""
+
+FREE = "F"
+"""The pair without constraints by which the solver hangs a body that only legs hold."""
 
 
 class TreeType(NamedTuple):
@@ -70,4 +73,6 @@ def joint_types() -> dict[str, JointType]:
         table[row["letter"]] = JointType(
             row["letter"], row["code"], parts, len(slides), row["equations"], slides, names
         )
+    slides = (True, True, True, False, False, False)
+    table[FREE] = JointType(FREE, -1, tuple("PPPS"), 6, 0, slides, {"x": 0, "y": 1, "z": 2})
     return table

@@ -156,6 +156,12 @@ class Mechanism:
         """All coordinates in joint order."""
         return tuple(name for joint in self.joints.values() for name in joint.coordinates)
 
+    @property
+    def loops(self) -> int:
+        """Number of independent loops."""
+        moving = sum(name != GROUND_NAME for name in self.links)
+        return len(self.joints) - moving
+
     def box_diagonal(self) -> float:
         """Diagonal of the box of all joint points as drawn, in m; 1 if they all coincide."""
         points = [at.vector for _, at in self.joint_points()]

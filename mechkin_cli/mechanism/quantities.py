@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
+from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism
 from mechkin_cli.units import (
     ACCELERATION,
@@ -40,6 +41,7 @@ Kind = Literal[
     "shaking_moment",
     "inertia_force",
     "inertia_moment",
+    "holding_moment",
     "residual",
     "condition",
     "power_error",
@@ -135,6 +137,9 @@ def _of_links(mechanism: Mechanism) -> Iterator[Wanted]:
         if name != GROUND_NAME:
             yield Wanted(f"{name}.omega", "omega", name, ANGULAR_RATE, True)
             yield Wanted(f"{name}.alpha", "alpha", name, ANGULAR_ACCELERATION, True)
+    for leg in find_legs(mechanism):
+        name = f"{leg.body}.holding_moment"
+        yield Wanted(name, "holding_moment", leg.body, MOMENT, False)
 
 
 def _of_ground() -> Iterator[Wanted]:

@@ -39,6 +39,7 @@ class OutputCode(IntEnum):
     SHAKING_MOMENT = 14
     INERTIA_FORCE = 15
     INERTIA_MOMENT = 16
+    HOLDING_MOMENT = 17
 
 
 class Demand(IntFlag):

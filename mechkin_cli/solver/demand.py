@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 WRENCH_KINDS = {"force", "moment", "moment_about_origin"}
 _SHAKING_KINDS = {"shaking_force", "shaking_moment"}
 _INERTIA_KINDS = {"inertia_force", "inertia_moment"}
-_FORCE_KINDS = WRENCH_KINDS | _SHAKING_KINDS | _INERTIA_KINDS | {"effort"}
+_FORCE_KINDS = WRENCH_KINDS | _SHAKING_KINDS | _INERTIA_KINDS | {"effort", "holding_moment"}
 
 
 def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
@@ -101,7 +101,7 @@ class OutputPlan:
             return self._output(OutputCode.CLOSING, number, factor, wanted.order, freedom=freedom)
         if joint.letter == "H" and slide:
             factor = joint.lead / (2.0 * pi)
-        edge = next(k for k, e in enumerate(layout.graph.edges) if e.joint is joint)
+        edge = next(k for k, e in enumerate(layout.graph.edges) if e.joint.name == joint.name)
         if wanted.order == 0:
             return self._output(OutputCode.STATE, layout.state(edge, freedom), factor)
         code = (OutputCode.RATE, OutputCode.ACCELERATION)[wanted.order - 1]
@@ -143,6 +143,9 @@ class OutputPlan:
                 # a force along s does the work of the torque force * slide per radian
                 factor = length * length / (joint.lead / (2.0 * pi))
             return self._output(OutputCode.EFFORT, number, factor)
+        if kind == "holding_moment":
+            number = layout.leg_number[owner]
+            return self._output(OutputCode.HOLDING_MOMENT, number, length * length)
         code = OutputCode[kind.upper()]
         return self._output(code, 0, length if kind.endswith("force") else length * length)
 

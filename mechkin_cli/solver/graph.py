@@ -1,9 +1,9 @@
 """The solver graph: a spanning tree from ground, closing joints, and blocks in the order of
 solution.
 
-Every independent loop is closed at one joint. Incidence is per closing joint: all its equations
-together, never per scalar row, since accidental zeros change with the drawing's axes. The tree is
-the one with the smallest largest block (RCSR: closed at S, 3 unknowns).
+Every independent loop is closed at one joint or by one leg. Incidence is per closing joint: all its
+equations together, never per scalar row, since accidental zeros change with the drawing's axes. The
+tree is the one with the smallest largest block (RCSR: closed at S, 3 unknowns).
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ from itertools import combinations, islice
 from typing import NamedTuple
 
 from mechkin_cli.diagnostics import Diagnostic, MechkinError
+from mechkin_cli.mechanism.legs import Leg
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism, Spring
+from mechkin_cli.solver.reduction import Reduction, cut_links, reduce
 
 ANGLES = ("theta", "theta1", "theta2")
 """Coordinates that are angles."""
@@ -35,24 +37,43 @@ class UnsolvableGraph(MechkinError):
 
 class TreeEdge(NamedTuple):
     """A joint of the tree: it carries `child`; `forward` where the child is the joint's second
-    link."""
+    link.
+
+    The body of a leg is `hung`: two points place it, it has no freedom of its own.
+    """
 
     joint: Joint
     parent: str
     child: str
+    hung: bool = False
 
     @property
     def forward(self) -> bool:
         """Whether the tree passes the joint from its first link to its second."""
         return self.child == self.joint.second
 
+    @property
+    def freedoms(self) -> int:
+        """Unknown or driven freedoms."""
+        return 0 if self.hung else self.joint.type.freedoms
+
 
 class Closing(NamedTuple):
     """A closing joint; `loop` holds the tree edges on the way to its second (+1) and first link
-    (-1)."""
+    (-1).
+
+    Of a leg it is the sphere at the end; the ways lead to the links that the leg joins, and its
+    slide counts -1.
+    """
 
     joint: Joint
     loop: tuple[tuple[int, int], ...]
+    leg: Leg | None = None
+
+    @property
+    def equations(self) -> int:
+        """Number of closing equations."""
+        return 1 if self.leg else self.joint.type.equations
 
 
 class Block(NamedTuple):
@@ -101,47 +122,63 @@ def build_graph(
         UnsolvableGraph: links not connected to ground, no joint to close a loop at, undriven or
             overconstrained loops.
     """
-    loops = len(mechanism.joints) - len(mechanism.links) + (GROUND_NAME in mechanism.links)
-    best: SolverGraph | None = None
-    problem: UnsolvableGraph | None = None
-    for names in _choices(mechanism, inputs, loops, closed_at):
-        edges = _spanning_tree(mechanism, names)
-        if edges is None:
-            continue
-        try:
-            graph = _with_blocks(mechanism, edges, names, inputs)
-        except UnsolvableGraph as error:
-            problem = problem or error
-            continue
-        if best is None or _cost(graph) < _cost(best):
-            best = graph
+    whole = reduce(mechanism)
+    kept = _kept(mechanism, inputs)
+    best, problem = _best(whole, inputs, kept, closed_at)
+    if best is None and problem is None and closed_at is None:
+        for cut in cut_links(whole):
+            graph, problem = _best(cut, inputs, kept, None)
+            if graph is not None and (best is None or _cost(graph) < _cost(best)):
+                best = graph
     if best is not None:
         return best
     raise problem or _no_closing_joint(mechanism)
 
 
-def _choices(
-    mechanism: Mechanism,
+def _best(
+    whole: Reduction,
     inputs: Sequence[tuple[str, str]],
-    loops: int,
+    kept: set[str],
     closed_at: Sequence[str] | None,
-) -> Iterator[tuple[str, ...]]:
-    if closed_at is not None:
-        yield tuple(closed_at)
-        return
-    # the tree has the angle of a torsion spring beyond half a turn, a closing joint has not
-    kept = {joint for joint, _ in inputs} | {
+) -> tuple[SolverGraph | None, UnsolvableGraph | None]:
+    """The graph with the smallest blocks, or why there is none."""
+    best: SolverGraph | None = None
+    problem: UnsolvableGraph | None = None
+    for names in _choices(whole, kept, closed_at):
+        edges = _spanning_tree(whole, names)
+        if edges is None:
+            continue
+        try:
+            graph = _with_blocks(whole, edges, names, inputs)
+        except UnsolvableGraph as error:
+            problem = problem or error
+            continue
+        if best is None or _cost(graph) < _cost(best):
+            best = graph
+    return best, problem
+
+
+def _kept(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> set[str]:
+    """Joints that must stay in the tree: inputs, and springs whose angle goes beyond half a turn,
+    which a closing joint does not count."""
+    return {joint for joint, _ in inputs} | {
         load.joint
         for load in mechanism.loads
-        if isinstance(load, Spring) and load.coordinate in ANGLES
+        if isinstance(load, Spring) and load.joint and load.coordinate in ANGLES
     }
+
+
+def _choices(
+    whole: Reduction, kept: set[str], closed_at: Sequence[str] | None
+) -> Iterator[tuple[str, ...]]:
+    if closed_at is not None:
+        yield tuple(name for name in closed_at if name in whole.joints)
+        return
     able = [
-        name
-        for name, joint in mechanism.joints.items()
-        if joint.type.equations and name not in kept
+        name for name, joint in whole.joints.items() if joint.type.equations and name not in kept
     ]
-    able.sort(key=lambda name: mechanism.joints[name].type.equations)
-    yield from islice(combinations(able, loops), MOST_TREES)
+    able.sort(key=lambda name: whole.joints[name].type.equations)
+    yield from islice(combinations(able, whole.loops), MOST_TREES)
 
 
 def _no_closing_joint(mechanism: Mechanism) -> UnsolvableGraph:
@@ -155,9 +192,20 @@ def _no_closing_joint(mechanism: Mechanism) -> UnsolvableGraph:
     return UnsolvableGraph(diagnostic, tuple(mechanism.joints))
 
 
-def _spanning_tree(mechanism: Mechanism, closing: Iterable[str]) -> list[TreeEdge] | None:
-    """Edges from ground outward, breadth first; None if links stay unreached."""
-    free = [joint for name, joint in mechanism.joints.items() if name not in set(closing)]
+def _input_closes(name: str) -> UnsolvableGraph:
+    diagnostic = Diagnostic(
+        "input-closes",
+        "error",
+        f"{name} is driven, so no loop can be closed there",
+        hint="choose another closing joint",
+    )
+    return UnsolvableGraph(diagnostic, (name,))
+
+
+def _spanning_tree(whole: Reduction, closing: Iterable[str]) -> list[TreeEdge] | None:
+    """Edges from ground outward, breadth first, the legs last; None if links stay unreached."""
+    closing = set(closing)
+    free = [joint for name, joint in whole.joints.items() if name not in closing]
     reached = {GROUND_NAME}
     edges: list[TreeEdge] = []
     front = [GROUND_NAME]
@@ -172,8 +220,12 @@ def _spanning_tree(mechanism: Mechanism, closing: Iterable[str]) -> list[TreeEdg
                 continue
             reached.add(edges[-1].child)
             front.append(edges[-1].child)
-    if len(edges) != len(free) or len(reached) != len(set(mechanism.links) | {GROUND_NAME}):
+    if len(edges) != len(free) or len(reached) != len(whole.links) + 1:
         return None
+    for leg in whole.legs:
+        edges.append(TreeEdge(leg.start, leg.first, leg.body, hung=True))
+        if leg.slide is not None and leg.rod is not None:
+            edges.append(TreeEdge(leg.slide, leg.body, leg.rod))
     return edges
 
 
@@ -186,16 +238,29 @@ def _root_path(edges: Sequence[TreeEdge], link: str) -> list[int]:
     return path[::-1]
 
 
-def _loop(edges: Sequence[TreeEdge], joint: Joint) -> tuple[tuple[int, int], ...]:
-    first, second = _root_path(edges, joint.first), _root_path(edges, joint.second)
+def _loop(edges: Sequence[TreeEdge], one: str, other: str) -> tuple[tuple[int, int], ...]:
+    first, second = _root_path(edges, one), _root_path(edges, other)
     shared = 0
     while shared < min(len(first), len(second)) and first[shared] == second[shared]:
         shared += 1
     return tuple([(k, 1) for k in second[shared:]] + [(k, -1) for k in first[shared:]])
 
 
+def _leg_loop(edges: Sequence[TreeEdge], leg: Leg) -> tuple[tuple[int, int], ...]:
+    slides = [(k, -1) for k, edge in enumerate(edges) if edge.joint is leg.slide]
+    return (*_loop(edges, leg.first, leg.second), *slides)
+
+
+def _closings(whole: Reduction, edges: Sequence[TreeEdge], names: Iterable[str]) -> list[Closing]:
+    joints = [whole.joints[name] for name in names]
+    return [
+        *(Closing(joint, _loop(edges, joint.first, joint.second)) for joint in joints),
+        *(Closing(leg.end, _leg_loop(edges, leg), leg) for leg in whole.legs),
+    ]
+
+
 def _with_blocks(
-    mechanism: Mechanism,
+    whole: Reduction,
     edges: list[TreeEdge],
     names: tuple[str, ...],
     inputs: Sequence[tuple[str, str]],
@@ -204,9 +269,9 @@ def _with_blocks(
     driven = []
     for name, coordinate in inputs:
         if name not in number:
-            raise _no_closing_joint(mechanism)
+            raise _input_closes(name)
         driven.append((number[name], edges[number[name]].joint.type.freedom_of[coordinate]))
-    closings = [Closing(mechanism.joints[n], _loop(edges, mechanism.joints[n])) for n in names]
+    closings = _closings(whole, edges, names)
     blocks: list[Block] = []
     order: list[Closing] = []
     solved = set(driven)
@@ -219,10 +284,10 @@ def _with_blocks(
         start = len(order)
         order.extend(group)
         solved.update(unknowns)
-        equations = sum(c.joint.type.equations for c in group)
+        equations = sum(c.equations for c in group)
         blocks.append(Block(tuple(range(start, len(order))), tuple(unknowns), equations))
         left = [c for c in left if c not in group]
-    everything = {(k, f) for k, e in enumerate(edges) for f in range(e.joint.type.freedoms)}
+    everything = {(k, f) for k, e in enumerate(edges) for f in range(e.freedoms)}
     if everything - solved:
         raise _undriven(edges, sorted(everything - solved), len(everything - solved))
     return SolverGraph(tuple(edges), tuple(order), tuple(blocks), tuple(driven), tuple(inputs))
@@ -232,7 +297,7 @@ def _unknowns(
     edges: Sequence[TreeEdge], group: Iterable[Closing], solved: set[tuple[int, int]]
 ) -> list[tuple[int, int]]:
     members = {k for closing in group for k, _ in closing.loop}
-    freedoms = [(k, f) for k in sorted(members) for f in range(edges[k].joint.type.freedoms)]
+    freedoms = [(k, f) for k in sorted(members) for f in range(edges[k].freedoms)]
     return [freedom for freedom in freedoms if freedom not in solved]
 
 
@@ -245,7 +310,7 @@ def _smallest_group(
     """
     for size in range(1, len(left) + 1):
         for group in combinations(left, size):
-            equations = sum(c.joint.type.equations for c in group)
+            equations = sum(c.equations for c in group)
             if 0 < len(_unknowns(edges, group, solved)) <= equations:
                 return group
     return None
@@ -255,7 +320,7 @@ def _not_square(
     edges: Sequence[TreeEdge], left: Sequence[Closing], solved: set[tuple[int, int]]
 ) -> UnsolvableGraph:
     unknowns = _unknowns(edges, left, solved)
-    equations = sum(c.joint.type.equations for c in left)
+    equations = sum(c.equations for c in left)
     if len(unknowns) > equations:
         return _undriven(edges, unknowns, len(unknowns) - equations)
     members = {edges[k].joint.name for c in left for k, _ in c.loop}

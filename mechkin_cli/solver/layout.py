@@ -11,8 +11,9 @@ from functools import cached_property
 from math import frexp, ldexp, pi
 from typing import TYPE_CHECKING, NamedTuple
 
-from mechkin_cli.mechanism.frames import GROUND, Frame
+from mechkin_cli.mechanism.frames import GROUND, Frame, upright
 from mechkin_cli.mechanism.joint_types import tree_types
+from mechkin_cli.mechanism.legs import frame_on
 from mechkin_cli.mechanism.model import (
     GROUND_NAME,
     Attached,
@@ -27,7 +28,7 @@ from mechkin_cli.mechanism.model import (
 from mechkin_cli.mechanism.vectors import ZERO, Vector, norm, scale, subtract
 from mechkin_cli.solver.axes import coordinate_axis
 from mechkin_cli.solver.codes import LoadCode
-from mechkin_cli.solver.graph import SolverGraph, TreeEdge
+from mechkin_cli.solver.graph import Closing, SolverGraph, TreeEdge
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
@@ -35,6 +36,11 @@ if TYPE_CHECKING:
 FAR_DRAWING = 4.0
 """Distance of the drawing from the ground origin, in sizes, beyond which the kernel works about
 its own origin."""
+
+
+NO_AXIS = -1
+"""Stands for the axis of a coordinate that no user knows: it is driven only while a dead centre is
+looked for."""
 
 
 class Carrier(NamedTuple):
@@ -80,7 +86,7 @@ class Layout:
         column = state = 0
         for number, edge in enumerate(self.graph.edges):
             parent = body[edge.parent]
-            for part, first_freedom in _outward(edge):
+            for part, first_freedom in _hung(edge) if edge.hung else _outward(edge):
                 found.append(Carrier(number, part, parent, first_freedom, column, state))
                 parent = len(found) - 1
                 column += tree_types()[part.letter].freedoms
@@ -111,6 +117,12 @@ class Layout:
         joint."""
         tree = {e.joint.name: self.link_number[e.child] for e in self.graph.edges}
         return tree | {c.joint.name: -1 - k for k, c in enumerate(self.graph.closings)}
+
+    @cached_property
+    def leg_number(self) -> dict[str, int]:
+        """Number of each leg in the kernel, by its body."""
+        legs = [c.leg for c in self.graph.closings if c.leg is not None]
+        return {leg.body: k for k, leg in enumerate(legs)}
 
     @cached_property
     def place_number(self) -> dict[str, int]:
@@ -177,26 +189,16 @@ class Layout:
                 self.frame_on(carrier.parent, carrier.part.before),
             )
         for closing in self.graph.closings:
-            joint = closing.joint
-            first, second = self.link_number[joint.first], self.link_number[joint.second]
-            plan.add_closing_joint(
-                joint.type.code,
-                first,
-                second,
-                self.frame_on(first, joint.on_first),
-                self.frame_on(second, joint.on_second),
-                joint.parameter,
-                [(k, s) for e, s in closing.loop for k in self._parts_of(e)],
-            )
+            self._add_closing(plan, closing)
         self._add_places(plan)
         self._add_blocks(plan)
         for (edge, freedom), (name, coordinate) in zip(
             self.graph.inputs, self.graph.driven, strict=True
         ):
-            joint = self.mechanism.joints[name]
+            joint = self.graph.edges[edge].joint
             along_thread = joint.letter == "H" and coordinate == "s"
             force_per_torque = 2.0 * pi * self.length / joint.lead if along_thread else 1.0
-            axis = self.axis_number[name, coordinate]
+            axis = self.axis_number.get((name, coordinate), NO_AXIS)
             plan.add_input(self.column(edge, freedom), axis, force_per_torque)
         self._add_inertias(plan)
         for load in self.mechanism.loads:
@@ -204,11 +206,40 @@ class Layout:
         plan.finish()
         return plan
 
+    def _add_closing(self, plan: Plan, closing: Closing) -> None:
+        joint, leg = closing.joint, closing.leg
+        loop = [(k, s) for e, s in closing.loop for k in self._parts_of(e)]
+        if leg is None:
+            first, second = self.link_number[joint.first], self.link_number[joint.second]
+            frames = self.frame_on(first, joint.on_first), self.frame_on(second, joint.on_second)
+            plan.add_closing_joint(joint.type.code, first, second, *frames, joint.parameter, loop)
+            return
+        first, second = self.link_number[leg.first], self.link_number[leg.second]
+        ends = frame_on(leg.start, leg.first), frame_on(leg.end, leg.second)
+        plan.add_leg(
+            self.link_number[leg.body],
+            self.link_number[leg.rod] if leg.rod else -1,
+            first,
+            second,
+            self.frame_on(first, ends[0]),
+            self.frame_on(second, ends[1]),
+            norm(leg.span) / self.length,
+            leg.line,
+            leg.slide_sign,
+            loop,
+        )
+
     def _parts_of(self, edge: int) -> list[int]:
         return [k for k, carrier in enumerate(self.carriers) if carrier.edge == edge]
 
     def _add_places(self, plan: Plan) -> None:
         backward = {e.joint.name for e in self.graph.edges if not e.forward}
+        # a leg pushes the link at its end, whether that is the sphere's first or second
+        backward |= {
+            c.joint.name
+            for c in self.graph.closings
+            if c.leg is not None and c.leg.second == c.joint.first
+        }
         for name, joint in self.mechanism.joints.items():
             plan.add_place(
                 self.joint_reference[name],
@@ -233,7 +264,8 @@ class Layout:
     def _add_blocks(self, plan: Plan) -> None:
         placed: set[int] = set()
         for block in self.graph.blocks:
-            needed = {k for c in block.closings for k in self._ways(self.graph.closings[c].joint)}
+            joints = [self.graph.closings[c].joint for c in block.closings]
+            needed = {k for joint in joints for k in self._ways(joint)}
             unknown = [self.column(k, f) for k, f in block.unknowns]
             plan.add_block(len(block.closings), sorted(needed - placed), unknown)
             placed |= needed
@@ -337,6 +369,12 @@ def _outward(edge: TreeEdge) -> list[tuple[Part, int]]:
     if edge.forward:
         return parts
     return [(part.reversed(), start) for part, start in reversed(parts)]
+
+
+def _hung(edge: TreeEdge) -> list[tuple[Part, int]]:
+    """The one part of a leg's body: its sphere, without a freedom."""
+    parent, body = (frame_on(edge.joint, link) for link in (edge.parent, edge.child))
+    return [(Part("L", upright(parent.o), upright(body.o)), 0)]
 
 
 def _sum(points: list[Vector]) -> Vector:

@@ -15,7 +15,9 @@ MECHANISM = KERNEL | UNITS | {"mechanism"}
 SOLVER = MECHANISM | {"solver"}
 ANALYSIS = SOLVER | EXPRESSIONS | {"analysis"}
 BUILDING = (
-    EXPRESSIONS | SOLVER | {"reading", "schema", "building", "analysis.problem", "tables.layout"}
+    EXPRESSIONS
+    | SOLVER
+    | {"reading", "schema", "building", "analysis.problem", "analysis.idle", "tables.layout"}
 )
 INTERFACE = BUILDING | {"analysis", "tables", "interface"}
 BENCHMARK = INTERFACE | {"benchmark"}

@@ -102,8 +102,7 @@ SECTIONS = [
         "chain rows",
         "not part of this version",
     ),
-    added("»follow: [A]", "not-solved", "not part of this version", "remove follow:"),
-    added("»idle: hold", "not-solved", "not part of this version", "remove idle:"),
+    added("follow: [»Q]", "unknown-joint", "there is no joint Q"),
 ]
 
 BAD_PARTS = [*UNITS_AND_PARAMETERS, *LINKS, *JOINTS, *POINTS, *SECTIONS]

@@ -53,5 +53,6 @@ def test_tree_displacements(letter: str) -> None:
     assert entry["slides"] == slides
 
 
-def test_there_are_no_other_tree_displacements() -> None:
-    assert len(_kernel.tree_table()) == len(TREE_LETTERS) == len(ELEMENTARY)
+def test_there_are_no_other_tree_displacements_but_the_hanging_of_legs() -> None:
+    assert len(_kernel.tree_table()) == len(TREE_LETTERS) + 1 == len(ELEMENTARY) + 1
+    assert _kernel.tree_table()[-1]["freedoms"] == _kernel.tree_table()[-1]["states"] == 0

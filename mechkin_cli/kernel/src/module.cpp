@@ -199,6 +199,8 @@ NB_MODULE(_kernel, m) {
       .def("add_tree_joint", &PlanStore::add_tree_joint, "type"_a, "parent"_a, "pitch"_a, "at"_a)
       .def("add_closing_joint", &PlanStore::add_closing_joint, "type"_a, "first"_a, "second"_a, "on_first"_a,
            "on_second"_a, "parameter"_a, "loop"_a)
+      .def("add_leg", &PlanStore::add_leg, "body"_a, "rod"_a, "first"_a, "second"_a, "on_first"_a, "on_second"_a,
+           "length"_a, "line"_a, "slide_sign"_a, "loop"_a)
       .def("add_place", &PlanStore::add_place, "reference"_a, "first"_a, "second"_a, "point_on"_a, "point"_a, "sign"_a)
       .def("add_axis", &PlanStore::add_axis, "place"_a, "slide"_a, "link"_a, "vector"_a, "other"_a, "other_vector"_a)
       .def("add_block", &PlanStore::add_block, "closing_joints"_a, "joints"_a, "unknown"_a)

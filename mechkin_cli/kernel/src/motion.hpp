@@ -18,6 +18,12 @@ MECHKIN_INLINE Motion motion_of(const Workspace& w, int link) {
 inline void move_link(const Plan& p, Workspace& w, int k, bool second) {
   const TreeJoint& j = p.joints[k];
   const Motion parent = motion_of(w, j.parent);
+  if (j.type == TREE_L) {
+    const Leg& leg = p.leg[j.leg];
+    const Vec3 A = w.pose[k].o, B = carried_point(w, leg.second, leg.point);
+    w.motion[k] = leg_motion(A, B, parent, motion_of(w, leg.second), second);
+    return;
+  }
   Twist relative = zero_twist(), relative_second = zero_twist();
   with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
     for (int i = 0; i < entry.freedoms; ++i) {
@@ -77,6 +83,7 @@ inline void block_accelerations(const Plan& p, Workspace& w, int index) {
       entry.second(w.closure[c], motion_of(w, j.first), motion_of(w, j.second), r);
       for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];
     });
+    if (j.slide >= 0) w.right[j.row] += Pack(j.slide_sign) * w.acceleration[p.joints[j.slide].column];
   }
   at.solve_equations(w.right);
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = w.right[u];

@@ -69,6 +69,7 @@ inline void write_output(const Plan& p, const Workspace& w, const Balance* balan
     case OUT_JOINT_FORCE:
     case OUT_JOINT_MOMENT:
     case OUT_JOINT_MOMENT_ORIGIN: return out.put(o.slot, factor * output_joint(p, w, o));
+    case OUT_HOLDING_MOMENT: return out.put(o.slot, factor * w.holding[o.index]);
     case OUT_EFFORT: return out.put(o.slot, factor * w.effort[o.index]);
     case OUT_SHAKING_FORCE: return out.put(o.slot, factor * (balance->outside - balance->inertia).force);
     case OUT_SHAKING_MOMENT:

@@ -351,6 +351,22 @@ struct Weld : Pair {
   }
 };
 
+// Two points at a given distance: |d| = length. Not a pair of its own, but two spheres with a leg between them.
+struct Distance : Pair {
+  static constexpr char letter[] = "", parts[] = "", coordinates[] = "";
+  static constexpr int equations = 1, lengths = 1;
+  static MECHKIN_INLINE Pack length(const Closure& k) { return sqrt(dot(k.d, k.d)); }
+  static MECHKIN_INLINE Vec3 line(const Closure& k) { return (Pack(1.0) / length(k)) * k.d; }
+  static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = length(k) - k.parameter; }
+  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) { r[0] = dot(line(k), s.at(k.B.o)); }
+  static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
+    const Vec3 e = line(k), d1 = first_of_d(k, a, b);
+    const Pack along = dot(e, d1);
+    r[0] = dot(e, second_of_d(k, a, b)) + (dot(d1, d1) - along * along) / length(k);
+  }
+  static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) { return force_at(k.B.o, l[0] * line(k)); }
+};
+
 // Calls f with the entry of a pair that closes loops.
 template <class F>
 MECHKIN_INLINE void with_closing_joint(int type, F&& f) {
@@ -364,6 +380,7 @@ MECHKIN_INLINE void with_closing_joint(int type, F&& f) {
     case PAIR_U: return f(Universal{});
     case PAIR_E: return f(Planar{});
     case PAIR_W: return f(Weld{});
+    case PAIR_LEG: return f(Distance{});
   }
 }
 

@@ -6,9 +6,20 @@
 #pragma once
 
 // Displacements that carry links in the tree; other pairs are chains of these (joint_types.py).
-enum TreeCode : int { TREE_R = 0, TREE_P = 1, TREE_H = 2, TREE_C = 3, TREE_S = 4, TREE_W = 5, TREE_CODES = 6 };
+// TREE_L hangs the body of a leg between two points (legs.hpp).
+enum TreeCode : int {
+  TREE_R = 0,
+  TREE_P = 1,
+  TREE_H = 2,
+  TREE_C = 3,
+  TREE_S = 4,
+  TREE_W = 5,
+  TREE_L = 6,
+  TREE_CODES = 7
+};
 
-// Pairs, in the order of the joint table (pairs.hpp).
+// Pairs, in the order of the joint table (pairs.hpp). PAIR_LEG is no pair of the file format: the distance of two
+// points that a leg keeps.
 enum PairCode : int {
   PAIR_R = 0,
   PAIR_P = 1,
@@ -20,7 +31,8 @@ enum PairCode : int {
   PAIR_U = 7,
   PAIR_E = 8,
   PAIR_W = 9,
-  PAIR_CODES = 10
+  PAIR_CODES = 10,
+  PAIR_LEG = 10
 };
 
 // Axes (columns of the rotation) and origin of a frame, in a link's frame or in ground axes.
@@ -34,6 +46,7 @@ struct TreeJoint {
   int state;   // first entry of the state vector
   int column;  // first column (freedom)
   double pitch;  // H: slide per radian
+  int leg;       // TREE_L: into Plan::leg
   Frame at;    // the joint's frame in the parent link
 };
 
@@ -41,7 +54,9 @@ struct ClosingJoint {
   int type;
   int first, second;        // links, -1: ground
   Frame on_first, on_second;
-  double parameter;         // U: cosine of the angle between its axes
+  double parameter;         // U: cosine of the angle between its axes; leg: its length, the slide at zero
+  int slide;                // leg: tree joint of its slide, -1 without one
+  double slide_sign;        // leg: rate of its length by the slide
   int row;                  // first closing equation within its block
   int loop_begin, loop_end;  // into Plan::loop
 };
@@ -50,6 +65,16 @@ struct ClosingJoint {
 struct LoopEntry {
   int joint;
   double sign;
+};
+
+// A leg: a body from a point of `first` (the origin of its tree joint) to a point of `second`, where it has a rod that
+// slides along the leg, too. It turns with its line and does not spin about it.
+struct Leg {
+  int body, rod;      // links; rod -1: one rigid body
+  int first, second;  // links, -1: ground
+  int closing;
+  double point[3];    // on `second`
+  double line[3];     // from point to point in the body's frame, unit vector
 };
 
 // A smallest set of closing equations and unknowns that is solved together: `rows` equations, `size` unknowns.
@@ -104,7 +129,8 @@ enum OutputCode : int {
   OUT_SHAKING_FORCE = 13,
   OUT_SHAKING_MOMENT = 14,
   OUT_INERTIA_FORCE = 15,
-  OUT_INERTIA_MOMENT = 16
+  OUT_INERTIA_MOMENT = 16,
+  OUT_HOLDING_MOMENT = 17  // index: leg; about its line, on its body
 };
 
 struct Output {
@@ -132,7 +158,7 @@ struct JointPlace {
   int first, second;    // links
   int point_on;         // link that carries the point (a sphere's centre rides on the first link)
   double point[3];
-  double sign;          // +1: the tree joint runs from the first link to the second
+  double sign;          // -1: the tree or the leg passes the joint from its second link to its first
   int drive_begin, drive_end;  // into Plan::drive
 };
 
@@ -145,17 +171,19 @@ struct CoordinateAxis {
   double vector[2][3];
 };
 
-// A drive: input and the axis it works on; an H driven along s has force = effort / pitch.
+// A drive: input and the axis it works on, -1 for a coordinate that no user knows; an H driven along s has
+// force = effort / pitch.
 struct Drive {
   int input, axis;
   double scale;
 };
 
 struct Plan {
-  int links, states, columns, closings, blocks, inputs, loads, outputs, slots;
+  int links, states, columns, closings, legs, blocks, inputs, loads, outputs, slots;
   int largest_block;  // rows
   const TreeJoint* joints;
   const ClosingJoint* closing;
+  const Leg* leg;
   const JointPlace* place;
   const CoordinateAxis* axis;
   const Drive* drive;

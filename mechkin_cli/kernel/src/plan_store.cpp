@@ -31,6 +31,7 @@ int width(int type) {
     case OUT_RATE:
     case OUT_ACCELERATION:
     case OUT_CLOSING:
+    case OUT_HOLDING_MOMENT:
     case OUT_EFFORT: return 1;
     default: return 3;
   }
@@ -51,7 +52,8 @@ unsigned demand_of(int type, int order) {
     case OUT_SHAKING_FORCE:
     case OUT_SHAKING_MOMENT:
     case OUT_INERTIA_FORCE:
-    case OUT_INERTIA_MOMENT: return DEMAND_FORCES;
+    case OUT_INERTIA_MOMENT:
+    case OUT_HOLDING_MOMENT: return DEMAND_FORCES;
     default: return motion;
   }
 }
@@ -71,7 +73,7 @@ void PlanStore::add_tree_joint(int type, int parent, double pitch, const FrameDa
   const int k = (int)joints_.size();
   require(parent >= -1 && parent < k, "a tree joint's parent must come before it");
   const int state = plan_.states, column = plan_.columns;
-  joints_.push_back({type, parent, state, column, pitch, frame(at)});
+  joints_.push_back({type, parent, state, column, pitch, -1, frame(at)});
   for (int f = 0; f < tree_type(type).freedoms; ++f) {
     column_state_.push_back(type == TREE_S ? -1 : state + f);
     column_joint_.push_back(k);
@@ -91,12 +93,37 @@ void PlanStore::add_closing_joint(int type, int first, int second, const FrameDa
   require(type >= 0 && type < PAIR_CODES && pair_type(type).equations > 0, "this pair cannot close a loop");
   check_link(first);
   check_link(second);
+  const auto [begin, end] = add_loop(loop);
+  closing_.push_back({type, first, second, frame(on_first), frame(on_second), parameter, -1, 0.0, 0, begin, end});
+}
+
+std::pair<int, int> PlanStore::add_loop(const std::vector<std::pair<int, double>>& loop) {
   const int begin = (int)loop_.size();
   for (const auto& entry : loop) {
     require(entry.first >= 0 && entry.first < (int)joints_.size(), "loop through an unknown joint");
     loop_.push_back({entry.first, entry.second});
   }
-  closing_.push_back({type, first, second, frame(on_first), frame(on_second), parameter, 0, begin, (int)loop_.size()});
+  return {begin, (int)loop_.size()};
+}
+
+void PlanStore::add_leg(int body, int rod, int first, int second, const FrameData& on_first,
+                        const FrameData& on_second, double length, const Triple& line, double slide_sign,
+                        const std::vector<std::pair<int, double>>& loop) {
+  require(!finished_, "the plan is finished");
+  require(body >= 0 && body < (int)joints_.size() && joints_[body].type == TREE_L, "a leg hangs by TREE_L");
+  require(joints_[body].parent == first && first < body && second < body, "a leg comes after its ends");
+  require(rod == -1 || (rod > body && rod < (int)joints_.size() && joints_[rod].type == TREE_P &&
+                        joints_[rod].parent == body), "a leg's rod slides on its body");
+  check_link(first);
+  check_link(second);
+  const auto [begin, end] = add_loop(loop);
+  Leg leg = {body, rod, first, second, (int)closing_.size(), {}, {}};
+  const Frame at_end = frame(on_second);
+  std::memcpy(leg.point, at_end.o, sizeof leg.point);
+  copy(line, leg.line);
+  joints_[body].leg = (int)leg_.size();
+  leg_.push_back(leg);
+  closing_.push_back({PAIR_LEG, first, second, frame(on_first), at_end, length, rod, slide_sign, 0, begin, end});
 }
 
 int PlanStore::add_place(int reference, int first, int second, int point_on, const Triple& point, double sign) {
@@ -130,7 +157,7 @@ void PlanStore::add_block(int closing_joints, const std::vector<int>& joints, co
   int rows = 0;
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     closing_[c].row = rows;
-    rows += pair_type(closing_[c].type).equations;
+    rows += closing_[c].type == PAIR_LEG ? 1 : pair_type(closing_[c].type).equations;
   }
   for (int k : joints) {
     require(k >= 0 && k < (int)joints_.size(), "block places an unknown joint");
@@ -158,7 +185,7 @@ void PlanStore::set_rest(const std::vector<int>& joints) {
 void PlanStore::add_input(int column, int axis, double scale) {
   require(!finished_, "the plan is finished");
   require(column >= 0 && column < plan_.columns && column_state_[column] >= 0, "an input must be a scalar coordinate");
-  require(axis >= 0 && axis < (int)axis_.size(), "unknown axis");
+  require(axis >= -1 && axis < (int)axis_.size(), "unknown axis");
   drive_.push_back({(int)input_column_.size(), axis, scale});
   input_column_.push_back(column);
 }
@@ -212,6 +239,7 @@ int PlanStore::add_output(int type, int index, int freedom, int order, const Tri
     case OUT_JOINT_FORCE:
     case OUT_JOINT_MOMENT:
     case OUT_JOINT_MOMENT_ORIGIN: require(index >= 0 && index < (int)place_.size(), "unknown joint"); break;
+    case OUT_HOLDING_MOMENT: require(index >= 0 && index < (int)leg_.size(), "unknown leg"); break;
     case OUT_EFFORT: require(index >= 0 && index < (int)input_column_.size(), "unknown input"); break;
     default: break;
   }
@@ -232,11 +260,12 @@ void PlanStore::finish() {
   }
   require(block_.empty() ? closing_.empty() : block_.back().closing_end == (int)closing_.size(),
           "every closing joint must belong to a block");
+  for (const TreeJoint& j : joints_) require((j.type == TREE_L) == (j.leg >= 0), "TREE_L hangs a leg");
   std::vector<Drive> by_place;
   for (std::size_t j = 0; j < place_.size(); ++j) {
     place_[j].drive_begin = (int)by_place.size();
     for (const Drive& d : drive_)
-      if (axis_[d.axis].place == (int)j) by_place.push_back(d);
+      if (d.axis >= 0 && axis_[d.axis].place == (int)j) by_place.push_back(d);
     place_[j].drive_end = (int)by_place.size();
   }
   drive_ = by_place;
@@ -248,6 +277,7 @@ void PlanStore::point_view_at_arrays() {
   Plan& p = plan_;
   p.links = (int)joints_.size();
   p.closings = (int)closing_.size();
+  p.legs = (int)leg_.size();
   p.blocks = (int)block_.size();
   p.inputs = (int)input_column_.size();
   p.loads = (int)load_.size();
@@ -255,7 +285,7 @@ void PlanStore::point_view_at_arrays() {
   p.rest_count = (int)rest_.size();
   p.largest_block = 0;
   for (const Block& b : block_) p.largest_block = b.rows > p.largest_block ? b.rows : p.largest_block;
-  p.joints = joints_.data(), p.closing = closing_.data();
+  p.joints = joints_.data(), p.closing = closing_.data(), p.leg = leg_.data();
   p.place = place_.data(), p.axis = axis_.data(), p.drive = drive_.data();
   p.loop = loop_.data(), p.block = block_.data();
   p.order = order_.data(), p.unknown = unknown_.data(), p.rest = rest_.data();

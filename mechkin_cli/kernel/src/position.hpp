@@ -6,6 +6,7 @@
 #pragma once
 
 #include "factors.hpp"
+#include "legs.hpp"
 #include "pairs.hpp"
 
 namespace {
@@ -28,6 +29,8 @@ struct Workspace {
   Pack* right;                    // largest block
   Pack* scratch;                  // largest block squared
   Pack* effort;                   // inputs
+  Vec3* across;                   // legs: what its end needs across its line
+  Pack* holding;                  // legs: couple about its line
   Pack* saved;                    // states before a trial step
 };
 
@@ -61,15 +64,30 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->right = (Pack*)take((largest + MAX_CLOSING_ROWS) * pack);
   w->scratch = (Pack*)take(largest * largest * pack);
   w->effort = (Pack*)take((p.inputs + 1) * pack);
+  w->across = (Vec3*)take((p.legs + 1) * sizeof(Vec3));
+  w->holding = (Pack*)take((p.legs + 1) * pack);
   w->saved = (Pack*)take(p.states * pack);
   return used;
 }
 
 MECHKIN_INLINE const Pose* pose_of(const Workspace& w, int link) { return link < 0 ? nullptr : &w.pose[link]; }
 
+MECHKIN_INLINE Vec3 carried_point(const Workspace& w, int link, const double* at) {
+  return link < 0 ? constant(at) : w.pose[link].point(at);
+}
+MECHKIN_INLINE Vec3 carried_vector(const Workspace& w, int link, const double* a) {
+  return link < 0 ? constant(a) : w.pose[link].vector(a);
+}
+
 inline void place_joint(const Plan& p, Workspace& w, int k) {
   const TreeJoint& j = p.joints[k];
   Pose pose = placed(j.at, pose_of(w, j.parent));
+  if (j.type == TREE_L) {
+    const Leg& leg = p.leg[j.leg];
+    aim(pose, leg, carried_point(w, leg.second, leg.point));
+    w.pose[k] = pose;
+    return;
+  }
   with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) { entry.place(pose, j, w.q + j.state); });
   w.pose[k] = pose;
 }
@@ -88,6 +106,7 @@ MECHKIN_INLINE Closure closure_of(const Plan& p, const Workspace& w, int c) {
   k.B = placed(j.on_second, pose_of(w, j.second));
   k.d = k.B.o - k.A.o;
   k.parameter = j.parameter;
+  if (j.slide >= 0) k.parameter += Pack(j.slide_sign) * w.q[p.joints[j.slide].state];
   return k;
 }
 

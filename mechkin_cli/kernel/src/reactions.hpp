@@ -70,13 +70,6 @@ inline void apply_inertia(Balance& balance, bool accelerating) {
   }
 }
 
-MECHKIN_INLINE Vec3 carried_point(const Workspace& w, int link, const double* at) {
-  return link < 0 ? constant(at) : w.pose[link].point(at);
-}
-MECHKIN_INLINE Vec3 carried_vector(const Workspace& w, int link, const double* a) {
-  return link < 0 ? constant(a) : w.pose[link].vector(a);
-}
-
 // The wrench `value` along a coordinate, on the joint's second link.
 inline Wrench along_coordinate(const Plan& p, const Workspace& w, int axis, Pack value) {
   const CoordinateAxis& c = p.axis[axis];
@@ -169,6 +162,35 @@ inline void apply_load(Balance& balance, const Load& l) {
   }
 }
 
+// What a leg needs as a whole comes from its ends: across its line from the balance of moments about them, along its
+// line all from the start, but for the tension that the closing equation's multiplier adds to both. A moment about the
+// line is no end's to give: it is what would hold the leg from spinning.
+inline void hang_on_ends(const Plan& p, Workspace& w, int body) {
+  const TreeJoint& j = p.joints[body];
+  const Leg& leg = p.leg[j.leg];
+  const Wrench needed = w.carried[body];
+  const Vec3 A = w.pose[body].o, B = carried_point(w, leg.second, leg.point), d = B - A;
+  const Pack square = dot(d, d);
+  const Vec3 moment = needed.moment - cross(A, needed.force);
+  const Vec3 across = (Pack(1.0) / square) * cross(moment, d);
+  w.across[j.leg] = across;
+  w.holding[j.leg] = dot(moment, d) / sqrt(square);
+  const Wrench at_start = force_at(A, needed.force - across), at_end = force_at(B, across);
+  w.carried[body] = at_start;
+  if (leg.rod >= 0) w.carried[leg.rod] -= at_end;
+  if (leg.first >= 0) w.carried[leg.first] += at_start;
+  if (leg.second >= 0) w.carried[leg.second] += at_end;
+}
+
+// The tension into the wrenches of the leg's two spheres; the rod has it from the loop.
+inline void stretch_legs(const Plan& p, Workspace& w) {
+  for (int l = 0; l < p.legs; ++l) {
+    const Leg& leg = p.leg[l];
+    w.carried[leg.body] += w.reaction[leg.closing];
+    w.reaction[leg.closing] -= force_at(carried_point(w, leg.second, leg.point), w.across[l]);
+  }
+}
+
 // Closing wrenches block by block, last first: the unknowns of a block appear only in its own equations
 // and in those of later blocks, whose wrenches are in the sums already.
 inline void closing_wrenches(const Plan& p, Workspace& w, int shift) {
@@ -199,8 +221,12 @@ inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool acc
   apply_inertia(balance, accelerating);
   for (int l = 0; l < p.loads; ++l) apply_load(balance, p.load[l]);
   for (int k = p.links - 1; k >= 0; --k)
-    if (p.joints[k].parent >= 0) w.carried[p.joints[k].parent] += w.carried[k];
+    if (p.joints[k].type == TREE_L)
+      hang_on_ends(p, w, k);
+    else if (p.joints[k].parent >= 0)
+      w.carried[p.joints[k].parent] += w.carried[k];
   closing_wrenches(p, w, shift);
+  stretch_legs(p, w);
   for (int i = 0; i < p.inputs; ++i) {
     const int column = p.input_column[i];
     w.effort[i] = power(w.screw[column], w.carried[p.column_joint[column]]);
@@ -211,7 +237,7 @@ inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool acc
 
 // Constraint wrench that a joint's first link exerts on the second, without drives and joint loads.
 inline Wrench joint_wrench(const Plan& p, const Workspace& w, const JointPlace& j) {
-  Wrench r = j.reference < 0 ? w.reaction[-1 - j.reference] : Pack(j.sign) * w.carried[j.reference];
+  Wrench r = Pack(j.sign) * (j.reference < 0 ? w.reaction[-1 - j.reference] : w.carried[j.reference]);
   for (int d = j.drive_begin; d < j.drive_end; ++d) {
     const Drive& drive = p.drive[d];
     r -= along_coordinate(p, w, drive.axis, Pack(drive.scale) * w.effort[drive.input]);

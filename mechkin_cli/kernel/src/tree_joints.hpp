@@ -1,4 +1,5 @@
-// Displacements that carry links in the tree: R, P, H, C, S, W. Every other pair is a chain of these.
+// Displacements that carry links in the tree: R, P, H, C, S, W. Every other pair is a chain of these; L is no
+// displacement, two points place the body of a leg (legs.hpp).
 //
 // An entry gives the displacement of its frame (z: the axis), its freedom screws, which are fixed in the
 // parent link, and how its state moves by increments of its columns.
@@ -99,7 +100,8 @@ MECHKIN_INLINE void with_tree_joint(int type, F&& f) {
     case TREE_H: return f(Screw{});
     case TREE_C: return f(TurnAndSlide{});
     case TREE_S: return f(Orientation{});
-    case TREE_W: return f(Fixed{});
+    case TREE_W:
+    case TREE_L: return f(Fixed{});
   }
 }
 
