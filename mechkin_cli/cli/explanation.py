@@ -33,7 +33,9 @@ def explanation(analysis: Analysis) -> str:
     if graph.blocks:
         lines.append("  blocks, solved in this order")
     for number, block in enumerate(graph.blocks, 1):
-        lines.append(f"    {number}: {block.equations} unknowns {_unknowns(graph, block)}")
+        unknowns = f"{len(block.unknowns)} unknowns {_unknowns(graph, block)}"
+        more = block.equations > len(block.unknowns)
+        lines.append(f"    {number}: {unknowns}" + f" from {block.equations} equations" * more)
     lines.append("demand plan")
     lines += [f"  {line}" for line in _demand_lines(analysis)]
     return "\n".join(lines) + "\n"

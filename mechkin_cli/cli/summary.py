@@ -54,7 +54,7 @@ def _loops(analysis: Analysis) -> str:
         "-".join(c.leg.joints) if c.leg else f"{c.joint.name} ({c.joint.letter})"
         for c in graph.closings
     )
-    sizes = " then ".join(str(block.equations) for block in graph.blocks)
+    sizes = " then ".join(str(len(block.unknowns)) for block in graph.blocks)
     return f"{analysis.model.problem.mechanism.loops}, closed at {closed}; {sizes} unknowns"
 
 

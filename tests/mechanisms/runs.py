@@ -13,7 +13,8 @@ from references import MECHANISMS
 
 import mechkin_cli as mk
 
-NAMES = sorted(path.stem for path in MECHANISMS.glob("*.yaml"))
+NAMES = sorted(path.stem for path in MECHANISMS.glob("*.yaml") if path.stem != "rcsr_csr_loop_one")
+"""All files but the one that follows a part of its mechanism only (test_print)."""
 
 _RATES = ("_dot", "_ddot")
 _MOTION = ("theta", "s", "theta1", "theta2", "omega", "alpha", "effort")
@@ -57,7 +58,12 @@ def motions(name: str) -> dict[str, list[str]]:
 
 
 def closings(name: str) -> list[tuple[str, ...]]:
-    """Every choice of joints whose cut leaves a tree, driven and helical joints kept."""
+    """Every choice of joints whose cut leaves a tree, driven and helical joints kept.
+
+    None where legs close the loops: there is no choice.
+    """
+    if any(closing.leg for closing in model(name).graph.closings):
+        return []
     mechanism = model(name).problem.mechanism
     driven = {joint for joint, _ in model(name).graph.driven}
     able = [n for n, j in mechanism.joints.items() if n not in driven and j.letter != "H"]
