@@ -98,6 +98,20 @@ size)."""
 DEAD_CENTRE_ITERATIONS: Final = 40
 """Far more than quadratic convergence needs; a search that uses them all has found none."""
 
+# --- branch points -----------------------------------------------------------------------------
+
+BRANCH_POINT_SPANS: Final = (0.2, 0.05, 0.0125)
+"""Distances (rad, length units) before the place where a branch was lost, at which the singular
+value is read; the one whose extrapolation is surest counts."""
+
+BRANCH_POINT_DOUBT: Final = 1e-8
+"""Change of the extrapolated place by its last order (rad, length units) above which the singular
+value does not tell of a branch point. Measured: 3e-12 at branch points, above 1e-4 next to folds."""
+
+BRANCH_POINT_NEAR: Final = 1e-3
+"""Distance from the last place on the branch up to which a branch point explains its end: steps
+are halved down to 1e-15, but next to the point Newton's residual test fails first."""
+
 # --- verdicts -------------------------------------------------------------------------------
 
 CONDITION_NEAR_SINGULAR: Final = 1e7

@@ -11,6 +11,7 @@ from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.rows import MAY_BE_RIGID, RowStates, in_file_units
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.solver.batch import run
+from mechkin_cli.solver.branch_point import BranchPoint, locate_branch_point
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.dead_centre import DeadCentre, locate
 from mechkin_cli.solver.follow import Followed
@@ -56,7 +57,11 @@ def explain_end(
             rows.diagnostics.append(_dead_centre_note(problem, layout, fold, number, rows))
             return
     rows.status[~rows.reached] = Status.branch_lost
-    rows.diagnostics.append(_lost_note(problem, layout, followed, rows))
+    point = _branch_point(plan, path, followed, rows)
+    if point is not None:
+        rows.diagnostics.append(_branch_point_note(problem, layout, followed, point, rows))
+    else:
+        rows.diagnostics.append(_lost_note(problem, layout, followed, rows))
 
 
 def _derivatives(plan: Plan, followed: Followed) -> Floats | None:
@@ -112,15 +117,44 @@ def _dead_centre_note(
     )
 
 
-def _lost_note(problem: Problem, layout: Layout, followed: Followed, rows: RowStates) -> Diagnostic:
-    places = ", ".join(
-        f"{item.name} = {in_file_units(problem, layout, k, float(followed.inputs[k]))}"
+def _branch_point(
+    plan: Plan, path: Floats, followed: Followed, rows: RowStates
+) -> BranchPoint | None:
+    """The branch point that ended the branch, seen from the last row some way before it."""
+    far = tolerances.BRANCH_POINT_SPANS[0]
+    row = followed.reached - 1
+    while row > 0 and np.max(np.abs(followed.inputs - path[:, row])) <= far:
+        row -= 1
+    return locate_branch_point(plan, followed, path[:, row], rows.guess[:, row])
+
+
+def _branch_point_note(
+    problem: Problem, layout: Layout, followed: Followed, point: BranchPoint, rows: RowStates
+) -> Diagnostic:
+    place = followed.inputs + point.distance * followed.direction
+    return Diagnostic(
+        "branch-point",
+        "error",
+        "the branch comes to a branch point, where it crosses another and the mechanism may go "
+        f"either way; {_row_span(rows)} stay empty",
+        measured=_place(problem, layout, place),
+        hint="begin another sweep beyond it with assembly: {near: ...}, or change the dimensions "
+        "a little",
+    )
+
+
+def _place(problem: Problem, layout: Layout, inputs: Floats) -> str:
+    return ", ".join(
+        f"{item.name} = {in_file_units(problem, layout, k, float(inputs[k]))}"
         for k, item in enumerate(problem.motion.inputs)
     )
+
+
+def _lost_note(problem: Problem, layout: Layout, followed: Followed, rows: RowStates) -> Diagnostic:
     return Diagnostic(
         "branch-lost",
         "error",
         f"the branch could not be followed further; {_row_span(rows)} stay empty",
-        measured=f"last place {places}",
+        measured=f"last place {_place(problem, layout, followed.inputs)}",
         hint=MAY_BE_RIGID if is_redundant(layout.graph) else MAY_BE_SPECIAL,
     )
