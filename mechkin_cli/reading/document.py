@@ -38,13 +38,15 @@ class Document:
     """A mechanism file as written.
 
     `file` is the name that messages show, `text` the source, `root` the top-level mapping;
-    `overrides` holds the parameters set from outside, by name.
+    `overrides` holds the parameters set from outside, by name; `folder` is where files are sought
+    that it names, None for a text that comes from no file.
     """
 
     file: str
     text: str
     root: Mapping
     overrides: dict[str, str] = field(default_factory=dict)
+    folder: Path | None = None
 
     @cached_property
     def data(self) -> dict[str, PlainData]:
@@ -126,7 +128,7 @@ def read_document(path: str | Path) -> Document:
     Raises `UsageError` where there is no file to read, `InvalidFile` where it is not the YAML of a
     mechanism file.
     """
-    return document_from_text(read_text(path), str(path))
+    return replace(document_from_text(read_text(path), str(path)), folder=Path(path).parent)
 
 
 def document_from_text(text: str, name: str) -> Document:

@@ -1,0 +1,173 @@
+"""Tables of two columns in CSV files to smooth curves.
+
+A file has a header line and then one row `x,y` per line, x strictly increasing; numbers are bare
+and in the units of the mechanism file. Errors name the line and column of the CSV file.
+"""
+
+from __future__ import annotations
+
+import stat
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from mechkin_cli.building.fields import Fields
+from mechkin_cli.building.fields import Path as KeyPath
+from mechkin_cli.diagnostics import Diagnostic, Place
+from mechkin_cli.expressions import literal
+from mechkin_cli.expressions.limits import MAX_QUOTED
+from mechkin_cli.mechanism.curve import Curve, smooth_curve
+from mechkin_cli.reading.limits import MOST_BYTES
+from mechkin_cli.tolerances import LARGEST_NUMBER
+from mechkin_cli.units import Dimension
+
+CODE = "csv-table"
+
+
+class Rows(NamedTuple):
+    """The two columns of a table in the units of the mechanism file."""
+
+    x: list[float]
+    y: list[float]
+
+
+class _BadTable(Exception):
+    """What is wrong with a CSV file; `line` and `column` count from 1, line 0 is the whole file."""
+
+    def __init__(self, line: int, column: int, message: str, hint: str) -> None:
+        super().__init__(message)
+        self.line, self.column, self.message, self.hint = line, column, message, hint
+
+
+def read_curve(
+    fields: Fields, path: KeyPath, file_text: str, x_dimension: Dimension, y_dimension: Dimension
+) -> Curve | None:
+    """The smooth curve through a table, in SI; None where an error was noted in `fields`.
+
+    Args:
+        fields: knows the units and the mechanism file, from whose folder `file_text` leads.
+        path: where the mechanism file names the table.
+        file_text: the path of the CSV file as written.
+        x_dimension: dimension of the first column, strictly increasing.
+        y_dimension: dimension of the second column.
+    """
+    rows = read_rows(fields, path, file_text, x_dimension, y_dimension)
+    if rows is None:
+        return None
+    to_si = fields.units.to_si
+    x = [float(to_si(value, x_dimension)) for value in rows.x]
+    return smooth(fields, path, x, [float(to_si(value, y_dimension)) for value in rows.y])
+
+
+def smooth(fields: Fields, path: KeyPath, x: list[float], y: list[float]) -> Curve | None:
+    """The smooth curve through points; None where it is too steep for numbers, which is noted."""
+    try:
+        with np.errstate(all="ignore"):
+            curve = smooth_curve(x, y)
+    except ZeroDivisionError:  # two x that are one number in SI
+        curve = None
+    if curve is not None and np.isfinite(curve.coefficients).all():
+        return curve
+    text = "the curve through this table is too steep to compute"
+    fields.error(CODE, path, text, "leave out rows that lie too close together")
+    return None
+
+
+def read_rows(
+    fields: Fields, path: KeyPath, file_text: str, x_dimension: Dimension, y_dimension: Dimension
+) -> Rows | None:
+    """The checked rows of a table in the file's units; arguments and errors as `read_curve`."""
+    folder = fields.document.folder
+    if folder is None:
+        fields.error(
+            CODE,
+            path,
+            f"{file_text} is sought beside the mechanism file, but this text comes from no file",
+            "save the mechanism in a file and load that",
+        )
+        return None
+    file = folder / file_text
+    try:
+        rows = _rows(_text(file))
+        for i, dimension in enumerate((x_dimension, y_dimension)):
+            _check_size(fields, rows, i, dimension)
+        return Rows([row[1] for row in rows], [row[2] for row in rows])
+    except _BadTable as bad:
+        if bad.line == 0:
+            fields.error(CODE, path, f"{file} {bad.message}", bad.hint)
+        else:
+            place = Place(str(file), bad.line, bad.column)
+            fields.diagnostics.append(Diagnostic(CODE, "error", bad.message, place, hint=bad.hint))
+        return None
+
+
+def _text(file: Path) -> str:
+    try:
+        if not stat.S_ISREG(file.stat().st_mode):
+            raise _BadTable(0, 0, "is not a regular file", "name a CSV file")
+        with file.open("rb") as stream:
+            content = stream.read(MOST_BYTES + 1)
+    except FileNotFoundError:
+        hint = "the path leads from the folder of the mechanism file"
+        raise _BadTable(0, 0, "does not exist", hint) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise _BadTable(0, 0, f"cannot be read: {reason}", "check its rights") from None
+    if len(content) > MOST_BYTES:
+        text = f"is too large for a table: more than 1 MiB (limit {MOST_BYTES} bytes)"
+        raise _BadTable(0, 0, text, "keep fewer rows: the curve between them is smooth")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        text = f"the byte 0x{content[error.start]:02X} is not UTF-8 text"
+        raise _BadTable(line, 1, text, "save the file as UTF-8") from None
+
+
+def _rows(text: str) -> list[tuple[int, float, float]]:
+    """(line, x, y) of every row; blank lines are passed over."""
+    lines = text.replace("\r\n", "\n").split("\n")
+    if all(literal(cell) is not None for cell in lines[0].split(",")):
+        hint = "the first line is a header, for example time,value"
+        raise _BadTable(1, 1, "this table has no header", hint)
+    rows: list[tuple[int, float, float]] = []
+    for line, row in enumerate(lines[1:], start=2):
+        if not row.strip():
+            continue
+        x, y = _row(line, row)
+        if rows and x <= rows[-1][1]:
+            text = f"{x!r} is not larger than the {rows[-1][1]!r} before it"
+            raise _BadTable(line, 1, text, "order the rows by the first column, each value once")
+        rows.append((line, x, y))
+    if len(rows) < 2:
+        found = "one row" if rows else "no row"
+        raise _BadTable(len(lines), 1, f"this table has {found} behind its header", "give two")
+    return rows
+
+
+def _row(line: int, row: str) -> tuple[float, float]:
+    cells = row.split(",")
+    if len(cells) != 2:
+        text = f"this row has {len(cells)} {'column' if len(cells) == 1 else 'columns'}, not two"
+        hint = "write x,y with a comma between them and a point in decimals"
+        raise _BadTable(line, 1, text, hint)
+    values = []
+    for cell, column in zip(cells, (1, len(cells[0]) + 2), strict=True):
+        value = literal(cell)
+        if value is None:
+            shown = repr(cell.strip()[:MAX_QUOTED])
+            hint = "write a finite number without its unit: the mechanism file's units hold"
+            raise _BadTable(line, column, f"{shown} is not a number", hint)
+        values.append(value)
+    return values[0], values[1]
+
+
+def _check_size(
+    fields: Fields, rows: list[tuple[int, float, float]], i: int, dimension: Dimension
+) -> None:
+    largest = LARGEST_NUMBER / fields.units.factor(dimension)
+    for row in rows:
+        if abs(row[i + 1]) > largest:
+            text = f"{row[i + 1]:.4g} is too large to compute with (limit {largest:.4g})"
+            raise _BadTable(row[0], 1, text, "check its exponent and unit")

@@ -1,0 +1,121 @@
+"""A smooth curve through points of a table: the cubic spline with not-a-knot ends.
+
+Between the points x_i the curve is y_i + b_i u + c_i u^2 + d_i u^3 with u = x - x_i; value, slope
+and curvature are continuous, so a motion law has a continuous acceleration. At either end the first
+(last) two pieces are one cubic. A table of a cubic is met exactly, and the error of the curvature
+goes with the square of the spacing up to the ends, where the natural spline would force it to zero.
+Source: C. de Boor, A Practical Guide to Splines, chapter IV.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+
+class Curve(NamedTuple):
+    """A piecewise cubic: `x` (points,) and the coefficients y, b, c, d of the pieces (4, points).
+
+    The last point has a piece too, the last one expanded there: every point is met exactly.
+    """
+
+    x: Floats
+    coefficients: Floats
+
+    @property
+    def first(self) -> float:
+        """The smallest x of the table."""
+        return float(self.x[0])
+
+    @property
+    def last(self) -> float:
+        """The largest x of the table."""
+        return float(self.x[-1])
+
+    def evaluate(self, x: Floats) -> Floats:
+        """Value and first three derivatives at x (rows,), shape (4, rows).
+
+        Outside [first, last] the end pieces go on; whether that is wanted is the caller's to check.
+        """
+        piece = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, self.x.size - 1)
+        y, b, c, d = self.coefficients[:, piece]
+        u = x - self.x[piece]
+        return np.stack(
+            [
+                y + u * (b + u * (c + u * d)),
+                b + u * (2.0 * c + u * (3.0 * d)),
+                2.0 * c + u * (6.0 * d),
+                6.0 * d,
+            ]
+        )
+
+
+def smooth_curve(x: Sequence[float], y: Sequence[float]) -> Curve:
+    """The curve through two or more points with strictly increasing x; through two a straight line,
+    through three a parabola.
+
+    Example:
+        >>> smooth_curve([0, 1, 3], [0, 1, 9]).evaluate(np.array([2.0])).tolist()
+        [[4.0], [4.0], [2.0], [0.0]]
+    """
+    h = [b - a for a, b in pairwise(x)]
+    slopes = [(b - a) / step for (a, b), step in zip(pairwise(y), h, strict=True)]
+    m = _curvatures(h, slopes)
+    pieces = [
+        (y[i], slopes[i] - h[i] * (2.0 * m[i] + m[i + 1]) / 6.0, m[i] / 2.0, _third(m, h, i))
+        for i in range(len(h))
+    ]
+    end = slopes[-1] + h[-1] * (m[-2] + 2.0 * m[-1]) / 6.0
+    pieces.append((y[-1], end, m[-1] / 2.0, pieces[-1][3]))
+    return Curve(np.array(x, dtype=np.float64), np.array(pieces, dtype=np.float64).T.copy())
+
+
+def _third(m: list[float], h: list[float], i: int) -> float:
+    return (m[i + 1] - m[i]) / (6.0 * h[i])
+
+
+def _curvatures(h: list[float], slopes: list[float]) -> list[float]:
+    """Second derivatives m at the points.
+
+    h_(i-1) m_(i-1) + 2 (h_(i-1) + h_i) m_i + h_i m_(i+1) = 6 (slope_i - slope_(i-1)), where
+    m_0 = m_1 + (m_1 - m_2) h_0/h_1 and its mirror image are put in; the matrix that is left is
+    tridiagonal and dominated by its diagonal, so elimination needs no pivots.
+    """
+    jumps = [6.0 * (b - a) for a, b in pairwise(slopes)]
+    if len(h) == 1:
+        return [0.0, 0.0]
+    if len(h) == 2:
+        return [jumps[0] / (3.0 * (h[0] + h[1]))] * 3
+    diagonal = [2.0 * (a + b) for a, b in pairwise(h)]
+    below, above = [0.0, *h[1:-1]], [*h[1:-1], 0.0]
+    diagonal[0], above[0] = h[0] + 2.0 * h[1], h[1] - h[0]
+    diagonal[-1], below[-1] = 2.0 * h[-2] + h[-1], h[-2] - h[-1]
+    jumps[0] *= h[1] / (h[0] + h[1])
+    jumps[-1] *= h[-2] / (h[-2] + h[-1])
+    inner = _tridiagonal(below, diagonal, above, jumps)
+    first = inner[0] + (inner[0] - inner[1]) * (h[0] / h[1])
+    last = inner[-1] + (inner[-1] - inner[-2]) * (h[-1] / h[-2])
+    return [first, *inner, last]
+
+
+def _tridiagonal(
+    below: list[float], diagonal: list[float], above: list[float], right: list[float]
+) -> list[float]:
+    """The solution of a tridiagonal system by elimination and back substitution."""
+    pivots, sums = [diagonal[0]], [right[0]]
+    for i in range(1, len(diagonal)):
+        factor = below[i] / pivots[-1]
+        pivots.append(diagonal[i] - factor * above[i - 1])
+        sums.append(right[i] - factor * sums[-1])
+    found = [sums[-1] / pivots[-1]]
+    for i in range(len(diagonal) - 2, -1, -1):
+        found.append((sums[i] - above[i] * found[-1]) / pivots[i])
+    return found[::-1]
