@@ -206,8 +206,9 @@ class Analysis:
         if text in ROW_TEXTS:
             words = mode_words if text == "row.mode" else status_words
             return np.array(words(self.result).texts())
-        if text in self.result.inputs:
-            return self.result.inputs[text].copy()
+        for given in (self.result.inputs, self.result.input_rates):
+            if text in given:
+                return given[text].copy()
         expression = parse(text)
         result = self._with(expression.names)
         columns = self._columns(expression, result)
@@ -236,7 +237,8 @@ class Analysis:
             quantity = name if name in known else name.rpartition(".")[0]
             if quantity in known and quantity not in self.result.slots:
                 wanted.append(quantity)
-        wanted = [name for name in sorted(wanted) if not name.startswith("row.")]
+        computed = sorted(name for name in wanted if name != "time")
+        wanted = [name for name in computed if not name.startswith("row.")]
         if not wanted:
             return self.result
         key = " ".join(wanted)

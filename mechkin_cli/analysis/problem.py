@@ -31,4 +31,4 @@ class Problem:
 
     def quantities(self) -> dict[str, Wanted]:
         """The quantities that the mechanism has, by name."""
-        return catalogue(self.mechanism, self.motion.driven)
+        return catalogue(self.mechanism, self.motion.driven, timed=self.motion.time is not None)

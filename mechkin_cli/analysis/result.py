@@ -66,8 +66,26 @@ class Result:
 
     @property
     def inputs(self) -> Mapping[str, Floats]:
-        """Input values in the file's units, exactly as written."""
-        return {i.name: i.written for i in self.problem.motion.inputs}
+        """What the rows were given, in the file's units exactly as written: time where there is
+        one, then the inputs' values."""
+        time = self.problem.motion.time
+        inputs = {i.name: i.written for i in self.problem.motion.inputs}
+        return inputs if time is None else {"time": time.written, **inputs}
+
+    @cached_property
+    def input_rates(self) -> Mapping[str, Floats]:
+        """The inputs' rates of all orders in the file's units as written, nan in rows without a
+        solution."""
+        rates = {}
+        for driven in self.problem.motion.inputs:
+            for name, (_, written) in driven.orders.items():
+                if name in self._known and name != driven.name:
+                    rates[name] = np.where(self._solved, written, np.nan)
+        return rates
+
+    @cached_property
+    def _solved(self) -> NDArray[np.bool_]:
+        return np.array([Status(int(code)).has_solution for code in self.status])
 
     @cached_property
     def alternatives(self) -> tuple[Result, ...]:
@@ -78,7 +96,7 @@ class Result:
     @property
     def complete(self) -> bool:
         """Whether every row has a solution."""
-        return all(Status(int(code)).has_solution for code in self.status)
+        return bool(self._solved.all())
 
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by name, in SI.
@@ -91,9 +109,8 @@ class Result:
         if name in ("row.residual", "row.condition", "row.power_error"):
             return Quantity(getattr(self, name[4:]), DIMENSIONLESS)
         wanted = self._known.get(name)
-        for driven in self.problem.motion.inputs:
-            if driven.name == name and wanted is not None:
-                return Quantity(driven.values, wanted.dimension)
+        if wanted is not None and (given := self._given(name)) is not None:
+            return Quantity(given, wanted.dimension)
         slot = self.slots.get(name)
         if slot is None or wanted is None:
             raise UnknownName(name, sorted(self.slots))
@@ -101,3 +118,15 @@ class Result:
         if wanted.vector:
             return Quantity(Vector(columns[0], columns[1], columns[2]), wanted.dimension)
         return Quantity(columns[0], wanted.dimension)
+
+    def _given(self, name: str) -> Floats | None:
+        """Time, an input's value or its rates in SI; None for what is computed."""
+        motion = self.problem.motion
+        if name == "time" and motion.time is not None:
+            return motion.time.values
+        for driven in motion.inputs:
+            if name == driven.name:
+                return driven.values
+            if name in driven.orders:
+                return np.where(self._solved, driven.orders[name][0], np.nan)
+        return None

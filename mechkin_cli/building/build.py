@@ -10,7 +10,7 @@ from typing import NamedTuple
 from mechkin_cli.analysis.idle import spin_errors
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.building.columns import build_tables, used_quantities
-from mechkin_cli.building.coordinates import is_coordinate
+from mechkin_cli.building.coordinates import dimension_of, is_coordinate
 from mechkin_cli.building.fields import Fields, read_parameters, read_units
 from mechkin_cli.building.joints import build_joints
 from mechkin_cli.building.links import build_links
@@ -26,7 +26,7 @@ from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
 from mechkin_cli.tables.layout import TableLayout, default_table
-from mechkin_cli.units import ANGLE, LENGTH
+from mechkin_cli.units import LENGTH
 
 
 class Built(NamedTuple):
@@ -78,7 +78,8 @@ def build(source: Source) -> Built:
     problem = Problem(mechanism, motion, assembly, units, dict(fields.parameters))
     tables = build_tables(fields, file.tables, problem.quantities())
     if not file.tables:
-        tables = (default_table(mechanism.coordinates, [i.name for i in motion.inputs]),)
+        names = [i.name for i in motion.inputs]
+        tables = (default_table(mechanism.coordinates, names, timed=motion.time is not None),)
     follow = _followed(fields, file.follow, joints)
     problem = replace(problem, hold_idle=file.idle == "hold", follow=follow)
     graph = _graph(fields, mechanism, motion)
@@ -172,7 +173,7 @@ def _assembly(fields: Fields, section: object, joints: Mapping[str, Joint]) -> A
     for name, text in section.near.items():  # type: ignore[attr-defined]
         path = ("assembly", "near", name)
         if is_coordinate(fields, path, name, joints):
-            near[name] = fields.number(path, text, ANGLE if name.endswith(".theta") else LENGTH)
+            near[name] = fields.number(path, text, dimension_of(name.partition(".")[2]))
     return Assembly(near, section.mode, section.turns)  # type: ignore[attr-defined]
 
 

@@ -1,4 +1,5 @@
-"""Joint coordinates that a file names: whether they exist, and what to say where they do not."""
+"""Joint coordinates that a file names: what they measure, whether they exist, and what to say where
+they do not."""
 
 from __future__ import annotations
 
@@ -7,8 +8,15 @@ from collections.abc import Mapping
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.expressions.errors import nearest
 from mechkin_cli.mechanism.model import Joint
+from mechkin_cli.solver.graph import ANGLES
+from mechkin_cli.units import ANGLE, LENGTH, TIME, Dimension
 
 CODE = "unknown-coordinate"
+
+
+def dimension_of(coordinate: str, order: int = 0) -> Dimension:
+    """What a coordinate, or its derivative of some order over time, measures."""
+    return (ANGLE if coordinate in ANGLES else LENGTH) / TIME**order
 
 
 def is_coordinate(fields: Fields, path: Path, name: str, joints: Mapping[str, Joint]) -> bool:

@@ -1,4 +1,4 @@
-"""The motion section to input values over the rows."""
+"""The motion section to values, rates, accelerations and jerks of the inputs over the rows."""
 
 from __future__ import annotations
 
@@ -8,82 +8,103 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mechkin_cli.building.coordinates import is_coordinate
+from mechkin_cli.building.coordinates import dimension_of, is_coordinate
 from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.building.sequences import by_count, by_step
+from mechkin_cli.building.spacing import spaced
 from mechkin_cli.mechanism.model import Joint
-from mechkin_cli.mechanism.motion import DrivenInput, Motion
-from mechkin_cli.units import (
-    ACCELERATION,
-    ANGLE,
-    ANGULAR_ACCELERATION,
-    ANGULAR_RATE,
-    LENGTH,
-    VELOCITY,
-)
+from mechkin_cli.mechanism.motion import DrivenInput, Moments, Motion
+from mechkin_cli.tolerances import LARGEST_NUMBER
+from mechkin_cli.units import TIME
 
 Floats = NDArray[np.float64]
 
-MOST_ROWS = 10_000_000
-"""More rows than this are a slip of the pen: their tables would not fit into memory."""
-
-_DIMENSIONS = {
-    "theta": (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION),
-    "s": (LENGTH, VELOCITY, ACCELERATION),
-}
-_DIMENSIONS |= dict.fromkeys(("theta1", "theta2"), _DIMENSIONS["theta"])
-_DIMENSIONS |= dict.fromkeys(("x", "y"), _DIMENSIONS["s"])
+_RATES = ("rate", "acceleration", "jerk")
+_ORDERS = ("value", *_RATES)
 
 
 def build_motion(fields: Fields, section: Any, joints: Mapping[str, Joint]) -> Motion:
-    """Inputs with their values; without inputs the motion has one row."""
+    """Inputs with their values; without inputs the motion has one row, or those of `time`."""
     nothing = Motion((), 1)
-    if section is None or not section.inputs:
+    if section is None:
         return nothing
     errors = fields.error_count
-    inputs, rows = _inputs(fields, section, joints)
+    time = _moments(fields, section.time)
+    with np.errstate(all="ignore"):
+        orders, following = _orders(fields, section, joints, time)
+    rows = time.written.size if time else _row_count(fields, orders)
+    if fields.error_count == errors and following:
+        from mechkin_cli.building.following import Following
+
+        coordinates = frozenset(c for joint in joints.values() for c in joint.coordinates)
+        Following(fields, orders, rows, time).add_all(following, coordinates)
     if fields.error_count == errors:
-        return Motion(inputs, rows)
+        names = [name for name in section.inputs if name in orders]
+        inputs = [_driven(fields, name, orders[name], rows) for name in names]
+        if fields.error_count == errors:
+            return Motion(tuple(inputs), rows, time)
+    fields.refused.add("time")
     for joint in joints.values():
-        efforts = (f"{name}.effort" for name in (joint.name, *joint.coordinates))
-        fields.refused.update(efforts)
+        fields.refused.update(f"{name}.effort" for name in (joint.name, *joint.coordinates))
     return nothing
 
 
-def _inputs(
-    fields: Fields, section: Any, joints: Mapping[str, Joint]
-) -> tuple[tuple[DrivenInput, ...], int]:
-    if section.time is not None:
-        fields.error(
-            "time-laws",
-            ("motion", "time"),
-            "laws over time are not computed by this version",
-            "give the inputs from, to and step",
-        )
-        return (), 1
-    columns: dict[str, Floats] = {}
+def _moments(fields: Fields, section: Any) -> Moments | None:
+    if section is None:
+        return None
+    path: Path = ("motion", "time")
+    written = spaced(fields, path, section, TIME)
+    if written[-1] < written[0]:
+        fields.error("time-backwards", path, "time runs backwards", "exchange from and to")
+    return Moments(fields.units.to_si(written.copy(), TIME), written)
+
+
+def _orders(
+    fields: Fields, section: Any, joints: Mapping[str, Joint], time: Moments | None
+) -> tuple[dict[str, Floats], dict[str, Any]]:
+    """Value, rate, acceleration, jerk (4, rows) in the file's units of the inputs that follow none,
+    and the sections of those that follow."""
+    found: dict[str, Floats] = {}
+    following: dict[str, Any] = {}
     for name, item in section.inputs.items():
         path: Path = ("motion", "inputs", name)
         if not is_coordinate(fields, path, name, joints) or _driven_twice(fields, name, joints):
             continue
+        coordinate = name.partition(".")[2]
         if hasattr(item, "value"):
-            fields.error(
-                "following-input",
-                (*path, "with"),
-                "inputs that follow an expression are not computed by this version",
-                "list its values: equally long sequences run together",
-            )
-            continue
-        errors = fields.error_count
-        values = _values(fields, path, item, name.partition(".")[2])
-        if fields.error_count == errors:
-            columns[name] = values
-    rows = _row_count(fields, columns)
-    inputs = []
-    for name, values in columns.items() if rows else ():
-        written = np.broadcast_to(values, (rows,)).copy()
-        inputs.append(_driven(fields, name, section.inputs[name], written))
-    return tuple(inputs), rows
+            following[name] = item
+        elif hasattr(item, "law"):
+            found[name] = _by_law(fields, path, item, coordinate, section.time, time)
+        else:
+            found[name] = _constant_rates(fields, path, item, coordinate, time)
+    return found, following
+
+
+def _by_law(
+    fields: Fields, path: Path, law: Any, coordinate: str, section: Any, time: Moments | None
+) -> Floats:
+    from mechkin_cli.building.laws import Clock, law_values
+
+    assert time is not None  # the schema lets no law stand without time
+    last = fields.written(("motion", "time", "to"), section.last, TIME)
+    clock = Clock(time.written, float(time.written[0]), last)
+    return law_values(fields, path, law, coordinate, clock)
+
+
+def _constant_rates(
+    fields: Fields, path: Path, item: Any, coordinate: str, time: Moments | None
+) -> Floats:
+    """Values of a sweep, with the same rates in every row."""
+    values = _values(fields, path, item, coordinate)
+    orders = np.empty((4, values.size))
+    orders[0] = values
+    for order, key in enumerate(_RATES, start=1):
+        text = getattr(item, key)
+        orders[order] = fields.written((*path, key), text, dimension_of(coordinate, order))
+        if time is not None and orders[order, 0] != 0.0:
+            text = "an input that is held while time runs has no rate"
+            hint = "write law: constant-rate, or another law"
+            fields.key_error("held-rate", (*path, key), text, hint)
+    return orders
 
 
 def _driven_twice(fields: Fields, name: str, joints: Mapping[str, Joint]) -> bool:
@@ -99,51 +120,19 @@ def _driven_twice(fields: Fields, name: str, joints: Mapping[str, Joint]) -> boo
 
 
 def _values(fields: Fields, path: Path, item: Any, coordinate: str) -> Floats:
-    """Values in the file's units: x_i = from + i*step."""
-    dimension = _DIMENSIONS[coordinate][0]
+    """Values in the file's units."""
+    dimension = dimension_of(coordinate)
     if hasattr(item, "at"):
         return np.array([fields.written((*path, "at"), item.at, dimension)])
     if hasattr(item, "values"):
         texts = enumerate(item.values)
         return np.array([fields.written((*path, "values", i), t, dimension) for i, t in texts])
-    first = fields.written((*path, "from"), item.first, dimension)
-    last = fields.written((*path, "to"), item.last, dimension)
-    if item.count is not None:
-        if _too_many(fields, (*path, "count"), item.count):
-            return np.array([first])
-        return by_count(first, last, item.count)
-    errors = fields.error_count
-    step = abs(fields.written((*path, "step"), item.step, dimension))
-    if fields.error_count > errors:
-        return np.array([first])
-    if step == 0.0:
-        if first == last:
-            return np.array([first])
-        fields.error("zero-step", (*path, "step"), "the step is zero", "give the distance of rows")
-        return np.array([first])
-    ratio = abs(last - first) / step + 1e-9
-    if _too_many(fields, (*path, "step"), ratio + 1.0):
-        return np.array([first])
-    return by_step(first, step if last >= first else -step, int(ratio) + 1)
-
-
-def _too_many(fields: Fields, path: Path, count: float) -> bool:
-    if count <= MOST_ROWS:
-        return False
-    fields.error(
-        "too-many-rows",
-        path,
-        "this sweep has more rows than any table can use",
-        "take a larger step",
-        measured=f"{count:.4g} rows",
-        limit=f"{MOST_ROWS} rows",
-    )
-    return True
+    return spaced(fields, path, item, dimension)
 
 
 def _row_count(fields: Fields, columns: Mapping[str, Floats]) -> int:
-    """Rows that all inputs share, 0 where they do not."""
-    lengths = {name: v.size for name, v in columns.items() if v.size > 1}
+    """Rows that all inputs share."""
+    lengths = {name: orders.shape[1] for name, orders in columns.items() if orders.shape[1] > 1}
     if len(set(lengths.values())) > 1:
         words = ", ".join(f"{name} {n}" for name, n in lengths.items())
         fields.error(
@@ -153,16 +142,27 @@ def _row_count(fields: Fields, columns: Mapping[str, Floats]) -> int:
             "use the same number of values, or hold an input with at:",
             measured=words,
         )
-        return 0
     return max(lengths.values(), default=1)
 
 
-def _driven(fields: Fields, name: str, item: Any, written: Floats) -> DrivenInput:
+def _driven(fields: Fields, name: str, orders: Floats, rows: int) -> DrivenInput:
+    """An input in SI and as written; numbers too large to compute with are noted."""
     joint, _, coordinate = name.partition(".")
-    path: Path = ("motion", "inputs", name)
-    dimension, rate_dimension, acceleration_dimension = _DIMENSIONS[coordinate]
-    rate = fields.number((*path, "rate"), item.rate, rate_dimension)
-    acceleration = fields.number((*path, "acceleration"), item.acceleration, acceleration_dimension)
-    values = np.asarray(fields.units.to_si(written.copy(), dimension), dtype=float)
-    full = np.full(written.size, 1.0)
-    return DrivenInput(joint, coordinate, values, written, rate * full, acceleration * full)
+    written = np.broadcast_to(orders, (4, rows)).copy()
+    in_si = [
+        np.asarray(fields.units.to_si(written[k].copy(), dimension_of(coordinate, k)), dtype=float)
+        for k in range(4)
+    ]
+    for word, values in zip(_ORDERS, in_si, strict=True):
+        largest = float(np.abs(values).max())
+        if not largest <= LARGEST_NUMBER:
+            fields.error(
+                "too-large",
+                ("motion", "inputs", name),
+                f"the {word} of {name} grows too large to compute with",
+                "check the law and its units",
+                measured=f"{largest:.4g} in SI units",
+                limit=f"{LARGEST_NUMBER:g}",
+            )
+            break
+    return DrivenInput(joint, coordinate, in_si[0], in_si[1], in_si[2], in_si[3], written)

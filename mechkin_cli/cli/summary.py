@@ -37,7 +37,7 @@ def _mobility(analysis: Analysis) -> str:
     mechanism = analysis.model.problem.mechanism
     freedoms = sum(joint.type.freedoms for joint in mechanism.joints.values())
     count = freedoms - 6 * mechanism.loops
-    inputs = analysis.result.inputs
+    inputs = [driven.name for driven in analysis.model.problem.motion.inputs]
     names = ", ".join(inputs) or "nothing"
     text = f"{len(inputs)}, driven by {names}"
     idle = "".join(f"; {leg.words}" for leg in find_legs(mechanism)[:IDLE_SHOWN])

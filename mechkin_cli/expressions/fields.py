@@ -12,7 +12,7 @@ from mechkin_cli.expressions.errors import ExpressionError, UnknownName
 from mechkin_cli.expressions.expression import Expression, parse
 from mechkin_cli.expressions.nodes import Number
 from mechkin_cli.expressions.operand import Operand, Resolve, Site
-from mechkin_cli.expressions.quantity import Quantity, Vector
+from mechkin_cli.expressions.quantity import Quantity, Scalar, Vector
 from mechkin_cli.units import Dimension, UnitError, UnitSystem, conversion
 
 _LITERAL = re.compile(
@@ -92,10 +92,25 @@ def _ratio(number: Number, dimension: Dimension, units: UnitSystem) -> float:
 def _evaluated(
     expression: Expression, dimension: Dimension, units: UnitSystem, resolve: Resolve
 ) -> float:
+    value = scalar(expression, dimension, units, resolve)
+    if not isinstance(value, float):
+        raise ExpressionError(
+            "expected a constant, found a value per row", _start(expression), "use parameters only"
+        )
+    return value
+
+
+def scalar(
+    expression: Expression, dimension: Dimension, units: UnitSystem, resolve: Resolve
+) -> Scalar:
+    """The SI value of an expression that must be one number (per row) of a dimension.
+
+    Raises:
+        ExpressionError: a vector, another dimension, or as `Expression.evaluate`.
+    """
     quantity = expression.evaluate(resolve, units)
     value = quantity.value
-    start = len(expression.text) - len(expression.text.lstrip())
-    operand = Operand(quantity, start, expression.number)
+    start = _start(expression)
     if isinstance(value, Vector):
         raise ExpressionError(
             f"expected {dimension.phrase}, found {quantity.phrase}",
@@ -103,10 +118,11 @@ def _evaluated(
             "take a component with .x, .y or .z, or norm(...)",
         )
     if not quantity.dimension.compatible(dimension):
+        operand = Operand(quantity, start, expression.number)
         hint = Site("", start, units).unit_hint(operand, dimension)
         raise ExpressionError(f"expected {dimension.phrase}, found {quantity.phrase}", start, hint)
-    if not isinstance(value, float):
-        raise ExpressionError(
-            "expected a constant, found a value per row", start, "use parameters only"
-        )
     return value
+
+
+def _start(expression: Expression) -> int:
+    return len(expression.text) - len(expression.text.lstrip())

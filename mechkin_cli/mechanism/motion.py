@@ -12,29 +12,57 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+ORDERS = ("", "_dot", "_ddot", "_dddot")
+"""What the names of a coordinate's derivatives end in, from order 0 on."""
+
 
 class DrivenInput(NamedTuple):
-    """One driven coordinate: values over the rows in rad or m, and as written in the file's
-    units."""
+    """One driven coordinate over the rows, in rad, m and s.
+
+    `written_orders` (4, rows) holds values, rates, accelerations and jerks in the file's units, as
+    they were written.
+    """
 
     joint: str
     coordinate: str
     values: Floats
-    written: Floats
     rates: Floats
     accelerations: Floats
+    jerks: Floats
+    written_orders: Floats
 
     @property
     def name(self) -> str:
         """The coordinate's full name, `O1.theta`."""
         return f"{self.joint}.{self.coordinate}"
 
+    @property
+    def written(self) -> Floats:
+        """Values in the file's units, as written."""
+        values: Floats = self.written_orders[0]
+        return values
+
+    @property
+    def orders(self) -> dict[str, tuple[Floats, Floats]]:
+        """In SI and as written, by name: `O1.theta`, `O1.theta_dot`, ..."""
+        in_si = (self.values, self.rates, self.accelerations, self.jerks)
+        names = (self.name + suffix for suffix in ORDERS)
+        return dict(zip(names, zip(in_si, self.written_orders, strict=True), strict=True))
+
+
+class Moments(NamedTuple):
+    """The moments of the rows in s, and as written in the file's units."""
+
+    values: Floats
+    written: Floats
+
 
 class Motion(NamedTuple):
-    """All inputs; a mechanism without inputs has one row."""
+    """All inputs; a mechanism without inputs has one row. `time` is there where the file has it."""
 
     inputs: tuple[DrivenInput, ...]
     rows: int
+    time: Moments | None = None
 
     @property
     def driven(self) -> list[tuple[str, str]]:

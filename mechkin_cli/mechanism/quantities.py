@@ -1,7 +1,8 @@
 """The closed list of quantities that a mechanism has, with their dimensions.
 
 `J.theta`, `J.theta_dot`, `J.force`, `p.position`, `L.omega`, `ground.shaking_force`,
-`row.residual`, ... (format 1, Quantities). Directions and parameters stand by their own names.
+`row.residual`, `time`, ... (format 1, Quantities). Directions and parameters stand by their own
+names.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from mechkin_cli.units import (
     FORCE,
     LENGTH,
     MOMENT,
+    TIME,
     VELOCITY,
     Dimension,
 )
@@ -45,6 +47,7 @@ Kind = Literal[
     "residual",
     "condition",
     "power_error",
+    "time",
 ]
 
 
@@ -82,8 +85,10 @@ _JOINT_WRENCH: dict[str, tuple[Kind, Dimension]] = {
 }
 
 
-def catalogue(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> dict[str, Wanted]:
-    """Every quantity by name; `inputs` (joint, coordinate) have efforts."""
+def catalogue(
+    mechanism: Mechanism, inputs: Sequence[tuple[str, str]], *, timed: bool = False
+) -> dict[str, Wanted]:
+    """Every quantity by name; `inputs` (joint, coordinate) have efforts, `timed` rows a time."""
     found = {}
     for wanted in (
         *_of_joints(mechanism),
@@ -93,6 +98,8 @@ def catalogue(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> dict[s
         *_of_ground(),
     ):
         found[wanted.name] = wanted
+    if timed:
+        found["time"] = Wanted("time", "time", "row", TIME, False)
     return found
 
 

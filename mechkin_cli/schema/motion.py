@@ -1,7 +1,8 @@
 """`motion:` - which coordinates are driven, and through which values.
 
 Rows of a sweep: n = floor(|to - from|/|step| + 1e-9) + 1, x_i = from + i*step. One input is swept;
-others are held (`at`), follow (`with`) or run in step through equally many values.
+others are held (`at`), follow (`with`) or run in step through equally many values. Or the rows are
+moments of `time`, and inputs move by laws.
 """
 
 from typing import Annotated, Any, Self
@@ -82,10 +83,10 @@ class HeldInput(_WithRates):
 
 
 class FollowingInput(Section):
-    """An input that follows the swept one; its rates follow from the expression."""
+    """An input that follows others; its rates follow from the expression by the chain rule."""
 
     value: AnyDimension = Field(alias="with")
-    """An expression of the swept input, for example `2*O1.theta`."""
+    """An expression of other inputs, and of `time` where there is one: `2*O1.theta`."""
 
 
 class TimeSection(Section):

@@ -84,9 +84,10 @@ def _column(layout: ColumnLayout, source: Source) -> Column:
         return Column(layout.label, "", mode_words(source))
     if name == "row.status":
         return Column(layout.label, "", status_words(source))
-    if name in source.inputs:
+    given = source.inputs.get(name, source.input_rates.get(name))
+    if given is not None:
         unit = source.units.label(source.quantity(name).dimension)
-        return Column(layout.label, unit, source.inputs[name], layout.decimals)
+        return Column(layout.label, unit, given, layout.decimals)
     column = _evaluated(layout, source)
     others = [_evaluated(layout, other).values for other in source.alternatives]
     values = unique_cells(column.values, others)  # type: ignore[arg-type]

@@ -32,16 +32,18 @@ class TableLayout(NamedTuple):
     columns: tuple[ColumnLayout, ...]
 
 
-def default_table(coordinates: Sequence[str], inputs: Collection[str]) -> TableLayout:
+def default_table(
+    coordinates: Sequence[str], inputs: Collection[str], *, timed: bool = False
+) -> TableLayout:
     """The table `sweep` of a file without tables: all coordinates, their rates, the efforts.
 
-    `coordinates` are the dotted names in joint order, `inputs` the driven ones among them. Each
-    column is labelled with the name of its quantity.
+    `coordinates` are the dotted names in joint order, `inputs` the driven ones among them; `timed`
+    puts the time of the rows first. Each column is labelled with the name of its quantity.
     """
     from mechkin_cli.expressions import parse
 
     rates = [f"{name}_dot" for name in coordinates]
-    names = [*coordinates, *rates, *effort_names(inputs)]
+    names = [*(["time"] if timed else []), *coordinates, *rates, *effort_names(inputs)]
     columns = tuple(ColumnLayout(name, parse(name)) for name in names)
     return TableLayout("sweep", "Coordinates, rates and efforts", columns)
 

@@ -31,7 +31,14 @@ class Source(Protocol):
 
     @property
     def inputs(self) -> Mapping[str, FloatArray]:
-        """Values of the driven coordinates, in file units exactly as written."""
+        """Time where there is one, and values of the driven coordinates, in file units exactly as
+        written."""
+        ...
+
+    @property
+    def input_rates(self) -> Mapping[str, FloatArray]:
+        """Rates of the driven coordinates, in file units as written; nan in rows without a
+        solution."""
         ...
 
     @property

@@ -58,6 +58,8 @@ ACCEPTED = {
         "building/sequences.py",
         "10 ** max(0, *(-exponent for exponent in exponents))",
     ): "whole numbers",
+    ("building/coordinates.py", "TIME ** order"): FRACTIONS,
+    ("building/laws.py", "TIME ** (have - want)"): FRACTIONS,
     ("expressions/arithmetic.py", "base.dimension ** count"): FRACTIONS,
     ("expressions/functions.py", "operand.dimension ** Fraction(1, 2)"): FRACTIONS,
     ("units/compound.py", "UNITS[symbol].factor ** int(exponent)"): FRACTIONS,

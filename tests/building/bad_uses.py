@@ -1,6 +1,6 @@
 """Mistakes in what uses the parts: motion, assembly, loads and columns."""
 
-from building.sound import added, changed, column, inputs, load
+from building.sound import added, column, inputs, load
 
 MOTION = [
     inputs(
@@ -29,18 +29,6 @@ MOTION = [
         "O.theta 3, D.s 2",
     ),
     inputs("{O.theta: {values: [0, k*»mm]}}", "expression", "right behind a number: 1 mm"),
-    inputs(
-        "{O.theta: {from: 0, to: 9, step: 1}, D.s: {with: »r}}",
-        "following-input",
-        "not computed by this version",
-    ),
-    changed(
-        "{inputs: {O.theta: {from: -70, to: 70, step: 5}}}",
-        "{time: »{from: 0, to: 1, step: 0.1}, "
-        "inputs: {O.theta: {law: constant-rate, at: 0, rate: 1}}}",
-        "time-laws",
-        "laws over time are not computed",
-    ),
 ]
 
 ASSEMBLY = [

@@ -47,6 +47,28 @@ def test_values_are_printed_as_meant(motion: str, expected: str) -> None:
     assert cells(motion) == expected.split()
 
 
+SLIDE = (
+    CRANK.replace("type: R", "type: P")
+    .replace("O.theta", "O.s")
+    .replace("columns: [O.s]", "columns: [O.s_dot, O.s_ddot]")
+)
+
+
+@pytest.mark.parametrize(
+    ("rate", "acceleration", "expected"),
+    [
+        ("0.1", "-0.7", "0.1,-0.7"),
+        ("1.5 in/s", "3 ft/s^2", "1.5,36"),
+        ("1 m/s", "0.5 ft/s/s", "39.37007874015748,6"),
+    ],
+)
+def test_constant_rates_are_printed_as_written(rate: str, acceleration: str, expected: str) -> None:
+    motion = f"{{from: 0, to: 9, count: 3, rate: {rate}, acceleration: {acceleration}}}"
+    text = SLIDE.replace("format: 1\n", "format: 1\nunits: {length: in}\n")
+    (table,) = mk.loads(text.replace("INPUT", motion)).analyze().tables
+    assert csv_bytes(table).decode().split()[1:] == [expected] * 3
+
+
 def test_degrees_come_back_from_radians_as_written() -> None:
     assert cells("{from: 150, to: 202, step: 2}") == [str(x) for x in range(150, 203, 2)]
 

@@ -110,3 +110,14 @@ def test_a_row_just_before_the_dead_centre(direction):
     row = analysis["O1.theta"].tolist().index(SWEEPS[direction][3])
     error = abs(mp.mpf(float(analysis["O4.theta"][row])) * DEGREE - expected["O4.theta"])
     assert error <= 8 * analysis["row.condition"][row] * mp.mpf(2) ** -52
+
+
+@pytest.mark.parametrize("direction", SWEEPS)
+def test_rows_without_solution_keep_the_input_and_not_its_rate(direction: str) -> None:
+    analysis = swept(direction)
+    solved = analysis.result.status <= int(Status.near_singular)
+    assert not np.isnan(analysis["O1.theta"]).any()
+    for name, written in (("O1.theta_dot", 0.1), ("O1.theta_ddot", 0.2), ("2*O1.theta_dot", 0.2)):
+        assert (analysis[name][solved] == written).all()
+        assert np.isnan(analysis[name][~solved]).all()
+    assert 0 < solved.sum() < solved.size

@@ -25,6 +25,7 @@ class HandWritten:
     mode: str = "A"
     coordinates: tuple[str, ...] = ("O1.theta", "O2.s")
     inputs: dict = field(default_factory=lambda: {"O1.theta": np.array([190.0, 191, 192, 193])})
+    input_rates: dict = field(default_factory=dict)
     status: np.ndarray = field(default_factory=lambda: np.array([0, 0, 1, 2], dtype=np.int8))
     residual: np.ndarray = field(default_factory=lambda: np.array([0.0, 1e-16, 2e-16, NAN]))
     condition: np.ndarray = field(default_factory=lambda: np.array([2.0, 2.5, 1e7, NAN]))

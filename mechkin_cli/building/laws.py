@@ -1,0 +1,201 @@
+"""Laws of motion to values, rates, accelerations and jerks at the moments of the rows.
+
+All is computed in the file's units, so that numbers come out as they were written. With t from the
+first moment of `time` and u = (moment - start)/duration:
+
+- constant rate, constant acceleration, polynomial: x = c0 + c1 t + c2 t^2 + ...
+- harmonic: x = from + (to - from) (1 - cos(pi u))/2
+- cycloidal: x = from + (to - from) (u - sin(2 pi u)/(2 pi)); both rest before and after, and the
+  first and the last moment of the rise belong to it
+- table: the smooth curve through the rows of a CSV file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import pi, prod
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mechkin_cli.building.coordinates import dimension_of
+from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.units import TIME, Conversion, UnitSystem, conversion
+
+Floats = NDArray[np.float64]
+
+
+class Clock(NamedTuple):
+    """The moments of the rows, and `from` and `to` of `time`, in the file's units."""
+
+    moments: Floats
+    first: float
+    last: float
+
+
+def law_values(fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock) -> Floats:
+    """Value, rate, acceleration and jerk (4, rows) in the file's units.
+
+    Errors are noted in `fields`; zeros stand in.
+    """
+    return _LAWS[law.law](fields, path, law, coordinate, clock)
+
+
+def _constant_rate(fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock) -> Floats:
+    at = fields.written((*path, "at"), law.at, dimension_of(coordinate))
+    rate = fields.written((*path, "rate"), law.rate, dimension_of(coordinate, 1))
+    return _power_series(fields.units, coordinate, [at, rate], clock)
+
+
+def _constant_acceleration(
+    fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock
+) -> Floats:
+    texts = (law.at, law.rate, law.acceleration)
+    at, rate, acceleration = (
+        fields.written((*path, key), text, dimension_of(coordinate, order))
+        for order, (key, text) in enumerate(zip(("at", "rate", "acceleration"), texts, strict=True))
+    )
+    return _power_series(fields.units, coordinate, [at, rate, acceleration / 2.0], clock)
+
+
+def _polynomial(fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock) -> Floats:
+    coefficients = [
+        fields.written((*path, "coefficients", k), text, dimension_of(coordinate, k))
+        for k, text in enumerate(law.coefficients)
+    ]
+    return _power_series(fields.units, coordinate, coefficients, clock)
+
+
+def _power_series(
+    units: UnitSystem, coordinate: str, coefficients: Sequence[float], clock: Clock
+) -> Floats:
+    """c0 + c1 t + c2 t^2 + ... and its derivatives; c_k in the file's unit of order k."""
+    t = clock.moments - clock.first
+    orders = np.zeros((4, t.size))
+    for order in range(4):
+        for k in range(len(coefficients) - 1, order - 1, -1):
+            factor = float(prod(range(k - order + 1, k + 1)))
+            term = _over_time(units, coordinate, k, order).apply(coefficients[k] * factor)
+            orders[order] = orders[order] * t + term
+    return orders
+
+
+def _harmonic(fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock) -> Floats:
+    def shape(u: Floats) -> list[Floats]:
+        sine, cosine = _half_turn(u)
+        value = (1.0 - cosine) / 2.0
+        return [value, pi / 2.0 * sine, pi * pi / 2.0 * cosine, -(pi * pi * pi) / 2.0 * sine]
+
+    return _rise(fields, path, law, coordinate, clock, shape)
+
+
+def _cycloidal(fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock) -> Floats:
+    def shape(u: Floats) -> list[Floats]:
+        sine, cosine = _half_turn(u)
+        value = u - sine * cosine / pi
+        rate, acceleration = 2.0 * (sine * sine), 4.0 * pi * (sine * cosine)
+        return [value, rate, acceleration, 4.0 * pi * pi * (1.0 - 2.0 * (sine * sine))]
+
+    return _rise(fields, path, law, coordinate, clock, shape)
+
+
+def _half_turn(u: Floats) -> tuple[Floats, Floats]:
+    """Sine and cosine of pi*u for u in [0, 1]; exact at 0, 1/2 and 1."""
+    from mechkin_cli.kernel.functions import sin
+
+    from_end = np.minimum(u, 1.0 - u)
+    cosine = sin(pi * (0.5 - from_end))
+    return sin(pi * from_end), np.where(u > 0.5, -cosine, cosine)
+
+
+def _rise(
+    fields: Fields,
+    path: Path,
+    law: Any,
+    coordinate: str,
+    clock: Clock,
+    shape: Callable[[Floats], list[Floats]],
+) -> Floats:
+    """A rise of the given shape over u from 0 to 1, at rest before and after."""
+    first = fields.written((*path, "from"), law.first, dimension_of(coordinate))
+    last = fields.written((*path, "to"), law.last, dimension_of(coordinate))
+    start, duration = _span(fields, path, law, clock)
+    u = (clock.moments - start) / duration
+    rising = (u >= 0.0) & (u <= 1.0)
+    rise = last - first
+    orders = np.stack(shape(np.clip(u, 0.0, 1.0)))
+    orders[0] = np.where(u >= 1.0, last, first + rise * orders[0])
+    for order in (1, 2, 3):
+        rise = rise / duration
+        scaled = _over_time(fields.units, coordinate, 0, order).apply(rise * orders[order])
+        orders[order] = np.where(rising, scaled, 0.0)
+    return orders
+
+
+def _span(fields: Fields, path: Path, law: Any, clock: Clock) -> tuple[float, float]:
+    """Start and duration of a rise."""
+    errors = fields.error_count
+    start = clock.first
+    if law.start is not None:
+        start = fields.written((*path, "start"), law.start, TIME)
+    if law.duration is not None:
+        duration = fields.written((*path, "duration"), law.duration, TIME)
+        place: Path = (*path, "duration")
+    else:
+        duration, place = clock.last - start, (*path, "start") if law.start is not None else path
+    if duration > 0.0:
+        return start, duration
+    if fields.error_count == errors:
+        fields.error(
+            "no-duration",
+            place,
+            "a rise takes a positive time",
+            "give start and duration so that there is time for it",
+            measured=f"{duration:g} {fields.units.label(TIME)}",
+        )
+    return start, 1.0
+
+
+def _table(fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock) -> Floats:
+    from mechkin_cli.building.curves import read_rows, smooth
+
+    orders = np.zeros((4, clock.moments.size))
+    place = (*path, "file")
+    rows = read_rows(fields, place, law.file, TIME, dimension_of(coordinate))
+    curve = None if rows is None else smooth(fields, place, rows.x, rows.y)
+    if curve is None:
+        return orders
+    unit = fields.units.label(TIME)
+    for moment in (float(clock.moments[0]), float(clock.moments[-1])):
+        if not curve.first <= moment <= curve.last:
+            fields.error(
+                "table-range",
+                place,
+                f"{law.file} does not reach all moments of time",
+                "add rows to the table, or change from and to of time",
+                measured=f"{moment:g} {unit}",
+                limit=f"{curve.first:g} to {curve.last:g} {unit}",
+            )
+            return orders
+    found = curve.evaluate(clock.moments)
+    for order in range(4):
+        orders[order] = _over_time(fields.units, coordinate, 0, order).apply(found[order])
+    return orders
+
+
+def _over_time(units: UnitSystem, coordinate: str, have: int, want: int) -> Conversion:
+    """From the unit of order `have` times the unit of time to have - want, to that of order
+    `want`."""
+    before = units.unit(dimension_of(coordinate, have)) * units.unit(TIME ** (have - want))
+    return conversion(before.factor / units.unit(dimension_of(coordinate, want)).factor)
+
+
+_LAWS = {
+    "constant-rate": _constant_rate,
+    "constant-acceleration": _constant_acceleration,
+    "polynomial": _polynomial,
+    "harmonic": _harmonic,
+    "cycloidal": _cycloidal,
+    "table": _table,
+}
