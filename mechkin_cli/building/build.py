@@ -5,13 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 from mechkin_cli.analysis.idle import spin_errors
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.building.columns import build_tables, used_quantities
 from mechkin_cli.building.coordinates import dimension_of, is_coordinate
-from mechkin_cli.building.fields import Fields, read_parameters, read_units
+from mechkin_cli.building.fields import Fields, Path, read_parameters, read_units
 from mechkin_cli.building.joints import build_joints
 from mechkin_cli.building.links import build_links
 from mechkin_cli.building.loads import LoadBuilder
@@ -19,7 +20,7 @@ from mechkin_cli.building.motion import build_motion
 from mechkin_cli.building.source import Source
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions.errors import nearest
-from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism
+from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Link, Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.solver.codes import Demand
@@ -48,19 +49,19 @@ def build(source: Source) -> Built:
     units, wrong_units = read_units(document, _unit_texts(file.units))
     fields = Fields(document, units, diagnostics=wrong_units)
     read_parameters(fields, file.parameters)
-    _refuse_unsolved_sections(fields, file)
     links = build_links(fields, file.links, "unphysical-inertia" in file.accept)
-    joints = build_joints(fields, file.joints, file.links)
-    _check_connected(fields, file.links, file.joints)
+    pairs = _chain_pairs(file)
+    links |= {name: Link(name) for _, name in pairs if name != GROUND_NAME and name not in links}
+    joints = _joints(fields, file, links, pairs)
     points = {
         name: Attached(p.link, fields.vector(("points", name, "at"), p.at, LENGTH))
         for name, p in file.points.items()
-        if _link_known(fields, ("points", name, "link"), p.link, file.links)
+        if _link_known(fields, ("points", name, "link"), p.link, links)
     }
     directions = {
         name: Attached(d.link, fields.direction(("directions", name, "vector"), d.vector))
         for name, d in file.directions.items()
-        if _link_known(fields, ("directions", name, "link"), d.link, file.links)
+        if _link_known(fields, ("directions", name, "link"), d.link, links)
     }
     loads = LoadBuilder(fields, links, joints, points)
     loads.add_all(file.loads)
@@ -82,7 +83,7 @@ def build(source: Source) -> Built:
         tables = (default_table(mechanism.coordinates, names, timed=motion.time is not None),)
     follow = _followed(fields, file.follow, joints)
     problem = replace(problem, hold_idle=file.idle == "hold", follow=follow)
-    graph = _graph(fields, mechanism, motion)
+    graph = _graph(fields, file, mechanism, motion)
     if graph is not None and needs_forces(problem, tables):
         for link, diagnostic in spin_errors(problem):
             place = fields.document.place(("links", link))
@@ -121,16 +122,6 @@ def _by_place(diagnostic: Diagnostic) -> tuple[int, int]:
     return (place.line, place.column) if place else (0, 0)
 
 
-def _refuse_unsolved_sections(fields: Fields, file: MechanismFile) -> None:
-    for key, what in (("chain", "loops written as chain rows are"),):
-        if getattr(file, key):
-            fields.key_error(
-                "not-solved", (key,), f"{what} not part of this version", f"remove {key}:"
-            )
-    for row in file.chain:
-        fields.refused |= {row.joint, row.link}
-
-
 def _link_known(
     fields: Fields, path: tuple[str, ...], name: str, links: Mapping[str, object]
 ) -> bool:
@@ -142,12 +133,33 @@ def _link_known(
     return False
 
 
+def _joints(
+    fields: Fields,
+    file: MechanismFile,
+    links: Mapping[str, Link],
+    chain_pairs: Sequence[tuple[str, str]],
+) -> dict[str, Joint]:
+    """The joints of `joints:` and of `chain:`; every link must be joined to ground by them."""
+    joints = build_joints(fields, file.joints, links)
+    if chain_pairs:
+        from mechkin_cli.building.chain import build_chain
+
+        joints |= build_chain(fields, file.chain, chain_pairs)
+    pairs = [(joint.links[0], joint.links[1]) for joint in file.joints.values()]
+    _check_connected(fields, links, [*pairs, *chain_pairs])
+    return joints
+
+
+def _chain_pairs(file: MechanismFile) -> list[tuple[str, str]]:
+    """The two links of every joint of the chain: each row's joint lies behind the link before."""
+    return list(pairwise([GROUND_NAME, *(row.link for row in file.chain)]))
+
+
 def _check_connected(
-    fields: Fields, links: Mapping[str, object], joints: Mapping[str, object]
+    fields: Fields, links: Mapping[str, object], pairs: Sequence[tuple[str, str]]
 ) -> None:
     """Every link must be joined, by way of others, to ground."""
     reached, grown = {GROUND_NAME}, True
-    pairs = [tuple(j.links) for j in joints.values()]  # type: ignore[attr-defined]
     if any(name not in links and name != GROUND_NAME for pair in pairs for name in pair):
         return  # a misspelt link, reported at its joint
     while grown:
@@ -177,14 +189,24 @@ def _assembly(fields: Fields, section: object, joints: Mapping[str, Joint]) -> A
     return Assembly(near, section.mode, section.turns)  # type: ignore[attr-defined]
 
 
-def _graph(fields: Fields, mechanism: Mechanism, motion: Motion) -> SolverGraph | None:
+def _place_of(file: MechanismFile, joints: Sequence[str]) -> Path:
+    """Where the first of some joints is written."""
+    for i, row in enumerate(file.chain):
+        if row.joint in joints[:1]:
+            return ("chain", i, "joint")
+    return ("joints", *joints[:1])
+
+
+def _graph(
+    fields: Fields, file: MechanismFile, mechanism: Mechanism, motion: Motion
+) -> SolverGraph | None:
     """The solver graph; only asked for when the parts are sound, to avoid follow-up errors."""
     if any(d.severity == "error" for d in fields.diagnostics):
         return None
     try:
         return build_graph(mechanism, motion.driven)
     except UnsolvableGraph as error:
-        path = ("motion", "inputs") if motion.inputs else ("joints", *error.joints[:1])
+        path = ("motion", "inputs") if motion.inputs else _place_of(file, error.joints)
         fields.diagnostics.append(
             Diagnostic(
                 error.diagnostic.code,

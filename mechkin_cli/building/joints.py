@@ -51,11 +51,12 @@ def _build(fields: Fields, name: str, section: Any) -> Joint:
     path: Path = ("joints", name)
     first, second = section.links
     on_first, on_second, parts = _FRAMES[section.type](fields, path, section)
-    lead = _lead(fields, (*path, "lead"), section.lead) if section.type == "H" else 0.0
+    lead = lead_of(fields, (*path, "lead"), section.lead) if section.type == "H" else 0.0
     return Joint(name, section.type, first, second, on_first, on_second, parts, lead)
 
 
-def _lead(fields: Fields, path: Path, text: str) -> float:
+def lead_of(fields: Fields, path: Path, text: str) -> float:
+    """The lead of a helical joint in m; zero is noted in `fields`."""
     errors = fields.error_count
     lead = fields.number(path, text, LENGTH)
     if lead == 0.0 and fields.error_count == errors:

@@ -49,8 +49,23 @@ def _definitions(data: object) -> Iterator[tuple[str, str, tuple[str | int, ...]
                     yield section, name, (section, name, "[key]")
         elif section == "chain" and isinstance(content, list):
             for index, row in enumerate(content):
-                if isinstance(row, dict) and isinstance(row.get("joint"), str):
-                    yield section, row["joint"], (section, index, "joint")
+                if isinstance(row, dict):
+                    yield from _chain_definitions(row, index, sections.get("links"))
+
+
+def _chain_definitions(
+    row: dict[str, Any], index: int, links: object
+) -> Iterator[tuple[str, str, tuple[str | int, ...]]]:
+    """A row names its joint, and its link where that is neither ground nor listed in links."""
+    if isinstance(row.get("joint"), str):
+        yield "chain", row["joint"], ("chain", index, "joint")
+    link = row.get("link")
+    if (
+        isinstance(link, str)
+        and link != "ground"
+        and not (isinstance(links, dict) and link in links)
+    ):
+        yield "chain", link, ("chain", index, "link")
 
 
 def _error(code: str, location: tuple[str | int, ...], text: str, hint: str) -> dict[str, Any]:

@@ -96,12 +96,6 @@ POINTS = [
 ]
 
 SECTIONS = [
-    added(
-        "»chain: [{joint: J, type: R, link: ground}]",
-        "not-solved",
-        "chain rows",
-        "not part of this version",
-    ),
     added("follow: [»Q]", "unknown-joint", "there is no joint Q"),
 ]
 
