@@ -85,6 +85,11 @@ folds hides in one."""
 LEAST_STEP: Final = 1e-15
 """Step (in parts of max(1, |path|)) below which a branch cannot be followed in double precision."""
 
+NODE_PIVOT: Final = 1e-6
+"""Least pivot of the scaled equations at a node of a path: the tangent's error is about a rounding
+over its square, so that below it no test of the tangent tells one branch from another. Measured
+without it: a path ran through the branch point of a parallelogram onto the crossed branch."""
+
 MOST_STEPS: Final = 20000
 """Steps of one path. Measured: R-Sg-C takes 32 for 315 degrees; a path that needs thousands is no
 sweep."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.kernel import functions
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.follow import Followed, TrackEnd, follow
@@ -66,7 +67,7 @@ def _extrapolated(
 ) -> BranchPoint | None:
     """The zero seen from NODES places between a span and a tenth of it before the last place."""
     angles = (2.0 * np.arange(NODES) + 1.0) * np.pi / (2.0 * NODES)
-    before = span * (0.55 + 0.45 * np.cos(angles))
+    before = span * (0.55 + 0.45 * functions.cos(angles))
     places = followed.inputs[:, None] - followed.direction[:, None] * before
     path = np.concatenate([inputs[:, None], places], axis=1)
     way = follow(plan, np.ascontiguousarray(path), state)

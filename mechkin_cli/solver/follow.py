@@ -32,6 +32,7 @@ LIMITS = (
     tolerances.LEAST_STEP,
     float(tolerances.MOST_STEPS),
     *(tolerances.RESIDUAL_TIGHT, tolerances.STEP_COARSE, tolerances.RESIDUAL_ACCEPT),
+    tolerances.NODE_PIVOT,
 )
 
 SAME_LINE = 1e-12

@@ -35,6 +35,12 @@ inline void reflect(Reflectors f) {
   }
 }
 
+inline Pack least_pivot(Reflectors f) {
+  Pack least = abs(f.pivot[0]);
+  for (int k = 1; k < f.n; ++k) least = min(least, abs(f.pivot[k]));
+  return least;
+}
+
 MECHKIN_INLINE void apply_reflector(Reflectors f, int k, Pack* b) {
   Pack s = 0.0;
   for (int i = k; i < f.m; ++i) s += f.a[i * f.n + k] * b[i];

@@ -95,6 +95,13 @@ inline Pack determinant_sign(Factors f) {
   return sign;
 }
 
+// The least pivot's size, near zero where the matrix is singular; the factors hold the pivots' reciprocals.
+inline Pack least_pivot(Factors f) {
+  Pack largest = abs(f.a[0]);
+  for (int k = 1; k < f.n; ++k) largest = max(abs(f.a[k * f.n + k]), largest);
+  return Pack(1.0) / largest;
+}
+
 #define MECHKIN_AND_B , b
 // Factors f.a in place.
 inline void factor(Factors f) { MECHKIN_SIZED(factor_sized, ) }

@@ -116,7 +116,7 @@ void search(const PlanStore& store, int block, Array2 inputs, Array2 states, Arr
 // limits in the order of TrackLimits; returns (end, rows reached, steps, rejected, sigma, refused step);
 // `last` receives the states of the last node.
 nb::tuple track(const PlanStore& store, std::vector<double> x0, std::vector<double> u, Array1 sigma, Array1 start,
-                Array2 guess, Array1 limit, Array1 last, std::array<double, 11> l) {
+                Array2 guess, Array1 limit, Array1 last, std::array<double, 12> l) {
   const Plan& p = store.view();
   const long rows = (long)sigma.shape(0);
   if ((int)x0.size() != p.inputs || (int)u.size() != p.inputs) throw nb::value_error("one start and rate per input");
@@ -124,7 +124,7 @@ nb::tuple track(const PlanStore& store, std::vector<double> x0, std::vector<doub
   double* const end_state = per_row(last, p.states, "last");
   double* const guess_data = columns(guess, p.states, rows, "guess");
   double* const limit_data = per_row(limit, rows, "limit");
-  const TrackLimits limits = {l[0], l[1], l[2], l[3], l[4], l[5], l[6], (int)l[7], l[8], l[9], l[10], 6};
+  const TrackLimits limits = {l[0], l[1], l[2], l[3], l[4], l[5], l[6], (int)l[7], l[8], l[9], l[10], l[11], 6};
   const KernelUnit& unit = unit_or_throw(2);
   Track t;
   {

@@ -181,6 +181,7 @@ struct BlockMatrices {
   MECHKIN_INLINE Factors lu() const { return {jacobian, swap, n}; }
   MECHKIN_INLINE Reflectors qr() const { return {jacobian, reflector, reflector + n, m, n}; }
   void factor_jacobian() const { m == n ? factor(lu()) : reflect(qr()); }
+  Pack least() const { return m == n ? least_pivot(lu()) : least_pivot(qr()); }
   // The unknowns from the equations' right-hand sides, in place.
   void solve_equations(Pack* b) const { m == n ? solve(lu(), b) : solve(qr(), b); }
   // The equations' multipliers from the unknowns' generalised forces, in place.

@@ -27,7 +27,8 @@ class Stepper {
     r.guess = guess;
     r.states = node->state.data();
     r.velocities = node->first.data(), r.second = node->second.data();
-    r.residual = &residual, r.correction = correction, r.orientation = &node->orientation, r.flags = &flags;
+    r.residual = &residual, r.correction = correction, r.orientation = &node->orientation;
+    r.pivot = &node->pivot, r.flags = &flags;
     r.demand = DEMAND_VELOCITY | DEMAND_ACCELERATION;
     r.iterations = limits_.iterations;
     r.tight = limits_.tight, r.coarse = limits_.coarse, r.accept = limits_.accept;
@@ -187,6 +188,7 @@ Track follow(const Plan& plan, const KernelUnit& unit, const double* x0, const d
     const double length = step * std::sqrt(product(node.first, node.first));
     const bool good = stepper.close(last ? end : node.sigma + step, predicted.data(), &next, &correction) &&
                       correction <= limits.jump * length && next.orientation == node.orientation &&
+                      next.pivot >= limits.pivot &&
                       !turned_too_far(node, next, limits) &&
                       looks_back(stepper, node, next, limits.jump * length);
     if (!good) {

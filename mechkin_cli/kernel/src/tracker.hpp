@@ -19,13 +19,14 @@ struct TrackLimits {
   double least_step;    // smallest step in parts of max(1, |sigma|)
   int most_steps;
   double tight, coarse, accept;
+  double pivot;         // least pivot of a node: the tangent next to a singular place is rounding
   int iterations;
 };
 
 enum class TrackEnd : int { finished = 0, stalled = 1, exhausted = 2, start_not_closed = 3 };
 
 struct Node {
-  double sigma, orientation;
+  double sigma, orientation, pivot;
   std::vector<double> state, first, second;              // states, columns, columns
   std::vector<double> state_first, state_second;         // derivatives of the raw states
 };

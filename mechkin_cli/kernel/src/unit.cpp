@@ -54,7 +54,7 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
   for (int s = 0; s < p.states; ++s) w.q[s] = in.get(r.guess, s);
   for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
 
-  Pack residual = 0.0, correction = 0.0, condition = 0.0, orientation = 1.0;
+  Pack residual = 0.0, correction = 0.0, condition = 0.0, orientation = 1.0, pivot = __builtin_inf();
   Mask converged = all_lanes(true), side = all_lanes(true);
   for (int b = 0; b < p.blocks; ++b) {
     const Closed closed = close_block(p, w, b, r);
@@ -70,6 +70,7 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     block_jacobian(p, w, b, at.jacobian);
     at.factor_jacobian();
     if (at.m == at.n) orientation *= determinant_sign(at.lu());
+    if (r.pivot) pivot = min(pivot, at.least());
   }
   for (int k = 0; k < p.rest_count; ++k) {
     place_joint(p, w, p.rest[k]);
@@ -96,6 +97,7 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
   writer(r.residual).put(0, residual);
   writer(r.correction).put(0, correction);
   if (r.orientation) writer(r.orientation).put(0, orientation);
+  if (r.pivot) writer(r.pivot).put(0, pivot);
   if (r.demand & DEMAND_CONDITION) writer(r.condition).put(0, condition);
 
   const auto outputs = [&](const Balance* balance) {
