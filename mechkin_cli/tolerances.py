@@ -111,7 +111,7 @@ value is read; the one whose extrapolation is surest counts."""
 
 BRANCH_POINT_DOUBT: Final = 1e-8
 """Change of the extrapolated place by its last order (rad, length units) above which the singular
-value does not tell of a branch point. Measured: 3e-12 at branch points, above 1e-4 next to folds."""
+value does not tell of a branch point. Measured at branch points of parallelograms: 3e-12."""
 
 BRANCH_POINT_NEAR: Final = 1e-3
 """Distance from the last place on the branch up to which a branch point explains its end: steps

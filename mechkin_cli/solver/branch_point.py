@@ -87,7 +87,14 @@ def _extrapolated(
     if not np.all(np.diff(singular) < 0.0):
         return None
     # inverse interpolation: the distance as a polynomial of the singular value, at zero
-    return _neville(singular, -before)
+    found = _neville(singular, -before)
+    return found if _is_linear(singular, before + found.distance) else None
+
+
+def _is_linear(singular: Floats, distance: Floats) -> bool:
+    """Whether the distance goes as the singular value, not as its square as next to a fold."""
+    ratio = float(singular[-2] / singular[-1])
+    return float(distance[-2] / distance[-1]) ** 2 < ratio * ratio * ratio
 
 
 def _neville(x: Floats, y: Floats) -> BranchPoint:

@@ -1,4 +1,4 @@
-"""Branch points are located and named: a parallelogram may open or cross over where it lies flat."""
+"""Branch points are located and named: a parallelogram may cross over where it lies flat."""
 
 from __future__ import annotations
 
