@@ -15,3 +15,4 @@ class ExitCode(IntEnum):
     ROWS_MISSING = 4
     INTERNAL = 70
     INTERRUPTED = 130
+    """By Ctrl-C, or by a request to end (SIGTERM, SIGHUP)."""

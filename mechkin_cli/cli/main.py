@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import typer
 
@@ -12,10 +13,10 @@ from mechkin_cli.cli.analyze import analyze
 from mechkin_cli.cli.bench import bench
 from mechkin_cli.cli.check import check
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import put, say, say_diagnostics
+from mechkin_cli.cli.messages import put, say, say_diagnostics, stdout_failed
 from mechkin_cli.cli.schema import schema
 from mechkin_cli.cli.tables import tables
-from mechkin_cli.diagnostics import InvalidFile, MechkinError
+from mechkin_cli.diagnostics import InvalidFile, MechkinError, UsageError
 
 app = typer.Typer(
     name="mechkin",
@@ -49,10 +50,22 @@ def _version() -> str:
 
 def main() -> NoReturn:
     """Runs the command line and exits with its code."""
+    _end_like_ctrl_c()
     code = _run()
     if code == ExitCode.INTERRUPTED:
         say("mechkin: interrupted; files written so far are whole")
     sys.exit(code)
+
+
+def _end_like_ctrl_c() -> None:
+    """Lets a request to end (kill, a closed terminal) clean up as Ctrl-C does."""
+    import signal
+
+    for name in ("SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)
+        # nohup and parents that ignore a signal are obeyed
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, signal.default_int_handler)
 
 
 def _run() -> int:
@@ -70,7 +83,7 @@ def _run() -> int:
         return ExitCode.INTERRUPTED
     except Exception as error:
         if hasattr(error, "exit_code") and hasattr(error, "show"):
-            error.show()
+            _show(error)
             for file in filter(os.path.isfile, sys.argv[1:2]):
                 say(f"To run a mechanism file: mechkin analyze {file}")
             return int(error.exit_code)
@@ -78,7 +91,25 @@ def _run() -> int:
     return int(code or 0)
 
 
+def _show(error: Any) -> None:
+    """A usage error of the command line itself, as typer words it."""
+    with contextlib.suppress(OSError):
+        if sys.stderr is not None:
+            error.show()
+
+
 def _failed(error: Exception) -> int:
+    if isinstance(error, MemoryError):
+        say("mechkin: the memory is used up; take fewer rows, columns or tables")
+        return ExitCode.USAGE
+    if isinstance(error, OSError) and error.filename is None:
+        # help and benchmarks, which are not printed by `put`
+        try:
+            stdout_failed(error)
+        except UsageError as refused:
+            say(f"mechkin: {refused}")
+            return ExitCode.USAGE
+        return ExitCode.OK
     from mechkin_cli.kernel import KernelMissing
 
     if isinstance(error, KernelMissing):

@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TextIO
 
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
@@ -18,7 +19,13 @@ _PLAIN = "\x1b[0m"
 
 
 def put(text: str) -> None:
-    """Data on stdout. Once its reader has gone away the work goes on, and nothing more is shown."""
+    """Data on stdout. Once its reader has gone away the work goes on, and nothing more is shown.
+
+    Raises:
+        UsageError: stdout takes no more (a full disk).
+    """
+    if sys.stdout is None:
+        return
     try:
         try:
             sys.stdout.write(text)
@@ -26,17 +33,62 @@ def put(text: str) -> None:
             encoding = sys.stdout.encoding
             sys.stdout.write(text.encode(encoding, "backslashreplace").decode(encoding))
         sys.stdout.flush()
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:
+        stdout_failed(error)
+
+
+def stdout_failed(error: OSError) -> None:
+    """Gives stdout up: quietly where its reader has gone away.
+
+    Raises:
+        UsageError: it takes no more for another reason.
+    """
+    _discard(sys.stdout)
+    if isinstance(error, BrokenPipeError):
+        return
+    reason = error.strerror or str(error)
+    raise UsageError(
+        f"stdout cannot be written: {reason}; send it to another place, or use --quiet"
+    ) from error
 
 
 def say(text: str = "") -> None:
-    """One line on stderr; on a terminal, broken between words where it is too long."""
-    sys.stderr.write(_fitted(text) + "\n")
+    """One line on stderr; on a terminal, broken between words where it is too long.
+
+    A stderr that takes nothing is no reason to stop the work.
+    """
+    _say(_fitted(text))
+
+
+def _say(text: str, end: str = "\n") -> None:
+    if sys.stderr is None:
+        return
+    try:
+        sys.stderr.write(text + end)
+        sys.stderr.flush()
+    except OSError:
+        _discard(sys.stderr)
+
+
+def _discard(stream: TextIO) -> None:
+    """Lets whatever is still written to a stream go nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def _on_terminal() -> bool:
+    return sys.stderr is not None and sys.stderr.isatty()
+
+
+def _visible(text: str) -> str:
+    """The text with control characters, which steer a terminal, as escape sequences."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
 
 
 def _fitted(text: str) -> str:
-    if not sys.stderr.isatty():
+    text = _visible(text)
+    if not _on_terminal():
         return text
     from shutil import get_terminal_size
     from textwrap import wrap
@@ -52,7 +104,7 @@ def say_diagnostics(diagnostics: Iterable[Diagnostic], file: str | None = None) 
         text = str(diagnostic)
         if diagnostic.place is None and file is not None:
             text = f"{file}: {text}"
-        sys.stderr.write(_coloured(_fitted(text), diagnostic.severity) + "\n")
+        _say(_coloured(_fitted(text), diagnostic.severity))
 
 
 def refusal(path: Path, error: InvalidFile | UsageError) -> tuple[ExitCode, Record]:
@@ -67,7 +119,7 @@ def refusal(path: Path, error: InvalidFile | UsageError) -> tuple[ExitCode, Reco
 
 
 def _coloured(text: str, severity: str) -> str:
-    if not sys.stderr.isatty() or os.environ.get("NO_COLOR"):
+    if not _on_terminal() or os.environ.get("NO_COLOR"):
         return text
     word = f"{severity}:"
     return text.replace(word, f"{_COLOURS[severity]}{word}{_PLAIN}", 1)
@@ -83,17 +135,16 @@ class Progress:
         self._start = monotonic()
         self._total = total
         self._what = what
-        self._on = not quiet and total > 1 and sys.stderr.isatty()
+        self._on = not quiet and total > 1 and _on_terminal()
         self._shown = False
 
     def step(self, done: int) -> None:
         """Shows how far the work is."""
         if self._on and self._clock() - self._start > 1.0:
-            sys.stderr.write(f"\r{done} of {self._total} {self._what}")
-            sys.stderr.flush()
+            _say(f"\r{done} of {self._total} {self._what}", end="")
             self._shown = True
 
     def end(self) -> None:
         """Clears the counter."""
         if self._shown:
-            sys.stderr.write("\r\x1b[K")
+            _say("\r\x1b[K", end="")
