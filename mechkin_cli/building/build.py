@@ -17,11 +17,13 @@ from mechkin_cli.building.joints import build_joints
 from mechkin_cli.building.links import build_links
 from mechkin_cli.building.loads import LoadBuilder
 from mechkin_cli.building.motion import build_motion
+from mechkin_cli.building.sizes import check_loops, check_memory
 from mechkin_cli.building.source import Source
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions.errors import nearest
 from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Link, Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
+from mechkin_cli.reading.parser import in_order
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
@@ -81,6 +83,7 @@ def build(source: Source) -> Built:
     if not file.tables:
         names = [i.name for i in motion.inputs]
         tables = (default_table(mechanism.coordinates, names, timed=motion.time is not None),)
+    check_memory(fields, mechanism, motion, tables)
     follow = _followed(fields, file.follow, joints)
     problem = replace(problem, hold_idle=file.idle == "hold", follow=follow)
     graph = _graph(fields, file, mechanism, motion)
@@ -90,8 +93,8 @@ def build(source: Source) -> Built:
             fields.diagnostics.append(diagnostic._replace(place=place))
     errors = [d for d in fields.diagnostics if d.severity == "error"]
     if errors or graph is None:
-        raise InvalidFile(sorted(fields.diagnostics, key=_by_place))
-    problem = replace(problem, diagnostics=tuple(fields.diagnostics))
+        raise InvalidFile(in_order(fields.diagnostics))
+    problem = replace(problem, diagnostics=tuple(in_order(fields.diagnostics)))
     return Built(problem, graph, tables, bool(file.tables))
 
 
@@ -115,11 +118,6 @@ def needs_forces(problem: Problem, tables: Sequence[TableLayout]) -> bool:
 def _unit_texts(section: object) -> dict[str, str]:
     names = ("length", "angle", "mass", "force", "time", "angular_rate")
     return {name: getattr(section, name) for name in names}
-
-
-def _by_place(diagnostic: Diagnostic) -> tuple[int, int]:
-    place = diagnostic.place
-    return (place.line, place.column) if place else (0, 0)
 
 
 def _link_known(
@@ -201,7 +199,7 @@ def _graph(
     fields: Fields, file: MechanismFile, mechanism: Mechanism, motion: Motion
 ) -> SolverGraph | None:
     """The solver graph; only asked for when the parts are sound, to avoid follow-up errors."""
-    if any(d.severity == "error" for d in fields.diagnostics):
+    if fields.error_count or not check_loops(fields, mechanism):
         return None
     try:
         return build_graph(mechanism, motion.driven)

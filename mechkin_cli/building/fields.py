@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import (
     ExpressionError,
     Quantity,
@@ -19,6 +19,8 @@ from mechkin_cli.expressions import (
 from mechkin_cli.expressions import Vector as Components
 from mechkin_cli.mechanism.vectors import ZERO, Vector
 from mechkin_cli.reading.document import Document
+from mechkin_cli.reading.limits import MOST_DIAGNOSTICS
+from mechkin_cli.reading.parser import CORRECT_FIRST, in_order
 from mechkin_cli.tolerances import LARGEST_NUMBER
 from mechkin_cli.units import Dimension, UnitError, UnitSystem
 
@@ -46,6 +48,19 @@ class Fields:
     diagnostics: list[Diagnostic] = field(default_factory=list)
     refused: set[str] = field(default_factory=set)
 
+    def note(self, diagnostic: Diagnostic) -> None:
+        """Notes something.
+
+        Raises:
+            InvalidFile: the errors are too many to go on; they and what was noted so far.
+        """
+        self.diagnostics.append(diagnostic)
+        if len(self.diagnostics) > MOST_DIAGNOSTICS and self.error_count > MOST_DIAGNOSTICS:
+            self.diagnostics.pop()
+            errors = in_order([d for d in self.diagnostics if d.severity == "error"])
+            rest = "the file has more problems than are shown"
+            raise InvalidFile([*errors, Diagnostic("more", "note", rest, hint=CORRECT_FIRST)])
+
     @property
     def error_count(self) -> int:
         """Errors so far."""
@@ -71,21 +86,19 @@ class Fields:
     ) -> None:
         """Notes an error at a value of the file."""
         place = self.document.place(path)
-        self.diagnostics.append(Diagnostic(code, "error", message, place, hint=hint, **more))
+        self.note(Diagnostic(code, "error", message, place, hint=hint, **more))
 
     def key_error(self, code: str, path: Path, message: str, hint: str | None = None) -> None:
         """Notes an error at a key of the file."""
         place = self.document.key_place(path)
-        self.diagnostics.append(Diagnostic(code, "error", message, place, hint=hint))
+        self.note(Diagnostic(code, "error", message, place, hint=hint))
 
     def expression_error(self, path: Path, error: ExpressionError) -> None:
         """Notes an error inside an expression."""
         if isinstance(error.__cause__, AlreadyRefused):
             return
         place = self.document.place_in(path, error.offset)
-        self.diagnostics.append(
-            Diagnostic("expression", "error", error.message, place, hint=error.hint)
-        )
+        self.note(Diagnostic("expression", "error", error.message, place, hint=error.hint))
 
     def number(self, path: Path, text: str, dimension: Dimension) -> float:
         """The SI value of a scalar field; a bare number takes the field's unit."""

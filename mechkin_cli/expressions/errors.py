@@ -44,13 +44,16 @@ class UnknownName(KeyError):
 SHORT_LIST = 8
 """Up to so many known names are listed when none of them is near."""
 
+LONGEST_COMPARED = 100
+"""Characters of a name that are compared; the comparison takes the square of them."""
+
 
 def nearest(name: str, known: Iterable[str]) -> str | None:
     """A hint that names the known names most like `name`."""
     from difflib import get_close_matches
 
     names = sorted(known)
-    close = get_close_matches(name, names, 3, 0.6)
+    close = get_close_matches(name[:LONGEST_COMPARED], names, 3, 0.6)
     if close:
         return f"did you mean {' or '.join(close)}?"
     return f"known are {', '.join(names)}" if 0 < len(names) <= SHORT_LIST else None

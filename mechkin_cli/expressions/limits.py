@@ -12,5 +12,11 @@ MAX_DEPTH = 50
 MAX_EXPONENT = 16
 """Size of a base dimension's exponent, and of a whole power of a value with a dimension."""
 
+MAX_ERRORS = 50
+"""Errors of a file's parameters; with more, the rest of them is not evaluated."""
+
+MAX_CHAIN = 8
+"""Names of a circle of parameters that a message shows."""
+
 MAX_QUOTED = 40
 """Characters of the user's text repeated in a message."""

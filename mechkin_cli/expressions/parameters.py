@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from mechkin_cli.expressions.errors import ExpressionError, UnknownName
 from mechkin_cli.expressions.expression import Expression, parse
+from mechkin_cli.expressions.limits import MAX_CHAIN, MAX_ERRORS
 from mechkin_cli.expressions.operand import Resolve
 from mechkin_cli.expressions.quantity import Quantity, Vector
 from mechkin_cli.units import UnitSystem
@@ -30,9 +31,9 @@ def evaluate_parameters(
 ) -> dict[str, Quantity]:
     """The values of all parameters in SI, in the order of `texts`.
 
-    A number without unit is dimensionless. With a list `errors`, every independent error is
-    appended to it and the parameters that cannot be evaluated are left out; without one the first
-    is raised.
+    A number without unit is dimensionless. With a list `errors`, every independent error (up to
+    a little over `MAX_ERRORS`) is appended to it and the parameters that cannot be evaluated are
+    left out; without one the first is raised.
 
     Raises:
         ExpressionError: a text that is no constant, or parameters that depend on themselves; `name`
@@ -47,8 +48,9 @@ def evaluate_parameters(
     }
     values: dict[str, Quantity] = {}
     for name in _in_order(expressions, needs, found):
-        failed = any(need in texts and need not in values for need in needs[name])
-        if failed:
+        if len(found) - before > MAX_ERRORS:
+            break
+        if any(need in texts and need not in values for need in needs[name]):
             continue
         try:
             values[name] = _scalar(expressions[name], _resolver(values, texts), texts, units)
@@ -118,8 +120,11 @@ def _in_order(
 
 
 def _cycle(expression: Expression, chain: list[str]) -> ExpressionError:
+    shown = chain
+    if len(chain) > MAX_CHAIN:
+        shown = [*chain[: MAX_CHAIN - 1], f"... ({len(chain)} names)"]
     return ExpressionError(
-        f"parameters depend on themselves: {' -> '.join([*chain, chain[0]])}",
+        f"parameters depend on themselves: {' -> '.join([*shown, chain[0]])}",
         expression.offset_of(chain[0]),
         "give one of them a value",
         chain[-1],

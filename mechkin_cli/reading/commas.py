@@ -7,6 +7,7 @@ Inside braces and brackets YAML ends an unquoted scalar at the comma, so the exa
 from __future__ import annotations
 
 from mechkin_cli.diagnostics import Diagnostic, Place
+from mechkin_cli.reading.limits import LONGEST_EXPRESSION, MOST_PIECES
 from mechkin_cli.reading.nodes import Node, Scalar, Style
 
 _OPENING, _CLOSING = "([{", ")]}"
@@ -25,7 +26,8 @@ def pieces_of_mapping(pairs: list[tuple[Node, Node]], first: int) -> int:
     """
     still_open = _open_parentheses(pairs[first][1])
     end = first + 1
-    while end < len(pairs) and still_open > 0 and is_empty(pairs[end][1]):
+    last = min(len(pairs), end + MOST_PIECES)
+    while end < last and still_open > 0 and is_empty(pairs[end][1]):
         still_open += _open_parentheses(pairs[end][0])
         end += 1
     return end - first - 1
@@ -34,7 +36,7 @@ def pieces_of_mapping(pairs: list[tuple[Node, Node]], first: int) -> int:
 def pieces_of_sequence(items: list[Node], first: int) -> int:
     """The number of items after `items[first]` that are pieces of it; 0 where nothing closes it."""
     still_open = _open_parentheses(items[first])
-    for end in range(first + 1, len(items)):
+    for end in range(first + 1, min(len(items), first + 1 + MOST_PIECES)):
         still_open += _open_parentheses(items[end])
         if still_open <= 0:
             return end - first
@@ -68,11 +70,11 @@ def _open_parentheses(node: Node) -> int:
 
 def _whole_expression(source: str) -> str | None:
     depth = 0
-    for index, character in enumerate(source):
-        if depth == 0 and (character in _ENDS_AN_EXPRESSION or source[index:].startswith(" #")):
+    for index, character in enumerate(source[:LONGEST_EXPRESSION]):
+        if depth == 0 and (character in _ENDS_AN_EXPRESSION or source.startswith(" #", index)):
             return source[:index].strip()
         depth += (character in _OPENING) - (character in _CLOSING)
-    return source.strip() if depth == 0 else None
+    return source.strip() if depth == 0 and len(source) <= LONGEST_EXPRESSION else None
 
 
 def _shortened(text: str) -> str:

@@ -17,5 +17,11 @@ MOST_EVENTS: Final = 100_000
 MOST_LEVELS: Final = 32
 """Lists and mappings inside one another; format 1 itself needs eight."""
 
+MOST_PIECES: Final = 100
+"""Pieces of one expression that YAML has cut at its commas; no function takes so many values."""
+
+LONGEST_EXPRESSION: Final = 4000
+"""Characters of a line searched for the end of an expression that YAML has cut."""
+
 MOST_DIAGNOSTICS: Final = 50
 """Messages shown for one file; the rest is counted in one more message."""

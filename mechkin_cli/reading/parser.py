@@ -21,6 +21,8 @@ from mechkin_cli.reading.tree import TooDeepError, TreeBuilder, mark_of
 FASTEST_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 """PyYAML's wrapper of libyaml where it was built, else the parser in Python."""
 
+CORRECT_FIRST = "correct these first"
+
 _START_OF_A_FILE = "a mechanism file starts with the line format: 1"
 
 
@@ -32,14 +34,24 @@ def parse(text: str, file: str, *, loader: Any = FASTEST_LOADER) -> Mapping:
     empty file, another top level than a mapping.
     """
     check_characters(text, file)
-    builder = TreeBuilder(lines_of(text), file)
+    lines = lines_of(text)
+    builder = TreeBuilder(lines, file)
     _walk(f"{text}\n", file, loader, builder)  # both parsers agree on the end of a whole last line
     diagnostics = builder.diagnostics
     if not diagnostics and isinstance(builder.root, Mapping):
         return builder.root
     if not diagnostics:
         diagnostics = [_not_a_mapping(builder, file)]
-    raise InvalidFile(in_order(diagnostics))
+    raise InvalidFile(in_order([_inside(found, lines) for found in diagnostics]))
+
+
+def _inside(diagnostic: Diagnostic, lines: list[str]) -> Diagnostic:
+    """The diagnostic at the end of the text, where a parser complains behind it."""
+    place = diagnostic.place
+    if place is None or place.line <= len(lines):
+        return diagnostic
+    end = Place(place.file, len(lines), len(lines[-1]) + 1)
+    return diagnostic._replace(place=end)
 
 
 def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
@@ -50,8 +62,7 @@ def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     if rest <= 0:
         return ordered
     message = f"{rest} more problems are not shown"
-    hint = "correct these first"
-    return [*ordered[:MOST_DIAGNOSTICS], Diagnostic("more", "note", message, hint=hint)]
+    return [*ordered[:MOST_DIAGNOSTICS], Diagnostic("more", "note", message, hint=CORRECT_FIRST)]
 
 
 def _position(place: Place) -> tuple[int, int]:

@@ -14,10 +14,10 @@ from mechkin_cli.reading.nearest import nearest
 _LINE_BREAK = re.compile(r"\r\n|\r|\n")
 _TAB_IN_INDENTATION = re.compile(r"^ *(\t)[ \t]*[^ \t\r\n#]", re.MULTILINE)
 _DIRECTIVE = re.compile(r"^%", re.MULTILINE)
-# What YAML does not allow, and what would make editors and parsers count lines differently
-_INVISIBLE = re.compile(
+INVISIBLE = re.compile(
     "[^\t\n\r\x20-\x7e\xa0-\u2027\u202a-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
 )
+"""What YAML does not allow, and what would make editors and parsers count lines differently."""
 _OTHER_ENCODINGS = (codecs.BOM_UTF32_LE, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
@@ -27,8 +27,11 @@ def read_text(path: str | Path) -> str:
     Raises `UsageError` where there is no file to read, `InvalidFile` where its content cannot be a
     mechanism file.
     """
-    content = _read_bytes(Path(path))
-    file = str(path)
+    return decoded(_read_bytes(Path(path)), str(path))
+
+
+def decoded(content: bytes, file: str) -> str:
+    """The text of a file's bytes; `file` is its name in messages. Raises `InvalidFile`."""
     if len(content) > MOST_BYTES:
         raise _invalid(
             "file-too-large",
@@ -53,12 +56,10 @@ def check_characters(text: str, file: str) -> None:
     These are NUL and other control characters, invisible line breaks, tabs in the indentation, and
     directives (`%` in the first column).
     """
-    if found := _INVISIBLE.search(text):
-        code = ord(found[0])
-        name = "a NUL character" if code == 0 else f"the invisible character U+{code:04X}"
+    if found := INVISIBLE.search(text):
         place = place_at(text, found.start(), file)
         hint = "delete it; a mechanism file is plain UTF-8 text"
-        raise _invalid("bad-character", f"{name} in the text", place, hint)
+        raise _invalid("bad-character", f"{character_name(found[0])} in the text", place, hint)
     if found := _TAB_IN_INDENTATION.search(text):
         place = place_at(text, found.start(1), file)
         raise _invalid("tab", "a tab in the indentation", place, "indent with blanks")
@@ -66,6 +67,12 @@ def check_characters(text: str, file: str) -> None:
         place = place_at(text, found.start(), file)
         hint = "delete the line, or put a text that starts with % in quotes"
         raise _invalid("directive", "YAML directives (%) are not used here", place, hint)
+
+
+def character_name(character: str) -> str:
+    """How messages call a character that cannot be shown."""
+    code = ord(character)
+    return "a NUL character" if code == 0 else f"the invisible character U+{code:04X}"
 
 
 def place_at(text: str, index: int, file: str) -> Place:

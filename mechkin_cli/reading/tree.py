@@ -21,6 +21,7 @@ from mechkin_cli.reading.commas import (
 )
 from mechkin_cli.reading.limits import MOST_LEVELS
 from mechkin_cli.reading.nodes import Entry, Mapping, Mark, Node, Scalar, Sequence, Style
+from mechkin_cli.reading.text import INVISIBLE, character_name
 
 _STYLES = {"'": Style.SINGLE_QUOTED, '"': Style.DOUBLE_QUOTED, "|": Style.BLOCK, ">": Style.BLOCK}
 
@@ -54,6 +55,7 @@ class TreeBuilder:
         """Add one scalar, alias, or the start or end of a list or mapping."""
         if isinstance(event, events.ScalarEvent):
             has_properties = self._check_properties(event)
+            self._check_escapes(event)
             style = _STYLES.get(event.style or "", Style.PLAIN)
             if has_properties and not event.value:
                 style = Style.SINGLE_QUOTED  # one message about this scalar is enough
@@ -175,6 +177,13 @@ class TreeBuilder:
             hint = "remove it, or put a text that starts with ! in quotes"
             self._report("tag", "YAML tags (!) are not used here", mark_of(event), hint)
         return event.anchor is not None or event.tag is not None
+
+    def _check_escapes(self, event: events.ScalarEvent) -> None:
+        """Escape sequences must not bring in what a text cannot hold as it stands."""
+        if event.style == '"' and (found := INVISIBLE.search(event.value)):
+            message = f"an escape sequence stands for {character_name(found[0])}"
+            hint = "remove it; names and titles are plain text"
+            self._report("bad-character", message, mark_of(event), hint)
 
     def _cut_at_comma(self, scalar: Scalar) -> Diagnostic:
         return cut_at_comma(scalar, self._lines[scalar.mark.line - 1], self._file)
