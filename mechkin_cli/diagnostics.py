@@ -7,20 +7,55 @@ A diagnostic names the place, what was measured, the limit and what to do. Unusa
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import Literal, NamedTuple
 
 Severity = Literal["error", "warning", "note"]
 
 
 class Place(NamedTuple):
-    """A position in a text file; `line` and `column` count from 1."""
+    """A position in a text; `line` and `column` count from 1.
+
+    `line` is 0 in a value from the command line, and `file` then the option (`--set P1`).
+    """
 
     file: str
     line: int
     column: int
 
+    @property
+    def in_file(self) -> bool:
+        """Whether the text is a file's."""
+        return self.line > 0
+
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}:{self.column}"
+        return f"{self.file}:{self.line}:{self.column}" if self.in_file else self.file
+
+    def record(self) -> dict[str, object]:
+        """The place as plain data for JSON."""
+        place: dict[str, object] = {"file": self.file, "line": self.line, "column": self.column}
+        if not self.in_file:
+            del place["line"]
+        return place
+
+
+class Number(NamedTuple):
+    """A measured number for programs: its name (`O1.theta`, `rows`), value, unit and limit."""
+
+    name: str
+    value: float
+    unit: str = ""
+    limit: float | None = None
+
+    def record(self) -> dict[str, object]:
+        """The number as plain data for JSON; without unit or limit where it has none."""
+        fields: dict[str, object | None] = {
+            "name": self.name,
+            "value": self.value,
+            "unit": self.unit or None,
+            "limit": self.limit,
+        }
+        return {name: value for name, value in fields.items() if value is not None}
 
 
 class Diagnostic(NamedTuple):
@@ -28,7 +63,7 @@ class Diagnostic(NamedTuple):
 
     `code` is stable and made for programs (`unknown-key`, `dead-centre`, ...); `message` says what
     is wrong and what was expected; `measured` and `limit` are the numbers behind it, as text with
-    units; `hint` says what to do.
+    units, and `numbers` the same for programs; `hint` says what to do.
     """
 
     code: str
@@ -38,10 +73,13 @@ class Diagnostic(NamedTuple):
     measured: str | None = None
     limit: str | None = None
     hint: str | None = None
+    numbers: tuple[Number, ...] = ()
 
     def __str__(self) -> str:
         where = f"{self.place}: " if self.place else ""
         text = f"{where}{self.severity}: {self.message}"
+        if self.place and not self.place.in_file and self.place.column > 1:
+            text += f" (at character {self.place.column} of the value)"
         if self.measured is not None:
             bound = f" (limit {self.limit})" if self.limit is not None else ""
             text += f": {self.measured}{bound}"
@@ -49,17 +87,15 @@ class Diagnostic(NamedTuple):
 
     def record(self) -> dict[str, object]:
         """The diagnostic as plain data for JSON; fields that are not set are left out."""
-        place = self.place
         fields: dict[str, object | None] = {
             "code": self.code,
             "severity": self.severity,
             "message": self.message,
-            "place": {"file": place.file, "line": place.line, "column": place.column}
-            if place
-            else None,
+            "place": self.place.record() if self.place else None,
             "measured": self.measured,
             "limit": self.limit,
             "hint": self.hint,
+            "numbers": [n.record() for n in self.numbers if isfinite(n.value)] or None,
         }
         return {name: value for name, value in fields.items() if value is not None}
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.problem import Problem
-from mechkin_cli.analysis.rows import MAY_BE_RIGID, in_file_units
-from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.analysis.rows import MAY_BE_RIGID, input_numbers, input_text
+from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.follow import TrackEnd, follow
@@ -132,17 +132,15 @@ def _from_home(problem: Problem, layout: Layout, plan: Plan, path: Floats) -> St
     followed = follow(plan, way, home_state(layout))
     if followed.end == TrackEnd.FINISHED:
         return Start(followed.state, "home", "followed from the home drawing", row=row)
-    places = ", ".join(
-        f"{item.name} = {in_file_units(problem, layout, k, float(followed.inputs[k]))}"
-        for k, item in enumerate(problem.motion.inputs)
-    )
+    places = input_numbers(problem, layout, followed.inputs)
     rigid = f"; {MAY_BE_RIGID}" if is_redundant(layout.graph) else ""
     diagnostic = Diagnostic(
         "home-branch-ends",
         "error",
         "the assembly drawn at home ends before it comes to a row",
-        measured=f"followed up to {places}",
+        measured=f"followed up to {', '.join(map(input_text, places))}",
         hint=f"choose another assembly with assembly: {{near: ...}}{rigid}",
+        numbers=places,
     )
     return Start(None, "home", "", [diagnostic], Status.beyond_dead_centre)
 
@@ -159,6 +157,10 @@ def _nothing_found(problem: Problem, graph: SolverGraph, found: Found) -> Diagno
         f"the best to {found.closest:.2g} of the size",
         limit=f"{tolerances.RESIDUAL_ACCEPT:g}",
         hint=hint,
+        numbers=(
+            Number("starts", found.starts),
+            Number("residual", found.closest, limit=tolerances.RESIDUAL_ACCEPT),
+        ),
     )
 
 
@@ -245,6 +247,7 @@ def _nearest(found: Found, letters: dict[int, str], distances: list[float], how:
                     measured=f"distances {distances[best]:.4g} and {distances[second]:.4g}",
                     limit=f"ratio {tolerances.NEAR_RUNNER_UP}",
                     hint="give more coordinates under assembly: near",
+                    numbers=tuple(Number("distance", distances[i]) for i in (best, second)),
                 )
             )
     return Start(found.states[:, best], letters[best], f"{how}, 1 of {found.number} found", notes)

@@ -8,7 +8,13 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.problem import Problem
-from mechkin_cli.analysis.rows import MAY_BE_RIGID, RowStates, in_file_units
+from mechkin_cli.analysis.rows import (
+    MAY_BE_RIGID,
+    RowStates,
+    input_number,
+    input_numbers,
+    input_text,
+)
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.branch_point import BranchPoint, locate_branch_point
@@ -107,13 +113,14 @@ def _row_span(rows: RowStates) -> str:
 def _dead_centre_note(
     problem: Problem, layout: Layout, fold: DeadCentre, number: int, rows: RowStates
 ) -> Diagnostic:
-    name = problem.motion.inputs[number].name
+    place = input_number(problem, layout, number, fold.value)
     return Diagnostic(
         "dead-centre",
         "warning",
         f"the branch ends at a dead centre; {_row_span(rows)} lie beyond it and stay empty",
-        measured=f"{name} = {in_file_units(problem, layout, number, fold.value)}",
+        measured=input_text(place),
         hint="end the sweep before it, or choose another assembly",
+        numbers=(place,),
     )
 
 
@@ -131,30 +138,26 @@ def _branch_point(
 def _branch_point_note(
     problem: Problem, layout: Layout, followed: Followed, point: BranchPoint, rows: RowStates
 ) -> Diagnostic:
-    place = followed.inputs + point.distance * followed.direction
+    places = input_numbers(problem, layout, followed.inputs + point.distance * followed.direction)
     return Diagnostic(
         "branch-point",
         "error",
         "the branch comes to a branch point, where it crosses another and the mechanism may go "
         f"either way; {_row_span(rows)} stay empty",
-        measured=_place(problem, layout, place),
+        measured=", ".join(map(input_text, places)),
         hint="begin another sweep beyond it with assembly: {near: ...}, or change the dimensions "
         "a little",
-    )
-
-
-def _place(problem: Problem, layout: Layout, inputs: Floats) -> str:
-    return ", ".join(
-        f"{item.name} = {in_file_units(problem, layout, k, float(inputs[k]))}"
-        for k, item in enumerate(problem.motion.inputs)
+        numbers=places,
     )
 
 
 def _lost_note(problem: Problem, layout: Layout, followed: Followed, rows: RowStates) -> Diagnostic:
+    places = input_numbers(problem, layout, followed.inputs)
     return Diagnostic(
         "branch-lost",
         "error",
         f"the branch could not be followed further; {_row_span(rows)} stay empty",
-        measured=f"last place {_place(problem, layout, followed.inputs)}",
+        measured=f"last place {', '.join(map(input_text, places))}",
         hint=MAY_BE_RIGID if is_redundant(layout.graph) else MAY_BE_SPECIAL,
+        numbers=places,
     )

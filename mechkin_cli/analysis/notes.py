@@ -6,7 +6,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.rows import RowStates
-from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.solver.batch import Batch
 from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.status import Status
@@ -38,4 +38,5 @@ def not_converged_note(rows: RowStates, batch: Batch) -> Diagnostic:
         measured=f"residual {worst:.2g}",
         limit=f"{tolerances.RESIDUAL_ACCEPT:g}",
         hint="this may be a special position; move the sweep by a fraction of its step",
+        numbers=(Number("residual", worst, limit=tolerances.RESIDUAL_ACCEPT),),
     )

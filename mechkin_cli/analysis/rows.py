@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli.analysis.problem import Problem
-from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.solver.layout import Layout, is_slide
 from mechkin_cli.units import ANGLE, LENGTH
@@ -69,8 +69,8 @@ def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
     return KernelInputs(table("values"), table("rates"), table("accelerations"))
 
 
-def in_file_units(problem: Problem, layout: Layout, number: int, value: float) -> str:
-    """A value of input `number` in kernel units as text in the file's units."""
+def input_number(problem: Problem, layout: Layout, number: int, value: float) -> Number:
+    """A value of input `number` in kernel units as a number in the file's units."""
     item = problem.motion.inputs[number]
     if item.coordinate in ANGLES:
         dimension, si = ANGLE, value
@@ -78,4 +78,19 @@ def in_file_units(problem: Problem, layout: Layout, number: int, value: float) -
         joint = problem.mechanism.joints[item.joint]
         dimension = LENGTH
         si = value * (joint.lead / (2.0 * pi) if joint.letter == "H" else layout.length)
-    return f"{float(problem.units.from_si(si, dimension)):.12g} {problem.units.label(dimension)}"
+    in_file = float(problem.units.from_si(si, dimension))
+    return Number(item.name, in_file, problem.units.label(dimension))
+
+
+def input_numbers(problem: Problem, layout: Layout, values: Floats) -> tuple[Number, ...]:
+    """Values of all inputs in kernel units, shape (inputs,), as numbers in the file's units."""
+    return tuple(input_number(problem, layout, k, float(v)) for k, v in enumerate(values))
+
+
+def input_text(number: Number) -> str:
+    """An input's value as messages show it.
+
+    >>> input_text(Number("O1.theta", 205.1376, "deg"))
+    'O1.theta = 205.1376 deg'
+    """
+    return f"{number.name} = {number.value:.12g} {number.unit}"

@@ -214,6 +214,7 @@ def _graph(
                 error.diagnostic.measured,
                 error.diagnostic.limit,
                 error.diagnostic.hint,
+                error.diagnostic.numbers,
             )
         )
         return None

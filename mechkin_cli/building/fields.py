@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from mechkin_cli.diagnostics import Diagnostic, InvalidFile
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number
 from mechkin_cli.expressions import (
     ExpressionError,
     Quantity,
@@ -82,11 +82,18 @@ class Fields:
         return lookup(self.parameters)(name)
 
     def error(
-        self, code: str, path: Path, message: str, hint: str | None = None, **more: str
+        self,
+        code: str,
+        path: Path,
+        message: str,
+        hint: str | None = None,
+        *,
+        numbers: tuple[Number, ...] = (),
+        **more: str,
     ) -> None:
         """Notes an error at a value of the file."""
         place = self.document.place(path)
-        self.note(Diagnostic(code, "error", message, place, hint=hint, **more))
+        self.note(Diagnostic(code, "error", message, place, hint=hint, numbers=numbers, **more))
 
     def key_error(self, code: str, path: Path, message: str, hint: str | None = None) -> None:
         """Notes an error at a key of the file."""
@@ -127,6 +134,7 @@ class Fields:
             "check its exponent and unit",
             measured=f"{value:.4g}",
             limit=f"{LARGEST_NUMBER:g}",
+            numbers=(Number("value", value, limit=LARGEST_NUMBER),),
         )
         return 0.0
 

@@ -30,8 +30,10 @@ def build_joints(
     """All joints that can be built; the rest is noted in `fields`."""
     joints = {}
     for name, section in sections.items():
-        if _links_known(fields, ("joints", name), section, links):
-            joints[name] = _build(fields, name, section)
+        known = _links_known(fields, ("joints", name), section, links)
+        joint = _build(fields, name, section)
+        if known:
+            joints[name] = joint
         else:
             fields.refused.add(name)
     return joints
@@ -71,8 +73,9 @@ def _points(fields: Fields, path: Path, section: Any) -> tuple[Vector, Vector]:
 def _axis_frames(fields: Fields, path: Path, section: Any) -> Frames:
     """R, P, C, H: z along the axis on either link."""
     points = _points(fields, path, section)
+    errors = fields.error_count
     axes = _per_link(fields, (*path, "axis"), section.axis, section.links, True)
-    x_first, x_second = _zero_directions(fields, path, section, axes)
+    x_first, x_second = _zero_directions(fields, path, section, axes, errors)
     on_first = frame_about(axes[0], x_first, points[0])
     on_second = frame_about(axes[1], x_second, points[1])
     return on_first, on_second, (Part(section.type, on_first, on_second),)
@@ -110,16 +113,18 @@ def _groove_frames(fields: Fields, path: Path, section: Any) -> Frames:
 def _universal_frames(fields: Fields, path: Path, section: Any) -> Frames:
     """U: about `axis` of the first link, then about `axis2` of the second; x square to both."""
     first, second = _points(fields, path, section)
+    errors = fields.error_count
     one = fields.direction((*path, "axis"), section.axis)
     two = fields.direction((*path, "axis2"), section.axis2)
     common = cross(one, two)
     if norm(common) <= PARALLEL:
-        fields.error(
-            "parallel-axes",
-            (*path, "axis2"),
-            "the two axes of a universal joint are parallel",
-            "turn one of them, or use type R",
-        )
+        if fields.error_count == errors:
+            fields.error(
+                "parallel-axes",
+                (*path, "axis2"),
+                "the two axes of a universal joint are parallel",
+                "turn one of them, or use type R",
+            )
         common = perpendicular(one)
     x = unit(common)
     on_first, on_second = frame_about(one, x, first), frame_about(two, x, second)
@@ -130,6 +135,7 @@ def _universal_frames(fields: Fields, path: Path, section: Any) -> Frames:
 def _planar_frames(fields: Fields, path: Path, section: Any) -> Frames:
     """E: slides along x and y of the first link, then turns about the normal."""
     points = _points(fields, path, section)
+    errors = fields.error_count
     normals = _per_link(fields, (*path, "normal"), section.normal, section.links, True)
     x = _per_link(fields, (*path, "x"), section.x, section.links, True)
     directions: list[Vector] = []
@@ -138,7 +144,7 @@ def _planar_frames(fields: Fields, path: Path, section: Any) -> Frames:
             directions.append(directions[0])
             continue
         place: Path = (*path, "x", link) if isinstance(section.x, Mapping) else (*path, "x")
-        directions.append(_square(fields, place, normals[i], x[i], "x", "normal"))
+        directions.append(_square(fields, place, normals[i], x[i], "x", "normal", errors))
     frames = [frame_about(n, d, p) for n, d, p in zip(normals, directions, points, strict=True)]
     on_first, on_second = frames
     slides = [frame_about(axis, on_first.z, points[0]) for axis in (on_first.x, on_first.y)]
@@ -179,30 +185,37 @@ def _per_link(
 
 
 def _zero_directions(
-    fields: Fields, path: Path, section: Any, axes: tuple[Vector, Vector]
+    fields: Fields, path: Path, section: Any, axes: tuple[Vector, Vector], errors: int
 ) -> tuple[Vector, Vector]:
-    """Directions on either link that are in line, seen along the axis, at coordinate zero."""
+    """Directions on either link that are in line, seen along the axis, at coordinate zero.
+
+    `errors` as in `_square`.
+    """
     if section.zero is None:
         x = perpendicular(axes[0])
         return x, turned_shortest(axes[0], axes[1], x)
     given = _per_link(fields, (*path, "zero"), section.zero, section.links, True)
     first, second = (
-        _square(fields, (*path, "zero", link), axis, vector, "this direction", "axis")
+        _square(fields, (*path, "zero", link), axis, vector, "this direction", "axis", errors)
         for link, axis, vector in zip(section.links, axes, given, strict=True)
     )
     return first, second
 
 
 def _square(
-    fields: Fields, path: Path, axis: Vector, vector: Vector, what: str, line: str
+    fields: Fields, path: Path, axis: Vector, vector: Vector, what: str, line: str, errors: int
 ) -> Vector:
-    """A reference direction, refused where it is parallel to the axis it should stand square to."""
+    """A reference direction, refused where it is parallel to the axis it should stand square to.
+
+    `errors` counts those before the two were read: what stands in for a wrong one says nothing.
+    """
     if norm(cross(axis, vector)) > PARALLEL:
         return vector
-    fields.error(
-        "zero-parallel",
-        path,
-        f"{what} is parallel to the joint's {line}",
-        "give one that is square to it, or nearly so",
-    )
+    if fields.error_count == errors:
+        fields.error(
+            "zero-parallel",
+            path,
+            f"{what} is parallel to the joint's {line}",
+            "give one that is square to it, or nearly so",
+        )
     return perpendicular(axis)

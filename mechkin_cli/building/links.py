@@ -8,7 +8,7 @@ from typing import Any
 
 from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism.model import Link, Tensor
 from mechkin_cli.mechanism.vectors import ZERO, Vector, cross, dot
 from mechkin_cli.units import INERTIA, LENGTH, MASS
@@ -51,6 +51,7 @@ def _tensor(fields: Fields, path: Path, section: Any) -> Tensor:
             "write them as expressions",
             measured=f"cosine of their angle {cosine:.3g}",
             limit=f"{tolerances.AXES_SQUARE:g}",
+            numbers=(Number("cosine", abs(cosine), limit=tolerances.AXES_SQUARE),),
         )
     return _in_ground_axes(entries, (x, y, cross(x, y)))
 
@@ -80,15 +81,16 @@ def _check_physical(fields: Fields, path: Path, name: str, tensor: tuple[float, 
     if moments[0] >= -slack and moments[2] <= moments[0] + moments[1] + slack:
         return
     in_file = [float(fields.units.from_si(float(m), INERTIA)) for m in moments]
+    unit = fields.units.label(INERTIA)
     fields.diagnostics.append(
         Diagnostic(
             "unphysical-inertia",
             "warning",
             f"the inertia of {name} belongs to no real body",
             fields.document.place(path),
-            measured=f"principal moments {', '.join(f'{m:.6g}' for m in in_file)} "
-            f"{fields.units.label(INERTIA)}",
+            measured=f"principal moments {', '.join(f'{m:.6g}' for m in in_file)} {unit}",
             hint="a principal moment is not negative and not above the sum of the other two; "
             "accept: [unphysical-inertia] acknowledges it",
+            numbers=tuple(Number("principal moment", m, unit) for m in in_file),
         )
     )

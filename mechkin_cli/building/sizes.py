@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from mechkin_cli.building.fields import Fields
+from mechkin_cli.diagnostics import Number
 from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism
 from mechkin_cli.mechanism.motion import Motion
 from mechkin_cli.tables.layout import TableLayout
@@ -33,12 +34,14 @@ def check_loops(fields: Fields, mechanism: Mechanism) -> bool:
     loops = len(joints) - sum(name != GROUND_NAME for name in mechanism.links)
     if loops <= MOST_LOOPS:
         return True
-    fields.key_error(
+    fields.error(
         "too-many-loops",
         ("joints",),
-        f"the {len(joints)} joints close {loops} independent loops, "
-        f"this version solves {MOST_LOOPS}",
+        f"the {len(joints)} joints close too many independent loops",
         "write parts that do not act on each other in files of their own",
+        measured=f"{loops} loops",
+        limit=f"{MOST_LOOPS} loops",
+        numbers=(Number("loops", loops, limit=MOST_LOOPS),),
     )
     return False
 
@@ -59,4 +62,5 @@ def check_memory(
         "take a larger step or fewer columns, or split the sweep into several files",
         measured=f"{motion.rows * per_row:.4g} numbers",
         limit=f"{MOST_NUMBERS:.4g} numbers",
+        numbers=(Number("numbers", motion.rows * per_row, limit=MOST_NUMBERS),),
     )

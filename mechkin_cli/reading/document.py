@@ -119,7 +119,7 @@ class Document:
         return None
 
     def _outside(self, name: str, offset: int) -> Place:
-        return Place(f"--set {name}", 1, offset + 1)
+        return Place(f"--set {name}", 0, offset + 1)
 
 
 def read_document(path: str | Path) -> Document:

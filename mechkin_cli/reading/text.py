@@ -7,7 +7,7 @@ import re
 import stat
 from pathlib import Path
 
-from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place, UsageError
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, Place, UsageError
 from mechkin_cli.reading.limits import MOST_BYTES
 from mechkin_cli.reading.nearest import nearest
 
@@ -33,14 +33,7 @@ def read_text(path: str | Path) -> str:
 def decoded(content: bytes, file: str) -> str:
     """The text of a file's bytes; `file` is its name in messages. Raises `InvalidFile`."""
     if len(content) > MOST_BYTES:
-        raise _invalid(
-            "file-too-large",
-            "the file is too large for a mechanism file",
-            Place(file, 1, 1),
-            "keep long tables of numbers in CSV files",
-            measured="more than 1 MiB",
-            limit=f"{MOST_BYTES} bytes",
-        )
+        raise _too_large(len(content), file)
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError as error:
@@ -96,7 +89,10 @@ def _read_bytes(path: Path) -> bytes:
         if not stat.S_ISREG(mode):
             raise UsageError(f"{path} is not a regular file; save the mechanism in a file")
         with path.open("rb") as stream:
-            return stream.read(MOST_BYTES + 1)
+            content = stream.read(MOST_BYTES + 1)
+            if len(content) > MOST_BYTES:
+                raise _too_large(max(len(content), path.stat().st_size), str(path))
+            return content
     except FileNotFoundError:
         raise UsageError(f"there is no file {path}{_similar(path)}") from None
     except (OSError, ValueError) as error:
@@ -130,12 +126,19 @@ def _not_utf8(content: bytes, error: UnicodeDecodeError, file: str) -> InvalidFi
     return _invalid("encoding", message, place, "save the file as UTF-8")
 
 
-def _invalid(
-    code: str,
-    message: str,
-    place: Place,
-    hint: str,
-    measured: str | None = None,
-    limit: str | None = None,
-) -> InvalidFile:
-    return InvalidFile([Diagnostic(code, "error", message, place, measured, limit, hint)])
+def _too_large(size: int, file: str) -> InvalidFile:
+    diagnostic = Diagnostic(
+        "file-too-large",
+        "error",
+        "the file is too large for a mechanism file",
+        Place(file, 1, 1),
+        measured=f"{size} bytes",
+        limit=f"{MOST_BYTES} bytes",
+        hint="keep long tables of numbers in CSV files",
+        numbers=(Number("bytes", size, limit=MOST_BYTES),),
+    )
+    return InvalidFile([diagnostic])
+
+
+def _invalid(code: str, message: str, place: Place, hint: str) -> InvalidFile:
+    return InvalidFile([Diagnostic(code, "error", message, place, hint=hint)])

@@ -85,6 +85,50 @@ def test_one_direction_for_both_links_of_a_planar_joint_is_one_mistake() -> None
     assert places(text) == [("zero-parallel", 10)]
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "codes"),
+    [
+        (
+            "{type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}",
+            "{type: R, links: [grund, crnk], point: [0, 0, 1 kg], axis: [0, 0, 0]}",
+            ["unknown-link", "unknown-link", "expression", "zero-direction"],
+        ),
+        (
+            "{type: R, links: [rod, slider], point: [120, 0, 10], axis: [0, 0.2, 1]}",
+            "{type: H, links: [rod, slidr], point: [120, 0, 10], axis: [0, 0, 0], lead: 0}",
+            ["unknown-link", "zero-direction", "zero-lead"],
+        ),
+    ],
+)
+def test_independent_errors_of_one_joint_are_reported_together(
+    old: str, new: str, codes: list[str]
+) -> None:
+    assert [code for code, _ in places(SOUND.replace(old, new))] == codes
+
+
+@pytest.mark.parametrize(
+    "joint",
+    [
+        "{type: R, LINKS, axis: [0, 0, 0], zero: {crank: [1, 0, 0], rod: [1, 0, 0]}}",
+        "{type: U, LINKS, axis: [0, 0, 0], axis2: [1, 0, 0]}",
+        "{type: E, LINKS, normal: [0, 0, 0], x: [1, 0, 0]}",
+    ],
+)
+def test_what_stands_in_for_a_zero_axis_is_parallel_to_nothing(joint: str) -> None:
+    whole = joint.replace("LINKS", "links: [crank, rod], point: [0, r, 10]")
+    text = SOUND.replace("{type: S, links: [crank, rod], point: [0, r, 10]}", whole)
+    assert places(text) == [("zero-direction", 10)]
+
+
+def test_numbers_behind_a_message_are_there_for_programs() -> None:
+    (error,) = errors(SOUND.replace("mass: 1,", "mass: 1e101,"))
+    assert error.record()["numbers"] == [{"name": "value", "value": 1e101, "limit": 1e100}]
+    (warning,) = mk.loads(SOUND.replace("{xx: 1, yy: 1, zz: 1}", SLENDER)).diagnostics
+    moments = [{"name": "principal moment", "value": m, "unit": "kg*mm^2"} for m in (1, 1, 3)]
+    numbers = warning.record()["numbers"]
+    assert numbers == [part | {"value": pytest.approx(part["value"])} for part in moments]
+
+
 HELICAL = """\
 format: 1
 links: {nut: {}}

@@ -109,10 +109,10 @@ def test_set_replaces_a_parameter(mechkin, write) -> None:
         ("r", "expected NAME=VALUE"),
         ("=1", "expected NAME=VALUE"),
         ("rr=1 m", "did you mean r?"),
-        ("r=1", "--set r:1:1: error: r is a length in the file, this is a dimensionless number"),
+        ("r=1", "--set r: error: r is a length in the file, this is a dimensionless number"),
         ("r=1 kg", "in the file, this is a mass"),
-        ("r=2 *m", "--set r:1:4: error: "),
-        ("r=nan", "--set r:1:1: error: "),
+        ("r=2 *m", "--set r: error: there is nothing named m (at character 4 of the value); "),
+        ("r=nan", "--set r: error: "),
     ],
 )
 def test_a_setting_that_cannot_be(mechkin, write, setting, words) -> None:

@@ -75,8 +75,8 @@ def test_a_byte_order_mark_in_a_text_moves_no_place() -> None:
 def test_parameters_from_outside_replace_values_and_places() -> None:
     document = document_from_text(TEXT, "f.yaml").with_parameters({"P1": "0.6in"})
     assert document.data["parameters"] == {"P1": "0.6in", "alpha": "12 deg"}
-    assert str(document.place(("parameters", "P1"))) == "--set P1:1:1"
-    assert str(document.place_in(("parameters", "P1"), 3)) == "--set P1:1:4"
+    assert str(document.place(("parameters", "P1"))) == "--set P1"
+    assert document.place_in(("parameters", "P1"), 3) == Place("--set P1", 0, 4)
     assert str(document.place(("parameters", "alpha"))) == "f.yaml:3:10"
 
 
@@ -103,5 +103,5 @@ def test_parameters_that_cannot_be_set(text: str, parameters: dict[str, str], wo
 
 def test_a_bad_value_from_outside_is_reported_there() -> None:
     text = "format: 1\nparameters: {P1: 1}\njoints: {w: {type: W, links: [ground, a]}}\n"
-    with pytest.raises(InvalidFile, match=r"^--set P1:1:1: error: parameters\.P1: nan is not"):
+    with pytest.raises(InvalidFile, match=r"^--set P1: error: parameters\.P1: nan is not"):
         open_text(text, "f.yaml", {"P1": "nan"})
