@@ -33,7 +33,20 @@ def accepts(text: str) -> bool:
         data = yaml.load(text, Loader=EditorLoader)
     except (yaml.YAMLError, RecursionError):
         return False
-    return VALIDATOR.is_valid(data)
+    return VALIDATOR.is_valid(with_text_keys(data))
+
+
+def with_text_keys(data: Any) -> Any:
+    """The data as JSON has it: keys are texts, also those that are numbers or words to YAML."""
+    if isinstance(data, list):
+        return [with_text_keys(item) for item in data]
+    if isinstance(data, dict):
+        return {key_text(key): with_text_keys(value) for key, value in data.items()}
+    return data
+
+
+def key_text(key: Any) -> str:
+    return str(key).lower() if isinstance(key, bool) else str(key)
 
 
 def parts(schema: Any) -> list[dict[str, Any]]:
