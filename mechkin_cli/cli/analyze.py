@@ -109,7 +109,9 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
     """The folder of each file; no two files share one."""
     folders: dict[Path, Path] = {}
     for path in files:
-        folder = out if out and len(files) == 1 else (out or Path("out")) / path.stem
+        # a file called ...yaml has the stem .., which leads out of the folder
+        stem = path.stem if path.stem.strip(".") else path.name
+        folder = out if out and len(files) == 1 else (out or Path("out")) / stem
         twin = next((other for other, taken in folders.items() if taken == folder), None)
         if twin == path:
             raise UsageError(f"{path} is given twice; name it once")

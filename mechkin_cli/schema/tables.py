@@ -1,5 +1,6 @@
 """`tables:` - the layouts a run writes, one file each: columns are expressions over quantities."""
 
+import re
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, field_validator
@@ -23,6 +24,14 @@ TableName = TypeAliasType(
         Field(pattern=TABLE_NAME_PATTERN),
         Shown(("string",), "letters, digits, - and _; the name of the file written", ("table_03",)),
     ],
+)
+
+
+_DEVICE = re.compile("con|prn|aux|nul|com[0-9]|lpt[0-9]", re.IGNORECASE)
+# JSON Schema has no flag for ignoring case
+_TAKEN_FOR_EDITORS = (
+    "^([Rr][Oo][Ww][Ss]|[Cc][Oo][Nn]|[Pp][Rr][Nn]|[Aa][Uu][Xx]|[Nn][Uu][Ll]"
+    "|[Cc][Oo][Mm][0-9]|[Ll][Pp][Tt][0-9])$"
 )
 
 
@@ -57,7 +66,7 @@ ColumnOrText = Annotated[Column, BeforeValidator(_in_full), _ShortForm()]
 class Table(Section):
     """A table with one row per position."""
 
-    name: TableName = Field(json_schema_extra={"not": {"pattern": "^[Rr][Oo][Ww][Ss]$"}})
+    name: TableName = Field(json_schema_extra={"not": {"pattern": _TAKEN_FOR_EDITORS}})
     """Name of the files written, without ending."""
     title: Text | None = None
     """Heading in Markdown; left out, the name."""
@@ -71,6 +80,8 @@ class Table(Section):
     def _is_not_taken(cls, name: str) -> str:
         if name.casefold() == "rows":
             raise refuse("reserved-name", "every run writes a table rows of its own", "rename it")
+        if _DEVICE.fullmatch(name):
+            raise refuse("reserved-name", f"{name} is a device on Windows, no file", "rename it")
         return name
 
     @field_validator("columns", mode="after")

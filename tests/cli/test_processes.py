@@ -136,9 +136,10 @@ def test_what_needs_no_core_runs_without_it(tmp_path: Path, command: tuple[str, 
     assert (found.returncode, found.stderr) == (0, "")
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 @pytest.mark.parametrize("earlier", [False, True], ids=["first run", "tables of an earlier run"])
 def test_an_interrupt_leaves_nothing_half_written(
-    tmp_path: Path, invalid: Path, earlier: bool
+    tmp_path: Path, invalid: Path, earlier: bool, number: signal.Signals
 ) -> None:
     long = files.CRANK.replace("to: 90, step: 45", "to: 90, step: 1e-4")
     (tmp_path / "long.yaml").write_text(long, encoding="utf-8")
@@ -157,7 +158,7 @@ def test_an_interrupt_leaves_nothing_half_written(
     assert process.stderr is not None
     assert process.stderr.readline().startswith("invalid.yaml:")
     time.sleep(0.3)  # now the long one is under way; it takes some seconds
-    process.send_signal(signal.SIGINT)
+    process.send_signal(number)
     out, err = process.communicate(timeout=60)
     assert (process.returncode, out) == (130, "")
     assert err == "mechkin: interrupted; files written so far are whole\n"

@@ -1,4 +1,4 @@
-"""Coverage-guided fuzzing of reading, schema and building: `python tests/fuzz --minutes 10`.
+"""Coverage-guided fuzzing of reading, schema and building: `python tests/fuzz 10` (minutes).
 
 Needs Atheris (`pip install '.[fuzz]'`, Linux): libFuzzer keeps whatever reaches new branches of the
 package. Every second mutation is one of words and lines, the others are libFuzzer's own. It ends
@@ -23,10 +23,10 @@ PACKAGES = [
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--minutes", type=float, default=10.0)
+    parser.add_argument("minutes", type=float, nargs="?", default=10.0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--corpus", type=Path, help="folder that keeps what was found")
-    parser.add_argument("files", nargs="*", type=Path, help="only run these inputs")
+    parser.add_argument("--only", nargs="*", type=Path, help="run these inputs and stop")
     options = parser.parse_args()
     try:
         import atheris
@@ -38,8 +38,8 @@ def main() -> None:
         from fuzz.verdict import verdict
 
         import mechkin_cli.interface  # noqa: F401 - otherwise loaded later, without counters
-    if options.files:
-        for path in options.files:
+    if options.only:
+        for path in options.only:
             print(f"{path}: {verdict(path.read_bytes())}")
         return
     first, vocabulary = seeds(), words()
