@@ -66,8 +66,8 @@ def _extrapolated(
     plan: Plan, followed: Followed, inputs: Floats, state: Floats, span: float
 ) -> BranchPoint | None:
     """The zero seen from NODES places between a span and a tenth of it before the last place."""
-    angles = (2.0 * np.arange(NODES) + 1.0) * np.pi / (2.0 * NODES)
-    before = span * (0.55 + 0.45 * functions.cos(angles))
+    angles = np.asarray((2.0 * np.arange(NODES) + 1.0) * np.pi / (2.0 * NODES), dtype=np.float64)
+    before: Floats = span * (0.55 + 0.45 * functions.cos(angles))
     places = followed.inputs[:, None] - followed.direction[:, None] * before
     path = np.concatenate([inputs[:, None], places], axis=1)
     way = follow(plan, np.ascontiguousarray(path), state)
