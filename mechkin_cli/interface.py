@@ -25,13 +25,15 @@ from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.expressions import Expression, Vector, parse
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
-from mechkin_cli.solver.graph import SolverGraph
+from mechkin_cli.solver.graph import ANGLES, SolverGraph
 from mechkin_cli.tables.columns import Columns, evaluate, mode_words, status_words
 from mechkin_cli.tables.layout import ROW_TEXTS, TableLayout
 from mechkin_cli.tables.uniqueness import unique_cells
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from mechkin_cli.analysis.modes import Modes
 
 _NO_PARAMETERS: Mapping[str, str] = MappingProxyType({})
 
@@ -151,6 +153,55 @@ class Model:
         if demand_of(problem.mechanism, [known[name] for name in names]) & Demand.FORCES:
             for _, diagnostic in spin_errors(problem):
                 raise UsageError(str(diagnostic))
+    def modes(self, at: Setting | Mapping[str, Setting] | None = None) -> Modes:
+        """All assembly modes at the first row, or at another place.
+
+        Args:
+            at: the input there (of several, the first that the file sweeps), or inputs by name;
+                a number is in the file's units, a text may carry its own ("0.5 rad"). Inputs that
+                are not given keep their value of the first row.
+
+        Raises:
+            UsageError: an unknown input, or a value that is none.
+
+        Example:
+            >>> [mode.name for mode in load("mechanisms/rcsr.yaml").modes(at=170).modes]
+            ['A', 'B']
+        """
+        from mechkin_cli.analysis.modes import find_modes
+
+        places = None if at is None else self._places(at)
+        return find_modes(self.problem, self.graph, places)
+
+    def _places(self, at: Setting | Mapping[str, Setting]) -> dict[str, float]:
+        """Inputs by name in the file's units."""
+        inputs = {item.name: item for item in self.problem.motion.inputs}
+        if not isinstance(at, Mapping):
+            swept = [name for name, item in inputs.items() if np.ptp(item.written) > 0.0]
+            names = swept or list(inputs)
+            if not names:
+                raise UsageError(f"{self.name} has no input to be put at {at}")
+            at = {names[0]: at}
+        places = {}
+        for name, value in at.items():
+            if name not in inputs:
+                raise UsageError(f"{name} is no input; inputs are {', '.join(inputs) or 'none'}")
+            places[name] = self._input_value(name, value)
+        return places
+
+    def _input_value(self, name: str, value: Setting) -> float:
+        """A value of an input in the file's units."""
+        from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
+        from mechkin_cli.units import ANGLE, LENGTH
+
+        text = value if isinstance(value, str) else repr(float(value))
+        dimension = ANGLE if name.partition(".")[2] in ANGLES else LENGTH
+        resolve = lookup(self.problem.parameters)
+        try:
+            return constant_in_file_units(text, dimension, self.problem.units, resolve)
+        except ExpressionError as error:
+            hint = f"; {error.hint}" if error.hint else ""
+            raise UsageError(f"{name} at {text}: {error.message}{hint}") from None
 
     def _chosen_tables(self, names: Sequence[str] | None) -> tuple[TableLayout, ...]:
         if names is None:

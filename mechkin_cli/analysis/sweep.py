@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.assembly import Probe, Start, choose_start
+from mechkin_cli.analysis.assembly import Start, choose_start
 from mechkin_cli.analysis.branch_end import explain_end
 from mechkin_cli.analysis.closing_angles import unwrap_closing_angles
 from mechkin_cli.analysis.followed import followed_part
 from mechkin_cli.analysis.idle import conventional_notes, holding_notes
 from mechkin_cli.analysis.notes import not_converged_note, redundancy_note
+from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.result import Result
 from mechkin_cli.analysis.rows import KernelInputs, RowStates, kernel_inputs

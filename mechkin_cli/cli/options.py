@@ -12,6 +12,7 @@ from mechkin_cli.diagnostics import UsageError
 Files = Annotated[
     list[Path], typer.Argument(help="Mechanism files (YAML, format 1).", metavar="FILE")
 ]
+File = Annotated[Path, typer.Argument(help="Mechanism file (YAML, format 1).", metavar="FILE")]
 Set = Annotated[
     list[str] | None,
     typer.Option(

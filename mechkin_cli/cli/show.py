@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,21 +22,28 @@ GAP = "  "
 def shown_tables(analysis: Analysis, folder: Path) -> Iterator[str]:
     """Each table as text that ends in an empty line; the files in `folder` hold all of it."""
     width = shutil.get_terminal_size((80, 24)).columns
+    chosen = _chosen_rows(analysis.rows)
     for table in analysis.tables:
-        yield _table_text(table, analysis.rows, width, folder)
+        lines = [f"{table.name}: {table.title}" if table.title != table.name else table.name]
+        for group in _grouped(table, chosen, width):
+            lines += ["", *group]
+        left_out = analysis.rows - len(chosen)
+        if left_out:
+            lines.append(f"({left_out} of {analysis.rows} rows left out here; all are in {folder})")
+        yield "\n".join(lines) + "\n\n"
 
 
-def _table_text(table: Columns, rows: int, width: int, folder: Path) -> str:
-    chosen = _chosen_rows(rows)
-    columns = [_cells(column, chosen) for column in table.columns]
-    lines = [f"{table.name}: {table.title}" if table.title != table.name else table.name]
-    for group in _groups(columns, width):
-        lines.append("")
-        for row in zip(*group, strict=True):
-            lines.append(GAP.join(row).rstrip())
-    if len(chosen) < rows:
-        lines.append(f"({rows - len(chosen)} of {rows} rows left out here; all are in {folder})")
-    return "\n".join(lines) + "\n\n"
+def shown_table(table: Columns, count: int) -> str:
+    """All rows of one table, without its title."""
+    width = shutil.get_terminal_size((80, 24)).columns
+    groups = _grouped(table, range(count), width)
+    return "\n\n".join("\n".join(group) for group in groups) + "\n"
+
+
+def _grouped(table: Columns, rows: Sequence[int], width: int) -> Iterator[list[str]]:
+    """The lines of the columns that fit side by side, group by group."""
+    for group in _groups([_cells(column, rows) for column in table.columns], width):
+        yield [GAP.join(row).rstrip() for row in zip(*group, strict=True)]
 
 
 def _chosen_rows(rows: int) -> list[int]:
@@ -46,13 +53,13 @@ def _chosen_rows(rows: int) -> list[int]:
     return [*range(half), *range(rows - half, rows)]
 
 
-def _cells(column: Column, chosen: list[int]) -> list[str]:
+def _cells(column: Column, chosen: Sequence[int]) -> list[str]:
     """Label, unit and cells of a column, padded to one width."""
     if isinstance(column.values, Words):
         every = column.values.texts()
         texts = [every[i] for i in chosen]
     else:
-        texts = column_texts(column.values[chosen], column.decimals)
+        texts = column_texts(column.values[list(chosen)], column.decimals)
     cells = [column.label, f"[{column.unit}]" if column.unit else "", *texts]
     width = max(map(len, cells))
     return [cell.rjust(width) for cell in cells]

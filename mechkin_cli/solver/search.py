@@ -1,12 +1,13 @@
 """All ways of assembling a mechanism at given inputs that random starts find.
 
 Block by block: Levenberg-Marquardt from random starts (fixed seed), side conditions, clustering by
-the poses. Starts go on until one more is unlikely to find a new mode (Good-Turing estimate).
+the poses. Starts go on until one more is unlikely to find a new mode: of C starts that closed, M
+met a mode that no other met, so the next meets a new one with chance max(M, 1) / C (Good 1953;
+with M = 0 the chance is known only to be of order 1 / C).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -35,7 +36,8 @@ class Found(NamedTuple):
     """Assemblies (columns of `states`), their condition, and how the search went.
 
     `closed` starts of `starts` ended on an assembly; `chance` estimates that one more start finds
-    a new one; `closest` is the least closing residual of any start.
+    a new one; `closest` is the least closing residual of any start; `stopped` tells that the search
+    ended at its most starts while that chance was still high.
     """
 
     states: Floats
@@ -45,6 +47,7 @@ class Found(NamedTuple):
     closed: int
     chance: float
     closest: float
+    stopped: bool
 
     @property
     def number(self) -> int:
@@ -52,28 +55,51 @@ class Found(NamedTuple):
         return int(self.states.shape[1])
 
 
-@dataclass
 class _Clusters:
     """Representatives found so far and how often each was met."""
 
-    states: list[Floats]
-    keys: list[Floats]
-    met: list[int]
-    closest: float = float("inf")
+    def __init__(self, layout: Layout) -> None:
+        self.layout = layout
+        self.states = np.empty((layout.states, 0))
+        self.keys = pose_keys(layout, self.states)
+        self.met = np.empty(0, dtype=np.int64)
+        self.tried = 0
+        self.closed = 0
+        self.closest = float("inf")
 
-    def add(self, state: Floats, key: Floats) -> None:
-        for i, known in enumerate(self.keys):
-            if np.max(np.abs(known - key)) < tolerances.SAME_MODE:
-                self.met[i] += 1
-                return
-        self.states.append(state)
-        self.keys.append(key)
-        self.met.append(1)
+    def add(self, states: Floats) -> None:
+        """Sorts assemblies (columns) into the clusters."""
+        self.closed += states.shape[1]
+        keys = pose_keys(self.layout, states)
+        while keys.shape[1]:
+            known = same_poses(self.keys, keys)
+            self.met += np.count_nonzero(known, axis=1)
+            left = np.flatnonzero(~known.any(axis=0))
+            states, keys = states[:, left], keys[:, left]
+            # the rest may be met by one of themselves: take in the first, look again
+            self.states = np.concatenate([self.states, states[:, :1]], axis=1)
+            self.keys = np.concatenate([self.keys, keys[:, :1]], axis=1)
+            self.met = np.append(self.met, np.zeros(states[:, :1].shape[1], dtype=np.int64))
 
     @property
     def chance(self) -> float:
-        total = sum(self.met)
-        return sum(1 for m in self.met if m == 1) / total if total else 1.0
+        """Estimated chance that one more closing start finds a new assembly."""
+        return max(int(np.count_nonzero(self.met == 1)), 1) / self.closed if self.closed else 1.0
+
+    @property
+    def settled(self) -> bool:
+        """Whether more starts are not worth it."""
+        if not self.closed:
+            return self.tried >= tolerances.SEARCH_HOPELESS_STARTS
+        return self.chance < tolerances.SEARCH_NEW_MODE_CHANCE
+
+
+def same_poses(known: Floats, keys: Floats) -> NDArray[np.bool_]:
+    """Which columns of `keys` are the poses of which columns of `known`: (known, keys)."""
+    found = np.ones((known.shape[1], keys.shape[1]), dtype=bool)
+    for one, other in zip(known, keys, strict=True):
+        found &= np.abs(one[:, None] - other[None, :]) < tolerances.SAME_MODE
+    return found
 
 
 def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Found:
@@ -90,16 +116,20 @@ def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Fo
     partial[0][_quaternion_scalars(layout), 0] = 1.0
     starts = closed = 0
     chance = closest = 0.0
+    stopped = False
     for number in range(len(layout.graph.blocks)):
         continued: list[Floats] = []
         for base in partial:
-            clusters, tried = _search_block(layout, plan, number, inputs, base, generator, turns)
-            continued.extend(state[:, None] for state in clusters.states)
-            starts, closed = starts + tried, closed + sum(clusters.met)
-            chance = max(chance, clusters.chance if clusters.met else 0.0)
+            clusters = _search_block(layout, plan, number, inputs, base, generator, turns)
+            continued.extend(state[:, None] for state in clusters.states.T)
+            starts, closed = starts + clusters.tried, closed + clusters.closed
+            chance = max(chance, clusters.chance if clusters.closed else 0.0)
             closest = max(closest, clusters.closest)
+            stopped = stopped or not clusters.settled
         partial = continued
-    return _polished(layout, plan, inputs, partial, (starts, closed, chance, closest))
+    every = np.concatenate([np.empty((plan.states, 0)), *partial], axis=1)
+    states, residual, condition = _closed(layout, plan, inputs, every)
+    return Found(states, residual, condition, starts, closed, chance, closest, stopped)
 
 
 def _search_block(
@@ -110,26 +140,32 @@ def _search_block(
     base: Floats,
     generator: RandomStarts,
     turns: int,
-) -> tuple[_Clusters, int]:
-    clusters = _Clusters([], [], [])
-    tried = 0
+) -> _Clusters:
+    clusters = _Clusters(layout)
     size = tolerances.SEARCH_STARTS
     values = np.repeat(inputs[:, None], size, axis=1)
-    while tried < tolerances.SEARCH_MOST_STARTS:
+    threads = _threads(layout, number)
+    while clusters.tried < tolerances.SEARCH_MOST_STARTS and not clusters.settled:
         states = np.repeat(base, size, axis=1)
         _randomise(layout, number, states, generator, turns)
         residual, flags = np.empty(size), np.empty(size, dtype=np.uint8)
         limits = (tolerances.SEARCH_ITERATIONS, tolerances.SEARCH_RESIDUAL)
         plan.search(number, values, states, residual, flags, *limits, 0)
         clusters.closest = min(clusters.closest, float(np.min(residual)))
-        good = np.flatnonzero(flags == 0)
-        keys = pose_keys(layout, states[:, good])
-        for i, column in enumerate(good):
-            clusters.add(states[:, column].copy(), keys[:, i])
-        tried += size
-        if clusters.chance < tolerances.SEARCH_NEW_MODE_CHANCE or not clusters.met:
-            break
-    return clusters, tried
+        within = np.all(np.abs(states[threads]) <= _most_turn(turns), axis=0)
+        clusters.add(states[:, (flags == 0) & within])
+        clusters.tried += size
+    return clusters
+
+
+def _threads(layout: Layout, number: int) -> list[int]:
+    """States of a block that are turns of threads."""
+    unknowns = (layout.carrier_of(*u)[0] for u in layout.graph.blocks[number].unknowns)
+    return [layout.carriers[k].state for k in unknowns if layout.carriers[k].part.letter == "H"]
+
+
+def _most_turn(turns: int) -> float:
+    return pi * (2 * turns + 1)
 
 
 def _randomise(
@@ -148,7 +184,7 @@ def _randomise(
         elif tree_types()[carrier.part.letter].slides[local]:
             states[state] = generator.between(reach, rows)
         else:
-            half = pi * (2 * turns + 1) if carrier.part.letter == "H" else pi
+            half = _most_turn(turns) if carrier.part.letter == "H" else pi
             states[state] = generator.between(half, rows)
 
 
@@ -174,18 +210,22 @@ def pose_keys(layout: Layout, states: Floats) -> Floats:
     return np.stack(keys) if keys else np.zeros((0, states.shape[1]))
 
 
-def _polished(
-    layout: Layout,
-    plan: Plan,
-    inputs: Floats,
-    partial: list[Floats],
-    how: tuple[int, int, float, float],
+def with_assemblies(
+    layout: Layout, plan: Plan, inputs: Floats, found: Found, states: Floats
 ) -> Found:
-    """Newton on the whole mechanism, singular ends and doubles dropped, angles wrapped."""
-    empty = np.empty(0)
-    if not partial:
-        return Found(np.empty((plan.states, 0)), empty, empty, *how)
-    states = np.concatenate(partial, axis=1)
+    """`found` with the assemblies among `states` (states, count) that it lacks."""
+    every = np.concatenate([found.states, states], axis=1)
+    states, residual, condition = _closed(layout, plan, inputs, every)
+    return found._replace(states=states, residual=residual, condition=condition)
+
+
+def _closed(
+    layout: Layout, plan: Plan, inputs: Floats, states: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Newton on the whole mechanism, singular ends and doubles dropped, angles wrapped: states,
+    residual, condition."""
+    if states.shape[1] == 0:
+        return states, np.empty(0), np.empty(0)
     values = np.repeat(inputs[:, None], states.shape[1], axis=1)
     batch = run(plan, values, states, demand=Demand.CONDITION, iterations=20)
     assert batch.condition is not None
@@ -197,11 +237,8 @@ def _polished(
     )
     wrap_angles(layout, states)
     keys = pose_keys(layout, states)
-    chosen: list[int] = []
-    for i in range(states.shape[1]):
-        if all(np.max(np.abs(keys[:, i] - keys[:, j])) >= tolerances.SAME_MODE for j in chosen):
-            chosen.append(i)
-    return Found(states[:, chosen], residual[chosen], condition[chosen], *how)
+    chosen = np.flatnonzero(~np.triu(same_poses(keys, keys), 1).any(axis=0))
+    return states[:, chosen], residual[chosen], condition[chosen]
 
 
 def wrap_angles(layout: Layout, states: Floats) -> None:

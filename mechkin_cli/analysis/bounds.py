@@ -1,0 +1,64 @@
+"""Proven numbers of assemblies of a loop at fixed inputs, by its pairs alone.
+
+What is left of a loop when its inputs are fixed closes in six freedoms: turns R, slides P, and at
+most one sphere S (C is R P, U is R R, E is P P R, Sp is S P P, Sg is S P; a driven freedom is
+gone). The order does not matter. The bounds hold where the assemblies are isolated.
+
+- one S and three others (Pieper 1968): the centre's curve on one link, a line or a circle, meets
+  its surface on the other. Line and plane 1; with one turn circle and plane, or line and quadric,
+  2; with two circle and quadric, or line and torus, 4; circle and torus 4, since four of their
+  eight intersections lie on the circle at infinity.
+- no S (Raghavan, Roth 1993; Lee, Liang 1988 for 7R): 3R 3P 2, 4R 2P 8, 5R P 16, 6R 16.
+
+Blocks that are solved one after the other multiply.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from mechkin_cli.mechanism.joint_types import JointType, tree_types
+from mechkin_cli.solver.graph import Block, SolverGraph
+
+WITH_SPHERE = {0: 1, 1: 2, 2: 4, 3: 4}
+"""Bound by the number of turns beside the sphere."""
+
+WITHOUT_SPHERE = {3: 2, 4: 8, 5: 16, 6: 16}
+"""Bound by the number of turns."""
+
+
+def most_assemblies(graph: SolverGraph) -> int | None:
+    """The proven bound of a mechanism at fixed inputs, None where none is known."""
+    bound = 1
+    for block in graph.blocks:
+        most = _of_block(graph, block)
+        if most is None:
+            return None
+        bound *= most
+    return bound if graph.blocks else None
+
+
+def _of_block(graph: SolverGraph, block: Block) -> int | None:
+    if len(block.closings) != 1 or block.equations != len(block.unknowns):
+        return None
+    letters = list(_letters(graph.closings[block.closings[0]].joint.type))
+    for number, freedom in block.unknowns:
+        letters.append(_letters(graph.edges[number].joint.type)[freedom])
+    found = Counter(letters)
+    turns, slides, spheres = found["R"], found["P"], found["S"] // 3
+    if len(letters) != 6 or turns + slides + 3 * spheres != 6:
+        return None
+    return (WITHOUT_SPHERE, WITH_SPHERE)[spheres].get(turns) if spheres <= 1 else None
+
+
+def _letters(kind: JointType) -> str:
+    """One letter per freedom: R turn, P slide, H thread, three times S."""
+    letters = ""
+    for part in kind.parts:
+        slides = tree_types()[part].slides
+        letters += (
+            "SSS"
+            if part == "S"
+            else "".join("P" if slide else "H" if part == "H" else "R" for slide in slides)
+        )
+    return letters

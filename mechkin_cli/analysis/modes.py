@@ -1,0 +1,255 @@
+"""All assembly modes: at the first row, or at other inputs with the first row's letters.
+
+Letters belong to the first row. Elsewhere a mode has the letter of the first row's mode whose
+branch, followed along the straight path of the inputs, arrives there; one that no branch reaches
+has the name `-`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.assembly import choose_start, nothing_found
+from mechkin_cli.analysis.bounds import most_assemblies
+from mechkin_cli.analysis.named_modes import NamedModes, is_cyclic, name_modes, wrapped
+from mechkin_cli.analysis.probe import Probe
+from mechkin_cli.analysis.problem import Problem
+from mechkin_cli.analysis.rows import in_file_units, kernel_inputs
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.solver.follow import TrackEnd, follow
+from mechkin_cli.solver.graph import ANGLES, SolverGraph
+from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.search import Found, assemblies, pose_keys, same_poses, with_assemblies
+from mechkin_cli.units import ANGLE, LENGTH, Dimension
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.kernel._kernel import Plan
+
+    Floats = NDArray[np.float64]
+
+UNNAMED = "-"
+"""Name of a mode that no branch from the first row reaches."""
+
+
+class Mode(NamedTuple):
+    """One way of assembling; coordinates in the file's units, angles in (-180, 180] degrees but
+    for threads."""
+
+    name: str
+    coordinates: dict[str, float]
+    residual: float
+    condition: float
+
+
+@dataclass(frozen=True)
+class Modes:
+    """The assembly modes at `inputs` (file's units) and how the search went.
+
+    `picked` is the name of the mode that the file's `assembly:` takes, None where it takes none or
+    its branch does not come here. `closed` of `starts` random starts closed; `chance` estimates
+    that one more that closes finds another mode; `stopped` says that the search ended at its most
+    starts before that chance was small. `bound` is a proven largest number of modes, if one is
+    known; `turns` are the turns of threads searched to either side, None without threads.
+    """
+
+    modes: tuple[Mode, ...]
+    inputs: dict[str, float]
+    picked: str | None
+    starts: int
+    closed: int
+    chance: float
+    stopped: bool
+    bound: int | None
+    turns: int | None
+    diagnostics: tuple[Diagnostic, ...]
+
+    @property
+    def complete(self) -> bool:
+        """Whether these are all modes for certain: as many as are proven to be possible."""
+        return len(self.modes) == self.bound
+
+    @property
+    def sentence(self) -> str:
+        """What is known of completeness."""
+        count = len(self.modes)
+        noun = "mode" if count == 1 else "modes"
+        if self.complete:
+            return f"{count} {noun}: all, no loop of these pairs has more"
+        known = f", no loop of these pairs has more than {self.bound}" if self.bound else ""
+        if not self.starts:
+            return f"{count} {noun}: without loops there is no other"
+        if not count:
+            return f"no mode found: none of {self.starts} random starts closed the loops"
+        text = f"{count} {noun} found{known}; {self.closed} of {self.starts} random starts closed, "
+        text += f"one more finds another with an estimated chance of {self.chance:.1g}"
+        if self.turns is not None:
+            text += f"; threads within {self.turns}.5 turns to either side"
+        return text
+
+
+def find_modes(
+    problem: Problem, graph: SolverGraph, at: Mapping[str, float] | None = None
+) -> Modes:
+    """The assembly modes at the first row, or with the inputs `at` (by name, in the file's units)
+    in place of the values there."""
+    layout = Layout(problem.mechanism, graph)
+    plan = layout.build()
+    probe = Probe(problem, layout)
+    first = kernel_inputs(problem, layout).values[:, 0]
+    named = name_modes(problem, layout, plan, first, probe)
+    start = choose_start(problem, layout, plan, first[:, None], probe, named)
+    chosen = _number_of(layout, named.found, start.state)
+    letter = UNNAMED if chosen is None else named.letters[chosen]
+    if at is None:
+        notes = start.diagnostics
+        names = [named.letters[i] for i in range(named.number)]
+        return _result(problem, layout, probe, first, {}, named.found, names, letter, notes)
+    place = _inputs_at(problem, layout, at)
+    ends, notes = _follow_all(problem, layout, plan, first, place, named)
+    found = assemblies(layout, plan, place, problem.assembly.turns)
+    if ends:
+        found = with_assemblies(layout, plan, place, found, np.stack([*ends.values()], axis=1))
+    if found.number == 0:
+        notes = [nothing_found(problem, layout.graph, found, "there")]
+    names = _names_at(layout, found, ends)
+    return _result(problem, layout, probe, place, at, found, names, letter, notes)
+
+
+def _inputs_at(problem: Problem, layout: Layout, at: Mapping[str, float]) -> Floats:
+    """Inputs (inputs,) in kernel units."""
+    inputs = []
+    for item in problem.motion.inputs:
+        value = float(item.values[0])
+        if item.name in at:
+            value = float(problem.units.to_si(at[item.name], _dimension(item.name)))
+        inputs.append(item._replace(values=np.full(problem.motion.rows, value)))
+    changed = replace(problem, motion=problem.motion._replace(inputs=tuple(inputs)))
+    return kernel_inputs(changed, layout).values[:, 0]
+
+
+def _number_of(layout: Layout, found: Found, state: Floats | None) -> int | None:
+    """Which of the assemblies a state is."""
+    if state is None:
+        return None
+    same = same_poses(pose_keys(layout, found.states), pose_keys(layout, state[:, None]))
+    return int(np.argmax(same[:, 0])) if same.any() else None
+
+
+def _follow_all(
+    problem: Problem,
+    layout: Layout,
+    plan: Plan,
+    first: Floats,
+    place: Floats,
+    named: NamedModes,
+) -> tuple[dict[str, Floats], list[Diagnostic]]:
+    """States at `place` by letter, of the branches that arrive there; a note for each that does
+    not."""
+    ends: dict[str, Floats] = {}
+    notes = []
+    path = np.stack([first, place], axis=1)
+    for number, letter in named.letters.items():
+        followed = follow(plan, path, named.found.states[:, number])
+        if followed.end == TrackEnd.FINISHED:
+            ends[letter] = followed.state
+            continue
+        places = ", ".join(
+            f"{item.name} = {in_file_units(problem, layout, k, float(followed.inputs[k]))}"
+            for k, item in enumerate(problem.motion.inputs)
+        )
+        notes.append(
+            Diagnostic(
+                "branch-ends",
+                "note",
+                f"mode {letter} of the first row ends on the way",
+                measured=f"followed up to {places}",
+            )
+        )
+    return ends, notes
+
+
+def _names_at(layout: Layout, found: Found, ends: Mapping[str, Floats]) -> list[str]:
+    names = [UNNAMED] * found.number
+    for letter, state in ends.items():
+        number = _number_of(layout, found, state)
+        if number is not None:
+            names[number] = letter
+    return names
+
+
+def _result(
+    problem: Problem,
+    layout: Layout,
+    probe: Probe,
+    place: Floats,
+    at: Mapping[str, float],
+    found: Found,
+    names: list[str],
+    letter: str,
+    notes: list[Diagnostic],
+) -> Modes:
+    if found.stopped:
+        notes = [*notes, _stopped_note(found)]
+    inputs = {
+        item.name: at.get(item.name, float(item.written[0])) for item in problem.motion.inputs
+    }
+    coordinates, _ = probe.read(place, found.states)
+    order = sorted(
+        range(found.number), key=lambda i: (names[i] == UNNAMED, len(names[i]), names[i])
+    )
+    modes = tuple(
+        Mode(
+            names[i],
+            {n: _shown(problem, inputs, n, float(v[i])) for n, v in coordinates.items()},
+            float(found.residual[i]),
+            float(found.condition[i]),
+        )
+        for i in order
+    )
+    threads = any(joint.letter == "H" for joint in problem.mechanism.joints.values())
+    return Modes(
+        modes=modes,
+        inputs=inputs,
+        picked=letter if letter != UNNAMED and letter in names else None,
+        starts=found.starts,
+        closed=found.closed,
+        chance=found.chance,
+        stopped=found.stopped,
+        bound=most_assemblies(layout.graph),
+        turns=problem.assembly.turns if threads else None,
+        diagnostics=(*problem.diagnostics, *notes),
+    )
+
+
+def _shown(problem: Problem, inputs: Mapping[str, float], name: str, value: float) -> float:
+    """A coordinate in the file's units; that of an input as it was given."""
+    if is_cyclic(problem.mechanism, name) and (name not in inputs or wrapped(value) != value):
+        return _in_file_units(problem, name, wrapped(value))
+    return inputs.get(name, _in_file_units(problem, name, value))
+
+
+def _in_file_units(problem: Problem, name: str, value: float) -> float:
+    return float(problem.units.from_si(value, _dimension(name)))
+
+
+def _dimension(name: str) -> Dimension:
+    return ANGLE if name.partition(".")[2] in ANGLES else LENGTH
+
+
+def _stopped_note(found: Found) -> Diagnostic:
+    return Diagnostic(
+        "search-stopped",
+        "warning",
+        "the search ended at its most starts while it still found new modes",
+        measured=f"{found.starts} starts, a chance of {found.chance:.1g} that one more that closes "
+        "finds a new mode",
+        limit=f"{tolerances.SEARCH_NEW_MODE_CHANCE:g}",
+        hint="more modes may exist; fewer turns under assembly: leave fewer for threads",
+    )

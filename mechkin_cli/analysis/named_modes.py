@@ -1,0 +1,104 @@
+"""The assembly modes at the first row with their letters.
+
+Letters follow the order of the wrapped coordinates, in joint order. An assembled drawing's own
+branch is among the modes even where the random starts miss it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.analysis.home import follow_from_home, is_home_assembled
+from mechkin_cli.analysis.probe import Probe
+from mechkin_cli.analysis.problem import Problem
+from mechkin_cli.mechanism.model import Mechanism
+from mechkin_cli.solver.follow import TrackEnd
+from mechkin_cli.solver.graph import ANGLES
+from mechkin_cli.solver.layout import Layout, is_slide
+from mechkin_cli.solver.search import Found, assemblies, with_assemblies
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.kernel._kernel import Plan
+
+    Floats = NDArray[np.float64]
+
+QUANTUM = 1e-6
+"""Coordinates (rad, parts of the size) that differ less are equal for the order, so that rounding
+cannot change it."""
+
+
+@dataclass(frozen=True)
+class NamedModes:
+    """Assemblies as `found`, their coordinates (SI), joint points and letters (by number, in the
+    order of the letters)."""
+
+    found: Found
+    coordinates: dict[str, Floats]
+    points: Floats
+    letters: dict[int, str]
+
+    @property
+    def number(self) -> int:
+        """Number of assemblies."""
+        return self.found.number
+
+
+def name_modes(
+    problem: Problem, layout: Layout, plan: Plan, inputs: Floats, probe: Probe
+) -> NamedModes:
+    """The modes at the first row, `inputs` (inputs,) in kernel units."""
+    found = assemblies(layout, plan, inputs, problem.assembly.turns)
+    if is_home_assembled(layout, plan):
+        home = follow_from_home(layout, plan, inputs)
+        if home.end == TrackEnd.FINISHED:
+            found = with_assemblies(layout, plan, inputs, found, home.state[:, None])
+    coordinates, points = probe.read(inputs, found.states)
+    return NamedModes(
+        found, coordinates, points, letters(problem.mechanism, coordinates, found.number)
+    )
+
+
+def letters(mechanism: Mechanism, coordinates: dict[str, Floats], count: int) -> dict[int, str]:
+    """The name of each of `count` assemblies, by its number, in the order of the names."""
+    order = sorted(range(count), key=lambda i: _key(mechanism, coordinates, i))
+    return {i: mode_name(rank) for rank, i in enumerate(order)}
+
+
+def _key(mechanism: Mechanism, coordinates: dict[str, Floats], number: int) -> tuple[int, ...]:
+    half_turn, size = round(pi / QUANTUM), mechanism.box_diagonal()
+    key = []
+    for name, values in coordinates.items():
+        value = float(values[number])
+        angle = is_cyclic(mechanism, name)
+        if is_slide(name.partition(".")[2]):
+            value /= size
+        part = round((wrapped(value) if angle else value) / QUANTUM)
+        key.append(half_turn if angle and part == -half_turn else part)
+    return tuple(key)
+
+
+def mode_name(rank: int) -> str:
+    """A, B, ... Z, AA, AB, ..."""
+    name = ""
+    rank += 1
+    while rank:
+        rank, digit = divmod(rank - 1, 26)
+        name = chr(ord("A") + digit) + name
+    return name
+
+
+def is_cyclic(mechanism: Mechanism, name: str) -> bool:
+    """Whether a turn more of a coordinate is the same place: angles but for those of threads."""
+    joint, _, coordinate = name.partition(".")
+    return coordinate in ANGLES and mechanism.joints[joint].letter != "H"
+
+
+def wrapped(angle: float) -> float:
+    """The angle brought into (-pi, pi]."""
+    return angle - 2.0 * pi * ceil((angle - pi) / (2.0 * pi))

@@ -1,0 +1,123 @@
+"""`mechkin modes`: the ways to assemble a mechanism."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import Record, put, refusal, say, say_diagnostics
+from mechkin_cli.cli.options import File, Json, Quiet, Set, parameters
+from mechkin_cli.diagnostics import InvalidFile, UsageError
+
+if TYPE_CHECKING:
+    from mechkin_cli.analysis.modes import Modes
+    from mechkin_cli.interface import Model
+    from mechkin_cli.tables.columns import Columns
+
+
+def modes(
+    file: File,
+    at: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--at",
+            metavar="VALUE",
+            help="Input instead of the first row's; of several as O1.theta=VALUE, repeatable.",
+        ),
+    ] = None,
+    set_: Set = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """List the ways to assemble a mechanism at one position of its inputs."""
+    from mechkin_cli.interface import load
+
+    try:
+        model = load(file, parameters(set_))
+        found = model.modes(_place(at))
+    except (InvalidFile, UsageError) as error:
+        code, record = refusal(file, error)
+    else:
+        say_diagnostics(found.diagnostics, str(file))
+        code, record = (ExitCode.OK if found.modes else ExitCode.ROWS_MISSING), {}
+        if json:
+            record = {"file": str(file), **_record(model, found)}
+        else:
+            _print(model, found, quiet)
+    if json:
+        from mechkin_cli.tables.json_writer import json_text
+
+        put(json_text(record))
+    if code:
+        raise typer.Exit(code)
+
+
+def _place(texts: list[str] | None) -> str | dict[str, str] | None:
+    if not texts:
+        return None
+    if len(texts) == 1 and "=" not in texts[0]:
+        return texts[0]
+    place = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not value.strip():
+            raise UsageError(f"--at {text}: expected INPUT=VALUE, for example O1.theta=50")
+        place[name.strip()] = value.strip()
+    return place
+
+
+def _record(model: Model, found: Modes) -> Record:
+    return {
+        "name": model.name,
+        "inputs": found.inputs,
+        "modes": [mode._asdict() for mode in found.modes],
+        "assembly": found.picked,
+        "search": {
+            "starts": found.starts,
+            "closed": found.closed,
+            "chance": found.chance,
+            "stopped": found.stopped,
+            "turns": found.turns,
+        },
+        "bound": found.bound,
+        "complete": found.complete,
+        "completeness": found.sentence,
+        "diagnostics": [diagnostic.record() for diagnostic in found.diagnostics],
+    }
+
+
+def _print(model: Model, found: Modes, quiet: bool) -> None:
+    from mechkin_cli.analysis.modes import UNNAMED
+    from mechkin_cli.cli.show import shown_table
+
+    if found.modes:
+        put(shown_table(_table(model, found), len(found.modes)))
+    if quiet:
+        return
+    place = ", ".join(f"{name} = {value:.12g}" for name, value in found.inputs.items())
+    say(f"{model.name}{' at ' if place else ''}{place}: {found.sentence}")
+    if found.picked:
+        say(f"  * mode {found.picked} is the one that the file takes")
+    if any(mode.name == UNNAMED for mode in found.modes):
+        say(f"  {UNNAMED} no branch from the first row comes here")
+
+
+def _table(model: Model, found: Modes) -> Columns:
+    """Name (with a star where the file takes the mode), coordinates, residual, condition."""
+    import numpy as np
+
+    from mechkin_cli.solver.layout import is_slide
+    from mechkin_cli.tables.columns import Column, Columns, Words
+    from mechkin_cli.units import ANGLE, LENGTH
+
+    modes, units = found.modes, model.problem.units
+    names = tuple(mode.name + ("*" if mode.name == found.picked else " ") for mode in modes)
+    columns = [Column("mode", "", Words(np.arange(len(modes), dtype=np.int32), names))]
+    for name in modes[0].coordinates:
+        unit = units.label(LENGTH if is_slide(name.partition(".")[2]) else ANGLE)
+        columns.append(Column(name, unit, np.array([mode.coordinates[name] for mode in modes])))
+    columns.append(Column("residual", "", np.array([mode.residual for mode in modes])))
+    columns.append(Column("condition", "", np.array([mode.condition for mode in modes])))
+    return Columns("modes", "assembly modes", tuple(columns))
