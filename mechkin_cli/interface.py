@@ -21,7 +21,7 @@ from mechkin_cli.analysis.sweep import analyze as run_sweep
 from mechkin_cli.building.build import Built, build
 from mechkin_cli.building.columns import used_quantities
 from mechkin_cli.building.source import open_file, open_text
-from mechkin_cli.diagnostics import Diagnostic, UsageError
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.expressions import Expression, Vector, parse
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
@@ -33,6 +33,7 @@ from mechkin_cli.tables.uniqueness import unique_cells
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.analysis.mobility import Mobility
     from mechkin_cli.analysis.modes import Modes
 
 _NO_PARAMETERS: Mapping[str, str] = MappingProxyType({})
@@ -91,8 +92,15 @@ class Model:
 
     @property
     def graph(self) -> SolverGraph:
-        """Tree, closing joints and blocks."""
-        return self._built.graph
+        """Tree, closing joints and blocks.
+
+        Raises:
+            InvalidFile: the mechanism cannot be solved as it is driven.
+        """
+        graph = self._built.graph
+        if isinstance(graph, Diagnostic):
+            raise InvalidFile([*self.diagnostics, graph])
+        return graph
 
     @property
     def tables(self) -> tuple[TableLayout, ...]:
@@ -128,9 +136,10 @@ class Model:
             lanes: width of the kernel's packs, 0 for the widest (nor on this).
 
         Raises:
+            InvalidFile: the mechanism cannot be solved as it is driven.
             UsageError: an unknown table, quantity or mode.
         """
-        problem = self.problem
+        problem, _ = self.problem, self.graph
         if mode is not None:
             problem = replace(problem, assembly=replace(problem.assembly, near={}, mode=mode))
         layouts = self._chosen_tables(tables)
@@ -153,6 +162,7 @@ class Model:
         if demand_of(problem.mechanism, [known[name] for name in names]) & Demand.FORCES:
             for _, diagnostic in spin_errors(problem):
                 raise UsageError(str(diagnostic))
+
     def modes(self, at: Setting | Mapping[str, Setting] | None = None) -> Modes:
         """All assembly modes at the first row, or at another place.
 
@@ -162,6 +172,7 @@ class Model:
                 are not given keep their value of the first row.
 
         Raises:
+            InvalidFile: the mechanism cannot be solved as it is driven.
             UsageError: an unknown input, or a value that is none.
 
         Example:
@@ -172,6 +183,19 @@ class Model:
 
         places = None if at is None else self._places(at)
         return find_modes(self.problem, self.graph, places)
+
+    def mobility(self) -> Mobility:
+        """What can move: Kutzbach's count, the true mobility, idle freedoms, redundant constraints.
+
+        Inputs need not be declared.
+
+        Example:
+            >>> load("mechanisms/bennett.yaml").mobility().mobility
+            1
+        """
+        from mechkin_cli.analysis.mobility import find_mobility
+
+        return find_mobility(self.problem)
 
     def _places(self, at: Setting | Mapping[str, Setting]) -> dict[str, float]:
         """Inputs by name in the file's units."""

@@ -156,3 +156,40 @@ body."""
 LARGEST_NUMBER: Final = 1e100
 """SI value of a field above which it is a slip of the pen: products of three such values are the
 last that stay doubles (1.8e308); beyond, cells would be empty without a reason."""
+
+# --- mobility by rank (lengths in parts of the size) ------------------------------------------
+
+RANK_GAP: Final = 1e3
+"""Least ratio of neighbouring singular values at which a rank is accepted."""
+
+RANK_ZERO: Final = 1e-8
+"""Singular values below this part of the largest count as zero: what is redundant is 1e-15 in an
+exact drawing, 1e-10 in one written with ten digits."""
+
+RANK_ROUNDING: Final = 1e-14
+"""Singular values below this part of the largest are rounding, and no measure of a gap."""
+
+MOBILITY_CLOSED: Final = 1e-9
+"""Largest equation of a configuration that counts as assembled: written numbers with ten digits
+reach it."""
+
+MOBILITY_TIGHT: Final = 1e-14
+"""Newton ends here: some roundings of the equations."""
+
+MOBILITY_ITERATIONS: Final = 80
+"""Newton halves the distance to a configuration that is singular; 80 halvings leave nothing."""
+
+MOBILITY_STARTS: Final = 60
+"""Random poses tried where the drawing itself leads to no assembly."""
+
+MOBILITY_STEP: Final = 0.1
+"""Finite step along a motion (largest turn in rad or length in parts of the size): its square is
+far above rounding, and Newton still returns to the same branch."""
+
+MOBILITY_TRIES: Final = 8
+"""Directions tried from one configuration; one in a subspace of motions suffices if the motion is
+finite."""
+
+MOBILITY_CONFIGURATIONS: Final = 3
+"""Configurations along the motion at which the rank is taken besides the first: at a special one
+it drops, at a general one it is the least freedom seen."""

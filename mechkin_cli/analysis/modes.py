@@ -19,7 +19,7 @@ from mechkin_cli.analysis.bounds import most_assemblies
 from mechkin_cli.analysis.named_modes import NamedModes, is_cyclic, name_modes, wrapped
 from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.problem import Problem
-from mechkin_cli.analysis.rows import in_file_units, kernel_inputs
+from mechkin_cli.analysis.rows import input_numbers, input_text, kernel_inputs
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.solver.follow import TrackEnd, follow
 from mechkin_cli.solver.graph import ANGLES, SolverGraph
@@ -160,16 +160,14 @@ def _follow_all(
         if followed.end == TrackEnd.FINISHED:
             ends[letter] = followed.state
             continue
-        places = ", ".join(
-            f"{item.name} = {in_file_units(problem, layout, k, float(followed.inputs[k]))}"
-            for k, item in enumerate(problem.motion.inputs)
-        )
+        places = input_numbers(problem, layout, followed.inputs)
         notes.append(
             Diagnostic(
                 "branch-ends",
                 "note",
                 f"mode {letter} of the first row ends on the way",
-                measured=f"followed up to {places}",
+                measured=f"followed up to {', '.join(map(input_text, places))}",
+                numbers=places,
             )
         )
     return ends, notes

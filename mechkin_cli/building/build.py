@@ -33,10 +33,11 @@ from mechkin_cli.units import LENGTH
 
 
 class Built(NamedTuple):
-    """The problem of a file, its solver graph and its tables."""
+    """The problem of a file, its solver graph (or why it cannot be solved as it is driven) and its
+    tables."""
 
     problem: Problem
-    graph: SolverGraph
+    graph: SolverGraph | Diagnostic
     tables: tuple[TableLayout, ...]
     own_tables: bool
 
@@ -87,7 +88,7 @@ def build(source: Source) -> Built:
     follow = _followed(fields, file.follow, joints)
     problem = replace(problem, hold_idle=file.idle == "hold", follow=follow)
     graph = _graph(fields, file, mechanism, motion)
-    if graph is not None and needs_forces(problem, tables):
+    if isinstance(graph, SolverGraph) and needs_forces(problem, tables):
         for link, diagnostic in spin_errors(problem):
             place = fields.document.place(("links", link))
             fields.diagnostics.append(diagnostic._replace(place=place))
@@ -197,7 +198,7 @@ def _place_of(file: MechanismFile, joints: Sequence[str]) -> Path:
 
 def _graph(
     fields: Fields, file: MechanismFile, mechanism: Mechanism, motion: Motion
-) -> SolverGraph | None:
+) -> SolverGraph | Diagnostic | None:
     """The solver graph; only asked for when the parts are sound, to avoid follow-up errors."""
     if fields.error_count or not check_loops(fields, mechanism):
         return None
@@ -205,16 +206,4 @@ def _graph(
         return build_graph(mechanism, motion.driven)
     except UnsolvableGraph as error:
         path = ("motion", "inputs") if motion.inputs else _place_of(file, error.joints)
-        fields.diagnostics.append(
-            Diagnostic(
-                error.diagnostic.code,
-                "error",
-                error.diagnostic.message,
-                fields.document.place(path),
-                error.diagnostic.measured,
-                error.diagnostic.limit,
-                error.diagnostic.hint,
-                error.diagnostic.numbers,
-            )
-        )
-        return None
+        return error.diagnostic._replace(place=fields.document.place(path))

@@ -38,11 +38,12 @@ def _one(path: Path, settings: dict[str, str], silent: bool) -> tuple[ExitCode, 
 
     try:
         model = load(path, settings)
+        text = f"{path}: ok ({_sentence(model)})\n"
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
     say_diagnostics(model.diagnostics)
     if not silent:
-        put(f"{path}: ok ({_sentence(model)})\n")
+        put(text)
     diagnostics = [diagnostic.record() for diagnostic in model.diagnostics]
     return ExitCode.OK, {"file": str(path), "diagnostics": diagnostics}
 

@@ -14,6 +14,7 @@ from mechkin_cli.cli.bench import bench
 from mechkin_cli.cli.check import check
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import put, say, say_diagnostics, stdout_failed
+from mechkin_cli.cli.mobility import mobility
 from mechkin_cli.cli.modes import modes
 from mechkin_cli.cli.schema import schema
 from mechkin_cli.cli.tables import tables
@@ -27,7 +28,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (analyze, check, modes, tables, schema, bench):
+for command in (analyze, check, modes, mobility, tables, schema, bench):
     app.command()(command)
 
 

@@ -11,7 +11,7 @@ from mechkin_cli.diagnostics import Diagnostic
 
 def errors(text: str) -> tuple[Diagnostic, ...]:
     with pytest.raises(mk.InvalidFile) as caught:
-        mk.loads(text, "bad.yaml")
+        _ = mk.loads(text, "bad.yaml").graph
     return caught.value.diagnostics
 
 

@@ -1,0 +1,110 @@
+"""Idle freedoms: motions of one link, or of a few as one body, that leave all others at rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.mobility.configurations import Configuration
+from mechkin_cli.mechanism.model import Joint
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+MOST_LINKS = 3
+"""Links of one idle group: a leg of S-P-S has two."""
+
+SMALL = 1e-9
+"""Parts of a unit twist below which it does not turn, or does not advance."""
+
+
+class IdleFreedom(NamedTuple):
+    """The links that move together, and how, in words."""
+
+    links: tuple[str, ...]
+    sentence: str
+
+
+def idle_freedoms(
+    configuration: Configuration, driven: Sequence[tuple[str, str]]
+) -> tuple[IdleFreedom, ...]:
+    """Freedoms that move no input and nothing but a link between two or more joints."""
+    found: list[IdleFreedom] = []
+    taken: list[tuple[set[str], Floats]] = []
+    for links, border in _groups(configuration):
+        if any(known <= links for known, _ in taken):
+            continue
+        twists = _common_twists(configuration, links)
+        for twist in twists.T if twists.shape[1] == 1 else ():
+            if not _moves_input(configuration, links, twist, driven):
+                names = tuple(n for n in configuration.body.links if n in links)
+                verb, how = _words(border, twist)
+                verb = f"{verb} together" if len(names) > 1 else f"{verb}s"
+                sentence = f"{' and '.join(names)} {verb} freely {how}"
+                found.append(IdleFreedom(names, sentence))
+                taken.append((links, twist))
+    return tuple(found)
+
+
+def _groups(configuration: Configuration) -> Iterator[tuple[set[str], list[Joint]]]:
+    """Groups of links with the joints to the rest, small groups first."""
+    joints = configuration.body.mechanism.joints.values()
+    links = configuration.body.links
+    for count in range(1, min(MOST_LINKS, len(links) - 1) + 1):
+        for chosen in combinations(links, count):
+            group = set(chosen)
+            border = [j for j in joints if (j.first in group) != (j.second in group)]
+            inner = [j for j in joints if j.first in group and j.second in group]
+            if len(border) >= 2 and len(inner) >= count - 1:
+                yield group, border
+
+
+def _common_twists(configuration: Configuration, links: set[str]) -> Floats:
+    """Twists (6, count) of the links as one body that all constraints allow."""
+    gradient = configuration.gradient
+    parts = [
+        gradient[:, 6 * k : 6 * k + 6]
+        for k, name in enumerate(configuration.body.links)
+        if name in links
+    ]
+    together = np.add.reduce(parts)
+    _, values, right = np.linalg.svd(together)
+    return right[int(np.count_nonzero(values > tolerances.RANK_ZERO * values[0])) :].T
+
+
+def _moves_input(
+    configuration: Configuration,
+    links: set[str],
+    twist: Floats,
+    driven: Sequence[tuple[str, str]],
+) -> bool:
+    body = configuration.body
+    twists = np.zeros((6 * len(body.links), 1))
+    for k, name in enumerate(body.links):
+        if name in links:
+            twists[6 * k : 6 * k + 6, 0] = twist
+    for name, coordinate in driven:
+        joint = body.mechanism.joints[name]
+        rate = configuration.rates(joint, twists)[joint.type.freedom_of[coordinate], 0]
+        if abs(rate) > tolerances.RANK_ZERO:
+            return True
+    return False
+
+
+def _words(border: list[Joint], twist: Floats) -> tuple[str, str]:
+    """Verb, and about or along what."""
+    spin, slide = twist[:3], twist[3:]
+    names = ", ".join(joint.name for joint in border)
+    if np.max(np.abs(spin)) < SMALL:
+        return "slide", f"along the axis of {names}"
+    if abs(float(spin @ slide)) > SMALL:
+        return "move", f"along the thread of {names}"
+    if all(joint.letter in ("S", "Sp", "Sg") for joint in border):
+        return "spin", "about " + "-".join(joint.name for joint in border)
+    return "turn", f"about the common axis of {names}"

@@ -1,0 +1,83 @@
+"""`mechkin mobility`: what can move, by count and in truth."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import typer
+
+from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import Record, put, refusal, say_diagnostics
+from mechkin_cli.cli.options import File, Json, Quiet, Set, parameters
+from mechkin_cli.diagnostics import InvalidFile, UsageError
+
+if TYPE_CHECKING:
+    from mechkin_cli.analysis.mobility import Mobility
+
+
+def mobility(file: File, set_: Set = None, json: Json = False, quiet: Quiet = False) -> None:
+    """Compare Kutzbach's count with the true mobility; name idle freedoms and redundancies."""
+    from mechkin_cli.interface import load
+
+    try:
+        found = load(file, parameters(set_)).mobility()
+    except (InvalidFile, UsageError) as error:
+        code, record = refusal(file, error)
+    else:
+        say_diagnostics(found.diagnostics, str(file))
+        code = ExitCode.OK if found.mobility is not None else ExitCode.ROWS_MISSING
+        record = {"file": str(file), **_record(found)}
+        if not json:
+            put("\n".join(_lines(found, quiet)) + "\n")
+    if json:
+        from mechkin_cli.tables.json_writer import json_text
+
+        put(json_text(record))
+    if code:
+        raise typer.Exit(code)
+
+
+def _record(found: Mobility) -> Record:
+    return {
+        "name": found.name,
+        "count": found.count,
+        "mobility": found.mobility,
+        "first_order": found.first_order,
+        "loops": found.loops,
+        "configurations": found.configurations,
+        "inputs": list(found.inputs),
+        "idle": [{"links": list(i.links), "sentence": i.sentence} for i in found.idle],
+        "redundant": [
+            {
+                "number": item.number,
+                "joints": list(item.joints),
+                "wrenches": item.wrenches or None,
+                "sentence": item.sentence,
+            }
+            for item in found.redundant
+        ],
+        "fixed": list(found.fixed),
+        "verdict": found.verdict,
+        "diagnostics": [diagnostic.record() for diagnostic in found.diagnostics],
+    }
+
+
+def _lines(found: Mobility, quiet: bool) -> list[str]:
+    lines = [f"{found.name}: {found.verdict}"]
+    if quiet:
+        return lines
+    truth = "unclear" if found.mobility is None else str(found.mobility)
+    if found.first_order != found.mobility:
+        truth += f" ({found.first_order} to first order at the first configuration)"
+    places = f"by rank at {found.configurations} configurations"
+    rows = [
+        ("count", f"{found.count} (Kutzbach)"),
+        ("mobility", f"{truth}, {places}" if found.configurations else truth),
+        ("loops", str(found.loops)),
+        ("inputs", ", ".join(found.inputs) or "none"),
+        *(("idle", item.sentence) for item in found.idle),
+        *(("redundant", item.sentence) for item in found.redundant),
+    ]
+    if found.fixed:
+        rows.append(("fixed", f"{', '.join(found.fixed)} never move"))
+    return [*lines, *(f"  {name:<11}{text}" for name, text in rows)]
