@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.analysis.mobility import Mobility
     from mechkin_cli.analysis.modes import Modes
+    from mechkin_cli.analysis.ranges import Ranges
 
 _NO_PARAMETERS: Mapping[str, str] = MappingProxyType({})
 
@@ -183,6 +184,22 @@ class Model:
 
         places = None if at is None else self._places(at)
         return find_modes(self.problem, self.graph, places)
+
+    def ranges(self, input: str | None = None, outputs: Iterable[str] = ()) -> Ranges:
+        """The ranges of an input over which each mode assembles, and the circuits they form.
+
+        Args:
+            input: an input's name; None: the first that the file sweeps. Others are held as in the
+                first row.
+            outputs: coordinates whose dead centres (extremes) are wanted, too.
+
+        Raises:
+            InvalidFile: the mechanism cannot be solved as it is driven.
+            UsageError: no input, or an unknown input or coordinate.
+        """
+        from mechkin_cli.analysis.ranges import find_ranges
+
+        return find_ranges(self.problem, self.graph, input, tuple(outputs))
 
     def mobility(self) -> Mobility:
         """What can move: Kutzbach's count, the true mobility, idle freedoms, redundant constraints.

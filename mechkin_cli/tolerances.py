@@ -108,6 +108,28 @@ size)."""
 DEAD_CENTRE_ITERATIONS: Final = 40
 """Far more than quadratic convergence needs; a search that uses them all has found none."""
 
+SAME_DEAD_CENTRE: Final = 1e-5
+"""Two dead centres whose poses differ less are one: the states there are known to about 1e-8, the
+root of a rounding."""
+
+# --- circuits ----------------------------------------------------------------------------------
+
+FOLD_CROSSING: Final = 0.02
+"""Step of the fastest coordinate (rad, length units) by which a dead centre is left on its other
+side: short against the way between two of them, long against its own doubt of 1e-8."""
+
+MOST_BRANCHES: Final = 64
+"""Branches of one circuit that are walked through."""
+
+MOST_TURNS: Final = 16
+"""Whole turns of an input after which an assembly that never came again counts as far."""
+
+PASSED: Final = 1e-6
+"""Distance (rad, length units, turns) beyond which a place still lies ahead on the way."""
+
+FAR_INPUT: Final = 20.0
+"""How far a slide (length units) or a thread (rad) is driven in search of a dead centre."""
+
 # --- branch points -----------------------------------------------------------------------------
 
 BRANCH_POINT_SPANS: Final = (0.2, 0.05, 0.0125)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.home import follow_from_home, is_home_assembled
+from mechkin_cli.analysis.home import follow_from_home, is_home_assembled, nearest_to_home
 from mechkin_cli.analysis.named_modes import NamedModes, is_cyclic, name_modes, wrapped
 from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.problem import Problem
@@ -72,7 +72,7 @@ def choose_start(
 
 def _from_home(problem: Problem, layout: Layout, plan: Plan, path: Floats) -> Start:
     """Followed from the drawing to the row whose inputs are nearest to it."""
-    row = int(np.argmin(np.max(np.abs(path), axis=0))) if path.size else 0
+    row = nearest_to_home(path)
     followed = follow_from_home(layout, plan, path[:, row])
     if followed.end == TrackEnd.FINISHED:
         return Start(followed.state, "home", "followed from the home drawing", row=row)

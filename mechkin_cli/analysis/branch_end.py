@@ -16,10 +16,9 @@ from mechkin_cli.analysis.rows import (
     input_text,
 )
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.solver.batch import run
-from mechkin_cli.solver.branch_point import BranchPoint, locate_branch_point
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.dead_centre import DeadCentre, locate
+from mechkin_cli.solver.branch_limit import find_limit
+from mechkin_cli.solver.branch_point import BranchPoint
+from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import Followed
 from mechkin_cli.solver.graph import is_redundant
 from mechkin_cli.solver.layout import Layout
@@ -48,47 +47,23 @@ def explain_end(
 
     `path` (inputs, rows) in kernel units and `rows` are in the order in which they were followed.
     """
-    moving = np.flatnonzero(followed.direction)
-    fold = None
-    if moving.size == 1:
-        first = _derivatives(plan, followed)
-        number = int(moving[0])
-        if first is not None:
-            fold = locate(
-                layout, problem.motion.driven, number, followed.inputs, followed.state, first
-            )
-        if fold is not None and _lies_ahead(fold, followed, number):
-            _fill_before(fold, path, followed, number, rows)
-            rows.status[~rows.reached] = Status.beyond_dead_centre
-            rows.diagnostics.append(_dead_centre_note(problem, layout, fold, number, rows))
-            return
+    far = tolerances.BRANCH_POINT_SPANS[0]
+    row = followed.reached - 1
+    while row > 0 and np.max(np.abs(followed.inputs - path[:, row])) <= far:
+        row -= 1
+    driven = problem.motion.driven
+    limit = find_limit(layout, plan, driven, followed, path[:, row], rows.guess[:, row])
+    if isinstance(limit, DeadCentre):
+        number = int(np.flatnonzero(followed.direction)[0])
+        _fill_before(limit, path, followed, number, rows)
+        rows.status[~rows.reached] = Status.beyond_dead_centre
+        rows.diagnostics.append(_dead_centre_note(problem, layout, limit, number, rows))
+        return
     rows.status[~rows.reached] = Status.branch_lost
-    point = _branch_point(plan, path, followed, rows)
-    if point is not None:
-        rows.diagnostics.append(_branch_point_note(problem, layout, followed, point, rows))
+    if isinstance(limit, BranchPoint):
+        rows.diagnostics.append(_branch_point_note(problem, layout, followed, limit, rows))
     else:
         rows.diagnostics.append(_lost_note(problem, layout, followed, rows))
-
-
-def _derivatives(plan: Plan, followed: Followed) -> Floats | None:
-    rates = followed.direction[:, None]
-    batch = run(
-        plan,
-        followed.inputs[:, None],
-        followed.state[:, None],
-        rates=np.ascontiguousarray(rates),
-        accelerations=np.zeros_like(rates),
-        demand=Demand.VELOCITY | Demand.ACCELERATION,
-        derivatives=True,
-    )
-    return batch.first[:, 0] if batch.good[0] and batch.first is not None else None
-
-
-def _lies_ahead(fold: DeadCentre, followed: Followed, number: int) -> bool:
-    """Whether the fold is where the branch was going, next to where it could not be followed."""
-    ahead = (fold.value - float(followed.inputs[number])) * float(followed.direction[number])
-    curvature = float(fold.second[fold.exchanged.input_column]) * float(followed.direction[number])
-    return ahead >= -1e-9 and curvature < 0.0
 
 
 def _fill_before(
@@ -122,17 +97,6 @@ def _dead_centre_note(
         hint="end the sweep before it, or choose another assembly",
         numbers=(place,),
     )
-
-
-def _branch_point(
-    plan: Plan, path: Floats, followed: Followed, rows: RowStates
-) -> BranchPoint | None:
-    """The branch point that ended the branch, seen from the last row some way before it."""
-    far = tolerances.BRANCH_POINT_SPANS[0]
-    row = followed.reached - 1
-    while row > 0 and np.max(np.abs(followed.inputs - path[:, row])) <= far:
-        row -= 1
-    return locate_branch_point(plan, followed, path[:, row], rows.guess[:, row])
 
 
 def _branch_point_note(

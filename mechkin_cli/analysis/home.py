@@ -36,6 +36,11 @@ def is_home_assembled(layout: Layout, plan: Plan) -> bool:
     return bool(batch.good[0])
 
 
+def nearest_to_home(path: Floats) -> int:
+    """The row whose inputs (inputs, rows) are nearest to the drawing's, which are zero."""
+    return int(np.argmin(np.max(np.abs(path), axis=0))) if path.size else 0
+
+
 def follow_from_home(layout: Layout, plan: Plan, inputs: Floats) -> Followed:
     """The branch of an assembled drawing, straight to `inputs` (inputs,)."""
     path = np.stack([np.zeros_like(inputs), inputs], axis=1)

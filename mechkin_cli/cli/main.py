@@ -16,6 +16,7 @@ from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import put, say, say_diagnostics, stdout_failed
 from mechkin_cli.cli.mobility import mobility
 from mechkin_cli.cli.modes import modes
+from mechkin_cli.cli.ranges import ranges
 from mechkin_cli.cli.schema import schema
 from mechkin_cli.cli.tables import tables
 from mechkin_cli.diagnostics import InvalidFile, MechkinError, UsageError
@@ -28,7 +29,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (analyze, check, modes, mobility, tables, schema, bench):
+for command in (analyze, check, modes, ranges, mobility, tables, schema, bench):
     app.command()(command)
 
 

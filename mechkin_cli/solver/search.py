@@ -94,11 +94,13 @@ class _Clusters:
         return self.chance < tolerances.SEARCH_NEW_MODE_CHANCE
 
 
-def same_poses(known: Floats, keys: Floats) -> NDArray[np.bool_]:
+def same_poses(
+    known: Floats, keys: Floats, limit: float = tolerances.SAME_MODE
+) -> NDArray[np.bool_]:
     """Which columns of `keys` are the poses of which columns of `known`: (known, keys)."""
     found = np.ones((known.shape[1], keys.shape[1]), dtype=bool)
     for one, other in zip(known, keys, strict=True):
-        found &= np.abs(one[:, None] - other[None, :]) < tolerances.SAME_MODE
+        found &= np.abs(one[:, None] - other[None, :]) < limit
     return found
 
 

@@ -223,6 +223,7 @@ struct Request {
   double* correction;           // rows: largest change of an unknown against its guess, lengths in units
   double* orientation;          // rows, may be null: product of the signs of the square blocks' determinants;
                                 // it changes where a fold lies between two places. Needs a demand.
+  double* jacobian;             // blocks' entries x rows, may be null: Jacobians of the blocks. Needs a demand.
   double* pivot;                // rows, may be null: least pivot of the blocks' Jacobians. Needs a demand.
   double* condition;            // rows, with DEMAND_CONDITION
   double* power_error;          // rows, with DEMAND_POWER

@@ -10,7 +10,26 @@ class Stepper {
  public:
   Stepper(const Plan& plan, const KernelUnit& unit, const double* x0, const double* u, const TrackLimits& limits)
       : plan_(plan), unit_(unit), x0_(x0), u_(u), limits_(limits), memory_(unit.workspace_size(plan)),
-        inputs_(plan.inputs), zeros_(plan.inputs, 0.0) {}
+        inputs_(plan.inputs), zeros_(plan.inputs, 0.0) {
+    for (int b = 0; b < plan.blocks; ++b) {
+      entries_ += plan.block[b].rows * plan.block[b].size;
+      overconstrained_ = overconstrained_ || plan.block[b].rows > plan.block[b].size;
+    }
+  }
+
+  // Whether no overconstrained block passed a singular place between two nodes: det(A^T B) of its Jacobians there
+  // changes its sign where one direction of the unknowns loses its equations and gets them back reversed. (Square
+  // blocks have the sign of their determinant.)
+  bool same_side(const Node& a, const Node& b) const {
+    if (!overconstrained_) return true;
+    const double *one = a.jacobian.data(), *other = b.jacobian.data();
+    for (int k = 0; k < plan_.blocks; ++k) {
+      const int m = plan_.block[k].rows, n = plan_.block[k].size;
+      if (m > n && !(product_determinant(one, other, m, n) > 0.0)) return false;
+      one += m * n, other += m * n;
+    }
+    return true;
+  }
 
   // Closes the loops at sigma from a guess; false if they do not close.
   bool close(double sigma, const double* guess, Node* node, double* correction) {
@@ -19,6 +38,7 @@ class Stepper {
     node->state.resize(plan_.states);
     node->first.resize(plan_.columns);
     node->second.resize(plan_.columns);
+    node->jacobian.resize(entries_);
     double residual = 0;
     unsigned char flags = 0;
     Request r = {};
@@ -28,6 +48,7 @@ class Stepper {
     r.states = node->state.data();
     r.velocities = node->first.data(), r.second = node->second.data();
     r.residual = &residual, r.correction = correction, r.orientation = &node->orientation;
+    r.jacobian = overconstrained_ ? node->jacobian.data() : nullptr;
     r.pivot = &node->pivot, r.flags = &flags;
     r.demand = DEMAND_VELOCITY | DEMAND_ACCELERATION;
     r.iterations = limits_.iterations;
@@ -89,12 +110,38 @@ class Stepper {
     out[3] = 0.5 * (w[0] * q[2] - w[1] * q[1] + w[2] * q[0]);
   }
 
+  // det(A^T B) of two m x n matrices, by elimination with row exchanges.
+  static double product_determinant(const double* a, const double* b, int m, int n) {
+    std::vector<double> c(n * n, 0.0);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j)
+        for (int k = 0; k < m; ++k) c[i * n + j] += a[k * n + i] * b[k * n + j];
+    double determinant = 1.0;
+    for (int k = 0; k < n; ++k) {
+      int best = k;
+      for (int i = k + 1; i < n; ++i)
+        if (std::fabs(c[i * n + k]) > std::fabs(c[best * n + k])) best = i;
+      if (best != k) {
+        for (int j = 0; j < n; ++j) std::swap(c[k * n + j], c[best * n + j]);
+        determinant = -determinant;
+      }
+      determinant *= c[k * n + k];
+      for (int i = k + 1; i < n; ++i) {
+        const double f = c[i * n + k] / c[k * n + k];
+        for (int j = k; j < n; ++j) c[i * n + j] -= f * c[k * n + j];
+      }
+    }
+    return determinant;
+  }
+
   const Plan& plan_;
   const KernelUnit& unit_;
   const double *x0_, *u_;
   const TrackLimits& limits_;
   std::vector<char> memory_;
   std::vector<double> inputs_, zeros_;
+  long entries_ = 0;
+  bool overconstrained_ = false;
 };
 
 double product(const std::vector<double>& a, const std::vector<double>& b) {
@@ -188,7 +235,7 @@ Track follow(const Plan& plan, const KernelUnit& unit, const double* x0, const d
     const double length = step * std::sqrt(product(node.first, node.first));
     const bool good = stepper.close(last ? end : node.sigma + step, predicted.data(), &next, &correction) &&
                       correction <= limits.jump * length && next.orientation == node.orientation &&
-                      next.pivot >= limits.pivot &&
+                      next.pivot >= limits.pivot && stepper.same_side(node, next) &&
                       !turned_too_far(node, next, limits) &&
                       looks_back(stepper, node, next, limits.jump * length);
     if (!good) {

@@ -28,6 +28,7 @@ enum class TrackEnd : int { finished = 0, stalled = 1, exhausted = 2, start_not_
 struct Node {
   double sigma, orientation, pivot;
   std::vector<double> state, first, second;              // states, columns, columns
+  std::vector<double> jacobian;                          // blocks, one after the other
   std::vector<double> state_first, state_second;         // derivatives of the raw states
 };
 

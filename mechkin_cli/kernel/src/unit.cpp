@@ -68,6 +68,9 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     block_screws(p, w, p.block[b]);
     if (r.demand & DEMAND_CONDITION) condition = max(block_condition(p, w, b), condition);
     block_jacobian(p, w, b, at.jacobian);
+    if (r.jacobian)
+      for (long e = 0; e < at.m * at.n; ++e)
+        Writer{r.jacobian, in.rows, in.row, in.count}.put(at.jacobian - w.jacobian + e, at.jacobian[e]);
     at.factor_jacobian();
     if (at.m == at.n) orientation *= determinant_sign(at.lu());
     if (r.pivot) pivot = min(pivot, at.least());

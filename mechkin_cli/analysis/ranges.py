@@ -1,0 +1,291 @@
+"""Ranges of an input: from where to where each mode assembles, what ends it, what turns fully, and
+which modes belong to one circuit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.assembly import nothing_found
+from mechkin_cli.analysis.home import is_home_assembled, nearest_to_home
+from mechkin_cli.analysis.named_modes import NamedModes, name_modes
+from mechkin_cli.analysis.probe import Probe
+from mechkin_cli.analysis.problem import Problem
+from mechkin_cli.analysis.rows import input_number, kernel_inputs
+from mechkin_cli.diagnostics import Diagnostic, UsageError
+from mechkin_cli.mechanism.quantities import Wanted
+from mechkin_cli.solver.batch import run
+from mechkin_cli.solver.circuit import Branch, End, Walker
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import OutputPlan
+from mechkin_cli.solver.follow import follow
+from mechkin_cli.solver.graph import ANGLES, SolverGraph
+from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.search import pose_keys, same_poses
+from mechkin_cli.units import ANGLE, LENGTH
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+SAMPLES = 720
+"""Places of a range at which the sign of an output's rate is read."""
+
+
+class Limit(NamedTuple):
+    """An end of a range in the file's units; `kind` as in `End`."""
+
+    kind: str
+    value: float
+
+
+class Extreme(NamedTuple):
+    """A dead centre of an output: its value, and the input's, in the file's units."""
+
+    output: str
+    value: float
+    input: float
+
+
+@dataclass(frozen=True)
+class Range:
+    """The range of one mode of the first row, and the number of its circuit, from 1.
+
+    `turns` after which a fully turning input comes back to this assembly, 0 for one that does not
+    turn fully.
+    """
+
+    mode: str
+    lower: Limit
+    upper: Limit
+    turns: int
+    circuit: int
+    extremes: tuple[Extreme, ...]
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """Ranges of `input` with all others held as in the first row.
+
+    `circuits` are the modes joined in one circuit: each is reached from the others by moving the
+    input to and fro. `searched` says how sure it is that these are all modes.
+    """
+
+    input: str
+    unit: str
+    at: dict[str, float]
+    ranges: tuple[Range, ...]
+    circuits: tuple[tuple[str, ...], ...]
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def find_ranges(
+    problem: Problem, graph: SolverGraph, name: str | None = None, outputs: tuple[str, ...] = ()
+) -> Ranges:
+    """The ranges of the input `name` (the first that the file sweeps), with the extremes of some
+    coordinates.
+
+    Modes are those of the first row; where it has none, of the row nearest to an assembled drawing.
+
+    Raises:
+        UsageError: no input, or an unknown input or coordinate.
+    """
+    number = _input_number(problem, name)
+    for output in outputs:
+        if output not in problem.mechanism.coordinates:
+            raise UsageError(
+                f"there is no coordinate {output}; coordinates are "
+                f"{', '.join(problem.mechanism.coordinates)}"
+            )
+    layout = Layout(problem.mechanism, graph)
+    plan = layout.build()
+    path = kernel_inputs(problem, layout).values
+    first, probe = path[:, 0], Probe(problem, layout)
+    named = name_modes(problem, layout, plan, first, probe)
+    if named.number == 0 and is_home_assembled(layout, plan):
+        first = path[:, nearest_to_home(path)]
+        named = name_modes(problem, layout, plan, first, probe)
+    item = problem.motion.inputs[number]
+    at = {i.name: float(i.written[0]) for i in problem.motion.inputs if i is not item}
+    unit = problem.units.label(ANGLE if item.coordinate in ANGLES else LENGTH)
+    if named.number == 0:
+        note = nothing_found(problem, graph, named.found)
+        return Ranges(item.name, unit, at, (), (), (*problem.diagnostics, note))
+    walker = Walker(layout, plan, problem.motion.driven, number, first)
+    ranges, circuits = _Survey(problem, layout, named, walker, outputs).ranges()
+    return Ranges(item.name, unit, at, ranges, circuits, problem.diagnostics)
+
+
+def _input_number(problem: Problem, name: str | None) -> int:
+    inputs = problem.motion.inputs
+    if not inputs:
+        raise UsageError("the file drives no input, so there is no range")
+    names = [item.name for item in inputs]
+    if name is None:
+        swept = [k for k, item in enumerate(inputs) if item.values.min() < item.values.max()]
+        return swept[0] if swept else 0
+    if name not in names:
+        raise UsageError(f"there is no input {name}; inputs are {', '.join(names)}")
+    return names.index(name)
+
+
+class _Survey:
+    """The circuits of all modes, one after the other."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        layout: Layout,
+        named: NamedModes,
+        walker: Walker,
+        outputs: tuple[str, ...],
+    ) -> None:
+        self.problem, self.layout, self.named, self.walker = problem, layout, named, walker
+        quantities = problem.quantities()
+        self.outputs = [quantities[name] for name in outputs]
+        self.keys = pose_keys(layout, named.found.states)
+
+    def ranges(self) -> tuple[tuple[Range, ...], tuple[tuple[str, ...], ...]]:
+        """The ranges in the order of the letters, and the circuits."""
+        found: dict[str, Range] = {}
+        circuits: list[tuple[str, ...]] = []
+        for number, letter in self.named.letters.items():
+            if letter in found:
+                continue
+            branches = self.walker.circuit(self.named.found.states[:, number])
+            members: dict[str, tuple[Branch, float]] = {}
+            for branch in branches:
+                for value, state in branch.places:
+                    name = self._letter(state)
+                    if name is not None and name not in members:
+                        members[name] = (branch, value)
+            members[letter] = (branches[0], float(self.walker.inputs[self.walker.number]))
+            circuits.append(tuple(sorted(members, key=lambda n: (len(n), n))))
+            for name, (branch, value) in members.items():
+                found[name] = self._range(name, branch, value, len(circuits))
+        return tuple(found[name] for name in self.named.letters.values()), tuple(circuits)
+
+    def _letter(self, state: Floats) -> str | None:
+        same = same_poses(self.keys, pose_keys(self.layout, state[:, None]))[:, 0]
+        return self.named.letters[int(np.argmax(same))] if same.any() else None
+
+    def _range(self, name: str, branch: Branch, value: float, circuit: int) -> Range:
+        """The branch's range, counted in the turn in which it has this mode, at `value`."""
+        origin, period = float(self.walker.inputs[self.walker.number]), self.walker.period
+        shift = value - origin
+        extremes = self._extremes(branch, shift)
+        if branch.upper.kind == "full-turn" and period is not None:
+            limit = self._limit(End("full-turn", origin), 0.0)
+            turns = round((branch.upper.value - branch.lower.value) / period)
+            return Range(name, limit, limit, turns, circuit, extremes)
+        lower, upper = (self._limit(end, shift) for end in (branch.lower, branch.upper))
+        return Range(name, lower, upper, 0, circuit, extremes)
+
+    def _limit(self, end: End, shift: float) -> Limit:
+        number = input_number(self.problem, self.layout, self.walker.number, end.value - shift)
+        return Limit(end.kind, number.value)
+
+    def _extremes(self, branch: Branch, shift: float) -> tuple[Extreme, ...]:
+        """Dead centres of the outputs along a branch: where their rate by the input vanishes."""
+        if not self.outputs or not branch.places:
+            return ()
+        found = []
+        for wanted in self.outputs:
+            found += [
+                Extreme(wanted.name, self._shown(wanted, value), self._limit_value(at - shift))
+                for at, value in _Stationary(self, branch, wanted).places()
+            ]
+        return tuple(found)
+
+    def _limit_value(self, value: float) -> float:
+        return input_number(self.problem, self.layout, self.walker.number, value).value
+
+    def _shown(self, wanted: Wanted, value: float) -> float:
+        return float(self.problem.units.from_si(value, wanted.dimension))
+
+
+class _Stationary:
+    """Zeros of an output's rate along a branch: signs at many places, then Newton."""
+
+    def __init__(self, survey: _Survey, branch: Branch, wanted: Wanted) -> None:
+        self.walker, self.branch = survey.walker, branch
+        layout = survey.layout
+        self.plan = layout.build()
+        outputs = OutputPlan(layout, self.plan, survey.problem.motion.driven)
+        known = survey.problem.quantities()
+        self.slots = []
+        for suffix in ("", "_dot", "_ddot"):
+            quantity = known[wanted.name + suffix]
+            outputs.add(quantity)
+            self.slots.append(outputs.slots[quantity.name].first)
+
+    def places(self) -> list[tuple[float, float]]:
+        """(input, output) in kernel units and SI."""
+        start = self.branch.places[0]
+        ends = (self.branch.lower.value, self.branch.upper.value)
+        found: list[tuple[float, float]] = []
+        if not all(isfinite(end) for end in ends):
+            return found
+        for first, last in ((start.value, ends[0]), (start.value, ends[1])):
+            if first == last:
+                continue
+            steps = first + (last - first) * np.linspace(0.0, 1.0, SAMPLES + 1)[:-1]
+            path = np.repeat(self.walker.inputs[:, None], steps.size, axis=1)
+            path[self.walker.number] = steps
+            way = follow(self.plan, path, start.state)
+            count = way.reached
+            rates = self._derivatives(path[:, :count], way.guess[:, :count])[1]
+            for k in np.flatnonzero(rates[:-1] * rates[1:] <= 0.0):
+                place = self._refined(path[:, k], way.guess[:, k], steps[k], steps[k + 1])
+                if place is not None and not any(place[0] == other[0] for other in found):
+                    found.append(place)
+        return sorted(found)
+
+    def _derivatives(self, inputs: Floats, guess: Floats) -> Floats:
+        """The output and its first two derivatives by the input, (3, places)."""
+        rates = np.zeros_like(inputs)
+        rates[self.walker.number] = 1.0
+        batch = run(
+            self.plan,
+            np.ascontiguousarray(inputs),
+            np.ascontiguousarray(guess),
+            rates=rates,
+            accelerations=np.zeros_like(rates),
+            demand=Demand.VELOCITY | Demand.ACCELERATION,
+            outputs=True,
+        )
+        assert batch.outputs is not None
+        return batch.outputs[self.slots]
+
+    def _refined(
+        self, inputs: Floats, guess: Floats, first: float, last: float
+    ) -> tuple[float, float] | None:
+        """Newton within a bracket of the rate's zero, by bisection where it would leave it."""
+        low, high = min(first, last), max(first, last)
+        value = 0.5 * (low + high)
+        sign_low: float | None = None
+        state = guess
+        for _ in range(tolerances.DEAD_CENTRE_ITERATIONS):
+            path = np.stack([inputs, inputs], axis=1)
+            path[self.walker.number] = first, value
+            state = follow(self.plan, path, guess).state
+            output, rate, bend = (
+                float(x) for x in self._derivatives(path[:, 1:], state[:, None])[:, 0]
+            )
+            if sign_low is None:
+                ends = self._derivatives(path[:, :1], guess[:, None])[1, 0]
+                sign_low = float(ends) if first == low else -float(ends)
+            low, high = (value, high) if rate * sign_low > 0.0 else (low, value)
+            step = -rate / bend if bend != 0.0 else np.inf
+            following = value + step
+            if not low < following < high:
+                following = 0.5 * (low + high)
+            if abs(following - value) <= tolerances.DEAD_CENTRE_STEP:
+                return following, output
+            value = following
+        return None

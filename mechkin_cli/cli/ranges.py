@@ -1,0 +1,169 @@
+"""`mechkin ranges`: from where to where an input can go in each assembly mode."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import Record, put, refusal, say, say_diagnostics
+from mechkin_cli.cli.options import File, Json, Quiet, Set, parameters
+from mechkin_cli.diagnostics import InvalidFile, UsageError
+
+if TYPE_CHECKING:
+    from mechkin_cli.analysis.ranges import Range, Ranges
+    from mechkin_cli.interface import Model
+    from mechkin_cli.tables.columns import Columns
+
+WORDS = {
+    "dead-centre": "dead centre",
+    "branch-point": "branch point",
+    "branch-lost": "could not be followed further",
+    "far": "no end found so far",
+}
+
+
+def ranges(
+    file: File,
+    input: Annotated[
+        str | None,
+        typer.Option("--input", metavar="NAME", help="Input that moves (the first one swept)."),
+    ] = None,
+    output: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--output",
+            metavar="NAME",
+            help="Coordinate whose own dead centres are located, too; repeatable.",
+        ),
+    ] = None,
+    set_: Set = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """List the range of an input for each assembly mode, its dead centres and circuits."""
+    from mechkin_cli.interface import load
+
+    try:
+        model = load(file, parameters(set_))
+        found = model.ranges(input, output or ())
+    except (InvalidFile, UsageError) as error:
+        code, record = refusal(file, error)
+    else:
+        say_diagnostics(found.diagnostics, str(file))
+        code, record = (ExitCode.OK if found.ranges else ExitCode.ROWS_MISSING), {}
+        if json:
+            record = {"file": str(file), **_record(model, found)}
+        else:
+            _print(model, found, quiet)
+    if json:
+        from mechkin_cli.tables.json_writer import json_text
+
+        put(json_text(record))
+    if code:
+        raise typer.Exit(code)
+
+
+def _record(model: Model, found: Ranges) -> Record:
+    return {
+        "name": model.name,
+        "input": found.input,
+        "unit": found.unit,
+        "held": found.at,
+        "ranges": [
+            {
+                "mode": item.mode,
+                "from": item.lower._asdict(),
+                "to": item.upper._asdict(),
+                "full_turn": item.turns > 0,
+                "turns": item.turns,
+                "circuit": item.circuit,
+                "extremes": [extreme._asdict() for extreme in item.extremes],
+            }
+            for item in found.ranges
+        ],
+        "circuits": [list(circuit) for circuit in found.circuits],
+        "diagnostics": [diagnostic.record() for diagnostic in found.diagnostics],
+    }
+
+
+def _print(model: Model, found: Ranges, quiet: bool) -> None:
+    from mechkin_cli.cli.show import shown_table
+
+    if found.ranges:
+        put(shown_table(_table(found), len(found.ranges)))
+        if any(item.extremes for item in found.ranges):
+            count = sum(len(item.extremes) for item in found.ranges)
+            put(shown_table(_extremes(found), count))
+    if quiet:
+        return
+    held = "".join(f", {name} held at {value:.12g}" for name, value in found.at.items())
+    say(f"{model.name}: ranges of {found.input}{held}")
+    for number, circuit in enumerate(found.circuits, 1):
+        modes = "mode" if len(circuit) == 1 else "modes"
+        say(f"  circuit {number}: {modes} {', '.join(circuit)}{_closing(found, circuit)}")
+
+
+def _closing(found: Ranges, circuit: tuple[str, ...]) -> str:
+    turns = next(item.turns for item in found.ranges if item.mode == circuit[0])
+    if turns == 1:
+        return "; turns fully, back at its start after one turn"
+    return f"; turns fully, back at its start after {turns} turns" if turns else ""
+
+
+def _table(found: Ranges) -> Columns:
+    """Mode, both ends with what is there, circuit."""
+    import numpy as np
+
+    from mechkin_cli.tables.columns import Column, Columns, Words
+
+    def words(texts: list[str]) -> Words:
+        return Words(np.arange(len(texts), dtype=np.int32), tuple(texts))
+
+    def ends(upper: bool) -> list[Column]:
+        limits = [item.upper if upper else item.lower for item in found.ranges]
+        values = [
+            _value(item, limit.value) for item, limit in zip(found.ranges, limits, strict=True)
+        ]
+        label, end = ("to", "upper end") if upper else ("from", "lower end")
+        kinds = [
+            "turns fully" if item.turns else WORDS[limit.kind]
+            for item, limit in zip(found.ranges, limits, strict=True)
+        ]
+        return [
+            Column(label, found.unit, np.array(values)),
+            Column(end, "", words(kinds)),
+        ]
+
+    columns = (
+        Column("mode", "", words([item.mode for item in found.ranges])),
+        *ends(False),
+        *ends(True),
+        Column("circuit", "", np.array([float(item.circuit) for item in found.ranges]), 0),
+    )
+    return Columns("ranges", f"ranges of {found.input}", columns)
+
+
+def _value(item: Range, value: float) -> float:
+    return float("nan") if item.turns else value
+
+
+def _extremes(found: Ranges) -> Columns:
+    """Mode, output, its extreme value and the input there."""
+    import numpy as np
+
+    from mechkin_cli.tables.columns import Column, Columns, Words
+
+    rows = [(item.mode, extreme) for item in found.ranges for extreme in item.extremes]
+    number = np.arange(len(rows), dtype=np.int32)
+    return Columns(
+        "extremes",
+        "dead centres of the outputs",
+        (
+            Column("mode", "", Words(number, tuple(mode for mode, _ in rows))),
+            Column("output", "", Words(number, tuple(e.output for _, e in rows))),
+            Column("value", "", np.array([e.value for _, e in rows])),
+            Column(found.input, found.unit, np.array([e.input for _, e in rows])),
+        ),
+    )

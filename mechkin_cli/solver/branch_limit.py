@@ -1,0 +1,76 @@
+"""Why a branch cannot be followed further: a dead centre, a branch point, or no clear reason."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.solver.batch import run
+from mechkin_cli.solver.branch_point import BranchPoint, locate_branch_point
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.dead_centre import DeadCentre, locate
+from mechkin_cli.solver.follow import Followed
+from mechkin_cli.solver.layout import Layout
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.kernel._kernel import Plan
+
+    Floats = NDArray[np.float64]
+
+BEHIND = 1e-9
+"""How far (rad or length units) a dead centre may lie behind the last place followed: rounding of
+that place, which is about the root of a rounding away from it."""
+
+
+def find_limit(
+    layout: Layout,
+    plan: Plan,
+    driven: list[tuple[str, str]],
+    followed: Followed,
+    inputs: Floats,
+    state: Floats,
+) -> DeadCentre | BranchPoint | None:
+    """What ended a branch, or None.
+
+    Args:
+        layout: the mechanism in the kernel.
+        plan: its plan.
+        driven: (joint, coordinate) of the inputs.
+        followed: the way to the branch's end.
+        inputs: (inputs,) an earlier place of the same straight way.
+        state: (states,) there.
+    """
+    moving = np.flatnonzero(followed.direction)
+    if moving.size == 1:
+        number = int(moving[0])
+        first = _derivatives(plan, followed)
+        if first is not None:
+            fold = locate(layout, driven, number, followed.inputs, followed.state, first)
+            if fold is not None and _lies_ahead(fold, followed, number):
+                return fold
+    return locate_branch_point(plan, followed, inputs, state)
+
+
+def _derivatives(plan: Plan, followed: Followed) -> Floats | None:
+    rates = np.ascontiguousarray(followed.direction[:, None])
+    batch = run(
+        plan,
+        followed.inputs[:, None],
+        followed.state[:, None],
+        rates=rates,
+        accelerations=np.zeros_like(rates),
+        demand=Demand.VELOCITY | Demand.ACCELERATION,
+        derivatives=True,
+    )
+    return batch.first[:, 0] if batch.good[0] and batch.first is not None else None
+
+
+def _lies_ahead(fold: DeadCentre, followed: Followed, number: int) -> bool:
+    """Whether the fold is where the branch was going, next to where it could not be followed."""
+    direction = float(followed.direction[number])
+    ahead = (fold.value - float(followed.inputs[number])) * direction
+    curvature = float(fold.second[fold.exchanged.input_column]) * direction
+    return ahead >= -BEHIND and curvature < 0.0

@@ -1,0 +1,175 @@
+"""Circuits: everything that a mechanism reaches by moving one input to and fro, without taking it
+apart.
+
+A branch is followed up and down from a place. Where it folds, the motion goes on along the branch
+on the other side of the dead centre, with the input turning back; so branch after branch, until the
+first one comes again or something else ends the walk.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import pi
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.solver.branch_limit import find_limit
+from mechkin_cli.solver.branch_point import BranchPoint
+from mechkin_cli.solver.dead_centre import DeadCentre
+from mechkin_cli.solver.follow import TrackEnd, follow
+from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.search import pose_keys, same_poses
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.kernel._kernel import Plan
+
+    Floats = NDArray[np.float64]
+
+EndKind = Literal["dead-centre", "branch-point", "branch-lost", "full-turn", "far"]
+
+
+class End(NamedTuple):
+    """Where a branch ends: the input there (kernel units), and what may lie beyond.
+
+    `full-turn`: it came to an assembly that was met before, turns ago; `far`: not found within the
+    reach that is looked over. `last` are the states at the last place before a dead centre.
+    """
+
+    kind: EndKind
+    value: float
+    fold: DeadCentre | None = None
+    last: Floats | None = None
+
+
+class Place(NamedTuple):
+    """States where the input has its first value, or whole turns more."""
+
+    value: float
+    state: Floats
+
+
+@dataclass
+class Branch:
+    """A stretch of one input between two ends, with the places where it passes the first value."""
+
+    lower: End
+    upper: End
+    places: list[Place] = field(default_factory=list)
+
+
+class Walker:
+    """Walks along the branches of one input; the other inputs are held.
+
+    Args:
+        layout: the mechanism in the kernel.
+        plan: its plan.
+        driven: (joint, coordinate) of the inputs.
+        number: the input that moves.
+        inputs: (inputs,) where places are taken.
+    """
+
+    def __init__(
+        self,
+        layout: Layout,
+        plan: Plan,
+        driven: list[tuple[str, str]],
+        number: int,
+        inputs: Floats,
+    ) -> None:
+        self.layout, self.plan, self.driven = layout, plan, driven
+        self.number, self.inputs = number, inputs
+        edge, freedom = layout.graph.inputs[number]
+        joint = layout.graph.edges[edge].joint
+        slide = joint.type.slides[freedom]
+        self.period = None if slide or joint.letter == "H" else 2.0 * pi
+
+    def circuit(self, state: Floats) -> list[Branch]:
+        """All branches of the circuit through an assembly at the first value, that one first."""
+        origin = float(self.inputs[self.number])
+        start = Place(origin, state)
+        upper, above = self._climb(start, 1.0, start)
+        if upper.kind == "full-turn":
+            return [Branch(upper._replace(value=origin), upper, [start, *above])]
+        lower, below = self._climb(start, -1.0, start)
+        first = Branch(lower, upper, [*below[::-1], start, *above])
+        onward, closed = self._walk(first, upper, 1.0)
+        if closed:
+            return [first, *onward]
+        backward, _ = self._walk(first, lower, -1.0)
+        return [first, *onward, *backward]
+
+    def _walk(self, first: Branch, end: End, direction: float) -> tuple[list[Branch], bool]:
+        """The branches beyond an end of the first one; whether they lead back to its other end."""
+        found: list[Branch] = []
+        goal = first.lower if direction > 0.0 else first.upper
+        while end.fold is not None and len(found) < tolerances.MOST_BRANCHES:
+            start = self._beyond(end, direction)
+            if start is None:
+                break
+            direction = -direction
+            far, places = self._climb(start, direction, None)
+            ends = (end, far) if direction > 0.0 else (far, end)
+            found.append(Branch(*ends, places if direction > 0.0 else places[::-1]))
+            if far.fold is not None and goal.fold is not None and self._same(far.fold, goal.fold):
+                return found, True
+            end = far
+        return found, False
+
+    def _beyond(self, end: End, direction: float) -> Place | None:
+        """A place on the other side of a dead centre that was met going in a direction."""
+        fold, last = end.fold, end.last
+        if fold is None or last is None:
+            return None
+        bend = abs(float(fold.second[fold.exchanged.input_column]))
+        value = fold.value - direction * 0.5 * bend * tolerances.FOLD_CROSSING**2
+        state = fold.guess(value, 2.0 * fold.state - last)
+        return None if state is None else Place(value, state)
+
+    def _climb(
+        self, start: Place, direction: float, first: Place | None
+    ) -> tuple[End, list[Place]]:
+        """Follows a branch in a direction to its end; places on the way."""
+        place = start
+        places: list[Place] = []
+        for _ in range(tolerances.MOST_TURNS):
+            target = self._next(place.value, direction)
+            path = np.repeat(self.inputs[:, None], 2, axis=1)
+            path[self.number] = place.value, target
+            way = follow(self.plan, path, place.state)
+            if way.end != TrackEnd.FINISHED:
+                origin = path[:, 0]
+                limit = find_limit(self.layout, self.plan, self.driven, way, origin, place.state)
+                last = float(way.inputs[self.number])
+                if isinstance(limit, DeadCentre):
+                    return End("dead-centre", limit.value, limit, way.state), places
+                if isinstance(limit, BranchPoint):
+                    return End("branch-point", last + direction * limit.distance), places
+                return End("branch-lost", last), places
+            place = Place(target, way.state)
+            if self.period is None and target != self.inputs[self.number]:
+                return End("far", target), places
+            if first is not None and self._is_same(place.state, first.state):
+                return End("full-turn", target), places
+            places.append(place)
+        return End("far", place.value), places
+
+    def _next(self, value: float, direction: float) -> float:
+        """The next value in a direction at which a place is taken, or the end of the reach."""
+        origin = float(self.inputs[self.number])
+        if self.period is None:
+            ahead = (origin - value) * direction > tolerances.PASSED
+            return origin if ahead else value + direction * tolerances.FAR_INPUT
+        turns = (value - origin) / self.period * direction
+        whole = np.floor(turns + tolerances.PASSED) + 1.0
+        return origin + direction * float(whole) * self.period
+
+    def _same(self, one: DeadCentre, other: DeadCentre) -> bool:
+        return self._is_same(one.state, other.state, tolerances.SAME_DEAD_CENTRE)
+
+    def _is_same(self, one: Floats, other: Floats, limit: float = tolerances.SAME_MODE) -> bool:
+        keys = [pose_keys(self.layout, state[:, None]) for state in (one, other)]
+        return bool(same_poses(keys[0], keys[1], limit)[0, 0])
