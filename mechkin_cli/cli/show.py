@@ -24,7 +24,8 @@ def shown_tables(analysis: Analysis, folder: Path) -> Iterator[str]:
     width = shutil.get_terminal_size((80, 24)).columns
     chosen = _chosen_rows(analysis.rows)
     for table in analysis.tables:
-        lines = [f"{table.name}: {table.title}" if table.title != table.name else table.name]
+        title = _one_line(table.title)
+        lines = [f"{table.name}: {title}" if title != table.name else table.name]
         for group in _grouped(table, chosen, width):
             lines += ["", *group]
         left_out = analysis.rows - len(chosen)
@@ -46,6 +47,10 @@ def _grouped(table: Columns, rows: Sequence[int], width: int) -> Iterator[list[s
         yield [GAP.join(row).rstrip() for row in zip(*group, strict=True)]
 
 
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
 def _chosen_rows(rows: int) -> list[int]:
     if rows <= MOST_ROWS:
         return list(range(rows))
@@ -60,7 +65,7 @@ def _cells(column: Column, chosen: Sequence[int]) -> list[str]:
         texts = [every[i] for i in chosen]
     else:
         texts = column_texts(column.values[list(chosen)], column.decimals)
-    cells = [column.label, f"[{column.unit}]" if column.unit else "", *texts]
+    cells = [_one_line(column.label), f"[{column.unit}]" if column.unit else "", *texts]
     width = max(map(len, cells))
     return [cell.rjust(width) for cell in cells]
 

@@ -185,3 +185,9 @@ def test_json_of_an_invalid_file_is_one_object(mechkin, write) -> None:
     assert run.code == 3
     assert run.json["file"] == "bad.yaml"
     assert run.json["diagnostics"][0]["severity"] == "error"
+
+
+def test_labels_and_titles_of_several_lines_stay_on_one(mechkin, write):
+    tables = 'tables: [{name: t, title: "a\\nb", columns: [{label: "x\\ny", value: 1}]}]\n'
+    run = mechkin("analyze", write("crank.yaml", files.CRANK + tables))
+    assert run.out.splitlines()[:4] == ["t: a b", "", "x y", ""]
