@@ -54,7 +54,6 @@ EDITORS_ACCEPT = {
     "unknown-point": CROSSING,
     "unknown-coordinate": CROSSING,
     "disconnected-link": CROSSING,
-    "undriven-freedom": CROSSING,
     "load-on-ground": CROSSING,
     "too-many-loops": CROSSING,
     "too-many-numbers": CROSSING,
@@ -85,7 +84,6 @@ LOOPS = "\n".join(
 )
 MORE_BAD = [
     SMALL + 'name: "a \\x1b[31m b"\n',
-    SMALL,  # nothing drives O1
     f"format: 1\nlinks: {{{MANY}}}\njoints:\n{LOOPS}\n",
     SOUND.replace("step: 5}", "count: 9000000}"),
     SOUND.replace("step: 5}", "count: 3.0}"),
