@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from mechkin_cli.interface import Model
     from mechkin_cli.tables.columns import Columns
 
+DECIMALS = 6
+"""Decimals shown; JSON has all digits."""
+
 WORDS = {
     "dead-centre": "dead centre",
     "branch-point": "branch point",
@@ -132,7 +135,7 @@ def _table(found: Ranges) -> Columns:
             for item, limit in zip(found.ranges, limits, strict=True)
         ]
         return [
-            Column(label, found.unit, np.array(values)),
+            Column(label, found.unit, np.array(values), DECIMALS),
             Column(end, "", words(kinds)),
         ]
 
@@ -163,7 +166,7 @@ def _extremes(found: Ranges) -> Columns:
         (
             Column("mode", "", Words(number, tuple(mode for mode, _ in rows))),
             Column("output", "", Words(number, tuple(e.output for _, e in rows))),
-            Column("value", "", np.array([e.value for _, e in rows])),
-            Column(found.input, found.unit, np.array([e.input for _, e in rows])),
+            Column("value", "", np.array([e.value for _, e in rows]), DECIMALS),
+            Column(found.input, found.unit, np.array([e.input for _, e in rows]), DECIMALS),
         ),
     )

@@ -26,7 +26,7 @@ def first_row(problem: Problem, body: Body) -> Configuration | None:
         return None
     layout = Layout(problem.mechanism, graph)
     inputs = kernel_inputs(problem, layout).values[:, 0]
-    start = choose_start(problem, layout, layout.build(), inputs, Probe(problem, layout))
+    start = choose_start(problem, layout, layout.build(), inputs[:, None], Probe(problem, layout))
     if start.state is None:
         return None
     plan = layout.build()

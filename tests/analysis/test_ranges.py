@@ -1,0 +1,145 @@
+"""Ranges of an input against closed forms: dead centres, full turns, circuits, extremes."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from mechanisms.runs import MECHANISMS, model
+from mpmath import mp, mpf
+
+import mechkin_cli as mk
+from mechkin_cli.analysis.ranges import Range
+
+FOUR_BAR = """
+format: 1
+links: {{crank: {{}}, coupler: {{}}, rocker: {{}}}}
+joints:
+  A: {{type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}}
+  B: {{type: S, links: [crank, coupler], point: [{crank}, 0, 0]}}
+  C: {{type: S, links: [coupler, rocker], point: [{x}, {y}, 0]}}
+  D: {{type: R, links: [ground, rocker], point: [{ground}, 0, 0], axis: [0, 0, 1]}}
+motion: {{inputs: {{{driven}.theta: {{from: {at}, to: {at}, step: 1}}}}}}
+"""
+
+
+def four_bar(
+    crank: float, coupler: float, rocker: float, ground: float, driven: str, at: float = 0
+) -> mk.Model:
+    """A plane four-bar on spheres, drawn with the crank along the ground."""
+    base = ground - crank
+    x = crank + (coupler**2 - rocker**2 + base**2) / (2 * base)
+    y = math.sqrt(coupler**2 - (x - crank) ** 2)
+    return mk.loads(FOUR_BAR.format(crank=crank, x=x, y=y, ground=ground, driven=driven, at=at))
+
+
+def test_a_crank_that_turns_fully_has_two_circuits() -> None:
+    found = four_bar(2, 5, 4, 6, "A").ranges()
+    assert [(item.mode, item.turns) for item in found.ranges] == [("A", 1), ("B", 1)]
+    assert found.circuits == (("A",), ("B",))
+
+
+def test_a_driven_rocker_swings_between_its_dead_centres() -> None:
+    """Crank and coupler in line: the law of cosines in the triangle A, C, D."""
+    found = four_bar(2, 5, 4, 6, "D").ranges()
+
+    def angle(side: float) -> mpf:
+        return mp.pi - mp.acos((mpf(6) ** 2 + 16 - mpf(side) ** 2) / (2 * 6 * 4))
+
+    drawn = angle(mp.sqrt(mpf(x_of(2, 5, 4, 6)) ** 2 + mpf(y_of(2, 5, 4, 6)) ** 2))
+    limits = sorted(float(mp.degrees(angle(side) - drawn)) for side in (3, 7))
+    for item in found.ranges[:1]:
+        assert (item.lower.kind, item.upper.kind) == ("dead-centre", "dead-centre")
+    swings = [item for item in found.ranges if abs(item.upper.value - limits[1]) < 1]
+    assert len(swings) == 2
+    for item in swings:
+        assert abs(item.lower.value - limits[0]) < 1e-9
+        assert abs(item.upper.value - limits[1]) < 1e-9
+        assert item.turns == 0
+    assert len({item.circuit for item in swings}) == 1
+
+
+def x_of(crank: float, coupler: float, rocker: float, ground: float) -> float:
+    base = ground - crank
+    return crank + (coupler**2 - rocker**2 + base**2) / (2 * base)
+
+
+def y_of(crank: float, coupler: float, rocker: float, ground: float) -> float:
+    return math.sqrt(coupler**2 - (x_of(crank, coupler, rocker, ground) - crank) ** 2)
+
+
+def test_a_triple_rocker_is_one_circuit_over_two_dead_centres() -> None:
+    """Shortest + longest > the others: every link swings, both assemblies are one circuit."""
+    found = four_bar(3, 2.5, 2, 4, "A").ranges()
+    limit = math.degrees(math.acos((9 + 16 - 4.5**2) / (2 * 3 * 4)))
+    assert found.circuits == (("A", "B"),)
+    for item in found.ranges:
+        assert abs(item.upper.value - limit) < 1e-9
+        assert abs(item.lower.value + limit) < 1e-9
+
+
+def test_the_ends_of_a_parallelogram_are_branch_points() -> None:
+    for item in model("parallelogram").ranges().ranges:
+        assert (item.lower.kind, item.upper.kind) == ("branch-point", "branch-point")
+        assert abs(item.lower.value) < 1e-9
+        assert abs(item.upper.value - 180) < 1e-9
+
+
+def test_rcsr_has_one_circuit_between_its_dead_centres() -> None:
+    """The places are those of a bordered system at 40 digits (tests/stress)."""
+    found = model("rcsr").ranges()
+    assert found.circuits == (("A", "B"),)
+    for item in found.ranges:
+        assert abs(item.lower.value - 133.9439778838147) < 1e-9
+        assert abs(item.upper.value - 205.1439659451948) < 1e-9
+
+
+def test_extremes_of_a_rocker() -> None:
+    """Dead centres of the output: crank and coupler in line, stretched or folded."""
+    found = four_bar(2, 5, 4, 6, "A").ranges(outputs=["D.theta"])
+    item = found.ranges[0]
+    assert [extreme.output for extreme in item.extremes] == ["D.theta", "D.theta"]
+
+    def crank_angle(side: float) -> float:
+        return math.degrees(math.acos((36 + side**2 - 16) / (2 * 6 * side)))
+
+    stretched, folded = crank_angle(7), crank_angle(3)
+    expected = {0: sorted(((stretched) % 360, (folded + 180) % 360))}
+    mirrored = sorted(((-stretched) % 360, (180 - folded) % 360))
+    places = sorted(extreme.input % 360 for extreme in item.extremes)
+    misses = [
+        max(abs(a - b) for a, b in zip(places, wanted, strict=True))
+        for wanted in (expected[0], mirrored)
+    ]
+    assert min(misses) < 1e-9
+
+
+def test_struts_walk_through_the_modes_of_both_sides() -> None:
+    """Each circuit of the suspension has its two dead centres in both of its modes."""
+    found = model("five_link_suspension").ranges()
+    by_name = {item.mode: item for item in found.ranges}
+    for circuit in found.circuits:
+        uppers = [by_name[name].upper.value for name in circuit]
+        assert max(uppers) - min(uppers) < 1e-9
+
+
+@pytest.mark.parametrize("name", ["pspr", "sevenr", "rsgc", "rchch", "slider_crank"])
+def test_every_end_has_a_reason(name: str) -> None:
+    found = model(name).ranges()
+    assert found.ranges
+    for item in found.ranges:
+        for limit in (item.lower, item.upper):
+            assert limit.kind in ("dead-centre", "full-turn", "far")
+        assert_full_turns_have_no_limits(item)
+
+
+def assert_full_turns_have_no_limits(item: Range) -> None:
+    assert (item.turns > 0) == (item.lower.kind == item.upper.kind == "full-turn")
+
+
+def test_unknown_names_are_told() -> None:
+    rcsr = mk.load(MECHANISMS / "rcsr.yaml")
+    with pytest.raises(mk.UsageError, match=r"there is no input O2\.theta; inputs are O1\.theta"):
+        rcsr.ranges("O2.theta")
+    with pytest.raises(mk.UsageError, match=r"there is no coordinate O9\.theta"):
+        rcsr.ranges(outputs=["O9.theta"])
