@@ -176,7 +176,7 @@ def test_a_chain_of_one_row_is_no_loop() -> None:
 
 def test_a_chain_that_nothing_drives_is_told_at_its_row() -> None:
     with pytest.raises(mk.InvalidFile) as caught:
-        mk.loads(FILE.split("motion:")[0], "bad.yaml")
+        mk.loads(FILE.split("motion:")[0], "bad.yaml").analyze()
     (error,) = caught.value.diagnostics
     assert error.code == "undriven-freedom"
     assert error.place is not None
