@@ -159,13 +159,13 @@ def _links(
     """Motions of the links for given rates and accelerations of theta1, theta2, s, theta4."""
     D1, D4 = turning(d.axis1, d.point1), turning(d.axis4, d.point4)
     D2, S2 = turning(d.axis2, d.point2), sliding(d.axis2)
-    crank = _moved(here.M1, times(rates[0], D1), times(accelerations[0], D1))
-    on_crank = _moved(
+    crank = moved(here.M1, times(rates[0], D1), times(accelerations[0], D1))
+    on_crank = moved(
         here.M2,
         plus(times(rates[1], D2), times(rates[2], S2)),
         plus(times(accelerations[1], D2), times(accelerations[2], S2)),
     )
-    rocker = _moved(here.M4, times(rates[3], D4), times(accelerations[3], D4))
+    rocker = moved(here.M4, times(rates[3], D4), times(accelerations[3], D4))
     both = product(crank.rate, on_crank.rate)
     coupler = Motion(
         product(crank.place, on_crank.place),
@@ -178,7 +178,7 @@ def _links(
     return {"crank": crank, "coupler": coupler, "rocker": rocker}
 
 
-def _moved(place: Matrix, first: Matrix, second: Matrix) -> Motion:
+def moved(place: Matrix, first: Matrix, second: Matrix) -> Motion:
     """M' = W M and M'' = (W' + W W) M for the operators W and W' of a joint's motion."""
     return Motion(place, product(first, place), product(plus(second, product(first, first)), place))
 

@@ -12,30 +12,33 @@ from mechkin_cli.benchmark.kernel_case import (
     repeated,
     widths,
 )
-from mechkin_cli.benchmark.rcsr import Dimensions
-from mechkin_cli.benchmark.reference import ACCELERATIONS, EVERYTHING, POSITIONS, VELOCITIES
 from mechkin_cli.benchmark.report import Cell, Column, Table
+from mechkin_cli.benchmark.specimen import Specimen
 from mechkin_cli.benchmark.timing import in_turns
 from mechkin_cli.solver.codes import Demand
 
-MOTION = (*POSITIONS, *VELOCITIES, *ACCELERATIONS)
-
-STEPS: tuple[tuple[str, tuple[str, ...], Demand], ...] = (
-    ("position", POSITIONS, Demand.POSITION),
-    ("+ velocity", (*POSITIONS, *VELOCITIES), Demand.POSITION),
-    ("+ acceleration", MOTION, Demand.POSITION),
-    ("+ effort", (*MOTION, "O1.effort"), Demand.POSITION),
-    ("+ wrenches of all joints", EVERYTHING, Demand.POSITION),
-    ("+ condition, power error", EVERYTHING, Demand.CONDITION | Demand.POWER),
-)
-"""Name, quantities, and what is computed beside them."""
+Step = tuple[str, tuple[str, ...], Demand]
 
 
-def table(size: Dimensions) -> Table:
+def steps(specimen: Specimen) -> list[Step]:
+    """Name, quantities, and what is computed beside them."""
+    position, velocity, _ = specimen.motion
+    _, moving, everything = specimen.levels
+    return [
+        ("position", position, Demand.POSITION),
+        ("+ velocity", (*position, *velocity), Demand.POSITION),
+        ("+ acceleration", moving, Demand.POSITION),
+        ("+ effort", (*moving, specimen.loads[0]), Demand.POSITION),
+        ("+ wrenches of all joints", everything, Demand.POSITION),
+        ("+ condition, power error", everything, Demand.CONDITION | Demand.POWER),
+    ]
+
+
+def table(specimen: Specimen) -> Table:
     """Microseconds per row for every step and width."""
-    case = KernelCase(size, degree_rows())
+    case = KernelCase(specimen, degree_rows(specimen))
     inputs, guesses = repeated(case.inputs), repeated(case.second_order_guesses())
-    planned = {name: PlannedRun(case, names, more) for name, names, more in STEPS}
+    planned = {name: PlannedRun(case, names, more) for name, names, more in steps(specimen)}
     calls = {
         (name, lanes): partial(run, inputs, guesses, lanes=lanes)
         for name, run in planned.items()
@@ -47,13 +50,14 @@ def table(size: Dimensions) -> Table:
         row: dict[str, Cell] = {"part": name}
         row |= {f"lanes_{n}": 1e6 * times[name, n].median / BATCH for n in widths()}
         rows.append(row)
-    widest = max(widths())
+    widest, last = max(widths()), list(planned)[-1]
     for row, name in zip(rows, planned, strict=True):
-        row["part_of_all"] = times[name, widest].ratio(times[STEPS[-1][0], widest])
+        row["part_of_all"] = times[name, widest].ratio(times[last, widest])
     columns = (
         Column("part", "computed"),
         *(Column(f"lanes_{n}", f"{n} lanes\nus per row", "time") for n in widths()),
         Column("part_of_all", f"% of all\n({widest} lanes)", "percent"),
     )
     notes = (f"{BATCH} rows a call; each line computes all lines above it as well.",)
-    return Table("demand", "what the parts of the demand plan cost", columns, rows, notes)
+    title = f"{specimen.name}: what the parts of the demand plan cost"
+    return Table(f"demand_{specimen.name.lower()}", title, columns, rows, notes)

@@ -176,7 +176,7 @@ def _pair_axes(d: Arithmetic, link: str) -> Matrix:
 def _inertia(
     size: Dimensions, arithmetic: Arithmetic, link: str, motion: Motion
 ) -> tuple[Vector, Vector]:
-    """m a and r x m a + I alpha + omega x I omega about the ground origin."""
+    """The inertia wrench of a link of the RCSR mechanism."""
     number = arithmetic.number
     axes = _pair_axes(arithmetic, link)
     foot = {
@@ -188,10 +188,23 @@ def _inertia(
     if link == "rocker":
         along[0] = along[0] + number(size.s4)
     centre = _added([number(x) for x in foot], [dot(row, along) for row in axes])
-    mass = number(MASSES[link])
-    force = [mass * a for a in image(motion.second, centre)]
     turned = product(rotation(motion.place), axes)
     tensor = _tensor(size, arithmetic, link)
+    return inertia_wrench(motion, number(MASSES[link]), centre, turned, tensor)
+
+
+def inertia_wrench(
+    motion: Motion, mass: Any, centre: Vector, turned: Matrix, tensor: Matrix
+) -> tuple[Vector, Vector]:
+    """m a and r x m a + I alpha + omega x I omega about the ground origin.
+
+    Args:
+        motion: of the link.
+        mass, centre: the mass and its centre in the home drawing.
+        turned: the axes of the tensor as they stand now, as columns.
+        tensor: about the mass centre in these axes.
+    """
+    force = [mass * a for a in image(motion.second, centre)]
     omega, alpha = _angular(motion)
 
     def momentum(w: Vector) -> Vector:

@@ -1,4 +1,4 @@
-"""The kernel at work on RCSR: plans, inputs and guesses as a sweep makes them."""
+"""The kernel at work on a mechanism: plans, inputs and guesses as a sweep makes them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.benchmark.rcsr import ACCELERATION, COORDINATES, RATE, SPAN, Dimensions, values
+from mechkin_cli.benchmark.specimen import Specimen, values
 from mechkin_cli.interface import loads
 from mechkin_cli.solver.batch import Batch, run
 from mechkin_cli.solver.codes import Demand
@@ -38,6 +38,7 @@ class PlannedRun:
         self, case: KernelCase, names: Iterable[str], more: Demand = Demand.POSITION
     ) -> None:
         problem, self.names = case.model.problem, tuple(names)
+        self.specimen = case.specimen
         known = problem.quantities()
         wanted = [known[name] for name in self.names]
         self.demand = demand_of(problem.mechanism, wanted) | more
@@ -54,7 +55,7 @@ class PlannedRun:
         lanes: int = 0,
     ) -> Batch:
         """Runs all rows; inputs (1, rows), guess (states, rows)."""
-        rates, accelerations = driven(inputs.shape[1])
+        rates, accelerations = driven(self.specimen, inputs.shape[1])
         return run(
             self.plan,
             inputs,
@@ -79,22 +80,25 @@ class PlannedRun:
 
 
 class KernelCase:
-    """RCSR at the positions theta1 (rows, rad): coordinates by name, and the kernel's arrays."""
+    """A mechanism at the input's positions (rows, rad): coordinates by name, and the kernel's
+    arrays."""
 
-    def __init__(self, size: Dimensions, theta1: Floats) -> None:
-        names = [f"{name}{order}" for name in COORDINATES for order in ("", "_dot", "_ddot")]
-        self.model = loads(size.text(values(theta1.tolist())), "rcsr")
+    def __init__(self, specimen: Specimen, positions: Floats) -> None:
+        self.specimen = specimen
+        names = [name for level in specimen.motion for name in level]
+        self.model = loads(specimen.text(values(positions.tolist())), specimen.name)
         self.layout = Layout(self.model.problem.mechanism, self.model.graph)
         analysis = self.model.analyze(names)
         self.found = {name: analysis[name] for name in names}
-        self.theta1 = self.model.problem.motion.inputs[0].values
-        self.inputs = np.ascontiguousarray(self.theta1[None, :])
-        self.states = self._states([self.found[name] for name in COORDINATES])
+        self.positions = self.model.problem.motion.inputs[0].values
+        self.inputs = np.ascontiguousarray(self.positions[None, :])
+        self.states = self._states([self.found[name] for name in specimen.coordinates])
 
     def _states(self, coordinates: list[Floats]) -> Floats:
-        """The kernel's states (states, rows) for given theta2, s, theta4."""
-        states = np.zeros((self.layout.build().states, self.theta1.size))
-        known = dict(zip(COORDINATES, coordinates, strict=True)) | {"O1.theta": self.theta1}
+        """The kernel's states (states, rows) for given coordinates."""
+        states = np.zeros((self.layout.build().states, self.positions.size))
+        known = dict(zip(self.specimen.coordinates, coordinates, strict=True))
+        known[self.specimen.driven] = self.positions
         for k, edge in enumerate(self.layout.graph.edges):
             for kind in edge.joint.type.coordinates:
                 unit = self.layout.length if kind == "s" else 1.0
@@ -104,12 +108,13 @@ class KernelCase:
 
     def second_order_guesses(self) -> Floats:
         """Each row's states predicted from the row before by its two derivatives."""
-        step = np.diff(self.theta1)
+        step = np.diff(self.positions)
         predicted = []
-        for name in COORDINATES:
-            value, rate, second = (self.found[f"{name}{order}"] for order in ("", "_dot", "_ddot"))
-            first = rate / RATE
-            curvature = (second - ACCELERATION * first) / RATE**2
+        omega, alpha = self.specimen.rate, self.specimen.acceleration
+        for names in zip(*self.specimen.motion, strict=True):
+            value, rate, second = (self.found[name] for name in names)
+            first = rate / omega
+            curvature = (second - alpha * first) / omega**2
             ahead = value[:-1] + step * first[:-1] + 0.5 * step * step * curvature[:-1]
             predicted.append(np.concatenate([value[:1], ahead]))
         return self._states(predicted)
@@ -126,20 +131,21 @@ class KernelCase:
 
 
 @cache
-def driven(rows: int) -> tuple[Floats, Floats]:
+def driven(specimen: Specimen, rows: int) -> tuple[Floats, Floats]:
     """Rates and accelerations of the input (1, rows), made once as the motion of a file is."""
-    return np.full((1, rows), RATE), np.full((1, rows), ACCELERATION)
+    return np.full((1, rows), specimen.rate), np.full((1, rows), specimen.acceleration)
 
 
-def degree_rows() -> Floats:
-    """Positions 1 degree apart over the sweep of the source, rad."""
-    rows: Floats = np.radians(np.arange(SPAN[0], SPAN[1] + 1.0))
+def degree_rows(specimen: Specimen) -> Floats:
+    """Positions 1 degree apart over the mechanism's sweep, rad."""
+    first, last = specimen.span
+    rows: Floats = np.radians(np.arange(first, last + 1.0))
     return rows
 
 
-def sweep_rows(rows: int = SWEEP_ROWS) -> Floats:
-    """Equidistant positions over the sweep of the source, rad."""
-    first, last = (float(end) for end in np.radians(SPAN))
+def sweep_rows(specimen: Specimen, rows: int = SWEEP_ROWS) -> Floats:
+    """Equidistant positions over the mechanism's sweep, rad."""
+    first, last = (float(end) for end in np.radians(specimen.span))
     return np.linspace(first, last, rows)
 
 

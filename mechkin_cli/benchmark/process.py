@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from time import perf_counter
 
 from mechkin_cli.benchmark.timing import Timing, in_turns
 
@@ -22,19 +24,32 @@ def command() -> list[str]:
     return [sys.executable, "-m", "mechkin_cli"]
 
 
-def process_times(file: Path, do_nothing: Path, runs: int = RUNS) -> tuple[Timing, Timing]:
-    """Times of `mechkin analyze FILE` and of the program `do_nothing` on the same file, in turns.
+def process_times(
+    file: Path, others: Sequence[Sequence[str]], runs: int = RUNS
+) -> tuple[Timing, list[Timing]]:
+    """Times of `mechkin analyze FILE` and of other command lines, in turns.
+
+    In the others, FILE stands for the file and DIR for a folder to write to.
 
     Raises:
         CalledProcessError: one of them fails.
     """
     with TemporaryDirectory(prefix="mechkin-process-") as folder:
-        mechkin = [*command(), "analyze", str(file), "--out", folder]
-        nothing = [sys.executable, str(do_nothing), "analyze", str(file), "--out", folder]
+        places = {"FILE": str(file), "DIR": folder}
+        lines = [[*command(), "analyze", "FILE", "--out", "DIR"], *others]
         run = partial(_run, environment=_environment())
-        calls = {"mechkin": partial(run, mechkin), "nothing": partial(run, nothing)}
-        times = in_turns(calls, runs)
-    return times["mechkin"], times["nothing"]
+        calls = {
+            number: partial(run, [places.get(word, word) for word in line])
+            for number, line in enumerate(lines)
+        }
+        times = in_turns(calls, runs, perf_counter)
+    mine, *rest = times.values()
+    return mine, rest
+
+
+def nothing(program: Path) -> list[str]:
+    """The command line of the program that computes nothing."""
+    return [sys.executable, str(program), "analyze", "FILE", "--out", "DIR"]
 
 
 def _environment() -> dict[str, str]:
@@ -47,5 +62,5 @@ def _environment() -> dict[str, str]:
 
 
 def _run(line: list[str], environment: dict[str, str]) -> None:
-    nothing = subprocess.DEVNULL
-    subprocess.run(line, check=True, stdout=nothing, stderr=nothing, env=environment)
+    silent = subprocess.DEVNULL
+    subprocess.run(line, check=True, stdout=silent, stderr=silent, env=environment)

@@ -8,7 +8,6 @@ here as metres, times a scale.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 RATE = 0.1
@@ -38,6 +37,8 @@ SPAN = (150.0, 202.0)
 
 JOINTS = ("O1", "O2", "O3", "O4")
 COORDINATES = ("O2.theta", "O2.s", "O4.theta")
+WRENCHES = tuple(f"{joint}.{part}" for joint in JOINTS for part in ("force", "moment"))
+LOADS = ("O1.effort", *WRENCHES)
 
 _TEXT = """\
 format: 1
@@ -136,11 +137,6 @@ def dimensions(scale: float = 1.0) -> Dimensions:
         },
         near_slide=-9.0 * scale,
     )
-
-
-def values(radians: Sequence[float]) -> str:
-    """The motion through some values of O1.theta."""
-    return f"values: [{', '.join(repr(float(x)) for x in radians)}]"
 
 
 def _entries(tensor: dict[str, float]) -> str:

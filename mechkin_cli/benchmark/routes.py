@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli.benchmark.accuracy import errors
 from mechkin_cli.benchmark.arithmetic import Arithmetic, extended
 from mechkin_cli.benchmark.closure import drawing, kinematics
 from mechkin_cli.benchmark.kernel_case import (
@@ -21,9 +22,10 @@ from mechkin_cli.benchmark.kernel_case import (
     sweep_rows,
 )
 from mechkin_cli.benchmark.peers import Closure, dense_loads, differences, fsolve_positions
-from mechkin_cli.benchmark.rcsr import COORDINATES, Dimensions
-from mechkin_cli.benchmark.reference import EVERYTHING, POSITIONS, errors, solution
+from mechkin_cli.benchmark.rcsr import Dimensions, dimensions
+from mechkin_cli.benchmark.reference import POSITIONS
 from mechkin_cli.benchmark.report import Cell, Column, Table
+from mechkin_cli.benchmark.specimen import Specimen
 from mechkin_cli.benchmark.timing import Timing, in_turns
 
 if TYPE_CHECKING:
@@ -57,35 +59,52 @@ class Route:
     exact: dict[str, Any]
 
 
-def table(size: Dimensions) -> Table:
-    """Times and errors of all routes."""
-    coarse = KernelCase(size, degree_rows())
-    fine = KernelCase(size, sweep_rows())
-    native = [*_kernel_routes(size, coarse), *_sweep_routes(size, fine)]
-    by_hand = _by_hand_routes(size, coarse)
+NATIVE_NOTES = (
+    f"kernel: {BATCH} rows a call, 1 degree apart, each predicted to second order.",
+    f"sweep: {SWEEP_ROWS} rows; follow and run: the calls that analyze() makes of the kernel.",
+)
+BY_HAND_NOTES = (
+    "differences: central ones, from three positions a row, instead of derivatives.",
+    "dense 24x24 system: the loads alone, from an exact motion.",
+)
+
+
+def tables(rcsr: Specimen, sevenr: Specimen) -> Iterator[Table]:
+    """Times and errors of all routes: RCSR with what is done by hand, 7R without."""
+    yield _table(rcsr, partial(_rcsr_routes, dimensions()), BY_HAND_NOTES)
+    yield _table(sevenr, lambda specimen, case: [], ())
+
+
+def _table(
+    specimen: Specimen,
+    peers: Callable[[Specimen, KernelCase], list[Route]],
+    notes: tuple[str, ...],
+) -> Table:
+    coarse = KernelCase(specimen, degree_rows(specimen))
+    fine = KernelCase(specimen, sweep_rows(specimen))
+    native = [*_kernel_routes(specimen, coarse), *_sweep_routes(specimen, fine)]
+    by_hand = peers(specimen, coarse)
     times = in_turns({route.name: route.call for route in native})
     times |= in_turns({route.name: route.call for route in by_hand}, BY_HAND_ROUNDS)
     unit = next(route for route in native if route.name == "kernel, converged")
     rows = [
-        _row(route, times[route.name], times[unit.name], unit.rows) for route in native + by_hand
+        _row(specimen, route, times[route.name], times[unit.name], unit.rows)
+        for route in native + by_hand
     ]
-    notes = (
-        f"kernel: {BATCH} rows a call, 1 degree apart, each predicted to second order.",
-        f"sweep: {SWEEP_ROWS} rows; follow and run: the calls that analyze() makes of the kernel.",
-        "differences: central ones, from three positions a row, instead of derivatives.",
-        "dense 24x24 system: the loads alone, from an exact motion.",
-        f"errors in parts of the largest value; exact: {extended().name}.",
-    )
-    return Table("routes", "run time against error, RCSR, one thread", COLUMNS, rows, notes)
+    measure = f"errors in parts of the largest value; exact: {extended().name}."
+    name, title = f"routes_{specimen.name.lower()}", f"run time against error, {specimen.name}"
+    return Table(name, f"{title}, one thread", COLUMNS, rows, (*NATIVE_NOTES, *notes, measure))
 
 
-def exact_solution(size: Dimensions, case: KernelCase) -> dict[str, Any]:
+def exact_solution(specimen: Specimen, case: KernelCase) -> dict[str, Any]:
     """The independent solution at a case's rows."""
-    return solution(size, case.theta1, [case.found[name] for name in COORDINATES])
+    return specimen.solution(case.positions, [case.found[name] for name in specimen.coordinates])
 
 
-def _row(route: Route, time: Timing, unit: Timing, unit_rows: int) -> dict[str, Cell]:
-    found = errors(route.found, route.exact)
+def _row(
+    specimen: Specimen, route: Route, time: Timing, unit: Timing, unit_rows: int
+) -> dict[str, Cell]:
+    found = errors(specimen, route.found, route.exact)
     return {
         "route": route.name,
         "microseconds": 1e6 * time.median / route.rows,
@@ -95,43 +114,32 @@ def _row(route: Route, time: Timing, unit: Timing, unit_rows: int) -> dict[str, 
     }
 
 
-def _kernel_routes(size: Dimensions, case: KernelCase) -> list[Route]:
-    exact, guess = exact_solution(size, case), case.second_order_guesses()
+def _kernel_routes(specimen: Specimen, case: KernelCase) -> list[Route]:
+    exact, guess = exact_solution(specimen, case), case.second_order_guesses()
     inputs, guesses = repeated(case.inputs), repeated(guess)
-    everything, positions = PlannedRun(case, EVERYTHING), PlannedRun(case, POSITIONS)
+    everything, positions = (PlannedRun(case, specimen.levels[level]) for level in (2, 0))
 
     def route(name: str, planned: PlannedRun, iterations: int) -> Route:
         found = planned.quantities(planned(case.inputs, guess, iterations))
         call = partial(planned, inputs, guesses, iterations)
         return Route(name, call, BATCH, found, exact)
 
-    def shifted(theta1: Floats) -> Floats:
-        batch = positions(np.ascontiguousarray(theta1[None, :]), repeated(guess, theta1.size))
-        return np.stack([positions.quantities(batch)[name] for name in POSITIONS])
-
-    long_inputs = inputs[0]
     return [
         route("kernel, 1 Newton step", everything, 1),
         route("kernel, 2 Newton steps", everything, 2),
         route("kernel, converged", everything, 6),
         route("kernel, positions only", positions, 6),
-        Route(
-            "kernel and differences",
-            partial(differences, shifted, long_inputs),
-            BATCH,
-            differences(shifted, case.theta1),
-            exact,
-        ),
     ]
 
 
-def _sweep_routes(size: Dimensions, case: KernelCase) -> list[Route]:
-    exact, everything = exact_solution(size, case), PlannedRun(case, EVERYTHING)
+def _sweep_routes(specimen: Specimen, case: KernelCase) -> list[Route]:
+    names = specimen.levels[2]
+    exact, everything = exact_solution(specimen, case), PlannedRun(case, names)
 
     sweep = case.sweep(everything)
-    analyze = partial(case.model.analyze, EVERYTHING)
+    analyze = partial(case.model.analyze, names)
     analysis = analyze()
-    found = {name: analysis[name] for name in EVERYTHING}
+    found = {name: analysis[name] for name in names}
     swept = everything.quantities(sweep())
     return [
         Route("sweep, follow and run", sweep, SWEEP_ROWS, swept, exact),
@@ -139,17 +147,31 @@ def _sweep_routes(size: Dimensions, case: KernelCase) -> list[Route]:
     ]
 
 
-def _by_hand_routes(size: Dimensions, case: KernelCase) -> list[Route]:
-    exact, theta1 = exact_solution(size, case), case.theta1
+def _rcsr_routes(size: Dimensions, specimen: Specimen, case: KernelCase) -> list[Route]:
+    """Differences of the kernel's positions, and what engineers do by hand."""
+    exact, theta1 = exact_solution(specimen, case), case.positions
     d = drawing(size, _double())
-    closure, start = Closure(d), np.array([case.found[name][0] for name in COORDINATES])
+    closure, start = Closure(d), np.array([case.found[name][0] for name in POSITIONS])
     solved = partial(fsolve_positions, closure, start=start)
 
-    motion = kinematics(d, theta1, [case.found[name] for name in COORDINATES])
+    motion = kinematics(d, theta1, [case.found[name] for name in POSITIONS])
     loads = partial(dense_loads, size, d, motion)
     positions = dict(zip(POSITIONS, solved(theta1), strict=True))
     rows = theta1.size
+    planned, guess = PlannedRun(case, POSITIONS), case.second_order_guesses()
+
+    def shifted(theta1: Floats) -> Floats:
+        batch = planned(np.ascontiguousarray(theta1[None, :]), repeated(guess, theta1.size))
+        return np.stack([planned.quantities(batch)[name] for name in POSITIONS])
+
     return [
+        Route(
+            "kernel and differences",
+            partial(differences, shifted, repeated(case.inputs)[0]),
+            BATCH,
+            differences(shifted, theta1),
+            exact,
+        ),
         Route("fsolve on 4x4 matrices", partial(solved, theta1), rows, positions, exact),
         Route(
             "fsolve and differences",

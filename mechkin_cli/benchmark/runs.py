@@ -7,8 +7,8 @@ from pathlib import Path
 from subprocess import CalledProcessError
 
 from mechkin_cli.benchmark import demand_steps, routes, stress, targets
-from mechkin_cli.benchmark.rcsr import dimensions
 from mechkin_cli.benchmark.report import Table
+from mechkin_cli.benchmark.specimens import rcsr_specimen, sevenr_specimen
 from mechkin_cli.benchmark.yardstick import Yardstick, load
 
 RCSR_FILE = Path("mechanisms") / "rcsr.yaml"
@@ -25,14 +25,15 @@ def timing_tables(folder: Path | None, say: Callable[[str], None]) -> Iterator[T
         UsageError: no yardstick in the folder given.
     """
     yardstick = load(folder)
-    size = dimensions()
-    yield routes.table(size)
-    yield demand_steps.table(size)
+    specimens = (rcsr_specimen(), sevenr_specimen())
+    yield from routes.tables(*specimens)
+    yield from map(demand_steps.table, specimens)
     if not isinstance(yardstick, Yardstick):
         say(f"left out: {yardstick}")
         return
     with yardstick:
-        yield targets.table(size, yardstick)
+        for specimen in specimens:
+            yield targets.table(specimen, yardstick)
     yield from _process_table(yardstick.folder, say)
 
 

@@ -8,17 +8,19 @@ the condition, velocities lose eps * condition^2 of themselves; accelerations an
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli.benchmark.accuracy import errors
 from mechkin_cli.benchmark.arithmetic import Arithmetic, best
 from mechkin_cli.benchmark.closure import dead_centre, drawing
 from mechkin_cli.benchmark.kernel_case import sweep_rows
-from mechkin_cli.benchmark.rcsr import COORDINATES, SPAN, dimensions, values
-from mechkin_cli.benchmark.reference import EVERYTHING, errors, row_by_row
+from mechkin_cli.benchmark.rcsr import SPAN, dimensions
 from mechkin_cli.benchmark.report import Cell, Column, Table
+from mechkin_cli.benchmark.specimen import Specimen, values
+from mechkin_cli.benchmark.specimens import rcsr_specimen, sevenr_specimen
 from mechkin_cli.interface import Analysis, loads
 from mechkin_cli.status import Status
 
@@ -54,46 +56,52 @@ _VERDICT = (
 
 
 def tables() -> Iterator[Table]:
-    """Both families."""
+    """Sizes of both mechanisms, and the dead centre."""
     arithmetic = best()
-    yield size_table(arithmetic)
+    yield size_table(rcsr_specimen, SIZES, arithmetic)
+    yield size_table(sevenr_specimen, SIZES[::3], arithmetic)
     yield dead_centre_table(arithmetic)
 
 
-def size_table(arithmetic: Arithmetic) -> Table:
+def size_table(
+    scaled: Callable[[float], Specimen], sizes: Sequence[float], arithmetic: Arithmetic
+) -> Table:
     """One row per size: worst errors of a sweep in parts of the columns' largest values."""
     rows: list[dict[str, Cell]] = []
-    theta1 = sweep_rows(SIZE_ROWS)
-    for scale in SIZES:
-        size = dimensions(scale)
-        analysis = loads(size.text(values(theta1.tolist())), "rcsr").analyze(EVERYTHING)
-        solved = np.flatnonzero(np.isfinite(analysis["O4.theta"]))
-        exact = row_by_row(size, theta1[solved], _coordinates(analysis, solved), arithmetic)
-        found = {name: analysis[name][solved] for name in EVERYTHING}
+    for scale in sizes:
+        specimen = scaled(scale)
+        theta1, names = sweep_rows(specimen, SIZE_ROWS), specimen.levels[2]
+        text = specimen.text(values(theta1.tolist()))
+        analysis = loads(text, specimen.name).analyze(names)
+        solved = np.flatnonzero(np.isfinite(analysis[specimen.coordinates[-1]]))
+        guess = _coordinates(specimen, analysis, solved)
+        exact = specimen.row_by_row(theta1[solved], guess, arithmetic)
+        found = {name: analysis[name][solved] for name in names}
         result = analysis.result
         rows.append(
             {
                 "scale": scale,
-                **vars(errors(found, exact)),
+                **vars(errors(specimen, found, exact)),
                 "residual": float(np.max(result.residual[solved])),
                 "condition": float(np.max(result.condition[solved])),
                 "status": ", ".join(sorted({Status(int(c)).label for c in result.status})),
             }
         )
-    notes = (f"{SIZE_ROWS} rows a size; exact: {arithmetic.name}, 4x4 matrices and 24x24 system.",)
+    notes = (f"{SIZE_ROWS} rows a size; exact: {arithmetic.name}, 4x4 matrices and dense loads.",)
     columns = (Column("scale", "\nsize", "error"), *_ERRORS, *_VERDICT)
-    return Table("sizes", "lengths times 1e-6 to 1e6", columns, rows, notes)
+    title = f"{specimen.name}: lengths times 1e-6 to 1e6"
+    return Table(f"sizes_{specimen.name.lower()}", title, columns, rows, notes)
 
 
 def dead_centre_table(arithmetic: Arithmetic) -> Table:
     """One row per distance: errors of that position in parts of its own values."""
-    size = dimensions()
-    fold = dead_centre(drawing(size, arithmetic), NEAR_DEAD_CENTRE)
-    theta1 = [float(sweep_rows(2)[0])]
+    specimen = rcsr_specimen()
+    fold = dead_centre(drawing(dimensions(), arithmetic), NEAR_DEAD_CENTRE)
+    theta1 = [float(sweep_rows(specimen, 2)[0])]
     theta1 += [float(fold.theta1 - arithmetic.radians(1) * distance) for distance in DISTANCES]
-    analysis = loads(size.text(values(theta1)), "rcsr").analyze(EVERYTHING)
+    analysis = loads(specimen.text(values(theta1)), "rcsr").analyze(specimen.levels[2])
     rows: list[dict[str, Cell]] = [
-        _position_row(analysis, i, float(theta1[i]), float(fold.theta4), arithmetic)
+        _position_row(specimen, analysis, i, float(theta1[i]), float(fold.theta4), arithmetic)
         | {"distance": distance}
         for i, distance in enumerate(DISTANCES, 1)
     ]
@@ -108,19 +116,24 @@ def dead_centre_table(arithmetic: Arithmetic) -> Table:
         f"dead centre at {degrees:.13f} degrees; one sweep from {SPAN[0]:g}",
         f"exact: {arithmetic.name}; eps c: 2^-53 times the condition (one rounding).",
     )
-    return Table("dead_centre", "towards the dead centre", columns, rows, notes)
+    return Table("dead_centre", "RCSR towards the dead centre", columns, rows, notes)
 
 
 def _position_row(
-    analysis: Analysis, i: int, theta1: float, theta4_of_fold: float, arithmetic: Arithmetic
+    specimen: Specimen,
+    analysis: Analysis,
+    i: int,
+    theta1: float,
+    theta4_of_fold: float,
+    arithmetic: Arithmetic,
 ) -> dict[str, Cell]:
     result = analysis.result
     row: dict[str, Cell] = {"status": Status(int(result.status[i])).label}
     if not np.isfinite(analysis["O4.theta"][i]):
         return row
     one = np.array([i])
-    exact = row_by_row(dimensions(), [theta1], _coordinates(analysis, one), arithmetic)
-    found = errors({name: analysis[name][one] for name in EVERYTHING}, exact)
+    exact = specimen.row_by_row([theta1], _coordinates(specimen, analysis, one), arithmetic)
+    found = errors(specimen, {name: analysis[name][one] for name in specimen.levels[2]}, exact)
     if analysis["O4.theta"][i] <= theta4_of_fold:
         row["status"] = f"{row['status']}, {OTHER_BRANCH}"
     condition = float(result.condition[i])
@@ -133,5 +146,5 @@ def _position_row(
     }
 
 
-def _coordinates(analysis: Analysis, rows: NDArray[np.intp]) -> list[Any]:
-    return [analysis[name][rows] for name in COORDINATES]
+def _coordinates(specimen: Specimen, analysis: Analysis, rows: NDArray[np.intp]) -> list[Any]:
+    return [analysis[name][rows] for name in specimen.coordinates]

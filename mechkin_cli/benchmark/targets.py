@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Literal
 
+from mechkin_cli.benchmark import sevenr
 from mechkin_cli.benchmark.kernel_case import (
     BATCH,
     SWEEP_ROWS,
@@ -17,10 +19,9 @@ from mechkin_cli.benchmark.kernel_case import (
     sweep_rows,
     widths,
 )
-from mechkin_cli.benchmark.process import process_times
-from mechkin_cli.benchmark.rcsr import Dimensions
-from mechkin_cli.benchmark.reference import ACCELERATIONS, EVERYTHING, POSITIONS, VELOCITIES
+from mechkin_cli.benchmark.process import nothing, process_times
 from mechkin_cli.benchmark.report import Cell, Column, Table
+from mechkin_cli.benchmark.specimen import Specimen
 from mechkin_cli.benchmark.timing import Timing, in_turns
 from mechkin_cli.benchmark.yardstick import LEVELS, Yardstick
 
@@ -38,23 +39,25 @@ COLUMNS = (
     Column("met", "\nmet", "verdict"),
 )
 
+YARDSTICK_NAMES = {"RCSR": "rcsr", "7R": "sevenr"}
+
 Owner = Literal["mechkin", "yardstick"]
 
 
-def table(size: Dimensions, yardstick: Yardstick) -> Table:
-    """Kernel and sweep against the yardstick, per lane width."""
-    coarse = KernelCase(size, degree_rows())
-    fine = KernelCase(size, sweep_rows())
+def table(specimen: Specimen, yardstick: Yardstick) -> Table:
+    """Kernel and sweep against the yardstick on its own copy, per lane width."""
+    coarse = KernelCase(specimen, degree_rows(specimen))
+    fine = KernelCase(specimen, sweep_rows(specimen))
+    other_case = yardstick.case(YARDSTICK_NAMES[specimen.name])
     inputs, guesses = repeated(coarse.inputs), repeated(coarse.second_order_guesses())
-    levels = (POSITIONS, (*POSITIONS, *VELOCITIES, *ACCELERATIONS), EVERYTHING)
-    runs = [PlannedRun(coarse, names) for names in levels]
+    runs = [PlannedRun(coarse, names) for names in specimen.levels]
     shared = [lanes for lanes in widths() if lanes in yardstick.widths]
     calls: dict[tuple[Owner, str, int], Callable[[], object]] = {}
     for lanes in shared:
         for level, name in enumerate(LEVELS):
             calls["mechkin", name, lanes] = partial(runs[level], inputs, guesses, lanes=lanes)
-            calls["yardstick", name, lanes] = yardstick.call(lanes, level)
-        calls["mechkin", "sweep", lanes] = fine.sweep(PlannedRun(fine, EVERYTHING), lanes)
+            calls["yardstick", name, lanes] = other_case.call(lanes, level)
+        calls["mechkin", "sweep", lanes] = fine.sweep(PlannedRun(fine, specimen.levels[2]), lanes)
     times = in_turns(calls)
     rows: list[dict[str, Cell]] = []
     for lanes in shared:
@@ -68,25 +71,44 @@ def table(size: Dimensions, yardstick: Yardstick) -> Table:
     notes = (
         f"us per row, {BATCH} rows a call; each line of a width with all above it.",
         "other: the yardstick at the same width without contraction, two Newton steps,",
-        f"no tests; its largest position error is {yardstick.position_error(max(shared)):.0e}.",
+        f"no tests; its largest position error is {other_case.position_error(max(shared)):.0e}.",
         "sweep: follow and run with everything, against as many rows of the yardstick.",
     )
-    return Table("yardstick", "against the yardstick", COLUMNS, rows, notes)
+    title = f"{specimen.name} against the yardstick"
+    return Table(f"yardstick_{specimen.name.lower()}", title, COLUMNS, rows, notes)
 
 
-def process_table(file: Path, do_nothing: Path) -> Table:
-    """`mechkin analyze` against a program of the same stack that computes nothing."""
-    times = process_times(file, do_nothing)
-    row = _row(f"mechkin analyze {file.name}", *times, 1, 1, PROCESS_LIMIT)
+def process_table(rcsr: Path, do_nothing: Path, peer: Sequence[str] = ()) -> Table:
+    """Whole processes: `mechkin analyze` of RCSR and of 361 rows of 7R, against `do_nothing`.
+
+    Args:
+        rcsr: the mechanism's file.
+        do_nothing: a program of the same stack that computes nothing.
+        peer: a command line that does the work of the 7R file by other means, with FILE and DIR for
+            the file and a folder; () for none.
+
+    Raises:
+        CalledProcessError: a process failed.
+    """
+    idle = nothing(do_nothing)
+    with TemporaryDirectory(prefix="mechkin-7r-") as folder:
+        file = Path(folder) / "7r.yaml"
+        file.write_text(sevenr.text(), encoding="utf-8")
+        mine, (other,) = process_times(rcsr, [idle])
+        rows = [_row("RCSR, nothing computed", mine, other, 1, 1, PROCESS_LIMIT)]
+        mine, others = process_times(file, [idle, peer] if peer else [idle])
+    names = (f"7R, {SWEEP_ROWS} rows, nothing computed", f"7R, {SWEEP_ROWS} rows, Pinocchio")
+    rows += [_row(name, mine, o, 1, 1) for name, o in zip(names, others, strict=False)]
     notes = (
-        f"us, medians of processes in turns; other: {do_nothing.name}, which imports the same",
-        "libraries, declares as many commands and validates the same file.",
+        "mechkin analyze FILE, us, medians of processes in turns; nothing computed:",
+        f"{do_nothing.name}, which imports the same libraries, declares as many",
+        "commands and validates the same file.",
     )
-    return Table("process", "the whole process", COLUMNS, [row], notes)
+    return Table("process", "the whole process", COLUMNS, rows, notes)
 
 
 def _row(
-    name: str, mine: Timing, other: Timing, rows: int, other_rows: int, limit: float | None
+    name: str, mine: Timing, other: Timing, rows: int, other_rows: int, limit: float | None = None
 ) -> dict[str, Cell]:
     ratio = mine.ratio(other, rows / other_rows)
     return {

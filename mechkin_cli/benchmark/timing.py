@@ -1,11 +1,15 @@
-"""Timing of calls against one another: in turns, so that a slow moment of the machine meets all."""
+"""Timing of calls against one another: in turns, so that a slow moment of the machine meets all.
+
+Calls inside this process are timed by the processor time of the thread, which leaves out what other
+programs took of the machine meanwhile; whole processes by the clock on the wall.
+"""
 
 from __future__ import annotations
 
 import gc
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
-from time import perf_counter
+from time import thread_time
 from typing import TypeVar
 
 import numpy as np
@@ -40,29 +44,33 @@ class Timing:
         return float(np.median([mine / (factor * theirs) for mine, theirs in parts]))
 
 
-def in_turns(calls: Mapping[Key, Callable[[], object]], rounds: int = ROUNDS) -> dict[Key, Timing]:
+def in_turns(
+    calls: Mapping[Key, Callable[[], object]],
+    rounds: int = ROUNDS,
+    clock: Callable[[], float] = thread_time,
+) -> dict[Key, Timing]:
     """Times the calls one after the other, `rounds` times over, after one round to warm up."""
-    repeats = {key: _repeats(call) for key, call in calls.items()}
+    repeats = {key: _repeats(call, clock) for key, call in calls.items()}
     seconds: dict[Key, list[float]] = {key: [] for key in calls}
     enabled = gc.isenabled()
     gc.disable()
     try:
         for _ in range(rounds):
             for key, call in calls.items():
-                seconds[key].append(_once(call, repeats[key]))
+                seconds[key].append(_once(call, repeats[key], clock))
     finally:
         if enabled:
             gc.enable()
     return {key: Timing(tuple(times)) for key, times in seconds.items()}
 
 
-def _once(call: Callable[[], object], repeats: int) -> float:
-    start = perf_counter()
+def _once(call: Callable[[], object], repeats: int, clock: Callable[[], float]) -> float:
+    start = clock()
     for _ in range(repeats):
         call()
-    return (perf_counter() - start) / repeats
+    return (clock() - start) / repeats
 
 
-def _repeats(call: Callable[[], object]) -> int:
+def _repeats(call: Callable[[], object], clock: Callable[[], float]) -> int:
     call()
-    return max(1, round(SHORTEST / max(_once(call, 1), 1e-9)))
+    return max(1, round(SHORTEST / max(_once(call, 1, clock), 1e-9)))

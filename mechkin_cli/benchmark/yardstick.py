@@ -40,7 +40,7 @@ def find(folder: Path | None) -> Path | None:
 
 
 class Yardstick:
-    """Its builds without contraction on RCSR, by lane width."""
+    """Its builds without contraction, by lane width."""
 
     def __init__(self, folder: Path) -> None:
         """Compiles it.
@@ -57,30 +57,19 @@ class Yardstick:
             for _, lanes, contraction, options in self._run.widths()
             if not contraction
         }
-        self.data, self._inputs, self._guess, self._exact = self._run.case(builds[1], "rcsr", BATCH)
+        self._scalar = builds[1]
         self._builds = {lanes: run for lanes, run in builds.items() if lanes > 1}
-        self._out = np.zeros((self._run.slots(self.data.nu), BATCH))
 
     @property
     def widths(self) -> list[int]:
         """Lane widths that were built."""
         return list(self._builds)
 
-    def call(self, lanes: int, level: int) -> Callable[[], None]:
-        """A call for `BATCH` positions, two Newton steps; level as in `LEVELS`."""
-        run, arrays = self._builds[lanes], (self._inputs, self._guess)
-
-        def timed() -> None:
-            self._run.call(run, self.data, *arrays, 2, level, self._out)
-
-        return timed
-
-    def position_error(self, lanes: int) -> float:
-        """Largest error of a coordinate in parts of its largest value, against 12 Newton steps."""
-        self.call(lanes, 0)()
-        found = self._out[: self.data.nu]
-        miss = np.abs(found - self._exact).max(axis=1) / np.abs(self._exact).max(axis=1)
-        return float(miss.max())
+    def case(self, mechanism: str) -> YardstickCase:
+        """One of its mechanisms (`rcsr`, `sevenr`) at `BATCH` positions."""
+        return YardstickCase(
+            self._run, self._builds, self._run.case(self._scalar, mechanism, BATCH)
+        )
 
     def __enter__(self) -> Yardstick:
         return self
@@ -88,6 +77,31 @@ class Yardstick:
     def __exit__(self, *reason: object) -> None:
         """Removes the compiled files."""
         self._files.cleanup()
+
+
+class YardstickCase:
+    """The yardstick at work on one mechanism; `out` receives what it finds."""
+
+    def __init__(self, run: Any, builds: dict[int, Any], data: tuple[Any, ...]) -> None:
+        self._run, self._builds = run, builds
+        self.data, self._inputs, self._guess, self._exact = data
+        self.out = np.zeros((run.slots(self.data.nu), BATCH))
+
+    def call(self, lanes: int, level: int) -> Callable[[], None]:
+        """A call for `BATCH` positions, two Newton steps; level as in `LEVELS`."""
+        run, arrays = self._builds[lanes], (self._inputs, self._guess)
+
+        def timed() -> None:
+            self._run.call(run, self.data, *arrays, 2, level, self.out)
+
+        return timed
+
+    def position_error(self, lanes: int) -> float:
+        """Largest error of a coordinate in parts of its largest value, against 12 Newton steps."""
+        self.call(lanes, 0)()
+        found = self.out[: self.data.nu]
+        miss = np.abs(found - self._exact).max(axis=1) / np.abs(self._exact).max(axis=1)
+        return float(miss.max())
 
 
 def load(folder: Path | None) -> Yardstick | str:

@@ -1,25 +1,48 @@
-"""Times whole processes: `mechkin analyze` against a program of its stack that computes nothing.
+"""Times whole processes: `mechkin analyze` against a program of its stack that computes nothing,
+and against the same work written with Pinocchio.
 
-    python tests/benchmark/process_time.py [FILE]
+    python tests/benchmark/process_time.py [--pinocchio PYTHON]
 
-Prints medians and their ratio (limit 1.4); both start in turns, so that a slow moment meets both.
+PYTHON is an interpreter with `pin` and `pyyaml`; left out, this one if it has them. Prints medians
+and their ratios (limit for RCSR: 1.4), and how far Pinocchio's numbers are from mechkin's; all
+start in turns, so that a slow moment meets each.
 """
 
+import subprocess
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
+from mechkin_cli.benchmark import sevenr
 from mechkin_cli.benchmark.process import command
 from mechkin_cli.benchmark.report import plain_text
 from mechkin_cli.benchmark.targets import process_table
 
 HERE = Path(__file__).resolve().parent
 RCSR = HERE.parents[1] / "mechanisms" / "rcsr.yaml"
+PINOCCHIO = HERE / "pinocchio_7r.py"
+
+
+def compared(python: str) -> bool:
+    """Says how far Pinocchio's numbers are from mechkin's, or why it is left out."""
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "7r.yaml"
+        file.write_text(sevenr.text(), encoding="utf-8")
+        analyze = [*command(), "analyze", str(file), "--out", folder, "--quiet"]
+        subprocess.run(analyze, check=True, stdout=subprocess.DEVNULL)
+        table = str(Path(folder) / "everything.csv")
+        line = [python, str(PINOCCHIO), str(file), folder, table]
+        done = subprocess.run(line, capture_output=True, text=True, check=False)
+    print(f"Pinocchio: {(done.stdout or done.stderr).strip()}")
+    return done.returncode == 0
 
 
 def main() -> None:
-    file = Path(sys.argv[1]) if len(sys.argv) > 1 else RCSR
-    print(plain_text(process_table(file, HERE / "do_nothing.py")))
-    print(f"timed: {' '.join(command())} analyze {file}")
+    python = sys.argv[2] if sys.argv[1:2] == ["--pinocchio"] else sys.executable
+    peer = [python, str(PINOCCHIO), "FILE", "DIR"] if compared(python) else []
+    print()
+    print(plain_text(process_table(RCSR, HERE / "do_nothing.py", peer)))
+    print(f"timed: {' '.join(command())} analyze")
 
 
 if __name__ == "__main__":

@@ -8,24 +8,24 @@ import pytest
 import references
 from oracle import fold, mp, read
 
+from mechkin_cli.benchmark.accuracy import errors
 from mechkin_cli.benchmark.arithmetic import Arithmetic, extended
 from mechkin_cli.benchmark.closure import dead_centre, drawing, kinematics
 from mechkin_cli.benchmark.dense_forces import equations
+from mechkin_cli.benchmark.elimination import eliminate
 from mechkin_cli.benchmark.kernel_case import KernelCase, PlannedRun, degree_rows, widths
 from mechkin_cli.benchmark.peers import Closure, dense_loads, differences, fsolve_positions
 from mechkin_cli.benchmark.rcsr import COORDINATES, dimensions
 from mechkin_cli.benchmark.reference import (
     ACCELERATIONS,
-    EVERYTHING,
     POSITIONS,
     VELOCITIES,
-    eliminate,
-    errors,
     row_by_row,
     solution,
 )
 from mechkin_cli.benchmark.report import Column, Table, cell_text, plain_text, width
-from mechkin_cli.benchmark.stress import NEAR_DEAD_CENTRE, dead_centre_table, size_table
+from mechkin_cli.benchmark.specimens import rcsr_specimen, sevenr_specimen
+from mechkin_cli.benchmark.stress import NEAR_DEAD_CENTRE, SIZES, dead_centre_table, size_table
 from mechkin_cli.benchmark.timing import Timing, in_turns
 from mechkin_cli.benchmark.yardstick import find, load
 from mechkin_cli.diagnostics import UsageError
@@ -39,6 +39,7 @@ EXACT_MOTION = dict(
     )
 )
 SIZE = dimensions()
+RCSR = rcsr_specimen()
 
 
 def column(name):
@@ -93,7 +94,7 @@ def test_dense_system_in_double_precision_agrees(theta1, exact):
     known = motion()
     d = drawing(SIZE, DOUBLE)
     found = dense_loads(SIZE, d, kinematics(d, theta1, [known[name] for name in COORDINATES]))
-    assert errors(found, exact).loads < 1e-12
+    assert errors(RCSR, found, exact).loads < 1e-12
 
 
 def test_dense_system_is_24_by_24_and_regular(theta1):
@@ -109,13 +110,13 @@ def test_dense_system_is_24_by_24_and_regular(theta1):
 def test_fsolve_agrees(theta1, exact):
     start = np.array([motion()[name][0] for name in COORDINATES])
     found = fsolve_positions(Closure(drawing(SIZE, DOUBLE)), theta1, start)
-    assert errors(dict(zip(POSITIONS, found, strict=True)), exact).position < 1e-7
+    assert errors(RCSR, dict(zip(POSITIONS, found, strict=True)), exact).position < 1e-7
 
 
 def test_differences_agree(theta1, exact):
     start = np.array([motion()[name][0] for name in COORDINATES])
     solved = partial(fsolve_positions, Closure(drawing(SIZE, DOUBLE)), start=start)
-    found = errors(differences(solved, theta1), exact)
+    found = errors(RCSR, differences(solved, theta1), exact)
     assert found.velocity < 1e-5
     assert found.acceleration < 1e-4
 
@@ -151,20 +152,22 @@ def test_elimination_exchanges_rows():
 
 
 @pytest.mark.parametrize("lanes", [0, *widths()])
-def test_timed_kernel_call_finds_what_is_right(lanes):
-    case = KernelCase(SIZE, degree_rows())
-    wanted = solution(SIZE, case.theta1, [case.found[name] for name in COORDINATES])
-    run = PlannedRun(case, EVERYTHING)
+@pytest.mark.parametrize("specimen", [rcsr_specimen(), sevenr_specimen()], ids=lambda s: s.name)
+def test_timed_kernel_call_finds_what_is_right(specimen, lanes):
+    case = KernelCase(specimen, degree_rows(specimen))
+    wanted = specimen.solution(case.positions, [case.found[x] for x in specimen.coordinates])
+    run = PlannedRun(case, specimen.levels[2])
     batch = run(case.inputs, case.second_order_guesses(), lanes=lanes)
-    found = errors(run.quantities(batch), wanted)
+    found = errors(specimen, run.quantities(batch), wanted)
     assert found.position < 1e-14
     assert found.velocity < 2e-14
     assert found.acceleration < 2e-14
     assert found.loads < 1e-12
 
 
-def test_sizes_keep_their_errors():
-    rows = size_table(extended()).rows
+@pytest.mark.parametrize("scaled", [rcsr_specimen, sevenr_specimen])
+def test_sizes_keep_their_errors(scaled):
+    rows = size_table(scaled, SIZES[::3], extended()).rows
     assert {row["status"] for row in rows} == {"ok"}
     assert max(row["position"] for row in rows) < 1e-14
     assert max(row["loads"] for row in rows) < 1e-12

@@ -119,7 +119,8 @@ def sevenr():
     """General 7R: seven arbitrary lines always form a closed loop at q = 0.
 
     The short first link lets the input make a full turn. Link 4 is split into two equal halves that
-    are welded together.
+    are welded together. Dimensions have few digits, so that a file can say the same mechanism
+    (mechkin_cli/benchmark/sevenr.py).
     """
     rng = np.random.default_rng(123)
     angles = np.linspace(0, 2 * np.pi, 7)[:6]
@@ -128,6 +129,7 @@ def sevenr():
     points = [P[0], second] + [P[k] + 0.15 * rng.standard_normal(3) for k in range(1, 6)]
     axes = [unit(rng.standard_normal(3)) for _ in range(7)]
     axes[1] = unit(axes[0] + 0.35 * rng.standard_normal(3))
+    axes, points = [unit(a.round(3)) for a in axes], [p.round(3) for p in points]
     joints = [_joint(f"q{k + 1}", "R", axes[k], points[k], k - 1, k) for k in range(4)]
     # the right chain is walked from ground: reversed axes keep q_k the same relative angle
     for k, parent, body in ((6, -1, 5), (5, 4, 4), (4, 5, 6)):
@@ -136,7 +138,7 @@ def sevenr():
     for k, mass in enumerate((0.9, 1.1, 0.8, 1.3, 0.7, 1.0)):
         centre = 0.5 * (points[k] + points[k + 1]) + 0.05 * rng.standard_normal(3)
         size, tilt = 0.4 + 0.5 * rng.random(3), rng.standard_normal(3)
-        bodies.append(_body(mass, centre, _inertia(mass, size, tilt)))
+        bodies.append(_body(mass, centre.round(3), _inertia(mass, size, tilt).round(4)))
     bodies[3] = _body(0.5 * bodies[3]["m"], bodies[3]["c"], 0.5 * bodies[3]["I"])
     bodies.append(dict(bodies[3]))
     weld = bodies[3]["c"]
