@@ -35,6 +35,10 @@ def vectors(data: Document) -> Iterator[tuple[Place, str, str]]:
         for key, kind, behaviour in (
             ("point", "length", "point"),
             ("axis", "number", "polar"),
+            ("axis2", "number", "polar"),
+            ("normal", "number", "polar"),
+            ("groove", "number", "polar"),
+            ("x", "number", "polar"),
             ("zero", "number", "polar"),
         ):
             if isinstance(joint.get(key), dict):

@@ -4,6 +4,9 @@ Unknown are six components per joint (the constraint wrench that the first link 
 second: force, and moment about `J.point`) and one effort per input. Equations: per moving link sum
 F = m a and sum M = r x m a + I alpha + omega x I omega about the ground origin; per freedom of a
 joint the component that it cannot transmit is zero. No virtual power, no elimination by hand.
+
+A leg that spins freely about the line between two spheres (`oracle.idle`) is held at its spin rate
+by one more unknown, a moment along the line; it is zero where the leg is symmetric.
 """
 
 from __future__ import annotations
@@ -12,10 +15,24 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
+from oracle.bodies import Bodies
+from oracle.idle import legs, line
 from oracle.kinematics import Solution
 from oracle.mechanism import Joint, Load, Mechanism
 from oracle.numerics import Number, linear_solve, mp
-from oracle.vectors import IDENTITY, add, apply, cross, dot, product, scale, subtract, transpose
+from oracle.series import coefficient
+from oracle.vectors import (
+    IDENTITY,
+    add,
+    apply,
+    cross,
+    dot,
+    product,
+    scale,
+    subtract,
+    transpose,
+    unit,
+)
 
 Wrench = tuple[list[Number], list[Number]]
 """Force, and moment about the ground origin."""
@@ -34,6 +51,8 @@ class Reactions:
     moment: dict[str, list[Number]]
     moment_about_origin: dict[str, list[Number]]
     effort: dict[str, Number]
+    holding: list[Number]
+    """Moment along its line that each idle leg would need to keep its spin rate."""
     power: Number
     power_size: Number
 
@@ -44,7 +63,13 @@ def newton_euler(mechanism: Mechanism, solution: Solution) -> Reactions:
         f"{name}.{i}": 6 * k + i for k, name in enumerate(mechanism.joints) for i in range(6)
     }
     columns |= {name: len(columns) + k for k, name in enumerate(solution.inputs)}
+    lines = _lines(mechanism, solution)
+    columns |= {f"leg {k}": len(columns) + k for k in range(len(lines))}
     matrix, right = _free_bodies(mechanism, solution, columns)
+    for k, (link, direction) in enumerate(lines):
+        first = 6 * list(mechanism.links).index(link) + 3
+        for i in range(3):
+            matrix[first + i][columns[f"leg {k}"]] = direction[i]
     for name, joint in mechanism.joints.items():
         for row in _freedoms(joint, solution, name):
             matrix.append(_spread(len(columns), [columns[f"{name}.{i}"] for i in range(6)], row))
@@ -57,9 +82,18 @@ def newton_euler(mechanism: Mechanism, solution: Solution) -> Reactions:
         n: add(moment[n], cross(solution.joint_point(n), force[n])) for n in mechanism.joints
     }
     powers = _powers(mechanism, solution, effort)
-    return Reactions(
-        force, moment, about_origin, effort, mp.fsum(powers), mp.fsum(powers, absolute=True)
-    )
+    holding = [found[columns[f"leg {k}"]] for k in range(len(lines))]
+    total, absolute = mp.fsum(powers), mp.fsum(powers, absolute=True)
+    return Reactions(force, moment, about_origin, effort, holding, total, absolute)
+
+
+def _lines(mechanism: Mechanism, solution: Solution) -> list[tuple[str, list[Number]]]:
+    """A link and the direction between the spheres of every idle leg."""
+    bodies, found = Bodies(mechanism), []
+    for leg in legs(mechanism):
+        direction = [coefficient(x, 0) for x in line(bodies, leg, solution.poses)]
+        found.append((leg.links[0], unit(direction)))
+    return found
 
 
 def _spread(width: int, places: list[int], values: list[Number]) -> list[Number]:
@@ -90,7 +124,7 @@ def _free_bodies(
             name, kind = coordinate.split(".")
             joint = mechanism.joints[name]
             sign = (joint.second == link) - (joint.first == link)
-            for k, value in enumerate(_unit_effort(solution, name, kind)):
+            for k, value in enumerate(unit_effort(solution, name, kind)):
                 rows[k][columns[coordinate]] = sign * value
         force, moment = _inertia(mechanism, solution, link)
         matrix += rows
@@ -98,12 +132,35 @@ def _free_bodies(
     return matrix, right
 
 
-def _unit_effort(solution: Solution, joint: str, kind: str) -> list[Number]:
-    """Force and moment about the origin of a unit effort on the second link."""
-    axis = solution.joint_axis(joint)
-    if kind == "s":
-        return [*axis, *cross(solution.joint_point(joint), axis)]
-    return [mp.zero] * 3 + axis
+def unit_effort(solution: Solution, name: str, coordinate: str) -> list[Number]:
+    """Force and moment about the origin on the second link of a unit effort on a coordinate.
+
+    It does work on no other coordinate of the joint: the moment of an effort on theta1 of a U lies
+    in the plane of the two axes, square to the second.
+    """
+    joint = solution.mechanism.joints[name]
+    place, nothing = solution.joint_point(name), [mp.zero] * 3
+    match coordinate:
+        case "theta":
+            return nothing + solution.joint_axis(name)
+        case "theta1" | "theta2":
+            own, other = _on_first(solution, joint, joint.axes[0]), solution.joint_axis(name)
+            if coordinate == "theta2":
+                own, other = other, own
+            square = subtract(own, scale(other, dot(own, other)))
+            return nothing + scale(square, 1 / dot(square, own))
+        case "s":
+            # the sphere of an Sg belongs to the first link: the second is pushed back
+            push = scale(solution.joint_axis(name), -1 if joint.type == "Sg" else 1)
+        case "x":
+            push = _on_first(solution, joint, joint.x)
+        case "y":
+            push = _on_first(solution, joint, cross(joint.axes[0], joint.x))
+    return [*push, *cross(place, push)]
+
+
+def _on_first(solution: Solution, joint: Joint, vector: Any) -> list[Number]:
+    return apply(solution.rotation(joint.first)[0], vector)
 
 
 def _inertia(mechanism: Mechanism, solution: Solution, name: str) -> Wrench:
@@ -140,7 +197,7 @@ def _wrenches(mechanism: Mechanism, solution: Solution, load: Load) -> list[tupl
     if load.joint:
         joint = mechanism.joints[load.joint]
         kind = "s" if load.type == "force" else "theta"
-        values = scale(_unit_effort(solution, load.joint, kind), load.value)
+        values = scale(unit_effort(solution, load.joint, kind), load.value)
         force, moment = values[:3], values[3:]
         return [
             (joint.second, (force, moment)),
@@ -157,12 +214,24 @@ def _wrenches(mechanism: Mechanism, solution: Solution, load: Load) -> list[tupl
 def _freedoms(joint: Joint, solution: Solution, name: str) -> list[list[Number]]:
     """Rows on (force, moment about the joint point) that are zero: what the joint lets go."""
     nothing = [mp.zero] * 3
-    if joint.type == "S":
-        return [[*nothing, *unit_vector] for unit_vector in IDENTITY]
+    moments = [[*nothing, *v] for v in IDENTITY]
+    if joint.type in ("S", "W"):
+        return moments if joint.type == "S" else []
     axis = solution.joint_axis(name)
-    if joint.type == "H":
-        return [[*scale(axis, joint.lead / (2 * mp.pi)), *axis]]
+    e = unit(cross(axis, min(IDENTITY, key=lambda v: abs(dot(v, axis)))))
+    across = [[*v, *nothing] for v in (e, cross(axis, e))]
     turning, sliding = [*nothing, *axis], [*axis, *nothing]
+    match joint.type:
+        case "H":
+            return [[*scale(axis, joint.lead / (2 * mp.pi)), *axis]]
+        case "Sp":
+            return [*moments, *across]
+        case "Sg":
+            return [*moments, sliding]
+        case "E":
+            return [*across, turning]
+        case "U":
+            return [[*nothing, *_on_first(solution, joint, joint.axes[0])], turning]
     return {"R": [turning], "P": [sliding], "C": [turning, sliding]}[joint.type]
 
 

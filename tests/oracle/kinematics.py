@@ -67,11 +67,14 @@ class Solution:
         return apply(self.rotation(link)[0], vector)
 
     def joint_point(self, name: str) -> list[Number]:
-        """`J.point`, carried by the second link."""
+        """`J.point`, carried by the second link; the sphere of Sp and Sg is the first link's."""
         joint = self.mechanism.joints[name]
+        if joint.type in ("Sp", "Sg"):
+            return self.motion(joint.first, joint.points[0])[0]
         return self.motion(joint.second, joint.points[1])[0]
 
     def joint_axis(self, name: str) -> list[Number]:
+        """The axis, normal or groove of the second link; of a U `axis2`."""
         joint = self.mechanism.joints[name]
         if joint.axes is None:
             raise ValueError(f"{name} has no axis")

@@ -7,7 +7,19 @@ from dataclasses import dataclass
 from oracle.numerics import Number
 from oracle.units import Units
 
-COORDINATES = {"R": ("theta",), "P": ("s",), "C": ("theta", "s"), "H": ("theta", "s"), "S": ()}
+COORDINATES: dict[str, tuple[str, ...]] = {
+    "R": ("theta",),
+    "P": ("s",),
+    "C": ("theta", "s"),
+    "H": ("theta", "s"),
+    "S": (),
+    "Sp": (),
+    "Sg": ("s",),
+    "U": ("theta1", "theta2"),
+    "E": ("x", "y", "theta"),
+    "W": (),
+}
+FREEDOMS = dict(zip(COORDINATES, (1, 1, 2, 1, 3, 5, 4, 2, 3, 0), strict=True))
 
 
 @dataclass(frozen=True)
@@ -20,7 +32,10 @@ class Link:
 
 @dataclass(frozen=True)
 class Joint:
-    """Motion of link `second` against link `first`, about and along the axis on the first link."""
+    """Motion of link `second` against link `first`, about and along the axis on the first link.
+
+    Sp and Sg: of the sphere on link `first` in the plane or the groove of link `second`.
+    """
 
     type: str
     first: str
@@ -28,11 +43,14 @@ class Joint:
     points: tuple[list[Number], list[Number]]
     """Of the first and of the second link."""
     axes: tuple[list[Number], list[Number]] | None
-    """Unit vectors, of the first and of the second link; None for S."""
+    """Unit vectors on the first and on the second link: the axis, the normal of Sp and E, the
+    groove of Sg, for U `axis` and `axis2`; None for S and W."""
     zero: list[list[Number]]
     """The rotation that carries the second link's drawing into the first one's at coordinate 0."""
     lead: Number | None
     """Length per turn of an H, right-handed positive."""
+    x: list[Number] | None = None
+    """Unit vector on the first link along which the coordinate x of an E counts."""
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -87,5 +105,6 @@ class Mechanism:
     @property
     def size(self) -> Number:
         """The largest absolute coordinate of a joint point in the home drawing, or 1."""
-        largest = max(abs(x) for j in self.joints.values() for p in j.points for x in p)
+        places = [p for j in self.joints.values() if j.type != "W" for p in j.points]
+        largest = max(abs(x) for p in places for x in p)
         return largest or self.units.of("number")

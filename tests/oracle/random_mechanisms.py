@@ -8,11 +8,11 @@ from typing import Any
 
 from oracle.document import Document, to_text
 from oracle.kinematics import condition, predicted, solve
-from oracle.mechanism import COORDINATES, Mechanism
+from oracle.mechanism import COORDINATES, FREEDOMS, Mechanism
 from oracle.numerics import UnsolvableError
+from oracle.random_parts import body, joint, law, number, vector
 from oracle.reader import read
 
-_FREEDOMS = {"R": 1, "P": 1, "C": 2, "H": 1, "S": 3}
 _MOST_TRIES = 200
 _FARTHEST = 0.05  # rad, or part of the size: from where the velocities of home lead
 
@@ -35,7 +35,7 @@ def random_loop(
     lengths about `size`; points are `p1`, `p2`, ... on links `L1`, `L2`, ... Loops whose condition
     at home exceeds `worst_condition`, or that bend sharply before the last rows, are drawn again.
     """
-    if sum(_FREEDOMS[t] for t in types) != 7 or types[0] == "S":
+    if sum(FREEDOMS[t] for t in types) != 7 or types[0] == "S":
         raise ValueError(f"{types}: the freedoms must sum to 7, and an S cannot be driven")
     for _ in range(_MOST_TRIES):
         data = _draw(rng, types, size, units, rows)
@@ -70,62 +70,15 @@ def _draw(
     data: dict[str, Any] = {"format": "1", "name": f"random {types}"}
     if units:
         data["units"] = dict(units)
-    data["links"] = {link: _body(rng, size) for link in links[1:-1]}
+    data["links"] = {link: body(rng, size) for link in links[1:-1]}
     data["joints"] = {
-        f"J{i + 1}": _joint(rng, t, links[i : i + 2], size) for i, t in enumerate(types)
+        f"J{i + 1}": joint(rng, t, links[i : i + 2], size) for i, t in enumerate(types)
     }
-    data["points"] = {f"p{i}": {"link": f"L{i}", "at": _vector(rng, size)} for i in range(1, count)}
+    data["points"] = {f"p{i}": {"link": f"L{i}", "at": vector(rng, size)} for i in range(1, count)}
     driven = f"J1.{COORDINATES[types[0]][0]}"
-    data["motion"] = {"inputs": {driven: _law(rng, driven, size, rows)}}
+    data["motion"] = {"inputs": {driven: law(rng, driven, size, rows)}}
     data["loads"] = _loads(rng, types, size)
     return data
-
-
-def _number(value: float) -> str:
-    return f"{value:.6g}"
-
-
-def _vector(rng: random.Random, size: float) -> list[str]:
-    return [_number(size * rng.uniform(-1, 1)) for _ in range(3)]
-
-
-def _body(rng: random.Random, size: float) -> dict[str, Any]:
-    mass = rng.uniform(0.5, 3)
-    unit = mass * size * size * 0.1
-    # diagonals and products in these ranges keep the triangle inequalities of the principal moments
-    inertia = {key: _number(unit * rng.uniform(1, 1.3)) for key in ("xx", "yy", "zz")}
-    inertia |= {key: _number(unit * rng.uniform(-0.1, 0.1)) for key in ("xy", "xz", "yz")}
-    return {"mass": _number(mass), "center_of_mass": _vector(rng, size), "inertia": inertia}
-
-
-def _joint(rng: random.Random, kind: str, links: list[str], size: float) -> dict[str, Any]:
-    joint: dict[str, Any] = {"type": kind, "links": links, "point": _vector(rng, size)}
-    if kind != "S":
-        joint["axis"] = _axis(rng)
-    if kind == "H":
-        joint["lead"] = _number(size * rng.choice((-1, 1)) * rng.uniform(0.2, 2))
-    return joint
-
-
-def _axis(rng: random.Random) -> list[str]:
-    """Not of length one, and not short."""
-    while True:
-        vector = [rng.uniform(-1, 1) for _ in range(3)]
-        if sum(x * x for x in vector) > 0.1:
-            return [_number(x) for x in vector]
-
-
-def _law(rng: random.Random, driven: str, size: float, rows: int) -> dict[str, str]:
-    turning = driven.endswith(".theta")
-    reach, scale = ("4 deg", 1.0) if turning else (_number(0.04 * size), size)
-    unit = " rad/s" if turning else ""
-    return {
-        "from": "-" + reach,
-        "to": reach,
-        "count": str(rows),
-        "rate": _number(scale * rng.uniform(0.3, 1)) + unit,
-        "acceleration": _number(scale * rng.uniform(-1, 1)) + (unit and " rad/s^2"),
-    }
 
 
 def _loads(rng: random.Random, types: str, size: float) -> list[dict[str, Any]]:
@@ -133,14 +86,14 @@ def _loads(rng: random.Random, types: str, size: float) -> list[dict[str, Any]]:
     coordinate = COORDINATES[types[last]][0]
     kind, scale = ("torque", size * size) if coordinate == "theta" else ("force", size)
     return [
-        {"type": "gravity", "g": _vector(rng, 3 * size)},
-        {"type": kind, "joint": f"J{last + 1}", "value": _number(scale * rng.uniform(-2, 2))},
+        {"type": "gravity", "g": vector(rng, 3 * size)},
+        {"type": kind, "joint": f"J{last + 1}", "value": number(scale * rng.uniform(-2, 2))},
         {
             "type": "force",
             "link": "L1",
-            "point": _vector(rng, size),
-            "force": _vector(rng, size),
+            "point": vector(rng, size),
+            "force": vector(rng, size),
             "axes": "link",
         },
-        {"type": "torque", "link": f"L{len(types) - 1}", "torque": _vector(rng, size * size)},
+        {"type": "torque", "link": f"L{len(types) - 1}", "torque": vector(rng, size * size)},
     ]

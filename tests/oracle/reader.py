@@ -1,4 +1,4 @@
-"""Read a mechanism file of format 1, what the oracle needs of it: R, P, C, H, S; steady loads."""
+"""Read a mechanism file of format 1, what the oracle needs of it: all joints; steady loads."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def read(source: str | Path | dict[str, Any], **parameters: str) -> Mechanism:
 
 def kind_of(coordinate: str) -> str:
     """The kind of unit of a joint coordinate."""
-    return "length" if coordinate.endswith(".s") else "angle"
+    return "length" if coordinate.endswith((".s", ".x", ".y")) else "angle"
 
 
 def _link(scope: Scope, link: dict[str, Any]) -> Link:
@@ -73,18 +73,31 @@ def _per_link(scope: Scope, joint: dict[str, Any], key: str, kind: str) -> list[
 
 def _joint(scope: Scope, joint: dict[str, Any]) -> Joint:
     first, second = joint["links"]
-    axes, zero = None, IDENTITY
-    if "axis" in joint:
-        axis, other = (unit(axis) for axis in _per_link(scope, joint, "axis", "number"))
-        axes = (axis, other)
-        if "zero" in joint:
-            a, b = _per_link(scope, joint, "zero", "number")
-            zero = product(frame(axis, a), transpose(frame(other, b)))
-        elif isinstance(joint["axis"], dict):
-            zero = shortest_turn(other, axis)
-    place, other_place = _per_link(scope, joint, "point", "length")
+    axes, zero, x = _directions(scope, joint)
+    # a weld has no place of its own: the origin of the drawing stands for it
+    places = _per_link(scope, {"point": ["0", "0", "0"]} | joint, "point", "length")
     lead = scope.scalar(joint["lead"], "length") if "lead" in joint else None
-    return Joint(joint["type"], first, second, (place, other_place), axes, zero, lead)
+    return Joint(joint["type"], first, second, (places[0], places[1]), axes, zero, lead, x)
+
+
+def _directions(scope: Scope, joint: dict[str, Any]) -> tuple[Any, Any, Any]:
+    """The axes, the rotation at zero and the direction x of an E."""
+    key = next((key for key in ("axis", "normal", "groove") if key in joint), None)
+    if key is None:
+        return None, IDENTITY, None
+    if "axis2" in joint:
+        pair = [unit(scope.vector(joint[k], "number")) for k in ("axis", "axis2")]
+        return (pair[0], pair[1]), IDENTITY, None
+    axis, other = (unit(a) for a in _per_link(scope, joint, key, "number"))
+    zero, x = IDENTITY, None
+    towards = "x" if joint["type"] == "E" else "zero"
+    if towards in joint:
+        a, b = _per_link(scope, joint, towards, "number")
+        zero = product(frame(axis, a), transpose(frame(other, b)))
+        x = transpose(frame(axis, a))[0] if towards == "x" else None
+    elif isinstance(joint[key], dict):
+        zero = shortest_turn(other, axis)
+    return (axis, other), zero, x
 
 
 def _load(scope: Scope, load: dict[str, Any]) -> Load:

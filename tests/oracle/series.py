@@ -83,3 +83,34 @@ def cosine_sine(x: Any) -> tuple[Any, Any]:
         s.append(sum(i * x.c[i] * c[k - i] for i in range(1, k + 1)) / k)
         c.append(-sum(i * x.c[i] * s[k - i] for i in range(1, k + 1)) / k)
     return Series(c), Series(s)
+
+
+def derivative(x: Any) -> Any:
+    """The series of the derivative, one coefficient shorter."""
+    if not isinstance(x, Series):
+        return mp.zero
+    return Series(k * x.c[k] for k in range(1, len(x.c)))
+
+
+def cut(x: Any, order: int) -> Any:
+    """The series up to t^order."""
+    return Series(x.c[: order + 1]) if isinstance(x, Series) else x
+
+
+def angle(cosine: Any, sine: Any, near: Number) -> Any:
+    """The angle of a cosine and a sine of any common length, the one nearest to `near`.
+
+    From a' (c^2 + s^2) = c s' - s c'.
+    """
+    first = mp.atan2(coefficient(sine, 0), coefficient(cosine, 0))
+    first += 2 * mp.pi * mp.nint((near - first) / (2 * mp.pi))
+    if not isinstance(cosine, Series) and not isinstance(sine, Series):
+        return first
+    square = cosine * cosine + sine * sine
+    order = len(square.c) - 1
+    right = cut(cosine, order - 1) * derivative(sine) - cut(sine, order - 1) * derivative(cosine)
+    a = [first]
+    for k in range(1, order + 1):
+        known = mp.fsum(i * a[i] * square.c[k - i] for i in range(1, k))
+        a.append((coefficient(right, k - 1) - known) / (k * square.c[0]))
+    return Series(a)

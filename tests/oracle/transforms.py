@@ -19,6 +19,8 @@ from oracle.numerics import Number, mp
 from oracle.units import Units
 from oracle.vectors import add, apply
 
+_LENGTHS = {"length": 1, "speed": 1, "acceleration": 1, "jerk": 1}
+_LENGTHS |= {"force": 1, "torque": 2, "inertia": 2}
 _PROSE = ("format", "type", "name", "title", "source", "label", "units")
 
 
@@ -57,10 +59,9 @@ def moved(
 def mirrored(data: Document) -> Document:
     """The drawing mirrored in the plane x = 0, axes as arrows (they mirror like points).
 
-    Angles theta and their rates change sign, slides s do not. Positions, velocities, accelerations,
-    axes, directions, forces: x components change sign. M, Mo, omega, alpha: y and z components
-    change sign. Efforts on theta change sign, efforts on s do not. Leads and determinants change
-    sign.
+    Angles and their rates change sign, also y of an E; slides s and x do not. Efforts likewise.
+    Positions, velocities, accelerations, axes, directions, forces: x components change sign. M, Mo,
+    omega, alpha: y and z components change sign. Leads and determinants change sign.
     """
     data = document(data)
     _give_inertia_axes(data)
@@ -84,7 +85,7 @@ def mirrored(data: Document) -> Document:
     for load in data.get("loads", []):
         if load["type"] == "torque" and "joint" in load:
             load["value"] = _negated(load["value"])
-    _negate_coordinates(data, lambda name: name.endswith(".theta"))
+    _negate_coordinates(data, lambda name: ".theta" in name or name.endswith(".y"))
     return data
 
 
@@ -92,10 +93,15 @@ def swapped_links(data: Document, joint: str) -> Document:
     """One joint's links in the other order, its axis kept.
 
     Its theta and s, their rates, its force, Mo and effort change sign; its point and M belong to
-    the other link (only Mo compares simply). Everything else is unchanged.
+    the other link (only Mo compares simply). The axes of a U change places, and theta1 becomes
+    -theta2; a U must not be driven. Sp, Sg and E do not swap so simply. Everything else is
+    unchanged.
     """
     data = document(data)
-    data["joints"][joint]["links"].reverse()
+    drawn = data["joints"][joint]
+    drawn["links"].reverse()
+    if drawn["type"] == "U":
+        drawn["axis"], drawn["axis2"] = drawn["axis2"], drawn["axis"]
     for load in data.get("loads", []):
         if load.get("joint") == joint:
             load["value"] = _negated(load["value"])
@@ -132,20 +138,39 @@ def reordered(data: Document, seed: int) -> Document:
     return data
 
 
+def scaled(data: Document, factor: str) -> Document:
+    """All lengths times a number, masses and times the same.
+
+    Angles and angular rates: unchanged. Slides, positions and their rates, forces: times the
+    factor. Moments: times its square.
+    """
+    data = document(data)
+    for (container, key), kind in scalars(data):
+        if power := _LENGTHS.get(kind, 0):
+            container[key] = f"({container[key]}{_unit(data, container[key], kind)})" + (
+                f" * {factor}" * power
+            )
+    return data
+
+
 def in_other_units(data: Document, units: Mapping[str, str]) -> Document:
     """Other `units:`; every bare number keeps its meaning by its old unit written out.
 
     Answers in the base are the same quantities; in file units they change by the units' ratio.
     """
     data = document(data)
-    old = Units(data.get("units"))
     for (container, key), kind in scalars(data):
         if is_bare(container[key]) and kind != "number":
-            container[key] = f"{container[key]} {old.text(kind)}"
+            container[key] += _unit(data, container[key], kind)
     # the units come first, as a reader expects them
     return {"format": data["format"], "units": dict(units)} | {
         key: value for key, value in data.items() if key not in ("format", "units")
     }
+
+
+def _unit(data: Document, text: str, kind: str) -> str:
+    """The file's unit to write behind a bare number."""
+    return f" {Units(data.get('units')).text(kind)}" if is_bare(text) else ""
 
 
 def _give_inertia_axes(data: Document) -> None:

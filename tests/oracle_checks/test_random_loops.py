@@ -7,11 +7,10 @@ from functools import cache
 
 import pytest
 from oracle import mp, newton_euler, random_loop, read, solve
-from oracle.vectors import add, apply, cross, product, scale, subtract, transpose
+from oracle.vectors import apply, product, scale, subtract, transpose
+from oracle_checks.balance import STEP, difference, external, length, momentum
 
 LOOPS = ("RRRRRRR", "PRSRR", "CSPR", "HCPHRR")
-STEP = mp.mpf("1e-7")
-COORDINATE_OF = {"torque": "theta", "force": "s"}
 LAW = tuple(map(mp.mpf, ("0.04", "0.9", "-0.7", "0.5")))
 
 
@@ -30,15 +29,6 @@ def case(types: str):
         guess = solutions[0].coordinates
     middle, *beside = solutions
     return mechanism, [beside[0], beside[1], middle, beside[2], beside[3]]
-
-
-def difference(values):
-    """The first derivative by central differences of fourth order: error about STEP^4 = 1e-28."""
-    return (8 * (values[3] - values[1]) - (values[4] - values[0])) / (12 * STEP)
-
-
-def length(vector):
-    return max(map(abs, vector))
 
 
 @pytest.mark.parametrize("types", LOOPS)
@@ -103,44 +93,3 @@ def test_power_balances(types):
     mechanism, solutions = case(types)
     reactions = newton_euler(mechanism, solutions[2])
     assert abs(reactions.power) < mp.mpf("1e-33") * reactions.power_size
-
-
-def momentum(found):
-    """Linear momentum of all links, and its moment with their spins about the ground origin."""
-    total = [mp.zero] * 6
-    for name, link in found.mechanism.links.items():
-        place, velocity, _, _ = found.motion(name, link.mass_centre)
-        rotation = found.rotation(name)[0]
-        spin = apply(product(rotation, link.inertia, transpose(rotation)), found.omega(name))
-        linear = scale(velocity, link.mass)
-        total = add(total, [*linear, *add(cross(place, linear), spin)])
-    return total
-
-
-def external(found, reactions):
-    """Force and moment about the origin on all links together, from ground and the loads."""
-    mechanism = found.mechanism
-    total = [mp.zero] * 6
-    for name, joint in mechanism.joints.items():
-        sign = (joint.first == "ground") - (joint.second == "ground")
-        wrench = [*reactions.force[name], *reactions.moment_about_origin[name]]
-        total = add(total, scale(wrench, sign))
-        drives = [(c.split(".")[1], e) for c, e in reactions.effort.items() if c[:2] == name]
-        drives += [(COORDINATE_OF[x.type], x.value) for x in mechanism.loads if x.joint == name]
-        for coordinate, value in drives:
-            axis = scale(found.joint_axis(name), value * sign)
-            lever = cross(found.joint_point(name), axis)
-            total = add(total, [*axis, *lever] if coordinate == "s" else [mp.zero] * 3 + axis)
-    for load in mechanism.loads:
-        if load.type == "gravity":
-            for name, link in mechanism.links.items():
-                weight = scale(load.vector, link.mass)
-                place = found.motion(name, link.mass_centre)[0]
-                total = add(total, [*weight, *cross(place, weight)])
-        elif load.link and load.type == "torque":
-            total = add(total, [mp.zero] * 3 + list(load.vector))
-        elif load.link:
-            force = apply(found.rotation(load.link)[0], load.vector)
-            place = found.motion(load.link, load.point)[0]
-            total = add(total, [*force, *cross(place, force)])
-    return total
