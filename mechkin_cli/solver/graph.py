@@ -307,13 +307,24 @@ def _smallest_group(
     """The smallest group of closing joints with at least as many equations as unknowns.
 
     Where there are more equations (overconstrained loops) the dimensions decide whether they close.
+    A loop on a moving link comes after, or together with, the loops that move this link.
     """
     for size in range(1, len(left) + 1):
         for group in combinations(left, size):
             equations = sum(c.equations for c in group)
-            if 0 < len(_unknowns(edges, group, solved)) <= equations:
+            unknowns = _unknowns(edges, group, solved)
+            others = _unknowns(edges, [c for c in left if c not in group], solved)
+            moves_later = set(others) - set(unknowns)
+            if 0 < len(unknowns) <= equations and not moves_later & _carrying(edges, group):
                 return group
     return None
+
+
+def _carrying(edges: Sequence[TreeEdge], group: Iterable[Closing]) -> set[tuple[int, int]]:
+    """Freedoms of all tree joints between ground and the loops of a group, the loops included."""
+    links = [link for c in group for link in (c.joint.first, c.joint.second)]
+    members = {k for link in links for k in _root_path(edges, link)}
+    return {(k, f) for k in members for f in range(edges[k].freedoms)}
 
 
 def _not_square(
