@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 from oracle import Mechanism, Reactions, Solution
-from oracle.vectors import add, apply, cross, product, scale, transpose
+from oracle.forces import unit_effort
+from oracle.vectors import add, apply, cross, product, scale, subtract, transpose
 
 _COORDINATE_OF = {"torque": "theta", "force": "s"}
 
@@ -18,11 +19,16 @@ def expected(mechanism: Mechanism, solution: Solution, loads: Reactions) -> dict
         for coordinate in joint.coordinates:
             for suffix in ("", "_dot", "_ddot"):
                 found[f"{name}.{coordinate}{suffix}"] = solution[f"{name}.{coordinate}{suffix}"]
-        if joint.axes:
+        if joint.axes and joint.type != "U":
             found[f"{name}.axis"] = solution.joint_axis(name)
-        found[f"{name}.point"] = solution.joint_point(name)
+        if joint.type in ("Sp", "Sg"):
+            contact = solution.motion(joint.second, joint.points[1])[0]
+            found[f"{name}.slip"] = subtract(solution.joint_point(name), contact)
+        # a weld has no place of its own
+        if joint.type != "W":
+            found[f"{name}.point"] = solution.joint_point(name)
+            found[f"{name}.moment"] = loads.moment[name]
         found[f"{name}.force"] = loads.force[name]
-        found[f"{name}.moment"] = loads.moment[name]
         found[f"{name}.moment_about_origin"] = loads.moment_about_origin[name]
     for name in mechanism.points:
         words = ("position", "velocity", "acceleration")
@@ -46,9 +52,7 @@ def _on_ground(mechanism: Mechanism, solution: Solution, loads: Reactions) -> li
         along = [(c.split(".")[1], e) for c, e in loads.effort.items() if c.split(".")[0] == name]
         along += [(_COORDINATE_OF[x.type], x.value) for x in mechanism.loads if x.joint == name]
         for coordinate, value in along:
-            axis = scale(solution.joint_axis(name), value)
-            lever = cross(solution.joint_point(name), axis)
-            wrench = add(wrench, [*axis, *lever] if coordinate == "s" else [0, 0, 0, *axis])
+            wrench = add(wrench, scale(unit_effort(solution, name, coordinate), value))
         total = add(total, scale(wrench, sign))
     return total
 

@@ -3,21 +3,11 @@
 from __future__ import annotations
 
 import random
-from dataclasses import dataclass
 from functools import cache
 
-from oracle import (
-    Mechanism,
-    Reactions,
-    Solution,
-    condition,
-    newton_euler,
-    random_loop,
-    read,
-    solve,
-)
+from oracle import condition_of, newton_euler, random_loop, read, solve
+from properties.case import Case
 
-SEEDS = range(40)
 ROWS = (0, 4)
 """The rows farthest from home; one of them is compared with the oracle."""
 
@@ -25,38 +15,15 @@ _FREEDOMS = {"R": 1, "P": 1, "C": 2, "H": 1, "S": 3}
 _TURNS = {"R": 1, "P": 0, "C": 1, "H": 1, "S": 3}
 
 
-@dataclass(frozen=True)
-class Loop:
-    """A random loop as text, and what the oracle says about one row.
-
-    `condition` is the largest over the smallest singular value of the closure there.
-    """
-
-    text: str
-    mechanism: Mechanism
-    row: int
-    solution: Solution
-    reactions: Reactions
-    condition: float
-
-    @property
-    def size(self) -> float:
-        return float(self.mechanism.size)
-
-    @property
-    def types(self) -> str:
-        return "".join(joint.type for joint in self.mechanism.joints.values())
-
-
 @cache
-def loop(seed: int) -> Loop:
+def loop(seed: int) -> Case:
     generator = random.Random(seed)
     text = random_loop(generator, _types(generator))
     mechanism = read(text)
     row = ROWS[seed // 4 % 2]
     solution = solve(mechanism, mechanism.row(row))
     reactions = newton_euler(mechanism, solution)
-    return Loop(text, mechanism, row, solution, reactions, condition(mechanism, solution))
+    return Case(text, mechanism, row, solution, reactions, condition_of(mechanism, solution))
 
 
 def _types(generator: random.Random) -> str:

@@ -1,33 +1,42 @@
-"""Every quantity of random loops against the oracle at 40 digits."""
+"""Every quantity of random mechanisms against the oracle at 40 digits."""
 
 from __future__ import annotations
 
 import pytest
-from properties.answers import answers, at_row, errors, within
+from oracle.mechanism import COORDINATES
+from properties.answers import at_row, errors, within
+from properties.cases import CASES, LOOPS, STRUCTURES, case, original
 from properties.expected import expected
-from properties.loops import SEEDS, loop
 
 import mechkin_cli as mk
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_all_quantities(seed):
-    case = loop(seed)
-    found = at_row(answers(case.text), case.row)
-    wanted = expected(case.mechanism, case.solution, case.reactions)
+@pytest.mark.parametrize("name", CASES)
+def test_all_quantities(name):
+    its = case(name)
+    found = at_row(original(name), its.row)
+    wanted = expected(its.mechanism, its.solution, its.reactions)
     assert found.keys() == wanted.keys()
-    assert within(errors(found, wanted, case.size, case.condition))
+    assert within(errors(found, wanted, its.size, its.condition))
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_verdicts(seed):
-    analysis = mk.loads(loop(seed).text).analyze(["J1.effort"])
+@pytest.mark.parametrize("name", CASES)
+def test_verdicts(name):
+    analysis = mk.loads(case(name).text).analyze(["ground.shaking_force"])
     assert (analysis["row.residual"] <= 1e-14).all()
     assert (analysis["row.power_error"] <= 1e-12).all()
 
 
 def test_the_loops_have_all_types_in_all_roles():
-    types = [loop(seed).types for seed in SEEDS]
+    types = [case(name).types.split("-") for name in LOOPS]
     assert {kinds[0] for kinds in types} == set("RPCH")
     assert {kinds[-1] for kinds in types} == set("RPCHS")
-    assert len(set(types)) > 30
+    assert len(set(map(tuple, types))) > 30
+
+
+def test_the_structures_have_all_types_and_shapes():
+    mechanisms = [case(name).mechanism for name in STRUCTURES]
+    types = {joint.type for m in mechanisms for joint in m.joints.values()}
+    assert types == set(COORDINATES)
+    assert {len(m.joints) - len(m.links) for m in mechanisms} == {2, 3}
+    assert {len(m.inputs) for m in mechanisms} == {1, 2, 3}

@@ -6,7 +6,7 @@ twice those against the oracle.
 
 from __future__ import annotations
 
-from functools import cache
+import re
 
 import numpy as np
 import pytest
@@ -18,26 +18,24 @@ from oracle import (
     renamed,
     reordered,
     rotation_matrix,
+    scaled,
     swapped_links,
 )
 from properties.answers import Values, answers, at_row, errors, kind, within
-from properties.loops import SEEDS, loop
+from properties.cases import CASES, case, original
 
 TWICE = 2.0
-SOME = SEEDS[::2]
-FEW = SEEDS[::4]
+SOME = CASES[::2]
+FEW = CASES[::4]
+MIRRORED = re.compile(r"\.(theta|y(_dot|_ddot|\.effort|$))")
+"""Coordinates and efforts that change sign in a mirror."""
 
 
-@cache
-def original(seed: int) -> Values:
-    return answers(loop(seed).text)
-
-
-def check(seed: int, found: Values, wanted: Values) -> None:
+def check(which: str, found: Values, wanted: Values) -> None:
     """At the row where the condition is known."""
-    case = loop(seed)
-    found, wanted = at_row(found, case.row), at_row(wanted, case.row)
-    assert within(errors(found, wanted, case.size, case.condition), TWICE)
+    its = case(which)
+    found, wanted = at_row(found, its.row), at_row(wanted, its.row)
+    assert within(errors(found, wanted, its.size, its.condition), TWICE)
 
 
 def is_place(name: str) -> bool:
@@ -49,17 +47,17 @@ def is_moment(name: str) -> bool:
 
 
 def rotates(name: str) -> bool:
-    """Whether mirroring treats it as an axial vector, or a scalar about an axis."""
+    """Whether mirroring treats it as an axial vector."""
     return name.endswith((".omega", ".alpha")) or is_moment(name)
 
 
-@pytest.mark.parametrize("seed", SOME)
-def test_moved_and_turned(seed):
+@pytest.mark.parametrize("which", SOME)
+def test_moved_and_turned(which):
     turn, shift = rotation_matrix(3, -1, 2, 1), [mp.mpf(2), mp.mpf(-1), mp.mpf("0.5")]
-    found = answers(moved(loop(seed).text, turn, shift))
+    found = answers(moved(case(which).text, turn, shift))
     matrix = np.array([[float(x) for x in row] for row in turn])
     offset = np.array([float(x) for x in shift])
-    before = original(seed)
+    before = original(which)
     wanted = {n: v @ matrix.T if v.ndim == 2 else v for n, v in before.items()}
     for name in wanted:
         if is_place(name):
@@ -67,23 +65,33 @@ def test_moved_and_turned(seed):
         elif name.endswith(("moment_about_origin", "shaking_moment", "inertia_moment")):
             force = name.replace("moment_about_origin", "force").replace("moment", "force")
             wanted[name] = wanted[name] + np.cross(offset, wanted[force])
-    check(seed, found, wanted)
+    check(which, found, wanted)
 
 
-@pytest.mark.parametrize("seed", SOME)
-def test_mirrored(seed):
-    found = answers(mirrored(loop(seed).text))
+@pytest.mark.parametrize("which", SOME)
+def test_mirrored(which):
+    found = answers(mirrored(case(which).text))
     polar = np.array([-1.0, 1.0, 1.0])
     wanted = {}
-    for name, value in original(seed).items():
+    for name, value in original(which).items():
         if value.ndim == 2:
             wanted[name] = value * (-polar if rotates(name) else polar)
         else:
-            wanted[name] = -value if ".theta" in name else value
-    check(seed, found, wanted)
+            wanted[name] = -value if MIRRORED.search(name) else value
+    check(which, found, wanted)
 
 
-@pytest.mark.parametrize("seed", SOME)
+@pytest.mark.parametrize("which", FEW)
+def test_scaled(which):
+    factor = 1.75
+    found = answers(scaled(case(which).text, str(factor)))
+    for name, value in found.items():
+        its = kind(name)
+        found[name] = value / factor ** (its.lengths + (its.order is None))
+    check(which, found, original(which))
+
+
+@pytest.mark.parametrize("which", SOME)
 @pytest.mark.parametrize(
     ("units", "metre", "newton", "second"),
     [
@@ -96,46 +104,65 @@ def test_mirrored(seed):
         ),
     ],
 )
-def test_in_other_units(seed, units, metre, newton, second):
+def test_in_other_units(which, units, metre, newton, second):
     """What one SI unit is in file units; angular rates stay in rad/s."""
-    case = loop(seed)
-    found = answers(in_other_units(case.text, units))
-    wanted = {}
-    for name, value in original(seed).items():
+    found = answers(in_other_units(case(which).text, units))
+    for name in found:
         its = kind(name)
         factor = metre**its.lengths
         if its.order is None:
             factor *= newton
         elif its.lengths:
             factor /= second**its.order
-        wanted[name] = value
         found[name] = found[name] / factor
-    check(seed, found, wanted)
+    check(which, found, original(which))
 
 
-@pytest.mark.parametrize("seed", SOME)
-def test_renamed(seed):
-    mechanism = loop(seed).mechanism
+@pytest.mark.parametrize("which", SOME)
+def test_renamed(which):
+    mechanism = case(which).mechanism
     old = (*mechanism.joints, *mechanism.links, *mechanism.points)
     names = {name: f"z_{name}" for name in old}
-    found = answers(renamed(loop(seed).text, names))
-    for name, value in original(seed).items():
+    found = answers(renamed(case(which).text, names))
+    for name, value in original(which).items():
         owner, _, rest = name.partition(".")
         assert np.array_equal(found[f"{names.get(owner, owner)}.{rest}"], value)
 
 
-@pytest.mark.parametrize("seed", SOME)
-def test_reordered(seed):
-    check(seed, answers(reordered(loop(seed).text, seed=seed)), original(seed))
+@pytest.mark.parametrize("which", SOME)
+def test_reordered(which):
+    check(which, answers(reordered(case(which).text, seed=len(which))), original(which))
 
 
-@pytest.mark.parametrize("seed", FEW)
-def test_swapped_links(seed):
-    """Every joint in turn; its point and moment then belong to the other link."""
-    for joint in loop(seed).mechanism.joints:
-        own = [f"{joint}.{c}" for c in ("theta", "s", "force", "moment_about_origin")]
-        wanted = {}
-        for name, value in original(seed).items():
-            if name not in (f"{joint}.point", f"{joint}.moment"):
-                wanted[name] = -value if name.startswith(tuple(own)) else value
-        check(seed, answers(swapped_links(loop(seed).text, joint)), wanted)
+def swappable(which: str) -> list[str]:
+    """A sphere stays with its link; an E counts in the axes of its first link; no driven U."""
+    mechanism = case(which).mechanism
+    driven = {name.split(".")[0] for name in mechanism.inputs}
+    return [
+        name
+        for name, joint in mechanism.joints.items()
+        if joint.type in "RPCHSW" or (joint.type == "U" and name not in driven)
+    ]
+
+
+def swapped(values: Values, joint: str) -> Values:
+    """What is left to compare; point and moment belong to the other link afterwards."""
+    wanted = {}
+    for name, value in values.items():
+        owner, _, rest = name.partition(".")
+        if owner != joint or rest == "axis":
+            wanted[name] = value
+        elif rest.startswith(("theta1", "theta2")):
+            other = {"1": "2", "2": "1"}[rest[5]]
+            wanted[f"{joint}.theta{other}{rest[6:]}"] = -value
+        elif rest not in ("point", "moment"):
+            wanted[name] = -value
+    return wanted
+
+
+@pytest.mark.parametrize("which", FEW)
+def test_swapped_links(which):
+    """Every joint in turn."""
+    for joint in swappable(which):
+        found = answers(swapped_links(case(which).text, joint))
+        check(which, found, swapped(original(which), joint))
