@@ -87,6 +87,11 @@ class Model:
         return self.problem.mechanism.name
 
     @property
+    def source(self) -> str:
+        """Where the mechanism comes from, as its file says; "" where it does not."""
+        return self._built.source
+
+    @property
     def problem(self) -> Problem:
         """The mechanism, its motion and assembly in SI."""
         return self._built.problem

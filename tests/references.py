@@ -4,7 +4,8 @@
 in in, forces in lbm in/s^2, moments in lbm in^2/s^2 about the ground origin. Columns `ne_*` are
 Newton-Euler; `author_*` follow the inertia couples of the dissertation, which are wrong but
 reproduce its print. Other files of `exact/` have kinematics only, angles in degrees; how their
-branches are chosen is said where they are used. `published/*.csv`: cells as printed.
+branches are chosen is said where they are used. Cells as printed stand beside the mechanisms, in
+`mechanisms/*/published/*.csv`.
 """
 
 from __future__ import annotations
@@ -27,11 +28,12 @@ def exact(name: str) -> dict[str, list[str]]:
 @cache
 def published(name: str) -> dict[str, list[str]]:
     """The columns of `published/<name>.csv` by header, as printed."""
-    return _columns(FOLDER / "published" / f"{name}.csv")
+    (path,) = MECHANISMS.glob(f"*/published/{name}.csv")
+    return _columns(path)
 
 
 def published_names() -> list[str]:
-    return sorted(path.stem for path in (FOLDER / "published").glob("*.csv"))
+    return sorted(path.stem for path in MECHANISMS.glob("*/published/*.csv"))
 
 
 def _columns(path: Path) -> dict[str, list[str]]:

@@ -33,13 +33,14 @@ from mechkin_cli.units import LENGTH
 
 
 class Built(NamedTuple):
-    """The problem of a file, its solver graph (or why it cannot be solved as it is driven) and its
-    tables."""
+    """The problem of a file, its solver graph (or why it cannot be solved as it is driven), its
+    tables, and the source it names."""
 
     problem: Problem
     graph: SolverGraph | Diagnostic
     tables: tuple[TableLayout, ...]
     own_tables: bool
+    source: str = ""
 
 
 def build(source: Source) -> Built:
@@ -96,7 +97,7 @@ def build(source: Source) -> Built:
     if errors or graph is None:
         raise InvalidFile(in_order(fields.diagnostics))
     problem = replace(problem, diagnostics=tuple(in_order(fields.diagnostics)))
-    return Built(problem, graph, tables, bool(file.tables))
+    return Built(problem, graph, tables, bool(file.tables), file.source or "")
 
 
 def _followed(

@@ -10,7 +10,13 @@ import numpy as np
 from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector, parse
 from mechkin_cli.mechanism.quantities import Wanted
-from mechkin_cli.tables.layout import ROW_TEXTS, ColumnLayout, TableLayout
+from mechkin_cli.tables.layout import (
+    ROW_TEXTS,
+    ColumnLayout,
+    PrintedRemark,
+    PublishedValues,
+    TableLayout,
+)
 
 
 def build_tables(
@@ -27,8 +33,17 @@ def build_tables(
             layout = _column(fields, path, column, quantities)
             if layout is not None:
                 columns.append(layout)
-        tables.append(TableLayout(section.name, section.title or section.name, tuple(columns)))
+        title = section.title or section.name
+        printed = _published(section.published)
+        tables.append(TableLayout(section.name, title, tuple(columns), printed))
     return tuple(tables)
+
+
+def _published(section: Any) -> PublishedValues | None:
+    if section is None:
+        return None
+    remarks = tuple(PrintedRemark(r.text, r.columns or ()) for r in section.remarks)
+    return PublishedValues(section.file, remarks)
 
 
 def _column(

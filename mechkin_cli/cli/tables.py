@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -12,6 +12,9 @@ from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import Progress, Record, put, refusal, say, say_diagnostics
 from mechkin_cli.cli.options import Json, Quiet
 from mechkin_cli.diagnostics import InvalidFile, UsageError
+
+if TYPE_CHECKING:
+    from mechkin_cli.interface import Analysis
 
 MECHANISMS = Path("mechanisms")
 
@@ -28,7 +31,8 @@ def tables(
 ) -> None:
     """Regenerate the tables kept beside mechanism files.
 
-    FOLDER/STEM.yaml has its tables in FOLDER/STEM/TABLE.csv and .md.
+    FOLDER/STEM.yaml has its tables in FOLDER/STEM/TABLE.csv and .md; where tables name printed
+    values, FOLDER/STEM/errata.md compares them.
     """
     files = _mechanism_files(path)
     code = ExitCode.OK
@@ -64,15 +68,10 @@ def _mechanism_files(path: Path) -> list[Path]:
 
 def _one(file: Path, check: bool, json: bool, quiet: bool) -> tuple[ExitCode, Record]:
     from mechkin_cli.interface import load
-    from mechkin_cli.tables.csv_writer import COMMITTED_DIGITS, csv_bytes
-    from mechkin_cli.tables.markdown import markdown_text
 
     analysis = load(file).analyze()
     say_diagnostics(analysis.diagnostics, str(file))
-    fresh: dict[str, bytes] = {}
-    for table in analysis.tables:
-        fresh[f"{table.name}.csv"] = csv_bytes(table, COMMITTED_DIGITS)
-        fresh[f"{table.name}.md"] = markdown_text(table, analysis.result).encode()
+    fresh = _fresh_files(file, analysis)
     code = ExitCode.OK if analysis.result.complete else ExitCode.ROWS_MISSING
     folder = file.with_suffix("")
     record: Record = {
@@ -88,6 +87,24 @@ def _one(file: Path, check: bool, json: bool, quiet: bool) -> tuple[ExitCode, Re
     if not quiet:
         say(f"{folder}: {len(written)} files written")
     return code, record | {"written": [str(path) for path in written]}
+
+
+def _fresh_files(file: Path, analysis: Analysis) -> dict[str, bytes]:
+    """All that stands beside a mechanism file, by name: tables, and the errata page."""
+    from mechkin_cli.tables.against_print import against_print
+    from mechkin_cli.tables.csv_writer import COMMITTED_DIGITS, csv_bytes
+    from mechkin_cli.tables.errata import PAGE, errata_page
+    from mechkin_cli.tables.markdown import markdown_text
+
+    fresh: dict[str, bytes] = {}
+    for table in analysis.tables:
+        fresh[f"{table.name}.csv"] = csv_bytes(table, COMMITTED_DIGITS)
+        fresh[f"{table.name}.md"] = markdown_text(table, analysis.result).encode()
+    printed = against_print(file, analysis.layouts, analysis.tables)
+    if printed:
+        model = analysis.model
+        fresh[PAGE] = errata_page(model.name, model.source, printed).encode()
+    return fresh
 
 
 def _compare(

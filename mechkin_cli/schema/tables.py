@@ -1,14 +1,15 @@
 """`tables:` - the layouts a run writes, one file each: columns are expressions over quantities."""
 
 import re
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, field_validator
+from pydantic import BeforeValidator, Field, field_validator, model_validator
 from pydantic.annotated_handlers import GetJsonSchemaHandler
 from typing_extensions import TypeAliasType
 
 from mechkin_cli.schema.base import Section, refuse
 from mechkin_cli.schema.scalars import (
+    CSV_PATH_PATTERN,
     TABLE_NAME_PATTERN,
     AnyDimension,
     CsvPath,
@@ -30,7 +31,7 @@ TableName = TypeAliasType(
 _DEVICE = re.compile("con|prn|aux|nul|com[0-9]|lpt[0-9]", re.IGNORECASE)
 # JSON Schema has no flag for ignoring case
 _TAKEN_FOR_EDITORS = (
-    "^([Rr][Oo][Ww][Ss]|[Cc][Oo][Nn]|[Pp][Rr][Nn]|[Aa][Uu][Xx]|[Nn][Uu][Ll]"
+    "^([Rr][Oo][Ww][Ss]|[Ee][Rr][Rr][Aa][Tt][Aa]|[Cc][Oo][Nn]|[Pp][Rr][Nn]|[Aa][Uu][Xx]|[Nn][Uu][Ll]"
     "|[Cc][Oo][Mm][0-9]|[Ll][Pp][Tt][0-9])$"
 )
 
@@ -63,6 +64,47 @@ def _in_full(value: Any) -> Any:
 ColumnOrText = Annotated[Column, BeforeValidator(_in_full), _ShortForm()]
 
 
+class PrintedRemark(Section):
+    """Why printed values differ from computed ones, for the errata page."""
+
+    columns: Annotated[tuple[Text, ...], Field(min_length=1)] | None = None
+    """Labels of the columns it holds for; left out, all."""
+    text: Text
+    """The reason in words."""
+
+
+class PublishedValues(Section):
+    """Values printed in the source. A plain path stands for the file without remarks."""
+
+    file: CsvPath
+    """The values as printed: a CSV file with the labels of the table, the first one in front."""
+    remarks: tuple[PrintedRemark, ...] = ()
+    """Why values differ, in words."""
+
+
+class _PathAlone:
+    """Tells editors that the printed values may be a plain path."""
+
+    def __get_pydantic_json_schema__(
+        self, schema: Any, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        text = "a CSV file with the printed values, relative to the mechanism file"
+        path = {"type": "string", "pattern": CSV_PATH_PATTERN, "description": text}
+        return {"anyOf": [path, handler(schema)]}
+
+
+def _with_file(value: Any) -> Any:
+    return {"file": value} if isinstance(value, str) else value
+
+
+PathOrPublishedValues = Annotated[PublishedValues, BeforeValidator(_with_file), _PathAlone()]
+
+_TAKEN = {
+    "rows": "every run writes a table rows of its own",
+    "errata": "the comparison with printed values is written to the page errata",
+}
+
+
 class Table(Section):
     """A table with one row per position."""
 
@@ -72,17 +114,28 @@ class Table(Section):
     """Heading in Markdown; left out, the name."""
     columns: Annotated[tuple[ColumnOrText, ...], Field(min_length=1, max_length=1000)]
     """The columns, from left to right."""
-    published: CsvPath | None = None
+    published: PathOrPublishedValues | None = None
     """Values printed in the source, as a CSV file with the same labels."""
 
     @field_validator("name", mode="after")
     @classmethod
     def _is_not_taken(cls, name: str) -> str:
-        if name.casefold() == "rows":
-            raise refuse("reserved-name", "every run writes a table rows of its own", "rename it")
+        if name.casefold() in _TAKEN:
+            raise refuse("reserved-name", _TAKEN[name.casefold()], "rename it")
         if _DEVICE.fullmatch(name):
             raise refuse("reserved-name", f"{name} is a device on Windows, no file", "rename it")
         return name
+
+    @model_validator(mode="after")
+    def _remarks_name_columns(self) -> Self:
+        labels = [column.label for column in self.columns]
+        for index, remark in enumerate(self.published.remarks if self.published else ()):
+            for place, label in enumerate(remark.columns or ()):
+                if label not in labels:
+                    text = f"the table has no column {label!r}"
+                    at = ("published", "remarks", index, "columns", place)
+                    raise refuse("unknown-label", text, f"labels are {', '.join(labels)}", *at)
+        return self
 
     @field_validator("columns", mode="after")
     @classmethod

@@ -24,12 +24,27 @@ class ColumnLayout(NamedTuple):
     decimals: int | None = None
 
 
+class PrintedRemark(NamedTuple):
+    """Why printed values differ, in words; `labels` of the columns meant, () for all."""
+
+    text: str
+    labels: tuple[str, ...] = ()
+
+
+class PublishedValues(NamedTuple):
+    """Where the printed values of a table stand: a path relative to the mechanism file."""
+
+    file: str
+    remarks: tuple[PrintedRemark, ...] = ()
+
+
 class TableLayout(NamedTuple):
     """One table; `name` is the stem of its files, `title` its heading in Markdown."""
 
     name: str
     title: str
     columns: tuple[ColumnLayout, ...]
+    published: PublishedValues | None = None
 
 
 def default_table(

@@ -10,6 +10,7 @@ import csv
 import io
 import re
 from collections.abc import Iterable
+from itertools import groupby
 from typing import NamedTuple
 
 _UNESCAPED_BAR = re.compile(r"(?<!\\)\|")
@@ -24,7 +25,8 @@ class TableText(NamedTuple):
 
 
 def read_table_text(name: str, content: bytes) -> TableText:
-    """The table in a `.csv` or `.md` file; any other file is lines without a table.
+    """The table in a `.csv` or `.md` file; any other file, and a page of several tables, is lines
+    without a table.
 
     Raises:
         ValueError: the content is not UTF-8 text, or no CSV.
@@ -53,11 +55,19 @@ def _read_csv(text: str) -> TableText:
 
 def _read_markdown(text: str) -> TableText:
     lines = text.splitlines()
-    table = [_markdown_cells(line) for line in lines if line.lstrip().startswith("|")]
-    others = _filled(line for line in lines if not line.lstrip().startswith("|"))
-    if not table:
-        return TableText(lines=others)
+    table = [_markdown_cells(line) for line in lines if _is_of_table(line)]
+    others = _filled(line for line in lines if not _is_of_table(line))
+    if not table or _has_several_tables(lines):
+        return TableText(lines=_filled(lines))
     return TableText(table[0], tuple(table[2:]), others)
+
+
+def _is_of_table(line: str) -> bool:
+    return line.lstrip().startswith("|")
+
+
+def _has_several_tables(lines: Iterable[str]) -> bool:
+    return sum(is_table for is_table, _ in groupby(lines, _is_of_table)) > 1
 
 
 def _markdown_cells(line: str) -> tuple[str, ...]:

@@ -175,6 +175,24 @@ SECTION_MISTAKES = [
         "loads: [{type: torque, link: crank, torque: [0, 0, 1], axes: body}]", 62, "ground, link"
     ),
     _after("tables: [{name: rows, columns: [O1.theta]}]", 17, "a table rows of its own"),
+    _after("tables: [{name: Errata, columns: [O1.theta]}]", 17, "written to the page errata"),
+    _after("tables: [{name: t, columns: [a], published: ../a.csv}]", 45, "not a CSV file beside"),
+    _after("tables: [{name: t, columns: [a], published: {file: a.txt}}]", 52, "not a CSV file"),
+    _after(
+        "tables: [{name: t, columns: [a], published: {remarks: []}}]", 45, "key file is missing"
+    ),
+    _after(
+        "tables: [{name: t, columns: [a], published: {file: a.csv, remarks: [{text: ''}, b]}}]",
+        81,
+        "expected a mapping",
+    ),
+    _after(
+        "tables: [{name: t, columns: [a], published: {file: a.csv, remarks: "
+        "[{columns: [a, b], text: c}]}}]",
+        83,
+        "the table has no column 'b'",
+        editor=False,
+    ),
     _after("tables: [{name: ../t, columns: [O1.theta]}]", 17, "not a name for a file"),
     _after("tables: [{name: a/b, columns: [O1.theta]}]", 17, "not a name for a file"),
     _after('tables: [{name: "a\\n", columns: [O1.theta]}]', 17, "not a name for a file"),

@@ -1,0 +1,185 @@
+"""The errata page of a mechanism: its tables against print, in Markdown.
+
+Per table: how many printed cells agree, are one off in the last digit, differ; the columns that do
+not agree throughout with their largest difference; the worst cells; the reasons in words, as the
+mechanism file gives them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+
+from mechkin_cli.tables.agreement import PrintedCell, TableAgreement
+from mechkin_cli.tables.columns import Columns
+from mechkin_cli.tables.layout import PublishedValues
+
+PAGE = "errata.md"
+_THOUSAND, _MILLION = Decimal(1000), Decimal(1_000_000)
+WORST_CELLS = 5
+"""Cells shown per table; the rest is counted."""
+
+_HEAD = """\
+A printed cell **agrees** when it is the computed number rounded to the printed digits, it is **one
+off** when it is a neighbour of that number in the last digit, else it **differs**. Differences are
+printed less computed; a *unit* is one unit of the last printed digit."""
+
+
+@dataclass(frozen=True, slots=True)
+class PrintedTable:
+    """A computed table, where its printed values stand, and how the two agree.
+
+    `link` is the way from the page to the printed values.
+    """
+
+    table: Columns
+    published: PublishedValues
+    agreement: TableAgreement
+    link: str
+
+
+def errata_page(name: str, source: str, tables: Sequence[PrintedTable]) -> str:
+    """The whole page of a mechanism, with a newline at its end."""
+    parts = [f"# {_line(name)}: printed and computed values"]
+    if source:
+        parts.append(f"Source: {_line(source)}.")
+    parts += [_HEAD, _overview(tables)]
+    for table in tables:
+        parts += _table_parts(table)
+    return "\n\n".join(parts) + "\n"
+
+
+def counts(agreements: Iterable[TableAgreement]) -> str:
+    """Agreement of some tables in a few words: `12 of 15 cells agree, 2 one off, 1 differs`."""
+    every = list(agreements)
+    cells = sum(len(one.cells) for one in every)
+    text = f"{sum(one.agreeing for one in every)} of {_counted(cells, 'cell')} agree"
+    one_off = sum(one.one_off for one in every)
+    differing = sum(one.differing for one in every)
+    text += f", {one_off} one off" if one_off else ""
+    return text + (
+        f", {differing} {'differs' if differing == 1 else 'differ'}" if differing else ""
+    )
+
+
+def _overview(tables: Sequence[PrintedTable]) -> str:
+    rows = [_table_row(one.table.name, one.agreement) for one in tables]
+    labels = ["table", "cells", "agree", "one off", "differ", "largest, units"]
+    return _markdown(labels, rows)
+
+
+def _table_row(name: str, agreement: TableAgreement) -> list[str]:
+    return [
+        name,
+        str(len(agreement.cells)),
+        str(agreement.agreeing),
+        str(agreement.one_off),
+        str(agreement.differing),
+        _units(worst.units) if (worst := _worst(agreement.cells)) else "",
+    ]
+
+
+def _table_parts(one: PrintedTable) -> list[str]:
+    """Heading, counts, columns, worst cells, reasons."""
+    table, found = one.table, one.agreement
+    parts = [f"## {table.name}: {_line(table.title)}"]
+    links = f"[computed]({table.name}.csv), [printed]({one.link})"
+    parts.append(f"{counts([found])} ({links}).{_left_out(found)}")
+    columns = _column_rows(one)
+    if columns:
+        labels = ["column", "cells", "agree", "one off", "differ", "largest, units", "as value"]
+        parts += [_markdown(labels, columns), *_worst_cells(one)]
+    parts += _reasons(one)
+    return parts
+
+
+def _left_out(found: TableAgreement) -> str:
+    texts = []
+    if found.without_row:
+        texts.append(f"{_counted(found.without_row, 'printed row')} without a computed one.")
+    if found.without_value:
+        texts.append(f"{_counted(found.without_value, 'printed cell')} with an empty computed one.")
+    if found.other_labels:
+        texts.append(f"Printed columns not computed here: {', '.join(found.other_labels)}.")
+    return "".join(f" {text}" for text in texts)
+
+
+def _column_rows(one: PrintedTable) -> list[list[str]]:
+    """One row per column that does not agree throughout, in the order of the table."""
+    units = {column.label: column.unit for column in one.table.columns}
+    rows = []
+    for label, unit in units.items():
+        cells = tuple(cell for cell in one.agreement.cells if cell.label == label)
+        worst = _worst(cells)
+        if worst is not None and not all(cell.agrees for cell in cells):
+            value = f"{_value(worst.difference)} {unit}".strip()
+            rows.append([*_table_row(label, TableAgreement(cells)), value])
+    return rows
+
+
+def _worst_cells(one: PrintedTable) -> list[str]:
+    off = [cell for cell in one.agreement.cells if not cell.agrees]
+    shown = sorted(off, key=lambda cell: -abs(cell.units))[:WORST_CELLS]
+    first = one.table.columns[0].label
+    rows = [
+        [str(c.key), c.label, str(c.printed), _two_digits_more(c), _units(c.units)] for c in shown
+    ]
+    parts = [_markdown([first, "column", "printed", "computed", "units"], rows)]
+    rest = len(off) - len(shown)
+    return [*parts, f"and {_counted(rest, 'more cell')} that do not agree."] if rest else parts
+
+
+def _reasons(one: PrintedTable) -> list[str]:
+    remarks = one.published.remarks
+    lines = []
+    for remark in remarks:
+        where = f"{', '.join(remark.labels)}: " if remark.labels else ""
+        lines.append(f"- {where}{_line(remark.text)}")
+    if not remarks and one.agreement.differing:
+        lines.append("- The reason is not known.")
+    return ["\n".join(lines)] if lines else []
+
+
+def _worst(cells: Iterable[PrintedCell]) -> PrintedCell | None:
+    return max(cells, key=lambda cell: abs(cell.units), default=None)
+
+
+def _units(value: Decimal) -> str:
+    """With its sign, to hundredths; from a thousand on to whole units."""
+    if _THOUSAND <= abs(value) < _MILLION:
+        return f"{value:+.0f}"
+    return f"{value:+.3e}" if abs(value) >= _MILLION else f"{value:+.2f}"
+
+
+def _two_digits_more(cell: PrintedCell) -> str:
+    """The computed number with two digits more than the printed one."""
+    decimals = max(0, 2 - int(cell.printed.as_tuple().exponent))
+    return f"{cell.computed:.{decimals}f}"
+
+
+def _value(value: Decimal) -> str:
+    """To three significant digits, and to whole numbers from a thousand on."""
+    if _THOUSAND <= abs(value) < _MILLION:
+        return f"{value:.0f}"
+    return f"{value:.3g}" if value else "0"
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def _line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _markdown(labels: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table padded to read as one in a terminal; the first column to the left."""
+    cells = [[text.replace("|", "\\|") for text in row] for row in [labels, *rows]]
+    widths = [max(3, *map(len, column)) for column in zip(*cells, strict=True)]
+    rule = [":" + "-" * (widths[0] - 1), *("-" * (width - 1) + ":" for width in widths[1:])]
+    lines = [
+        [row[0].ljust(widths[0]), *(t.rjust(w) for t, w in zip(row[1:], widths[1:], strict=True))]
+        for row in cells
+    ]
+    return "\n".join(f"| {' | '.join(row)} |" for row in [lines[0], rule, *lines[1:]])

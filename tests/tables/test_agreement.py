@@ -1,0 +1,96 @@
+"""Printed cells beside computed ones: the rounding rule, and how rows are found."""
+
+from decimal import Decimal
+
+import numpy as np
+import pytest
+
+from mechkin_cli.tables.agreement import TableAgreement, agreement
+from mechkin_cli.tables.columns import Column, Columns
+from mechkin_cli.tables.printed import PrintedValues
+
+
+def table(**columns: list[float]) -> Columns:
+    made = (Column(label, "", np.array(values, float)) for label, values in columns.items())
+    return Columns("t", "", tuple(made))
+
+
+def printed(text: str) -> PrintedValues:
+    labels, *rows = (line.split(",") for line in text.split())
+    cells = (tuple(Decimal(cell) if cell else None for cell in row) for row in rows)
+    return PrintedValues(tuple(labels), tuple(cells))
+
+
+def one_cell(computed: float, text: str) -> TableAgreement:
+    return agreement(table(x=[1], y=[computed]), printed(f"x,y\n1,{text}"))
+
+
+AGREE, ONE_OFF, DIFFER = (1, 0, 0), (0, 1, 0), (0, 0, 1)
+
+
+@pytest.mark.parametrize(
+    ("computed", "text", "verdict"),
+    [
+        (1.234, "1.23", AGREE),
+        (1.236, "1.23", ONE_OFF),
+        (1.2449, "1.23", ONE_OFF),
+        (1.2451, "1.23", DIFFER),
+        # ties, exact in binary and not: both neighbours are the rounded number
+        (0.125, "0.12", AGREE),
+        (0.125, "0.13", AGREE),
+        (2.675, "2.67", AGREE),
+        (2.675, "2.68", AGREE),
+        # one last bit on either side of the tie
+        (np.nextafter(0.125, 0), "0.13", AGREE),
+        (np.nextafter(0.125, 1), "0.12", AGREE),
+        (0.1250001, "0.12", ONE_OFF),
+        # the printed digits count: zeros at the end, none after the point, exponents
+        (1.3, "1.30", AGREE),
+        (1.304, "1.3", AGREE),
+        (1.306, "1.30", ONE_OFF),
+        (104.4, "104", AGREE),
+        (1.26e-3, "1.3e-3", AGREE),
+        # zero has no sign
+        (4e-4, "-0.000", AGREE),
+        (-4e-4, "0.000", AGREE),
+        (1e300, "0.001", DIFFER),
+        (-7.0, "7.0", DIFFER),
+    ],
+)
+def test_rounding(computed, text, verdict):
+    found = one_cell(computed, text)
+    assert (found.agreeing, found.one_off, found.differing) == verdict
+
+
+def test_differences_are_exact():
+    (cell,) = one_cell(-103.84448, "-103.842").cells
+    assert (cell.units, cell.difference, cell.unit) == tuple(
+        map(Decimal, ("2.48", "0.00248", "0.001"))
+    )
+
+
+def test_rows_are_found_by_the_first_column():
+    computed = table(x=[150, 152, 154.04, 156], y=[1, 2, 3, np.nan])
+    found = agreement(computed, printed("x,y\n154.0,3\n150,1\n156,4\n158,5\n152,"))
+    assert [(str(c.key), str(c.printed), c.agrees) for c in found.cells] == [
+        ("154.0", "3", True),
+        ("150", "1", True),
+    ]
+    assert (found.without_row, found.without_value) == (1, 1)
+
+
+def test_a_value_that_comes_twice_is_found_twice():
+    found = agreement(table(x=[0, 5, 0], y=[1, 2, 3]), printed("x,y\n0,1\n0,3\n0,9"))
+    assert [cell.agrees for cell in found.cells] == [True, True]
+    assert found.without_row == 1
+
+
+def test_columns_that_one_side_lacks():
+    found = agreement(table(x=[1], y=[2], z=[3]), printed("x,w,z,v\n1,7,3,8"))
+    assert [cell.label for cell in found.cells] == ["z"]
+    assert found.other_labels == ("w", "v")
+
+
+def test_the_first_printed_column_must_be_one_of_the_table():
+    with pytest.raises(ValueError, match="'q' finds the rows, and table t has no such column"):
+        agreement(table(x=[1]), printed("q,x\n1,1"))

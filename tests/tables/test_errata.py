@@ -1,0 +1,85 @@
+"""The errata page of two small tables, in full."""
+
+from decimal import Decimal
+
+import numpy as np
+
+from mechkin_cli.tables.agreement import agreement
+from mechkin_cli.tables.columns import Column, Columns
+from mechkin_cli.tables.errata import PrintedTable, counts, errata_page
+from mechkin_cli.tables.layout import PrintedRemark, PublishedValues
+from mechkin_cli.tables.printed import PrintedValues
+
+
+def printed_table(name: str, values: list[float], texts: list[str], *remarks: PrintedRemark):
+    x = Column("x", "deg", np.arange(float(len(values))))
+    table = Columns(name, f"Table {name}", (x, Column("y", "in", np.array(values))))
+    rows = tuple((Decimal(k), Decimal(text)) for k, text in enumerate(texts))
+    found = agreement(table, PrintedValues(("x", "y"), rows))
+    path = f"m/published/{name}.csv"
+    return PrintedTable(table, PublishedValues(path, remarks), found, f"published/{name}.csv")
+
+
+RIGHT = printed_table("one", [1.0, 2.004], ["1.00", "2.00"])
+WRONG = printed_table(
+    "two",
+    [1, 2, 3, 4, 5, 6, 7, 8, 1234.5],
+    ["1.0", "2.1", "3.2", "4.3", "5.4", "6.5", "7.6", "8.7", "0.0"],
+    PrintedRemark("a slip", ("y",)),
+    PrintedRemark("and another"),
+)
+
+PAGE = """\
+# Mechanism: printed and computed values
+
+Source: a book.
+
+A printed cell **agrees** when it is the computed number rounded to the printed digits, it is **one
+off** when it is a neighbour of that number in the last digit, else it **differs**. Differences are
+printed less computed; a *unit* is one unit of the last printed digit.
+
+| table | cells | agree | one off | differ | largest, units |
+| :---- | ----: | ----: | ------: | -----: | -------------: |
+| one   |     2 |     2 |       0 |      0 |          -0.40 |
+| two   |     9 |     1 |       1 |      7 |         -12345 |
+
+## one: Table one
+
+2 of 2 cells agree ([computed](one.csv), [printed](published/one.csv)).
+
+## two: Table two
+
+1 of 9 cells agree, 1 one off, 7 differ ([computed](two.csv), [printed](published/two.csv)).
+
+| column | cells | agree | one off | differ | largest, units | as value |
+| :----- | ----: | ----: | ------: | -----: | -------------: | -------: |
+| y      |     9 |     1 |       1 |      7 |         -12345 | -1234 in |
+
+| x   | column | printed | computed |  units |
+| :-- | -----: | ------: | -------: | -----: |
+| 8   |      y |     0.0 | 1234.500 | -12345 |
+| 7   |      y |     8.7 |    8.000 |  +7.00 |
+| 6   |      y |     7.6 |    7.000 |  +6.00 |
+| 5   |      y |     6.5 |    6.000 |  +5.00 |
+| 4   |      y |     5.4 |    5.000 |  +4.00 |
+
+and 3 more cells that do not agree.
+
+- y: a slip
+- and another
+"""
+
+
+def test_the_page():
+    assert errata_page("Mechanism", "a book", [RIGHT, WRONG]) == PAGE
+
+
+def test_counts_of_several_tables():
+    assert counts([RIGHT.agreement, WRONG.agreement]) == "3 of 11 cells agree, 1 one off, 7 differ"
+    assert counts([RIGHT.agreement]) == "2 of 2 cells agree"
+
+
+def test_a_difference_without_a_reason_says_so():
+    page = errata_page("M", "", [printed_table("t", [1.0], ["2.0"])])
+    assert page.endswith("- The reason is not known.\n")
+    assert "Source" not in page
