@@ -13,8 +13,12 @@ from references import MECHANISMS
 
 import mechkin_cli as mk
 
-NAMES = sorted(path.stem for path in MECHANISMS.glob("*.yaml") if path.stem != "rcsr_csr_loop_one")
-"""All files but the one that follows a part of its mechanism only (test_print)."""
+_PART = "rcsr_csr_loop_one"
+_STEMS = sorted(path.stem for path in MECHANISMS.glob("*.yaml"))
+LECTURES = [stem for stem in _STEMS if stem.startswith("lecture_")]
+"""Single positions without masses or loads."""
+NAMES = [stem for stem in _STEMS if stem not in (*LECTURES, _PART)]
+"""All other files but the one that follows a part of its mechanism only (test_print)."""
 
 _RATES = ("_dot", "_ddot")
 _MOTION = ("theta", "s", "theta1", "theta2", "omega", "alpha", "effort")

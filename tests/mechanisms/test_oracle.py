@@ -11,7 +11,17 @@ from oracle import document, mp, newton_euler, read, solve, to_text
 from references import MECHANISMS
 
 LIMIT = 1e-12
-NAMES = ("sevenr", "rcrcr", "phchc", "rchch", "rcsr_csr", "rcsr_csr_loop_one")
+NAMES = (
+    "sevenr",
+    "rcrcr",
+    "phchc",
+    "rchch",
+    "rcsr_csr",
+    "rccc",
+    "rprhrrr",
+    "rrrrrrh",
+    "rprrhc",
+)
 ROWS = (1, 10)
 CASES = [(name, row) for name in NAMES for row in ROWS]
 DEGREE = mp.pi / 180
