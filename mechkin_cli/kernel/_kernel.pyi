@@ -93,6 +93,7 @@ class Plan:
         point: Triple,
         other_point: Triple,
         vector: Triple,
+        varying: bool = False,
     ) -> None: ...
     def add_output(
         self, type: int, index: int, freedom: int, order: int, data: Triple, factor: float
@@ -119,6 +120,7 @@ class Plan:
         iterations: int,
         tests: tuple[float, float, float],
         lanes: int,
+        loads: Floats | None = None,
     ) -> None: ...
     def search(
         self,

@@ -55,6 +55,7 @@ def run(
     *,
     rates: Floats | None = None,
     accelerations: Floats | None = None,
+    loads: Floats | None = None,
     demand: Demand = Demand.POSITION,
     outputs: bool = False,
     derivatives: bool = False,
@@ -71,6 +72,8 @@ def run(
         guess: (states, rows).
         rates: needed for velocities.
         accelerations: needed for accelerations.
+        loads: values of varying loads (columns, rows) as `varying_loads.kernel_loads` gives them,
+            needed for forces where there are any.
         demand: what to compute beyond positions.
         outputs: fill the plan's outputs.
         derivatives: return the columns' first and second derivatives.
@@ -108,6 +111,7 @@ def run(
         iterations,
         tests,
         lanes,
+        loads,
     )
     measured = (residual, correction, orientation, condition, power_error)
     return Batch(states, values, first, second, *measured, flags)

@@ -54,6 +54,8 @@ void check_demand(const PlanStore& store, const Request& r) {
   if (moving && !r.rates) throw nb::value_error("velocities need rates of the inputs");
   if (r.demand & DEMAND_ACCELERATION && (!moving || !r.accelerations))
     throw nb::value_error("accelerations need rates and accelerations of the inputs");
+  if (r.demand & DEMAND_FORCES && store.view().load_values && !r.loads)
+    throw nb::value_error("forces need the values of varying loads");
   if (r.demand & DEMAND_CONDITION && !r.condition) throw nb::value_error("no array for the condition");
   if (r.demand & DEMAND_POWER && !r.power_error) throw nb::value_error("no array for the power error");
 }
@@ -62,8 +64,7 @@ void run(const PlanStore& store, Array2 inputs, std::optional<Array2> rates, std
          Array2 guess, Array2 states, std::optional<Array2> outputs, std::optional<Array2> first,
          std::optional<Array2> second, Array1 residual, Array1 correction, std::optional<Array1> orientation,
          std::optional<Array1> condition, std::optional<Array1> power_error, Flags flags, unsigned demand, int shift,
-         int iterations,
-         std::array<double, 3> tests, int lanes) {
+         int iterations, std::array<double, 3> tests, int lanes, std::optional<Array2> loads) {
   const Plan& p = store.view();
   const KernelUnit& unit = unit_or_throw(lanes);
   Request r = {};
@@ -72,6 +73,7 @@ void run(const PlanStore& store, Array2 inputs, std::optional<Array2> rates, std
   r.rates = columns(rates, p.inputs, r.rows, "rates");
   r.accelerations = columns(accelerations, p.inputs, r.rows, "accelerations");
   r.guess = columns(guess, p.states, r.rows, "guess");
+  r.loads = columns(loads, p.load_values, r.rows, "loads");
   r.states = columns(states, p.states, r.rows, "states");
   r.outputs = columns(outputs, p.slots, r.rows, "outputs");
   r.velocities = columns(first, p.columns, r.rows, "first");
@@ -208,7 +210,8 @@ NB_MODULE(_kernel, m) {
       .def("add_input", &PlanStore::add_input, "column"_a, "axis"_a, "scale"_a)
       .def("set_inertia", &PlanStore::set_inertia, "link"_a, "mass"_a, "centre"_a, "tensor"_a)
       .def("set_gravity", &PlanStore::set_gravity, "g"_a)
-      .def("add_load", &PlanStore::add_load, "type"_a, "link"_a, "other"_a, "freedom"_a, "point"_a, "other_point"_a, "vector"_a)
+      .def("add_load", &PlanStore::add_load, "type"_a, "link"_a, "other"_a, "freedom"_a, "point"_a, "other_point"_a, "vector"_a,
+           "varying"_a = false)
       .def("add_output", &PlanStore::add_output, "type"_a, "index"_a, "freedom"_a, "order"_a, "data"_a, "factor"_a)
       .def("finish", &PlanStore::finish)
       .def_prop_ro("states", [](const PlanStore& s) { return s.view().states; })
@@ -217,7 +220,8 @@ NB_MODULE(_kernel, m) {
       .def("run", &run, "inputs"_a, "rates"_a.none(), "accelerations"_a.none(), "guess"_a, "states"_a,
            "outputs"_a.none(), "first"_a.none(), "second"_a.none(), "residual"_a, "correction"_a,
            "orientation"_a.none(), "condition"_a.none(), "power_error"_a.none(), "flags"_a, "demand"_a, "shift"_a,
-           "iterations"_a, "tests"_a, "lanes"_a)
+           "iterations"_a, "tests"_a, "lanes"_a,
+           "loads"_a.none() = nb::none())
       .def("search", &search, "block"_a, "inputs"_a, "states"_a, "residual"_a, "flags"_a, "iterations"_a,
            "accept"_a, "lanes"_a)
       .def("track", &track, "x0"_a, "u"_a, "sigma"_a, "start"_a, "guess"_a, "limit"_a, "last"_a, "limits"_a);

@@ -110,6 +110,7 @@ struct Load {
   int freedom;        // of the coordinate in that joint
   double point[3], other_point[3];
   double vector[3];   // force, torque, or the data of springs and dampers
+  int varying;        // first of its values in Request::loads instead of `vector`, -1: constant
 };
 
 enum OutputCode : int {
@@ -179,7 +180,7 @@ struct Drive {
 };
 
 struct Plan {
-  int links, states, columns, closings, legs, blocks, inputs, loads, outputs, slots;
+  int links, states, columns, closings, legs, blocks, inputs, loads, load_values, outputs, slots;
   int largest_block;  // rows
   const TreeJoint* joints;
   const ClosingJoint* closing;
@@ -215,6 +216,7 @@ struct Request {
   const double* rates;          // inputs x rows, may be null without DEMAND_VELOCITY
   const double* accelerations;  // inputs x rows, likewise
   const double* guess;          // states x rows
+  const double* loads;          // load_values x rows: values of varying loads, may be null without DEMAND_FORCES
   double* states;               // states x rows
   double* outputs;              // slots x rows, may be null
   double* velocities;           // columns x rows, may be null

@@ -206,8 +206,9 @@ void PlanStore::check_link(int link) const {
 }
 
 void PlanStore::add_load(int type, int link, int other, int freedom, const Triple& point, const Triple& other_point,
-                         const Triple& vector) {
+                         const Triple& vector, bool varying) {
   require(!finished_, "the plan is finished");
+  require(!varying || type <= LOAD_COORDINATE, "springs and dampers vary by themselves");
   if (type == LOAD_COORDINATE || type == LOAD_COORDINATE_SPRING || type == LOAD_COORDINATE_DAMPER) {
     require(link >= 0 && link < (int)axis_.size(), "load along an unknown axis");
     require(other >= -(int)closing_.size() && other < (int)joints_.size(), "load on an unknown joint");
@@ -216,7 +217,8 @@ void PlanStore::add_load(int type, int link, int other, int freedom, const Tripl
     check_link(other);
     require(link >= 0 || type == LOAD_SPRING || type == LOAD_DAMPER, "a load on ground moves nothing");
   }
-  Load l = {type, link, other, freedom, {}, {}, {}};
+  Load l = {type, link, other, freedom, {}, {}, {}, varying ? plan_.load_values : -1};
+  if (varying) plan_.load_values += type == LOAD_COORDINATE ? 1 : 3;
   copy(point, l.point);
   copy(other_point, l.other_point);
   copy(vector, l.vector);

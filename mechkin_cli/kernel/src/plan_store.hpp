@@ -29,7 +29,9 @@ class PlanStore {
   void add_input(int column, int axis, double scale);
   void set_inertia(int link, double mass, const Triple& centre, const std::array<double, 6>& tensor);
   void set_gravity(const Triple& g);
-  void add_load(int type, int link, int other, int freedom, const Triple& point, const Triple& other_point, const Triple& vector);
+  // A varying load takes its value from the next columns of Request::loads: one along a coordinate, else three.
+  void add_load(int type, int link, int other, int freedom, const Triple& point, const Triple& other_point,
+                const Triple& vector, bool varying);
   int add_output(int type, int index, int freedom, int order, const Triple& data, double factor);
   // Checks that the parts fit together (std::invalid_argument otherwise); no changes but outputs after it.
   void finish();

@@ -135,7 +135,15 @@ inline void apply_between_points(Balance& balance, const Load& l) {
   balance.apply(l.other, Pack(-1.0) * force_at(p, pull));
 }
 
-inline void apply_load(Balance& balance, const Load& l) {
+// `row_value` gives a column of Request::loads for the pack's rows.
+template <class RowValue>
+MECHKIN_INLINE Vec3 load_vector(const Load& l, const RowValue& row_value) {
+  if (l.varying < 0) return constant(l.vector);
+  return {row_value(l.varying), row_value(l.varying + 1), row_value(l.varying + 2)};
+}
+
+template <class RowValue>
+inline void apply_load(Balance& balance, const Load& l, const RowValue& row_value) {
   const Plan& p = balance.p;
   const Workspace& w = balance.w;
   Pack value, rate;
@@ -143,12 +151,15 @@ inline void apply_load(Balance& balance, const Load& l) {
     case LOAD_FORCE_GROUND:
     case LOAD_FORCE_LINK: {
       const Pose& pose = w.pose[l.link];
-      const Vec3 force = l.type == LOAD_FORCE_LINK ? pose.vector(l.vector) : constant(l.vector);
+      const Vec3 given = load_vector(l, row_value);
+      const Vec3 force = l.type == LOAD_FORCE_LINK ? pose.vector(given) : given;
       return balance.apply_outside(l.link, force_at(pose.point(l.point), force));
     }
-    case LOAD_TORQUE_GROUND: return balance.apply_outside(l.link, {constant(l.vector), zero3()});
-    case LOAD_TORQUE_LINK: return balance.apply_outside(l.link, {w.pose[l.link].vector(l.vector), zero3()});
-    case LOAD_COORDINATE: return apply_along_coordinate(balance, l.link, Pack(l.vector[0]));
+    case LOAD_TORQUE_GROUND: return balance.apply_outside(l.link, {load_vector(l, row_value), zero3()});
+    case LOAD_TORQUE_LINK:
+      return balance.apply_outside(l.link, {w.pose[l.link].vector(load_vector(l, row_value)), zero3()});
+    case LOAD_COORDINATE:
+      return apply_along_coordinate(balance, l.link, l.varying < 0 ? Pack(l.vector[0]) : row_value(l.varying));
     case LOAD_SPRING:
     case LOAD_DAMPER: return apply_between_points(balance, l);
     case LOAD_COORDINATE_SPRING:
@@ -214,12 +225,13 @@ inline void closing_wrenches(const Plan& p, Workspace& w, int shift) {
 }
 
 // Applies everything, solves for the closing wrenches and the efforts; returns the ledger.
-inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool accelerating,
-                              int shift) {
+template <class RowValue>
+inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool accelerating, int shift,
+                              const RowValue& row_value) {
   const Pack zero = 0.0;
   Balance balance = {p, w, {zero, zero}, zero_wrench(), zero_wrench(), moving};
   apply_inertia(balance, accelerating);
-  for (int l = 0; l < p.loads; ++l) apply_load(balance, p.load[l]);
+  for (int l = 0; l < p.loads; ++l) apply_load(balance, p.load[l], row_value);
   for (int k = p.links - 1; k >= 0; --k)
     if (p.joints[k].type == TREE_L)
       hang_on_ends(p, w, k);

@@ -108,7 +108,8 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int o = 0; o < p.outputs; ++o) write_output(p, w, balance, p.output[o], out);
   };
   if (r.demand & DEMAND_FORCES) {
-    const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift);
+    const auto load_value = [&](int column) { return in.get(r.loads, column); };
+    const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift, load_value);
     if (r.demand & DEMAND_POWER) {
       const Mask none = balance.powers.size == Pack(0.0);
       const Pack size = select(none, Pack(1.0), balance.powers.size);

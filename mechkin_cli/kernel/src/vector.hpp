@@ -36,6 +36,7 @@ struct Pose {
   MECHKIN_INLINE Vec3 vector(const double* c) const {
     return Pack(c[0]) * X + Pack(c[1]) * Y + Pack(c[2]) * Z;
   }
+  MECHKIN_INLINE Vec3 vector(Vec3 c) const { return c.x * X + c.y * Y + c.z * Z; }
   // A constant point given in this frame, in ground axes.
   MECHKIN_INLINE Vec3 point(const double* c) const { return o + vector(c); }
   // Components in this frame of a vector given in ground axes.
