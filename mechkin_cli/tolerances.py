@@ -173,6 +173,10 @@ UNPHYSICAL_INERTIA: Final = 1e-9
 """Parts of the largest eigenvalue by which a tensor may miss the triangle inequality of a real
 body."""
 
+TABLE_END: Final = 1e-9
+"""Parts of a table's range by which a row may lie beyond its ends and still take the end's value:
+coordinates at an end are computed to 1e-12, and written numbers have nine digits and more."""
+
 # --- numbers of the file ------------------------------------------------------------------------
 
 LARGEST_NUMBER: Final = 1e100

@@ -12,6 +12,7 @@ from mechkin_cli.mechanism.motion import Assembly, Motion
 from mechkin_cli.mechanism.quantities import Wanted, catalogue
 
 if TYPE_CHECKING:
+    from mechkin_cli.analysis.load_laws import LoadLaw
     from mechkin_cli.expressions import Quantity
     from mechkin_cli.units import UnitSystem
 
@@ -26,6 +27,7 @@ class Problem:
     units: UnitSystem
     parameters: Mapping[str, Quantity] = field(default_factory=dict)
     diagnostics: tuple[Diagnostic, ...] = ()
+    load_laws: tuple[LoadLaw, ...] = ()
     hold_idle: bool = False
     follow: tuple[str, ...] | None = None
 

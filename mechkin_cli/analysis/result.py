@@ -44,6 +44,7 @@ class Result:
     nodes: int
     diagnostics: tuple[Diagnostic, ...]
     shifted: tuple[Floats, ...] = ()
+    unloaded: NDArray[np.bool_] | None = None
 
     @cached_property
     def _known(self) -> dict[str, Wanted]:
@@ -95,8 +96,8 @@ class Result:
 
     @property
     def complete(self) -> bool:
-        """Whether every row has a solution."""
-        return bool(self._solved.all())
+        """Whether every row has a solution, and a value of every load that forces need."""
+        return bool(self._solved.all()) and (self.unloaded is None or not self.unloaded.any())
 
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by name, in SI.

@@ -10,6 +10,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly import Start, choose_start
+from mechkin_cli.analysis.batched import failed_rows, run_reached
 from mechkin_cli.analysis.branch_end import explain_end
 from mechkin_cli.analysis.closing_angles import unwrap_closing_angles
 from mechkin_cli.analysis.followed import followed_part
@@ -21,7 +22,7 @@ from mechkin_cli.analysis.result import Result
 from mechkin_cli.analysis.rows import KernelInputs, RowStates, kernel_inputs
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.quantities import Wanted
-from mechkin_cli.solver.batch import Batch, run
+from mechkin_cli.solver.batch import Batch
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, OutputPlan, demand_of
 from mechkin_cli.solver.follow import TrackEnd, follow
@@ -33,6 +34,7 @@ from mechkin_cli.status import Status
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.analysis.row_loads import RowLoads
     from mechkin_cli.kernel._kernel import Plan
 
     Floats = NDArray[np.float64]
@@ -81,11 +83,13 @@ def analyze(
     for quantity in wanted:
         outputs.add(quantity)
     rows = _follow(problem, layout, plan, inputs, start)
-    batch = _run_rows(plan, inputs, rows, demand, lanes)
+    loads = _loads(problem, layout, demand, inputs, start, rows, lanes)
+    batch = _run_rows(plan, inputs, rows, demand, lanes, loads=loads and loads.columns)
     if (rows.status == Status.not_converged).any():
         # a filled-in row ended away from its guess: take every row as a careful step
         rows = _follow(problem, layout, plan, inputs, start, every_row=True)
-        batch = _run_rows(plan, inputs, rows, demand, lanes)
+        loads = _loads(problem, layout, demand, inputs, start, rows, lanes)
+        batch = _run_rows(plan, inputs, rows, demand, lanes, loads=loads and loads.columns)
     values = batch.outputs if batch.outputs is not None else np.empty((0, problem.motion.rows))
     if start.state is not None:
         unwrap_closing_angles(
@@ -95,7 +99,10 @@ def analyze(
         _empty_what_is_unclear(rows, batch.condition, outputs, wanted, values)
     if (rows.status == Status.not_converged).any():
         rows.diagnostics.append(not_converged_note(rows, batch))
-    rows.diagnostics += conventional_notes(problem, wanted)
+    read = [known[name] for law in problem.load_laws if loads for name in law.reads]
+    rows.diagnostics += conventional_notes(problem, [*wanted, *read])
+    if loads:
+        rows.diagnostics += loads.diagnostics
     missing = ~rows.reached
     nothing = np.full(problem.motion.rows, np.nan)
     for array in (values.T, batch.residual, batch.condition, batch.power_error):
@@ -103,7 +110,10 @@ def analyze(
             array[missing] = np.nan
     if problem.hold_idle:
         rows.diagnostics += holding_notes(problem, outputs.slots, values)
-    shifted = _shifted_outputs(plan, graph, inputs, rows, demand, lanes, outputs, wanted, values)
+    columns = loads and loads.columns
+    shifted = _shifted_outputs(
+        plan, graph, inputs, rows, demand, lanes, outputs, wanted, values, columns
+    )
     if shifted:
         rows.diagnostics.append(redundancy_note(graph))
     return Result(
@@ -120,6 +130,7 @@ def analyze(
         slots=outputs.slots,
         nodes=rows.nodes,
         shifted=shifted,
+        unloaded=loads.lost if loads else None,
         diagnostics=(*problem.diagnostics, *start.diagnostics, *rows.diagnostics),
     )
 
@@ -131,6 +142,23 @@ def _demand(problem: Problem, graph: SolverGraph, wanted: list[Wanted], verdicts
     if verdicts and demand & Demand.FORCES and demand & Demand.VELOCITY:
         demand |= Demand.POWER
     return demand
+
+
+def _loads(
+    problem: Problem,
+    layout: Layout,
+    demand: Demand,
+    inputs: KernelInputs,
+    start: Start,
+    rows: RowStates,
+    lanes: int,
+) -> RowLoads | None:
+    """The loads of the rows, where forces are wanted and some load varies."""
+    if not (demand & Demand.FORCES and problem.load_laws):
+        return None
+    from mechkin_cli.analysis.row_loads import row_loads
+
+    return row_loads(problem, layout, inputs, start, rows, lanes)
 
 
 def _follow(
@@ -183,50 +211,14 @@ def _run_rows(
     demand: Demand,
     lanes: int,
     shift: int = 0,
+    loads: Floats | None = None,
 ) -> Batch:
-    """The batched run of all rows; rows without a guess repeat a neighbour's and are emptied
-    later."""
-    values, guess = inputs.values, rows.guess
-    if not rows.reached.all():
-        if not rows.reached.any():
-            return _no_rows(plan, rows.reached.size)
-        stand_in = np.where(
-            rows.reached, np.arange(rows.reached.size), int(np.argmax(rows.reached))
-        )
-        values, guess = values[:, stand_in], guess[:, stand_in]
-    batch = run(
-        plan,
-        np.ascontiguousarray(values),
-        np.ascontiguousarray(guess),
-        rates=inputs.rates,
-        accelerations=inputs.accelerations,
-        demand=demand,
-        outputs=True,
-        shift=shift,
-        lanes=lanes,
-    )
-    first = int(np.argmax(rows.reached))
-    turned = batch.orientation != batch.orientation[first]
-    failed = rows.reached & (~batch.good | turned | ~(batch.correction <= rows.limit))
+    """The batched run of all rows; those that do not close lose their place among the reached."""
+    batch = run_reached(plan, inputs, rows, demand, lanes, shift, loads)
+    failed = failed_rows(batch, rows)
     rows.status[failed] = Status.not_converged
     rows.reached &= ~failed
     return batch
-
-
-def _no_rows(plan: Plan, count: int) -> Batch:
-    nothing = np.full(count, np.nan)
-    return Batch(
-        states=np.empty((plan.states, count)),
-        outputs=np.full((plan.slots, count), np.nan),
-        first=None,
-        second=None,
-        residual=nothing,
-        correction=nothing.copy(),
-        orientation=nothing.copy(),
-        condition=nothing.copy(),
-        power_error=nothing.copy(),
-        flags=np.zeros(count, dtype=np.uint8),
-    )
 
 
 def _empty_what_is_unclear(
@@ -253,6 +245,7 @@ def _shifted_outputs(
     outputs: OutputPlan,
     wanted: list[Wanted],
     values: Floats,
+    loads: Floats | None,
 ) -> tuple[Floats, ...]:
     """The outputs for two other reactions in equilibrium, where constraints are redundant."""
     # efforts and what acts on ground are unique where the motion is
@@ -261,7 +254,7 @@ def _shifted_outputs(
         return ()
     found = []
     for shift in (1, 2):
-        fresh = _run_rows(plan, inputs, rows, demand, lanes, shift).outputs
+        fresh = _run_rows(plan, inputs, rows, demand, lanes, shift, loads).outputs
         assert fresh is not None
         changed = values.copy()
         for slot in (outputs.slots[quantity.name] for quantity in reactions):

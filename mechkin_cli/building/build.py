@@ -67,8 +67,6 @@ def build(source: Source) -> Built:
         for name, d in file.directions.items()
         if _link_known(fields, ("directions", name, "link"), d.link, links)
     }
-    loads = LoadBuilder(fields, links, joints, points)
-    loads.add_all(file.loads)
     motion = build_motion(fields, file.motion, joints)
     assembly = _assembly(fields, file.assembly, joints)
     mechanism = Mechanism(
@@ -77,10 +75,12 @@ def build(source: Source) -> Built:
         joints=joints,
         points=points,
         directions=directions,
-        loads=tuple(loads.loads),
-        gravity=loads.gravity,
     )
     problem = Problem(mechanism, motion, assembly, units, dict(fields.parameters))
+    loads = LoadBuilder(fields, links, joints, points, problem.quantities())
+    loads.add_all(file.loads)
+    mechanism = replace(mechanism, loads=tuple(loads.loads), gravity=loads.gravity)
+    problem = replace(problem, mechanism=mechanism, load_laws=loads.laws)
     tables = build_tables(fields, file.tables, problem.quantities())
     if not file.tables:
         names = [i.name for i in motion.inputs]

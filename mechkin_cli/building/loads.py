@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
 
 from mechkin_cli.building.coordinates import CODE, without
 from mechkin_cli.building.fields import Fields, Path
@@ -11,6 +12,7 @@ from mechkin_cli.expressions import ExpressionError, parse
 from mechkin_cli.expressions.errors import nearest
 from mechkin_cli.mechanism.model import (
     GROUND_NAME,
+    Amount,
     Attached,
     Damper,
     Joint,
@@ -20,6 +22,7 @@ from mechkin_cli.mechanism.model import (
     Load,
     Spring,
 )
+from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO, Vector, add
 from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.units import (
@@ -35,6 +38,10 @@ from mechkin_cli.units import (
     Dimension,
 )
 
+if TYPE_CHECKING:
+    from mechkin_cli.analysis.load_laws import LoadLaw
+    from mechkin_cli.building.load_laws import LoadLaws
+
 
 class LoadBuilder:
     """Turns load sections into loads; what is wrong is noted in `fields`."""
@@ -45,13 +52,26 @@ class LoadBuilder:
         links: Mapping[str, Link],
         joints: Mapping[str, Joint],
         points: Mapping[str, Attached],
+        quantities: Mapping[str, Wanted],
     ) -> None:
         self.fields = fields
         self.links = links
         self.joints = joints
         self.points = points
+        self.quantities = quantities
         self.gravity: Vector = ZERO
         self.loads: list[Load] = []
+
+    @cached_property
+    def _laws(self) -> LoadLaws:
+        from mechkin_cli.building.load_laws import LoadLaws
+
+        return LoadLaws(self.fields, self.quantities)
+
+    @property
+    def laws(self) -> tuple[LoadLaw, ...]:
+        """The laws of the loads that vary."""
+        return tuple(self._laws.laws) if "_laws" in self.__dict__ else ()
 
     def add_all(self, sections: Sequence[Any]) -> None:
         """Reads every load of the file."""
@@ -77,20 +97,22 @@ class LoadBuilder:
             return
         dimension = FORCE if section.type == "force" else MOMENT
         texts = getattr(section, section.type)
-        value = tuple(
-            self._value((*path, section.type, i), text, dimension) for i, text in enumerate(texts)
+        x, y, z = (
+            self._value((*path, section.type, i), text, dimension, "time")
+            for i, text in enumerate(texts)
         )
         point = ZERO
         if section.type == "force":
             point = self.fields.vector((*path, "point"), section.point, LENGTH)
-        self.loads.append(LinkLoad(section.type, section.link, value, section.axes, point))  # type: ignore[arg-type]
+        self.loads.append(LinkLoad(section.type, section.link, (x, y, z), section.axes, point))
 
     def _add_to_joint(self, path: Path, section: Any) -> None:
         coordinate: Literal["theta", "s"] = "theta" if section.type == "torque" else "s"
         if not self._has_coordinate(path, section.joint, coordinate):
             return
         dimension = MOMENT if coordinate == "theta" else FORCE
-        value = self._value((*path, "value"), section.value, dimension)
+        name = f"{section.joint}.{coordinate}"
+        value = self._value((*path, "value"), section.value, dimension, name)
         self.loads.append(JointLoad(section.joint, coordinate, value))
 
     def _add_between(self, path: Path, section: Any) -> None:
@@ -135,32 +157,18 @@ class LoadBuilder:
             damping = number((*path, "damping"), section.damping, damping_of)
             self.loads.append(Damper(None, joint, coordinate, damping))
 
-    def _value(self, path: Path, text: Any, dimension: Dimension) -> float:
+    def _value(self, path: Path, text: Any, dimension: Dimension, over: str) -> Amount:
+        """A number, or a law where the value varies; a table runs over the quantity `over`."""
         if not isinstance(text, str):
-            self.fields.error(
-                "load-table",
-                path,
-                "loads from a table are not read by this version",
-                "give a number or an expression of parameters",
-            )
-            return 0.0
-        if self._varies(text):
-            self.fields.error(
-                "varying-load",
-                path,
-                "loads that vary with coordinates, rates or time are not computed by this version",
-                "give a number or an expression of parameters; springs and dampers are loads too",
-            )
-            return 0.0
-        return self.fields.number(path, text, dimension)
-
-    def _varies(self, text: str) -> bool:
-        """Whether an expression names time or a joint's quantity."""
+            return self._laws.by_table((*path, "table"), text.table, over, dimension)
         try:
-            names = parse(text).names
-        except ExpressionError:
-            return False
-        return any(n == "time" or n.partition(".")[0] in self.joints for n in names)
+            expression = parse(text)
+        except ExpressionError as error:
+            self.fields.expression_error(path, error)
+            return 0.0
+        if expression.names <= self.fields.parameters.keys():
+            return self.fields.number(path, text, dimension)
+        return self._laws.by_expression(path, expression, dimension)
 
     def _known(self, path: Path, key: str | int, name: str, known: Mapping[str, object]) -> bool:
         if name in known or (key == "link" and name == GROUND_NAME):

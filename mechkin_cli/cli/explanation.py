@@ -79,6 +79,11 @@ def _demand_lines(analysis: Analysis) -> list[str]:
             "no rates are computed" if forces else "no column reads a force",
         ),
     ]
+    if forces and analysis.model.problem.load_laws:
+        from mechkin_cli.analysis.load_laws import quantities_read
+
+        read = ", ".join(quantities_read(analysis.model.problem))
+        lines.append(f"loads that vary: evaluated on all rows first, from {read}")
     if forces and massless:
         lines.append("inertia: skipped, no link has mass")
     return lines

@@ -73,3 +73,18 @@ def turned_shortest(a: Vector, b: Vector, vector: Vector) -> Vector:
         return subtract(scale(2.0 * dot(p, vector), p), vector)
     along = scale(dot(axis, vector) / (1.0 + cosine), axis)
     return add(add(scale(cosine, vector), cross(axis, vector)), along)
+
+
+def turned_tensor(tensor: tuple[float, ...], frame: Frame) -> tuple[float, ...]:
+    """A tensor in ground axes expressed in a frame's axes: xx, yy, zz, xy, xz, yz."""
+    xx, yy, zz, xy, xz, yz = tensor
+
+    def times(a: Vector) -> Vector:
+        return (
+            xx * a[0] + xy * a[1] + xz * a[2],
+            xy * a[0] + yy * a[1] + yz * a[2],
+            xz * a[0] + yz * a[1] + zz * a[2],
+        )
+
+    x, y, z = (frame.components(times(axis)) for axis in (frame.x, frame.y, frame.z))
+    return (x[0], y[1], z[2], y[0], z[0], z[1])

@@ -97,14 +97,33 @@ class Attached(NamedTuple):
     vector: Vector
 
 
+class Varying(NamedTuple):
+    """A load's value that is another in every row: law `number` of those that the problem holds.
+
+    `moving` says that the law reads rates.
+    """
+
+    number: int
+    moving: bool = False
+
+
+Amount = float | Varying
+"""A force (N) or moment (N m)."""
+
+
 class LinkLoad(NamedTuple):
     """A force (N, at a point of the link) or torque (N m) on a link, in ground or link axes."""
 
     kind: Literal["force", "torque"]
     link: str
-    value: Vector
+    value: tuple[Amount, Amount, Amount]
     axes: Literal["ground", "link"] = "ground"
     point: Vector = ZERO
+
+    @property
+    def amounts(self) -> tuple[Amount, Amount, Amount]:
+        """The three components."""
+        return self.value
 
 
 class JointLoad(NamedTuple):
@@ -113,7 +132,12 @@ class JointLoad(NamedTuple):
 
     joint: str
     coordinate: Literal["theta", "s"]
-    value: float
+    value: Amount
+
+    @property
+    def amounts(self) -> tuple[Amount]:
+        """The value."""
+        return (self.value,)
 
 
 class Spring(NamedTuple):
@@ -137,6 +161,12 @@ class Damper(NamedTuple):
 
 
 Load = LinkLoad | JointLoad | Spring | Damper
+
+
+def varying(load: Load) -> tuple[Varying, ...]:
+    """The values of a load that are another in every row."""
+    amounts: tuple[Amount, ...] = load.amounts if isinstance(load, LinkLoad | JointLoad) else ()
+    return tuple(amount for amount in amounts if isinstance(amount, Varying))
 
 
 @dataclass(frozen=True)

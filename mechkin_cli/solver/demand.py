@@ -1,7 +1,8 @@
 """The demand plan: from the quantities asked for to what the kernel has to compute.
 
 Positions only read no mass; reactions need accelerations unless no link has mass, velocities only
-where something is damped; an effort needs no joint reactions (design section 8).
+where something is damped or a load reads rates; an effort needs no joint reactions (design
+section 8).
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from collections.abc import Iterable
 from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
-from mechkin_cli.mechanism.model import Attached, Damper, Mechanism
+from mechkin_cli.mechanism.model import Attached, Damper, Load, Mechanism, varying
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO, Vector
 from mechkin_cli.solver.codes import Demand, OutputCode
@@ -43,13 +44,18 @@ def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
 
 
 def forces_demand(mechanism: Mechanism) -> Demand:
-    """What forces need: accelerations if a link has mass, velocities if something is damped."""
+    """What forces need: accelerations if a link has mass, velocities if something is damped or a
+    load reads rates."""
     demand = Demand.FORCES
     if any(link.has_mass for link in mechanism.links.values()):
         demand |= Demand.VELOCITY | Demand.ACCELERATION
-    elif any(isinstance(load, Damper) for load in mechanism.loads):
+    elif any(isinstance(load, Damper) or _reads_rates(load) for load in mechanism.loads):
         demand |= Demand.VELOCITY
     return demand
+
+
+def _reads_rates(load: Load) -> bool:
+    return any(amount.moving for amount in varying(load))
 
 
 class Slot(NamedTuple):

@@ -11,7 +11,7 @@ from functools import cached_property
 from math import frexp, ldexp, pi
 from typing import TYPE_CHECKING, NamedTuple
 
-from mechkin_cli.mechanism.frames import GROUND, Frame, upright
+from mechkin_cli.mechanism.frames import GROUND, Frame, turned_tensor, upright
 from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.mechanism.legs import frame_on
 from mechkin_cli.mechanism.model import (
@@ -24,6 +24,8 @@ from mechkin_cli.mechanism.model import (
     Mechanism,
     Part,
     Spring,
+    Varying,
+    varying,
 )
 from mechkin_cli.mechanism.vectors import ZERO, Vector, norm, scale, subtract
 from mechkin_cli.solver.axes import coordinate_axis
@@ -289,7 +291,7 @@ class Layout:
             centre = self.point(Attached(name, link.center_of_mass))
             tensor = [
                 i / (self.length * self.length)
-                for i in _turned_tensor(link.inertia, self.link_frame[name])
+                for i in turned_tensor(link.inertia, self.link_frame[name])
             ]
             plan.set_inertia(self.link_number[name], link.mass, centre, tensor)
 
@@ -299,8 +301,11 @@ class Layout:
             self._add_link_load(plan, load)
         elif isinstance(load, JointLoad):
             axis, reference, freedom, slide = self._coordinate(load.joint, load.coordinate)
-            value = (load.value / (unit if slide else (unit * unit)), 0.0, 0.0)
-            plan.add_load(LoadCode.COORDINATE, axis, reference, freedom, ZERO, ZERO, value)
+            varies = isinstance(load.value, Varying)
+            constant = 0.0 if isinstance(load.value, Varying) else load.value
+            value = (constant / (unit if slide else (unit * unit)), 0.0, 0.0)
+            code = LoadCode.COORDINATE
+            plan.add_load(code, axis, reference, freedom, ZERO, ZERO, value, varies)
         elif load.between:
             p, q = load.between
             if isinstance(load, Spring):
@@ -315,7 +320,8 @@ class Layout:
 
     def _add_link_load(self, plan: Plan, load: LinkLoad) -> None:
         own_axes = load.axes == "link"
-        value = self.vector(Attached(load.link, load.value)) if own_axes else load.value
+        x, y, z = (0.0 if isinstance(amount, Varying) else amount for amount in load.value)
+        value = self.vector(Attached(load.link, (x, y, z))) if own_axes else (x, y, z)
         if load.kind == "force":
             code = LoadCode.FORCE_LINK if own_axes else LoadCode.FORCE_GROUND
             value, point = (
@@ -325,7 +331,8 @@ class Layout:
         else:
             code = LoadCode.TORQUE_LINK if own_axes else LoadCode.TORQUE_GROUND
             value, point = scale(1.0 / (self.length * self.length), value), ZERO
-        plan.add_load(code, self.link_number[load.link], -1, 0, point, ZERO, value)
+        link, varies = self.link_number[load.link], bool(varying(load))
+        plan.add_load(code, link, -1, 0, point, ZERO, value, varies)
 
     def _coordinate(self, name: str, coordinate: str) -> tuple[int, int, int, bool]:
         """Axis, kernel joint and freedom there of a joint's coordinate, and whether it is a
@@ -382,18 +389,3 @@ def _sum(points: list[Vector]) -> Vector:
     for p in points:
         total = subtract(total, scale(-1.0, p))
     return total
-
-
-def _turned_tensor(tensor: tuple[float, ...], frame: Frame) -> tuple[float, ...]:
-    """A tensor in ground axes expressed in a frame's axes: xx, yy, zz, xy, xz, yz."""
-    xx, yy, zz, xy, xz, yz = tensor
-
-    def times(a: Vector) -> Vector:
-        return (
-            xx * a[0] + xy * a[1] + xz * a[2],
-            xy * a[0] + yy * a[1] + yz * a[2],
-            xz * a[0] + yz * a[1] + zz * a[2],
-        )
-
-    x, y, z = (frame.components(times(axis)) for axis in (frame.x, frame.y, frame.z))
-    return (x[0], y[1], z[2], y[0], z[0], z[1])

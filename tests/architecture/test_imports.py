@@ -17,7 +17,8 @@ ANALYSIS = SOLVER | EXPRESSIONS | {"analysis"}
 BUILDING = (
     EXPRESSIONS
     | SOLVER
-    | {"reading", "schema", "building", "analysis.problem", "analysis.idle", "tables.layout"}
+    | {"reading", "schema", "building", "tables.layout"}
+    | {"analysis.problem", "analysis.idle", "analysis.load_laws"}
 )
 INTERFACE = BUILDING | {"analysis", "tables", "interface"}
 BENCHMARK = INTERFACE | {"benchmark"}

@@ -109,11 +109,71 @@ LOADS = [
         "force",
     ),
     load(
-        "{type: force, joint: D, value: »{table: force.csv}}",
-        "load-table",
-        "not read by this version",
+        "{type: force, joint: D, value: {table: »force.csv}}",
+        "csv-table",
+        "force.csv is sought beside the mechanism file",
     ),
-    load("{type: force, joint: D, value: »D.s}", "varying-load", "vary"),
+    load(
+        "{type: force, link: slider, point: [0, 0, 0], force: [0, {table: »force.csv}, 0]}",
+        "load-table",
+        "over time, and the motion has none",
+        "time: {from: ..., to: ..., step: ...}",
+    ),
+    load("{type: force, joint: D, value: »D.s}", "expression", "expected a force, found a length"),
+    load(
+        "{type: force, joint: D, value: 3 N + 2 N/mm*»D.z}",
+        "expression",
+        "nothing named D.z",
+        "did you mean D.s",
+    ),
+    load(
+        "{type: force, joint: D, value: 2 N/mm*p.position}".replace("2 N", "»2 N"),
+        "expression",
+        "expected a force, found a vector",
+        ".x, .y or .z",
+    ),
+    load(
+        "{type: force, joint: D, value: 2 N/s*»time}",
+        "expression",
+        "time is not known: the motion has no time",
+    ),
+    load(
+        "{type: force, joint: D, value: 2 kg*»D.s_ddot}",
+        "expression",
+        "a load cannot read D.s_ddot: it is an acceleration",
+        "a load may read joint coordinates and their rates",
+    ),
+    load(
+        "{type: force, joint: D, value: 2 kg*»p.acceleration.x}",
+        "expression",
+        "a load cannot read p.acceleration: it is an acceleration",
+    ),
+    load(
+        "{type: torque, link: rod, torque: [0, 2 kg*mm^2*»crank.alpha.y, 0]}",
+        "expression",
+        "a load cannot read crank.alpha: it is an acceleration",
+    ),
+    load(
+        "{type: force, joint: D, value: 2*»norm(A.force)}".replace("»norm(", "norm(»"),
+        "expression",
+        "a load cannot read A.force: it follows from the loads",
+    ),
+    load(
+        "{type: torque, joint: O, value: 2*»O.effort}",
+        "expression",
+        "a load cannot read O.effort: it follows from the loads",
+    ),
+    load(
+        "{type: torque, joint: O, value: 1 N*mm*»row.condition}",
+        "expression",
+        "a load cannot read row.condition: it is a verdict",
+    ),
+    load(
+        "{type: torque, joint: O, value: 1 N*mm*sin(»D.s)}",
+        "expression",
+        "sin takes an angle",
+        "length",
+    ),
 ]
 
 COLUMNS = [

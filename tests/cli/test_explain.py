@@ -1,8 +1,12 @@
 """`--explain`: the solver graph, what is computed, what is skipped and why."""
 
+import re
+
 import pytest
 from cli import files
 from references import RCSR
+
+LOADS = re.compile(r"^loads:.*(\n  .*)*", re.MULTILINE)
 
 
 def lines(mechkin, *arguments: object) -> list[str]:
@@ -74,3 +78,13 @@ def test_the_explanation_comes_before_the_tables(mechkin, write) -> None:
 def test_json_holds_the_explanation(mechkin, write) -> None:
     run = mechkin("analyze", write("crank.yaml", files.CRANK), "--explain", "--json")
     assert run.json["explanation"][0] == "solver graph of crank"
+
+
+def test_loads_that_vary_are_evaluated_first(mechkin, tmp_path) -> None:
+    text = RCSR.read_text(encoding="utf-8")
+    law = '{type: torque, joint: O4, value: "-2 lbm*in^2/s*O4.theta_dot*sin(O4.theta)"}'
+    place = tmp_path / "rcsr.yaml"
+    place.write_text(LOADS.sub(f"loads: [{law}]", text), encoding="utf-8")
+    read = "loads that vary: evaluated on all rows first, from O4.theta, O4.theta_dot"
+    assert read in lines(mechkin, place, "--table", "table_16")
+    assert read not in lines(mechkin, place, "--table", "table_04")

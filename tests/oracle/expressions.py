@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import operator
 import re
+from collections.abc import Callable
 
 from oracle.numerics import Number, mp
 from oracle.units import WORDS, Units
@@ -39,6 +40,14 @@ _FUNCTIONS = {
 }
 
 
+Quantities = Callable[[str], Number]
+"""The value of a dotted name, such as `O1.theta_dot` or `p.position.x`."""
+
+
+def no_quantities(name: str) -> Number:
+    raise ValueError(f"there is no quantity {name} here")
+
+
 def is_bare(text: str) -> bool:
     """Whether a scalar is only a number."""
     return _BARE.fullmatch(text) is not None
@@ -58,6 +67,12 @@ class Scope:
             return mp.mpf(text.strip()) * self.units.of(kind)
         return self._evaluate(text)
 
+    def law(self, text: str, kind: str) -> Number | Callable[[Quantities], Number]:
+        """The value of a scalar, or where it names quantities a function of these."""
+        if is_bare(text) or not re.search(r"[A-Za-z_]\w*\.[A-Za-z_]", text):
+            return self.scalar(text, kind)
+        return lambda quantities: self._evaluate(text, quantities)
+
     def vector(self, texts: list[str], kind: str) -> list[Number]:
         return [self.scalar(text, kind) for text in texts]
 
@@ -66,7 +81,7 @@ class Scope:
             self._values[name] = self.scalar(self._texts[name], "number")
         return self._values[name]
 
-    def _evaluate(self, text: str) -> Number:
+    def _evaluate(self, text: str, quantities: Quantities = no_quantities) -> Number:
         literals: list[Number] = []
 
         def keep(match: re.Match[str]) -> str:
@@ -75,9 +90,12 @@ class Scope:
             return f"(LITERALS[{len(literals) - 1}])"
 
         python = _LITERAL.sub(keep, text).replace("^", "**")
-        return self._node(ast.parse(python.strip(), mode="eval").body, literals)
+        return self._node(ast.parse(python.strip(), mode="eval").body, literals, quantities)
 
-    def _node(self, node: ast.expr, literals: list[Number]) -> Number:
+    def _node(self, node: ast.expr, literals: list[Number], quantities: Quantities) -> Number:
+        def value(inner: ast.expr) -> Number:
+            return self._node(inner, literals, quantities)
+
         match node:
             case ast.Subscript(slice=ast.Constant(value=index)):
                 return literals[index]
@@ -86,9 +104,11 @@ class Scope:
             case ast.Name(id=name):
                 return self._parameter(name)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
-                return -self._node(operand, literals)
+                return -value(operand)
             case ast.BinOp(left=left, op=op, right=right):
-                return _OPERATORS[type(op)](self._node(left, literals), self._node(right, literals))
+                return _OPERATORS[type(op)](value(left), value(right))
             case ast.Call(func=ast.Name(id=name), args=arguments):
-                return _FUNCTIONS[name](*(self._node(a, literals) for a in arguments))
+                return _FUNCTIONS[name](*map(value, arguments))
+            case ast.Attribute():
+                return quantities(ast.unparse(node))
         raise ValueError(f"not an expression of the oracle: {ast.dump(node)}")

@@ -197,18 +197,35 @@ def _wrenches(mechanism: Mechanism, solution: Solution, load: Load) -> list[tupl
     if load.joint:
         joint = mechanism.joints[load.joint]
         kind = "s" if load.type == "force" else "theta"
-        values = scale(unit_effort(solution, load.joint, kind), load.value)
+        values = scale(unit_effort(solution, load.joint, kind), _amount(load.value, solution))
         force, moment = values[:3], values[3:]
         return [
             (joint.second, (force, moment)),
             (joint.first, (scale(force, -1), scale(moment, -1))),
         ]
-    vector = load.vector
+    vector = [_amount(component, solution) for component in load.vector]
     if load.turns_with_link:
         vector = apply(solution.rotation(load.link)[0], vector)
     if load.type == "torque":
         return [(load.link, (nothing, vector))]
     return [(load.link, (vector, cross(solution.motion(load.link, load.point)[0], vector)))]
+
+
+def _amount(value: Any, solution: Solution) -> Number:
+    """A number, or a law of the solution's quantities."""
+    if not callable(value):
+        return value
+
+    def quantity(name: str) -> Number:
+        owner, word, *component = name.split(".")
+        if component:
+            place = "xyz".index(component[0])
+            if word == "omega":
+                return solution.omega(owner)[place]
+            return solution.point(owner)[("position", "velocity").index(word)][place]
+        return solution[name]
+
+    return value(quantity)
 
 
 def _freedoms(joint: Joint, solution: Solution, name: str) -> list[list[Number]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from oracle.numerics import Number
 from oracle.units import Units
@@ -59,15 +60,18 @@ class Joint:
 
 @dataclass(frozen=True)
 class Load:
-    """`gravity` (vector), `force` or `torque` on a link (vector) or on a joint (value)."""
+    """`gravity` (vector), `force` or `torque` on a link (vector) or on a joint (value).
+
+    Components and values are numbers, or functions of the quantities (`Scope.law`).
+    """
 
     type: str
     link: str | None = None
     joint: str | None = None
     point: list[Number] | None = None
-    vector: list[Number] | None = None
+    vector: list[Any] | None = None
     turns_with_link: bool = False
-    value: Number | None = None
+    value: Any = None
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Read a mechanism file of format 1, what the oracle needs of it: all joints; steady loads."""
+"""Read a mechanism file of format 1, what the oracle needs of it: all joints; loads by laws."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _INERTIA = (("xx", "xy", "xz"), ("xy", "yy", "yz"), ("xz", "yz", "zz"))
 def read(source: str | Path | dict[str, Any], **parameters: str) -> Mechanism:
     """Read a file (a path), the text of one, or a `document`; `parameters` override its own.
 
-    Left out: `chain`, springs, dampers, loads that vary, inputs as expressions of others.
+    Left out: `chain`, springs, dampers, loads from tables, inputs as expressions of others.
     """
     data = document(source)
     units = Units(data.get("units"))
@@ -107,12 +107,12 @@ def _load(scope: Scope, load: dict[str, Any]) -> Load:
     if kind not in ("force", "torque"):
         raise NotImplementedError(f"the oracle has no load of type {kind}")
     if "joint" in load:
-        return Load(kind, joint=load["joint"], value=scope.scalar(load["value"], kind))
+        return Load(kind, joint=load["joint"], value=scope.law(load["value"], kind))
     return Load(
         kind,
         link=load["link"],
         point=scope.vector(load["point"], "length") if kind == "force" else None,
-        vector=scope.vector(load[kind], kind),
+        vector=[scope.law(text, kind) for text in load[kind]],
         turns_with_link=load.get("axes", "ground") == "link",
     )
 
