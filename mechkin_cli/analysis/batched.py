@@ -42,6 +42,7 @@ def run_reached(
         np.ascontiguousarray(guess),
         rates=inputs.rates,
         accelerations=inputs.accelerations,
+        jerks=inputs.jerks if demand & Demand.JERK else None,
         loads=loads,
         demand=demand,
         outputs=True,

@@ -45,11 +45,12 @@ class RowStates:
 
 
 class KernelInputs(NamedTuple):
-    """Values, rates and accelerations (inputs, rows) in kernel units."""
+    """Values and their derivatives (inputs, rows) in kernel units."""
 
     values: Floats
     rates: Floats
     accelerations: Floats
+    jerks: Floats
 
 
 def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
@@ -66,7 +67,7 @@ def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
             columns.append(getattr(item, name) / unit)
         return np.ascontiguousarray(np.stack(columns)) if columns else np.empty((0, rows))
 
-    return KernelInputs(table("values"), table("rates"), table("accelerations"))
+    return KernelInputs(table("values"), table("rates"), table("accelerations"), table("jerks"))
 
 
 def input_number(problem: Problem, layout: Layout, number: int, value: float) -> Number:

@@ -121,6 +121,7 @@ class Plan:
         tests: tuple[float, float, float],
         lanes: int,
         loads: Floats | None = None,
+        jerks: Floats | None = None,
     ) -> None: ...
     def search(
         self,

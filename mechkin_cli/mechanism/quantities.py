@@ -12,13 +12,16 @@ from typing import Literal, NamedTuple
 
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism
+from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.units import (
     ACCELERATION,
     ANGLE,
     ANGULAR_ACCELERATION,
+    ANGULAR_JERK,
     ANGULAR_RATE,
     DIMENSIONLESS,
     FORCE,
+    JERK,
     LENGTH,
     MOMENT,
     TIME,
@@ -64,13 +67,12 @@ class Wanted(NamedTuple):
 
 
 _DERIVATIVES = {
-    "theta": (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION),
-    "s": (LENGTH, VELOCITY, ACCELERATION),
+    "theta": (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION, ANGULAR_JERK),
+    "s": (LENGTH, VELOCITY, ACCELERATION, JERK),
 }
 _DERIVATIVES |= dict.fromkeys(("theta1", "theta2"), _DERIVATIVES["theta"])
 _DERIVATIVES |= dict.fromkeys(("x", "y"), _DERIVATIVES["s"])
 _WITH_AXIS = ("R", "P", "C", "H", "Sp", "Sg", "E")
-_SUFFIXES = ("", "_dot", "_ddot")
 _GROUND: dict[str, tuple[Kind, Dimension]] = {
     "shaking_force": ("shaking_force", FORCE),
     "shaking_moment": ("shaking_moment", MOMENT),
@@ -107,7 +109,7 @@ def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
     for joint in mechanism.joints.values():
         for coordinate in joint.type.coordinates:
             for order, dimension in enumerate(_DERIVATIVES[coordinate]):
-                name = f"{joint.name}.{coordinate}{_SUFFIXES[order]}"
+                name = f"{joint.name}.{coordinate}{ORDERS[order]}"
                 yield Wanted(name, "coordinate", joint.name, dimension, False, coordinate, order)
         if joint.letter != "W":
             yield Wanted(f"{joint.name}.point", "joint_point", joint.name, LENGTH, True)
@@ -131,7 +133,12 @@ def _of_efforts(inputs: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
 
 
 def _of_points(mechanism: Mechanism) -> Iterator[Wanted]:
-    words = (("position", LENGTH), ("velocity", VELOCITY), ("acceleration", ACCELERATION))
+    words = (
+        ("position", LENGTH),
+        ("velocity", VELOCITY),
+        ("acceleration", ACCELERATION),
+        ("jerk", JERK),
+    )
     for name in mechanism.points:
         for order, (word, dimension) in enumerate(words):
             yield Wanted(f"{name}.{word}", "point", name, dimension, True, order=order)

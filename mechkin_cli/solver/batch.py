@@ -56,6 +56,7 @@ def run(
     rates: Floats | None = None,
     accelerations: Floats | None = None,
     loads: Floats | None = None,
+    jerks: Floats | None = None,
     demand: Demand = Demand.POSITION,
     outputs: bool = False,
     derivatives: bool = False,
@@ -72,6 +73,7 @@ def run(
         guess: (states, rows).
         rates: needed for velocities.
         accelerations: needed for accelerations.
+        jerks: needed for third derivatives.
         loads: values of varying loads (columns, rows) as `varying_loads.kernel_loads` gives them,
             needed for forces where there are any.
         demand: what to compute beyond positions.
@@ -112,6 +114,7 @@ def run(
         tests,
         lanes,
         loads,
+        jerks,
     )
     measured = (residual, correction, orientation, condition, power_error)
     return Batch(states, values, first, second, *measured, flags)

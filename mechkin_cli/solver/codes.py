@@ -40,6 +40,7 @@ class OutputCode(IntEnum):
     INERTIA_FORCE = 15
     INERTIA_MOMENT = 16
     HOLDING_MOMENT = 17
+    JERK = 18
 
 
 class Demand(IntFlag):
@@ -51,6 +52,7 @@ class Demand(IntFlag):
     FORCES = 4
     CONDITION = 8
     POWER = 16
+    JERK = 32
 
 
 class RowFlag(IntFlag):

@@ -34,6 +34,8 @@ def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
             demand |= Demand.VELOCITY
         elif quantity.order == 2 or quantity.kind == "alpha":
             demand |= Demand.VELOCITY | Demand.ACCELERATION
+        elif quantity.order == 3:
+            demand |= Demand.VELOCITY | Demand.ACCELERATION | Demand.JERK
         elif quantity.kind in _FORCE_KINDS:
             demand |= forces_demand(mechanism)
         elif quantity.kind == "condition":
@@ -110,7 +112,7 @@ class OutputPlan:
         edge = next(k for k, e in enumerate(layout.graph.edges) if e.joint.name == joint.name)
         if wanted.order == 0:
             return self._output(OutputCode.STATE, layout.state(edge, freedom), factor)
-        code = (OutputCode.RATE, OutputCode.ACCELERATION)[wanted.order - 1]
+        code = (OutputCode.RATE, OutputCode.ACCELERATION, OutputCode.JERK)[wanted.order - 1]
         return self._output(code, layout.column(edge, freedom), factor)
 
     def _add_other(self, wanted: Wanted) -> int:

@@ -53,4 +53,17 @@ MECHKIN_INLINE Motion leg_motion(Vec3 A, Vec3 B, Motion a, Motion b, bool second
   return m;
 }
 
+// Its spatial jerk, from its motion and those of its ends.
+MECHKIN_INLINE Twist leg_jerk(Vec3 A, Vec3 B, Motion leg, const MotionToJerk& a, const MotionToJerk& b) {
+  const Vec3 d = B - A, d1 = b.velocity.at(B) - a.velocity.at(A),
+             d2 = b.point_acceleration(B) - a.point_acceleration(A), start = a.point_jerk(A),
+             d3 = b.point_jerk(B) - start;
+  const Vec3 omega = leg.velocity.angular, alpha = leg.acceleration.angular;
+  const Pack two = 2.0, scale = Pack(1.0) / dot(d, d);
+  const Vec3 jerk = scale * (cross(d1, d2) + cross(d, d3) - (two * (dot(d1, d1) + dot(d, d2))) * omega -
+                             (Pack(4.0) * dot(d, d1)) * alpha);
+  return {jerk, start - cross(jerk, A) - two * cross(alpha, leg.velocity.at(A)) -
+                    cross(omega, leg.point_acceleration(A))};
+}
+
 }  // namespace

@@ -54,6 +54,8 @@ void check_demand(const PlanStore& store, const Request& r) {
   if (moving && !r.rates) throw nb::value_error("velocities need rates of the inputs");
   if (r.demand & DEMAND_ACCELERATION && (!moving || !r.accelerations))
     throw nb::value_error("accelerations need rates and accelerations of the inputs");
+  if (r.demand & DEMAND_JERK && (!(r.demand & DEMAND_ACCELERATION) || !r.jerks))
+    throw nb::value_error("jerks need accelerations, and jerks of the inputs");
   if (r.demand & DEMAND_FORCES && store.view().load_values && !r.loads)
     throw nb::value_error("forces need the values of varying loads");
   if (r.demand & DEMAND_CONDITION && !r.condition) throw nb::value_error("no array for the condition");
@@ -64,7 +66,8 @@ void run(const PlanStore& store, Array2 inputs, std::optional<Array2> rates, std
          Array2 guess, Array2 states, std::optional<Array2> outputs, std::optional<Array2> first,
          std::optional<Array2> second, Array1 residual, Array1 correction, std::optional<Array1> orientation,
          std::optional<Array1> condition, std::optional<Array1> power_error, Flags flags, unsigned demand, int shift,
-         int iterations, std::array<double, 3> tests, int lanes, std::optional<Array2> loads) {
+         int iterations, std::array<double, 3> tests, int lanes, std::optional<Array2> loads,
+         std::optional<Array2> jerks) {
   const Plan& p = store.view();
   const KernelUnit& unit = unit_or_throw(lanes);
   Request r = {};
@@ -73,6 +76,7 @@ void run(const PlanStore& store, Array2 inputs, std::optional<Array2> rates, std
   r.rates = columns(rates, p.inputs, r.rows, "rates");
   r.accelerations = columns(accelerations, p.inputs, r.rows, "accelerations");
   r.guess = columns(guess, p.states, r.rows, "guess");
+  r.jerks = columns(jerks, p.inputs, r.rows, "jerks");
   r.loads = columns(loads, p.load_values, r.rows, "loads");
   r.states = columns(states, p.states, r.rows, "states");
   r.outputs = columns(outputs, p.slots, r.rows, "outputs");
@@ -221,7 +225,7 @@ NB_MODULE(_kernel, m) {
            "outputs"_a.none(), "first"_a.none(), "second"_a.none(), "residual"_a, "correction"_a,
            "orientation"_a.none(), "condition"_a.none(), "power_error"_a.none(), "flags"_a, "demand"_a, "shift"_a,
            "iterations"_a, "tests"_a, "lanes"_a,
-           "loads"_a.none() = nb::none())
+           "loads"_a.none() = nb::none(), "jerks"_a.none() = nb::none())
       .def("search", &search, "block"_a, "inputs"_a, "states"_a, "residual"_a, "flags"_a, "iterations"_a,
            "accept"_a, "lanes"_a)
       .def("track", &track, "x0"_a, "u"_a, "sigma"_a, "start"_a, "guess"_a, "limit"_a, "last"_a, "limits"_a);

@@ -1,6 +1,7 @@
 // Velocities and accelerations: the closing equations once and twice differentiated, solved with the
 // factors of the converged position (design: influence coefficients from the same factorisation).
 //
+// The third derivatives follow the same way, where they are asked for.
 // With input rates 1 and accelerations 0 the results are the first and second influence coefficients.
 #pragma once
 
@@ -88,6 +89,54 @@ inline void block_accelerations(const Plan& p, Workspace& w, int index) {
   at.solve_equations(w.right);
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = w.right[u];
   for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
+}
+
+// A link's motion with its jerk.
+MECHKIN_INLINE MotionToJerk motion_to_jerk(const Workspace& w, int link) {
+  if (link < 0) return {{zero_twist(), zero_twist()}, zero_twist()};
+  return {w.motion[link], w.link_jerk[link]};
+}
+
+// V'' = V_p'' + S q''' + 2 [V_p, S q''] + [V_p', S q'] + [V_p, [V_p, S q']], since S' = [V_p, S].
+inline void jerk_link(const Plan& p, Workspace& w, int k) {
+  const TreeJoint& j = p.joints[k];
+  const MotionToJerk parent = motion_to_jerk(w, j.parent);
+  if (j.type == TREE_L) {
+    const Leg& leg = p.leg[j.leg];
+    const Vec3 A = w.pose[k].o, B = carried_point(w, leg.second, leg.point);
+    w.link_jerk[k] = leg_jerk(A, B, w.motion[k], parent, motion_to_jerk(w, leg.second));
+    return;
+  }
+  Twist first = zero_twist(), second = zero_twist(), third = zero_twist();
+  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+    for (int i = 0; i < entry.freedoms; ++i) {
+      const Twist s = w.screw[j.column + i];
+      first += w.rate[j.column + i] * s;
+      second += w.acceleration[j.column + i] * s;
+      third += w.jerk[j.column + i] * s;
+    }
+  });
+  w.link_jerk[k] = parent.jerk + third + Pack(2.0) * bracket(parent.velocity, second) +
+                   bracket(parent.acceleration, first) + bracket(parent.velocity, bracket(parent.velocity, first));
+}
+
+// As block_accelerations, one order higher.
+inline void block_jerks(const Plan& p, Workspace& w, int index) {
+  const Block& b = p.block[index];
+  for (int u = 0; u < b.size; ++u) w.jerk[p.unknown[b.column_begin + u]] = 0.0;
+  for (int o = b.joint_begin; o < b.joint_end; ++o) jerk_link(p, w, p.order[o]);
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      Pack r[MAX_CLOSING_ROWS];
+      entry.third(w.closure[c], motion_to_jerk(w, j.first), motion_to_jerk(w, j.second), r);
+      for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];
+    });
+    if (j.slide >= 0) w.right[j.row] += Pack(j.slide_sign) * w.jerk[p.joints[j.slide].column];
+  }
+  matrices_of(p, w, index).solve_equations(w.right);
+  for (int u = 0; u < b.size; ++u) w.jerk[p.unknown[b.column_begin + u]] = w.right[u];
+  for (int o = b.joint_begin; o < b.joint_end; ++o) jerk_link(p, w, p.order[o]);
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ inline Vec3 output_point(const Plan& p, const Workspace& w, const Output& o) {
   const Vec3 at = w.pose[o.index].point(o.data);
   if (o.order == 0) return unit * at + constant(p.origin);
   const Motion& m = w.motion[o.index];
+  if (o.order == 3) return unit * motion_to_jerk(w, o.index).point_jerk(at);
   return unit * (o.order == 1 ? m.velocity.at(at) : m.point_acceleration(at));
 }
 
@@ -48,7 +49,7 @@ inline Vec3 output_slip(const Plan& p, const Workspace& w, const Output& o) {
 }
 
 inline Pack output_closing(const Plan& p, const Workspace& w, const Output& o) {
-  Pack k[3];
+  Pack k[4];
   closing_coordinate(p, w, o.index, o.freedom, o.order, k);
   return k[o.order];
 }
@@ -60,6 +61,7 @@ inline void write_output(const Plan& p, const Workspace& w, const Balance* balan
     case OUT_STATE: return out.put(o.slot, factor * w.q[o.index]);
     case OUT_RATE: return out.put(o.slot, factor * w.rate[o.index]);
     case OUT_ACCELERATION: return out.put(o.slot, factor * w.acceleration[o.index]);
+    case OUT_JERK: return out.put(o.slot, factor * w.jerk[o.index]);
     case OUT_CLOSING: return out.put(o.slot, factor * output_closing(p, w, o));
     case OUT_SLIP: return out.put(o.slot, factor * output_slip(p, w, o));
     case OUT_POINT: return out.put(o.slot, output_point(p, w, o));

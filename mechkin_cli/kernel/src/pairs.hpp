@@ -22,10 +22,11 @@ struct Closure {
 
 // Motion of the two links and how many derivatives of a coordinate are wanted.
 struct PairMotion {
-  Motion a, b;
+  MotionToJerk a, b;
   int order;
   MECHKIN_INLINE Vec3 relative_omega() const { return b.velocity.angular - a.velocity.angular; }
   MECHKIN_INLINE Vec3 relative_alpha() const { return b.acceleration.angular - a.acceleration.angular; }
+  MECHKIN_INLINE Vec3 relative_jerk() const { return b.jerk.angular - a.jerk.angular; }
 };
 
 // Derivatives of d.
@@ -35,18 +36,33 @@ MECHKIN_INLINE Vec3 first_of_d(const Closure& k, const Motion& a, const Motion& 
 MECHKIN_INLINE Vec3 second_of_d(const Closure& k, const Motion& a, const Motion& b) {
   return b.point_acceleration(k.B.o) - a.point_acceleration(k.A.o);
 }
+MECHKIN_INLINE Vec3 third_of_d(const Closure& k, const MotionToJerk& a, const MotionToJerk& b) {
+  return b.point_jerk(k.B.o) - a.point_jerk(k.A.o);
+}
 // Second derivative of axis.d for an axis carried by a link with motion m.
 MECHKIN_INLINE Pack second_along(Vec3 axis, const Motion& m, const Closure& k, const Motion& a, const Motion& b) {
   return dot(axis, second_of_d(k, a, b)) + Pack(2.0) * dot(m.rate(axis), first_of_d(k, a, b)) +
          dot(m.second_rate(axis), k.d);
 }
+MECHKIN_INLINE Pack third_along(Vec3 axis, const MotionToJerk& m, const Closure& k, const MotionToJerk& a,
+                               const MotionToJerk& b) {
+  return dot(axis, third_of_d(k, a, b)) + Pack(3.0) * dot(m.rate(axis), second_of_d(k, a, b)) +
+         Pack(3.0) * dot(m.second_rate(axis), first_of_d(k, a, b)) + dot(m.third_rate(axis), k.d);
+}
+// Third derivative of x.z for vectors carried by links with motions a and b.
+MECHKIN_INLINE Pack third_of_product(Vec3 x, const MotionToJerk& a, Vec3 z, const MotionToJerk& b) {
+  return dot(a.third_rate(x), z) + Pack(3.0) * dot(a.second_rate(x), b.rate(z)) +
+         Pack(3.0) * dot(a.rate(x), b.second_rate(z)) + dot(x, b.third_rate(z));
+}
 // axis.d and its derivatives, for an axis carried by a link with motion m.
-MECHKIN_INLINE void along(Vec3 axis, const Motion& m, const Closure& k, const PairMotion& p, Pack* out) {
+MECHKIN_INLINE void along(Vec3 axis, const MotionToJerk& m, const Closure& k, const PairMotion& p, Pack* out) {
   out[0] = dot(axis, k.d);
   if (p.order < 1) return;
   out[1] = dot(axis, first_of_d(k, p.a, p.b)) + dot(m.rate(axis), k.d);
   if (p.order < 2) return;
   out[2] = second_along(axis, m, k, p.a, p.b);
+  if (p.order < 3) return;
+  out[3] = third_along(axis, m, k, p.a, p.b);
 }
 // Angle of B.X against A.X about the common axis, and its derivatives.
 MECHKIN_INLINE void about(const Closure& k, const PairMotion& p, Pack* out) {
@@ -55,6 +71,9 @@ MECHKIN_INLINE void about(const Closure& k, const PairMotion& p, Pack* out) {
   out[1] = dot(k.A.Z, p.relative_omega());
   if (p.order < 2) return;
   out[2] = dot(k.A.Z, p.relative_alpha()) + dot(p.a.rate(k.A.Z), p.relative_omega());
+  if (p.order < 3) return;
+  out[3] = dot(k.A.Z, p.relative_jerk()) + Pack(2.0) * dot(p.a.rate(k.A.Z), p.relative_alpha()) +
+           dot(p.a.second_rate(k.A.Z), p.relative_omega());
 }
 
 // d = 0: a common point, in ground axes.
@@ -68,6 +87,10 @@ struct CommonPoint {
     const Vec3 d2 = second_of_d(k, a, b);
     r[0] = d2.x, r[1] = d2.y, r[2] = d2.z;
   }
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    const Vec3 d3 = third_of_d(k, a, b);
+    r[0] = d3.x, r[1] = d3.y, r[2] = d3.z;
+  }
   static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) { return force_at(k.B.o, {l[0], l[1], l[2]}); }
 };
 
@@ -80,6 +103,9 @@ struct PointOnAxis {
   }
   static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
     r[0] = second_along(k.A.X, a, k, a, b), r[1] = second_along(k.A.Y, a, k, a, b);
+  }
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    r[0] = third_along(k.A.X, a, k, a, b), r[1] = third_along(k.A.Y, a, k, a, b);
   }
   static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) {
     return force_at(k.B.o, l[0] * k.A.X + l[1] * k.A.Y);
@@ -105,6 +131,9 @@ struct ParallelAxes {
     r[0] = dot(a.second_rate(k.A.X), k.B.Z) + Pack(2.0) * dot(a.rate(k.A.X), z1) + dot(k.A.X, z2);
     r[1] = dot(a.second_rate(k.A.Y), k.B.Z) + Pack(2.0) * dot(a.rate(k.A.Y), z1) + dot(k.A.Y, z2);
   }
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    r[0] = third_of_product(k.A.X, a, k.B.Z, b), r[1] = third_of_product(k.A.Y, a, k.B.Z, b);
+  }
   static MECHKIN_INLINE Mask side(const Closure& k) { return dot(k.A.Z, k.B.Z) > Pack(0.0); }
 };
 
@@ -127,6 +156,10 @@ struct SameOrientation {
   }
   static MECHKIN_INLINE void second(const Motion& a, const Motion& b, Pack* r) {
     const Vec3 e = b.acceleration.angular - a.acceleration.angular;
+    r[0] = e.x, r[1] = e.y, r[2] = e.z;
+  }
+  static MECHKIN_INLINE void third(const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    const Vec3 e = b.jerk.angular - a.jerk.angular;
     r[0] = e.x, r[1] = e.y, r[2] = e.z;
   }
   static MECHKIN_INLINE Vec3 moment(const Pack* l) { return {l[0], l[1], l[2]}; }
@@ -153,6 +186,10 @@ struct Revolute : Pair {
     CommonPoint::second(k, a, b, r);
     ParallelAxes::second(k, a, b, r + 3);
   }
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    CommonPoint::third(k, a, b, r);
+    ParallelAxes::third(k, a, b, r + 3);
+  }
   static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) {
     Wrench w = CommonPoint::wrench(k, l);
     w.moment += ParallelAxes::moment(k, l + 3);
@@ -176,6 +213,10 @@ struct Prismatic : Pair {
   static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
     PointOnAxis::second(k, a, b, r);
     SameOrientation::second(a, b, r + 2);
+  }
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    PointOnAxis::third(k, a, b, r);
+    SameOrientation::third(a, b, r + 2);
   }
   static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) {
     Wrench w = PointOnAxis::wrench(k, l);
@@ -207,6 +248,10 @@ struct Cylindric : Pair {
     PointOnAxis::second(k, a, b, r);
     ParallelAxes::second(k, a, b, r + 2);
   }
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    PointOnAxis::third(k, a, b, r);
+    ParallelAxes::third(k, a, b, r + 2);
+  }
   static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) {
     Wrench w = PointOnAxis::wrench(k, l);
     w.moment += ParallelAxes::moment(k, l + 2);
@@ -227,6 +272,9 @@ struct Spheric : Pair {
   static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
     CommonPoint::second(k, a, b, r);
   }
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    CommonPoint::third(k, a, b, r);
+  }
   static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) { return CommonPoint::wrench(k, l); }
 };
 
@@ -238,6 +286,9 @@ struct SphereOnPlane : Pair {
   static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) { r[0] = dot(k.B.Z, s.at(k.A.o)); }
   static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
     r[0] = second_along(k.B.Z, b, k, a, b);
+  }
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    r[0] = third_along(k.B.Z, b, k, a, b);
   }
   static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) { return force_at(k.A.o, l[0] * k.B.Z); }
 };
@@ -253,6 +304,9 @@ struct SphereInGroove : Pair {
   }
   static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
     r[0] = second_along(k.B.X, b, k, a, b), r[1] = second_along(k.B.Y, b, k, a, b);
+  }
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    r[0] = third_along(k.B.X, b, k, a, b), r[1] = third_along(k.B.Y, b, k, a, b);
   }
   static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) {
     return force_at(k.A.o, l[0] * k.B.X + l[1] * k.B.Y);
@@ -280,6 +334,10 @@ struct Universal : Pair {
     r[3] = dot(a.second_rate(k.A.Z), k.B.Z) + Pack(2.0) * dot(a.rate(k.A.Z), b.rate(k.B.Z)) +
            dot(k.A.Z, b.second_rate(k.B.Z));
   }
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    CommonPoint::third(k, a, b, r);
+    r[3] = third_of_product(k.A.Z, a, k.B.Z, b);
+  }
   static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) {
     Wrench w = CommonPoint::wrench(k, l);
     w.moment += l[3] * cross(k.B.Z, k.A.Z);
@@ -298,6 +356,10 @@ struct Universal : Pair {
     if (p.order < 2) return;
     const Vec3 dual_rate = scale * (m.rate(one) - c * n.rate(other));
     out[2] = dot(dual, p.relative_alpha()) + dot(dual_rate, p.relative_omega());
+    if (p.order < 3) return;
+    const Vec3 dual_second = scale * (m.second_rate(one) - c * n.second_rate(other));
+    out[3] = dot(dual, p.relative_jerk()) + Pack(2.0) * dot(dual_rate, p.relative_alpha()) +
+             dot(dual_second, p.relative_omega());
   }
 };
 
@@ -316,6 +378,10 @@ struct Planar : Pair {
   static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
     r[0] = second_along(k.A.Z, a, k, a, b);
     ParallelAxes::second(k, a, b, r + 1);
+  }
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    r[0] = third_along(k.A.Z, a, k, a, b);
+    ParallelAxes::third(k, a, b, r + 1);
   }
   static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) {
     Wrench w = force_at(k.B.o, l[0] * k.A.Z);
@@ -344,6 +410,10 @@ struct Weld : Pair {
     CommonPoint::second(k, a, b, r);
     SameOrientation::second(a, b, r + 3);
   }
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    CommonPoint::third(k, a, b, r);
+    SameOrientation::third(a, b, r + 3);
+  }
   static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) {
     Wrench w = CommonPoint::wrench(k, l);
     w.moment += SameOrientation::moment(l + 3);
@@ -363,6 +433,13 @@ struct Distance : Pair {
     const Vec3 e = line(k), d1 = first_of_d(k, a, b);
     const Pack along = dot(e, d1);
     r[0] = dot(e, second_of_d(k, a, b)) + (dot(d1, d1) - along * along) / length(k);
+  }
+  // |d| |d|''' = 3 d'.d'' + d.d''' - 3 |d|' |d|''
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    const Vec3 d1 = first_of_d(k, a, b), d2 = second_of_d(k, a, b);
+    Pack bend = 0.0;
+    second(k, a, b, &bend);
+    r[0] = (Pack(3.0) * dot(d1, d2) + dot(k.d, third_of_d(k, a, b)) - Pack(3.0) * dot(line(k), d1) * bend) / length(k);
   }
   static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) { return force_at(k.B.o, l[0] * line(k)); }
 };

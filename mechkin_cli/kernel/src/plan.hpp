@@ -117,9 +117,9 @@ enum OutputCode : int {
   OUT_STATE = 0,         // index: state
   OUT_RATE = 1,          // index: column
   OUT_ACCELERATION = 2,  // index: column
-  OUT_CLOSING = 3,       // index: closing joint; freedom; order 0, 1, 2
+  OUT_CLOSING = 3,       // index: closing joint; freedom; order 0 to 3
   OUT_SLIP = 4,          // index: place; its point minus the point `data` of the second link
-  OUT_POINT = 5,         // index: link; order 0, 1, 2
+  OUT_POINT = 5,         // index: link; order 0 to 3
   OUT_VECTOR = 6,        // index: link
   OUT_OMEGA = 7,
   OUT_ALPHA = 8,
@@ -131,7 +131,8 @@ enum OutputCode : int {
   OUT_SHAKING_MOMENT = 14,
   OUT_INERTIA_FORCE = 15,
   OUT_INERTIA_MOMENT = 16,
-  OUT_HOLDING_MOMENT = 17  // index: leg; about its line, on its body
+  OUT_HOLDING_MOMENT = 17,  // index: leg; about its line, on its body
+  OUT_JERK = 18             // index: column
 };
 
 struct Output {
@@ -150,7 +151,8 @@ enum Demand : unsigned {
   DEMAND_ACCELERATION = 2,
   DEMAND_FORCES = 4,  // closing wrenches, wrenches of tree joints, efforts
   DEMAND_CONDITION = 8,
-  DEMAND_POWER = 16
+  DEMAND_POWER = 16,
+  DEMAND_JERK = 32
 };
 
 // A joint as its user knows it: where its wrench is read off, and where its point rides.
@@ -215,6 +217,7 @@ struct Request {
   const double* inputs;         // inputs x rows
   const double* rates;          // inputs x rows, may be null without DEMAND_VELOCITY
   const double* accelerations;  // inputs x rows, likewise
+  const double* jerks;          // inputs x rows, with DEMAND_JERK
   const double* guess;          // states x rows
   const double* loads;          // load_values x rows: values of varying loads, may be null without DEMAND_FORCES
   double* states;               // states x rows

@@ -30,6 +30,7 @@ int width(int type) {
     case OUT_STATE:
     case OUT_RATE:
     case OUT_ACCELERATION:
+    case OUT_JERK:
     case OUT_CLOSING:
     case OUT_HOLDING_MOMENT:
     case OUT_EFFORT: return 1;
@@ -39,8 +40,11 @@ int width(int type) {
 
 // What an output needs beyond positions.
 unsigned demand_of(int type, int order) {
-  const unsigned motion = order == 0 ? 0 : order == 1 ? DEMAND_VELOCITY : DEMAND_VELOCITY | DEMAND_ACCELERATION;
+  const unsigned to_order[] = {0, DEMAND_VELOCITY, DEMAND_VELOCITY | DEMAND_ACCELERATION,
+                               DEMAND_VELOCITY | DEMAND_ACCELERATION | DEMAND_JERK};
+  const unsigned motion = to_order[order];
   switch (type) {
+    case OUT_JERK: return to_order[3];
     case OUT_RATE:
     case OUT_OMEGA: return DEMAND_VELOCITY;
     case OUT_ACCELERATION:
@@ -226,11 +230,12 @@ void PlanStore::add_load(int type, int link, int other, int freedom, const Tripl
 }
 
 int PlanStore::add_output(int type, int index, int freedom, int order, const Triple& data, double factor) {
-  require(order >= 0 && order <= 2, "outputs go to second order");
+  require(order >= 0 && order <= 3, "outputs go to third order");
   const int links = (int)joints_.size();
   switch (type) {
     case OUT_STATE: require(index >= 0 && index < plan_.states, "unknown state"); break;
     case OUT_RATE:
+    case OUT_JERK:
     case OUT_ACCELERATION: require(index >= 0 && index < plan_.columns, "unknown column"); break;
     case OUT_CLOSING: require(index >= 0 && index < (int)closing_.size(), "unknown closing joint"); break;
     case OUT_POINT:

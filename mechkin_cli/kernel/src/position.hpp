@@ -15,10 +15,11 @@ constexpr int MAX_CLOSING_ROWS = 6;
 
 // Data of one pack of rows; every array lies in one allocation, see workspace_size.
 struct Workspace {
-  Pack *q, *rate, *acceleration;  // states, columns, columns
+  Pack *q, *rate, *acceleration, *jerk;  // states, columns, columns, columns
   Pose* pose;                     // links
   Twist* screw;                   // columns
   Motion* motion;                 // links
+  Twist* link_jerk;               // links: second derivative of the twist
   Wrench* carried;                // links: wrench on the link and all that the tree hangs on it
   Closure* closure;               // closing joints
   Wrench* reaction;               // closing joints: on the second link
@@ -51,6 +52,8 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->q = (Pack*)take(p.states * pack);
   w->rate = (Pack*)take(p.columns * pack);
   w->acceleration = (Pack*)take(p.columns * pack);
+  w->jerk = (Pack*)take(p.columns * pack);
+  w->link_jerk = (Twist*)take((p.links + 1) * sizeof(Twist));
   w->pose = (Pose*)take(p.links * sizeof(Pose));
   w->screw = (Twist*)take(p.columns * sizeof(Twist));
   w->motion = (Motion*)take((p.links + 1) * sizeof(Motion));

@@ -84,7 +84,10 @@ inline void closing_coordinate(const Plan& p, const Workspace& w, int c, int fre
   const ClosingJoint& j = p.closing[c];
   PairMotion motion = {};
   motion.order = order;
-  if (order > 0) motion.a = motion_of(w, j.first), motion.b = motion_of(w, j.second);
+  if (order > 2)
+    motion.a = motion_to_jerk(w, j.first), motion.b = motion_to_jerk(w, j.second);
+  else if (order > 0)
+    motion.a = {motion_of(w, j.first), zero_twist()}, motion.b = {motion_of(w, j.second), zero_twist()};
   with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
     entry.coordinate(w.closure[c], motion, freedom, out);
   });
@@ -94,7 +97,7 @@ inline void closing_coordinate(const Plan& p, const Workspace& w, int c, int fre
 inline void joint_coordinate(const Plan& p, const Workspace& w, const Load& l, bool moving, Pack* value, Pack* rate) {
   *rate = 0.0;
   if (l.other < 0) {
-    Pack k[3];
+    Pack k[4];
     closing_coordinate(p, w, -1 - l.other, l.freedom, moving ? 1 : 0, k);
     *value = k[0];
     if (moving) *rate = k[1];

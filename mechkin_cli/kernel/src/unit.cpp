@@ -90,6 +90,12 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], true);
   }
 
+  if (r.demand & DEMAND_JERK) {
+    for (int i = 0; i < p.inputs; ++i) w.jerk[p.input_column[i]] = in.get(r.jerks, i);
+    for (int b = 0; b < p.blocks; ++b) block_jerks(p, w, b);
+    for (int k = 0; k < p.rest_count; ++k) jerk_link(p, w, p.rest[k]);
+  }
+
   const auto writer = [&](double* base) { return Writer{base, in.rows, in.row, in.count}; };
   if (r.states)
     for (int s = 0; s < p.states; ++s) writer(r.states).put(s, w.q[s]);

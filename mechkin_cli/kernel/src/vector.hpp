@@ -112,4 +112,19 @@ struct Motion {
   }
 };
 
+// Motion with the second derivative of the twist (the spatial jerk).
+struct MotionToJerk : Motion {
+  Twist jerk;
+  // Third derivative of the position of the body-fixed point at p.
+  MECHKIN_INLINE Vec3 point_jerk(Vec3 p) const {
+    return jerk.at(p) + Pack(2.0) * cross(acceleration.angular, velocity.at(p)) +
+           cross(velocity.angular, point_acceleration(p));
+  }
+  // Third derivative of a vector carried by the link.
+  MECHKIN_INLINE Vec3 third_rate(Vec3 a) const {
+    return cross(jerk.angular, a) + Pack(2.0) * cross(acceleration.angular, rate(a)) +
+           cross(velocity.angular, second_rate(a));
+  }
+};
+
 }  // namespace
