@@ -1,9 +1,10 @@
 """Random mechanisms of several loops as text of format 1, assembled as drawn.
 
-The first chain of joints goes from ground to ground, and has six freedoms more than it closes
-plus one for every input; every further chain hangs on two links that are there already and has six,
-as many as the loop that it closes takes away. So the mobility is the number of inputs, and the
-constraints are independent where the condition is moderate, which is measured.
+The first chain of joints goes from ground to ground, and has six freedoms plus
+one for every input; every further chain hangs on links that are there already and has six, as
+many as the loop that it closes takes away, plus one for an input of its own. So the mobility is the
+number of inputs, and the constraints are independent where the condition is moderate, which is
+measured.
 """
 
 from __future__ import annotations
@@ -13,21 +14,23 @@ import random
 from typing import Any
 
 from oracle.assembly import assemble, drawn_condition
+from oracle.bodies import Inputs
 from oracle.document import Document, to_text
 from oracle.mechanism import COORDINATES, FREEDOMS, Mechanism
-from oracle.numerics import mp
+from oracle.numerics import Number, mp
 from oracle.random_parts import body, joint, law, number, vector
 from oracle.reader import read
 from oracle.series import coefficient
 
-SHAPES = ("ternary", "shared", "chained")
+SHAPES = ("ternary", "shared", "chained", "riding")
 """A second chain on two moving links of the first; on one of them and ground; a third on the
-second."""
+second; a second loop, with an input of its own, on one moving link of the first."""
 
 _TYPES = ("R",) * 4 + ("P", "C", "C", "H", "S", "S", "Sp", "Sg", "U", "U", "E", "W")
 _SPHERES = ("S", "Sp", "Sg")
 _MOST_TRIES = 400
-_BEND = 0.02  # rad, or part of the size: second-order terms of the motion to the last row
+_BEND = 0.02
+"""Limit of terms of second and third order of the motion to a row: rad, or parts of the size."""
 
 
 def random_structure(
@@ -55,18 +58,24 @@ def random_structure(
 
 
 def _is_tame(mechanism: Mechanism, worst_condition: float) -> bool:
-    """Well conditioned at home, and nearly straight from there to the last row."""
+    """Well conditioned at home, and nearly straight from there to the first and the last row."""
     if drawn_condition(mechanism) > worst_condition:
         return False
-    last = mechanism.row(mechanism.rows - 1)
-    home = assemble(mechanism, {name: (0, value[0]) for name, value in last.items()})
+    # a single input's two ways from home are the same
+    ends = {mechanism.rows - 1} if len(mechanism.inputs) == 1 else {0, mechanism.rows - 1}
+    return all(_bend(mechanism, mechanism.row(end)) < _BEND for end in ends)
+
+
+def _bend(mechanism: Mechanism, row: Inputs) -> Number:
+    """The largest term of second and third order of any link's way from home to a row."""
+    home = assemble(mechanism, {name: (0, value[0]) for name, value in row.items()})
     bends = [mp.zero]
     for link in mechanism.links:
         rotation, shift = home.poses[link]
         for k in (2, 3):
-            bends += [abs(coefficient(x, k)) for row in rotation for x in row]
+            bends += [abs(coefficient(x, k)) for line in rotation for x in line]
             bends += [abs(coefficient(x, k)) / mechanism.size for x in shift]
-    return max(bends) < _BEND
+    return max(bends)
 
 
 class _Draft:
@@ -86,6 +95,13 @@ class _Draft:
         held = self.rng.sample(driven[1:], inputs - 1)
         if shape == "ternary":
             self._chain(*self.rng.sample(first, 2), 6)
+        elif shape == "riding":
+            before, link = len(self.joints), self.rng.choice(first)
+            self._chain(link, link, 7)
+            own = [n for n in list(self.joints)[before:] if COORDINATES[self.joints[n]["type"]]]
+            if not own:
+                return None
+            held.append(self.rng.choice(own))
         else:
             second = self._chain(self.rng.choice(first), "ground", 6)
             if not second:

@@ -21,14 +21,14 @@ WORST_CONDITION = 200.0
 
 @cache
 def structure(seed: int) -> Case:
-    """Shapes in turn; every fourth with two inputs, every fifth with an open chain."""
+    """Shapes in turn; every third with one more input, every fifth with an open chain."""
     generator = random.Random(seed)
     shape = SHAPES[seed % len(SHAPES)]
     while True:
         text = random_structure(
             generator,
             shape,
-            inputs=2 if seed % 4 == 3 else 1,
+            inputs=2 if seed % 3 == 2 else 1,
             tail=seed % 5 == 4,
             worst_condition=WORST_CONDITION,
         )
