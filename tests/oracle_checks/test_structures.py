@@ -7,7 +7,6 @@ from functools import cache
 
 import pytest
 from oracle import (
-    SHAPES,
     UnsolvableError,
     assemble,
     mp,
@@ -27,7 +26,7 @@ from references import MECHANISMS
 
 LOOPS = ("RRRRRRR", "PRSRR", "CSPR", "HCPHRR")
 LEGS = {"RSSR": rssr, "suspension": suspension, "Stewart platform": stewart}
-STRUCTURES = (*SHAPES, *LEGS)
+STRUCTURES = ("ternary", "riding", *LEGS)
 LAW = tuple(map(mp.mpf, ("0.04", "0.9", "-0.7", "0.5")))
 CLOSE = mp.mpf("1e-33")
 

@@ -25,11 +25,11 @@ from mechkin_cli.units import ANGLE
 EPS = 2.0**-52
 Values = dict[str, np.ndarray]
 
-LIMITS = {"order 0": 1.5, "order 1": 3.0, "order 2": 9.0, "load": 12.0}
+LIMITS = {"order 0": 2.5, "order 1": 3.0, "order 2": 9.0, "load": 12.0}
 """Largest error of every family, in units of eps * condition * scale.
 
-Over 150 random loops (condition up to 210) and 100 random structures of two and three loops (up to
-200) the worst were 0.67, 1.2, 3.6 and 5.2; rarer mechanisms may be about twice as bad.
+Over 150 random loops (condition up to 210) and 140 random structures of two and three loops (up to
+200) the worst were 1.07, 1.2, 3.6 and 5.2; rarer mechanisms may be about twice as bad.
 """
 
 _RATES = {"": 0, "_dot": 1, "_ddot": 2}

@@ -16,7 +16,7 @@ from properties.structures import structure
 _TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 LOOPS = [f"loop {seed}" for seed in range(40 * _TIMES)]
-STRUCTURES = [f"structure {seed}" for seed in range(24 * _TIMES)]
+STRUCTURES = [f"structure {seed}" for seed in range(16 * _TIMES)]
 CASES = [*LOOPS, *STRUCTURES]
 
 
