@@ -86,10 +86,12 @@ def law(rng: random.Random, driven: str, size: float, rows: int) -> dict[str, st
     turning = driven.rpartition(".")[2].startswith("theta")
     reach, scale = ("4 deg", 1.0) if turning else (number(0.04 * size), size)
     unit = " rad/s" if turning else ""
+    rate, acceleration = rng.uniform(0.3, 1), rng.uniform(-1, 1)
     return {
         "from": "-" + reach,
         "to": reach,
         "count": str(rows),
-        "rate": number(scale * rng.uniform(0.3, 1)) + unit,
-        "acceleration": number(scale * rng.uniform(-1, 1)) + (unit and " rad/s^2"),
+        "rate": number(scale * rate) + unit,
+        "acceleration": number(scale * acceleration) + (unit and " rad/s^2"),
+        "jerk": number(scale * rate * acceleration) + (unit and " rad/s^3"),
     }

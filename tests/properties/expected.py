@@ -17,7 +17,7 @@ def expected(mechanism: Mechanism, solution: Solution, loads: Reactions) -> dict
     found: dict[str, Any] = {}
     for name, joint in mechanism.joints.items():
         for coordinate in joint.coordinates:
-            for suffix in ("", "_dot", "_ddot"):
+            for suffix in ("", "_dot", "_ddot", "_dddot"):
                 found[f"{name}.{coordinate}{suffix}"] = solution[f"{name}.{coordinate}{suffix}"]
         if joint.axes and joint.type != "U":
             found[f"{name}.axis"] = solution.joint_axis(name)
@@ -31,8 +31,8 @@ def expected(mechanism: Mechanism, solution: Solution, loads: Reactions) -> dict
         found[f"{name}.force"] = loads.force[name]
         found[f"{name}.moment_about_origin"] = loads.moment_about_origin[name]
     for name in mechanism.points:
-        words = ("position", "velocity", "acceleration")
-        found |= {f"{name}.{w}": v for w, v in zip(words, solution.point(name), strict=False)}
+        words = ("position", "velocity", "acceleration", "jerk")
+        found |= {f"{name}.{w}": v for w, v in zip(words, solution.point(name), strict=True)}
     for name in mechanism.links:
         found |= {f"{name}.omega": solution.omega(name), f"{name}.alpha": solution.alpha(name)}
     found |= {f"{name}.effort": effort for name, effort in loads.effort.items()}
