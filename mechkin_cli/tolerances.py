@@ -45,6 +45,10 @@ general loops measured at least 1 % of the starts close, so that all miss with c
 SEARCH_MOST_STARTS: Final = 16384
 """A search that still finds new modes here says so instead of going on."""
 
+SEARCH_MOST_MODES: Final = 1024
+"""More different end points than this are no list of modes but a motion that is left with the
+inputs held; platforms have 40 modes."""
+
 SEARCH_NEW_MODE_CHANCE: Final = 1e-3
 """Good-Turing estimate (modes met once, at least 1 / starts that closed) below which the search
 ends: more than a thousand closings."""
@@ -205,7 +209,10 @@ MOBILITY_TIGHT: Final = 1e-14
 MOBILITY_ITERATIONS: Final = 80
 """Newton halves the distance to a configuration that is singular; 80 halvings leave nothing."""
 
-MOBILITY_STARTS: Final = 60
+MOBILITY_STUCK: Final = 8
+"""Steps without a tenth of progress after which Newton gives up."""
+
+MOBILITY_STARTS: Final = 40
 """Random poses tried where the drawing itself leads to no assembly."""
 
 MOBILITY_STEP: Final = 0.1

@@ -100,14 +100,25 @@ def nothing_found(
         "not-assembled",
         "error",
         f"{problem.mechanism.name} cannot be assembled {place}",
-        measured=f"none of {found.starts} random starts closed the loops, "
-        f"the best to {found.closest:.2g} of the size",
+        measured=_missed(found),
         limit=f"{tolerances.RESIDUAL_ACCEPT:g}",
         hint=hint,
         numbers=(
             Number("starts", found.starts),
             Number("residual", found.closest, limit=tolerances.RESIDUAL_ACCEPT),
         ),
+    )
+
+
+def _missed(found: Found) -> str:
+    if found.free:
+        return (
+            f"{found.free} of {found.starts} random starts closed the loops, all where they still "
+            "move with the inputs held, or in a singular position"
+        )
+    return (
+        f"none of {found.starts} random starts closed the loops, "
+        f"the best to {found.closest:.2g} of the size"
     )
 
 

@@ -193,6 +193,8 @@ def _result(
     letter: str,
     notes: list[Diagnostic],
 ) -> Modes:
+    if found.free and found.number:
+        notes = [*notes, _free_note(found)]
     if found.stopped:
         notes = [*notes, _stopped_note(found)]
     inputs = {
@@ -239,6 +241,16 @@ def _in_file_units(problem: Problem, name: str, value: float) -> float:
 
 def _dimension(name: str) -> Dimension:
     return ANGLE if name.partition(".")[2] in ANGLES else LENGTH
+
+
+def _free_note(found: Found) -> Diagnostic:
+    return Diagnostic(
+        "free-assembly",
+        "note",
+        "some starts ended where the loops still move with the inputs held, or in a singular "
+        "position; these are not listed",
+        measured=f"{found.free} of {found.starts} starts",
+    )
 
 
 def _stopped_note(found: Found) -> Diagnostic:

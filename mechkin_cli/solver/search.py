@@ -37,7 +37,9 @@ class Found(NamedTuple):
 
     `closed` starts of `starts` ended on an assembly; `chance` estimates that one more start finds
     a new one; `closest` is the least closing residual of any start; `stopped` tells that the search
-    ended at its most starts while that chance was still high.
+    ended at its most starts while that chance was still high. `free` starts ended where the loops
+    still move with the inputs held, or in a singular place: these are no isolated assemblies and
+    are left out.
     """
 
     states: Floats
@@ -48,6 +50,7 @@ class Found(NamedTuple):
     chance: float
     closest: float
     stopped: bool
+    free: int
 
     @property
     def number(self) -> int:
@@ -65,6 +68,7 @@ class _Clusters:
         self.met = np.empty(0, dtype=np.int64)
         self.tried = 0
         self.closed = 0
+        self.free = 0
         self.closest = float("inf")
 
     def add(self, states: Floats) -> None:
@@ -93,6 +97,12 @@ class _Clusters:
             return self.tried >= tolerances.SEARCH_HOPELESS_STARTS
         return self.chance < tolerances.SEARCH_NEW_MODE_CHANCE
 
+    @property
+    def exhausted(self) -> bool:
+        """Whether the search gives up."""
+        crowded = self.met.size > tolerances.SEARCH_MOST_MODES
+        return crowded or self.tried >= tolerances.SEARCH_MOST_STARTS
+
 
 def same_poses(
     known: Floats, keys: Floats, limit: float = tolerances.SAME_MODE
@@ -116,7 +126,7 @@ def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Fo
     generator = RandomStarts()
     partial: list[Floats] = [np.zeros((plan.states, 1))]
     partial[0][_quaternion_scalars(layout), 0] = 1.0
-    starts = closed = 0
+    starts = closed = free = 0
     chance = closest = 0.0
     stopped = False
     for number in range(len(layout.graph.blocks)):
@@ -126,12 +136,12 @@ def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Fo
             continued.extend(state[:, None] for state in clusters.states.T)
             starts, closed = starts + clusters.tried, closed + clusters.closed
             chance = max(chance, clusters.chance if clusters.closed else 0.0)
-            closest = max(closest, clusters.closest)
+            closest, free = max(closest, clusters.closest), free + clusters.free
             stopped = stopped or not clusters.settled
         partial = continued
     every = np.concatenate([np.empty((plan.states, 0)), *partial], axis=1)
     states, residual, condition = _closed(layout, plan, inputs, every)
-    return Found(states, residual, condition, starts, closed, chance, closest, stopped)
+    return Found(states, residual, condition, starts, closed, chance, closest, stopped, free)
 
 
 def _search_block(
@@ -147,7 +157,7 @@ def _search_block(
     size = tolerances.SEARCH_STARTS
     values = np.repeat(inputs[:, None], size, axis=1)
     threads = _threads(layout, number)
-    while clusters.tried < tolerances.SEARCH_MOST_STARTS and not clusters.settled:
+    while not (clusters.settled or clusters.exhausted):
         states = np.repeat(base, size, axis=1)
         _randomise(layout, number, states, generator, turns)
         residual, flags = np.empty(size), np.empty(size, dtype=np.uint8)
@@ -155,9 +165,24 @@ def _search_block(
         plan.search(number, values, states, residual, flags, *limits, 0)
         clusters.closest = min(clusters.closest, float(np.min(residual)))
         within = np.all(np.abs(states[threads]) <= _most_turn(turns), axis=0)
-        clusters.add(states[:, (flags == 0) & within])
+        states, free = _isolated(layout, plan, values, states[:, (flags == 0) & within])
+        clusters.add(states)
+        clusters.free += free
         clusters.tried += size
     return clusters
+
+
+def _isolated(layout: Layout, plan: Plan, values: Floats, states: Floats) -> tuple[Floats, int]:
+    """The isolated assemblies among end points of the search, and how many others there were; with
+    several blocks only the last knows."""
+    count = states.shape[1]
+    if count == 0 or len(layout.graph.blocks) > 1:
+        return states, 0
+    batch = run(plan, values[:, :count], states, demand=Demand.CONDITION, iterations=20)
+    assert batch.condition is not None
+    regular = batch.condition < tolerances.SEARCH_CONDITION
+    free = int(np.count_nonzero(batch.good & ~regular))
+    return batch.states[:, batch.good & regular], free
 
 
 def _threads(layout: Layout, number: int) -> list[int]:

@@ -190,3 +190,41 @@ def test_a_file_without_a_command_gets_the_cure(mechkin, write) -> None:
     run = mechkin(write("crank.yaml", files.CRANK))
     assert run.code == 2
     assert run.err.endswith("To run a mechanism file: mechkin analyze crank.yaml\n")
+
+
+def test_modes_json(mechkin) -> None:
+    run = mechkin("modes", RCSR, "--at", "170", "--json")
+    assert (run.code, run.err) == (0, "")
+    assert [set(mode) for mode in run.json["modes"]] == [
+        {"name", "coordinates", "residual", "condition"}
+    ] * 2
+    assert run.json["modes"][1]["coordinates"]["O1.theta"] == 170
+    assert run.json["assembly"] == "B"
+    assert run.json["bound"] == 4
+    assert not run.json["complete"]
+
+
+def test_modes_shown(mechkin) -> None:
+    run = mechkin("modes", RCSR)
+    assert run.out.splitlines()[0].split()[:3] == ["mode", "O1.theta", "O2.theta"]
+    assert "2 modes found, no loop of these pairs has more than 4" in run.err
+    assert "mode B is the one that the file takes" in run.err
+
+
+def test_no_mode_is_exit_code_4(mechkin) -> None:
+    run = mechkin("modes", RCSR, "--at", "O1.theta=0")
+    assert (run.code, run.out) == (4, "")
+    assert "cannot be assembled there: none of 2048 random starts closed the loops" in run.err
+
+
+def test_a_place_that_is_no_input_is_a_usage_error(mechkin) -> None:
+    assert mechkin("modes", RCSR, "--at", "O2.theta=0").code == 2
+    assert mechkin("modes", RCSR, "--at", "O1.theta=").code == 2
+
+
+def test_mobility(mechkin) -> None:
+    run = mechkin("mobility", RCSR.with_name("bennett.yaml"))
+    assert run.code == 0
+    assert run.out.startswith("Bennett: one freedom; Kutzbach's count is -2")
+    record = mechkin("mobility", RCSR.with_name("bennett.yaml"), "--json").json
+    assert (record["count"], record["mobility"], record["redundant"][0]["number"]) == (-2, 1, 3)

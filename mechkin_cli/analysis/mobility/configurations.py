@@ -129,9 +129,11 @@ class Configuration:
 
     def closed(self) -> Configuration:
         """The configuration that Newton's method reaches from here."""
-        here = self
+        here, least, stuck = self, np.inf, 0
         for _ in range(tolerances.MOBILITY_ITERATIONS):
-            if here.miss < tolerances.MOBILITY_TIGHT:
+            stuck = 0 if here.miss < 0.9 * least else stuck + 1
+            least = min(least, here.miss)
+            if here.miss < tolerances.MOBILITY_TIGHT or stuck > tolerances.MOBILITY_STUCK:
                 break
             misses = np.array([row.miss for _, row in here.rows])
             step = -np.linalg.lstsq(here.gradient, misses, rcond=1e-11)[0]
