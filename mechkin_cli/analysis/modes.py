@@ -21,10 +21,11 @@ from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.rows import input_numbers, input_text, kernel_inputs
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.follow import TrackEnd, follow
 from mechkin_cli.solver.graph import ANGLES, SolverGraph
 from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.search import Found, assemblies, pose_keys, same_poses, with_assemblies
+from mechkin_cli.solver.search import Found, assemblies, with_assemblies
 from mechkin_cli.units import ANGLE, LENGTH, Dimension
 
 if TYPE_CHECKING:

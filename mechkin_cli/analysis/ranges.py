@@ -20,12 +20,12 @@ from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.circuit import Branch, End, Walker
+from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.follow import follow
 from mechkin_cli.solver.graph import ANGLES, SolverGraph
 from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.search import pose_keys, same_poses
 from mechkin_cli.units import ANGLE, LENGTH
 
 if TYPE_CHECKING:

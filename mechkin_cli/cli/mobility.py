@@ -69,7 +69,7 @@ def _lines(found: Mobility, quiet: bool) -> list[str]:
     truth = "unclear" if found.mobility is None else str(found.mobility)
     if found.first_order != found.mobility:
         truth += f" ({found.first_order} to first order at the first configuration)"
-    places = f"by rank at {found.configurations} configurations"
+    places = f"by rank at {found.configurations} configuration{'s' * (found.configurations > 1)}"
     rows = [
         ("count", f"{found.count} (Kutzbach)"),
         ("mobility", f"{truth}, {places}" if found.configurations else truth),

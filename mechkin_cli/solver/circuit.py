@@ -17,10 +17,10 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.solver.branch_limit import find_limit
 from mechkin_cli.solver.branch_point import BranchPoint
+from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import TrackEnd, follow
 from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.search import pose_keys, same_poses
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

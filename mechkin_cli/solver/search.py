@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.kernel import functions
 from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.solver.batch import run
+from mechkin_cli.solver.clusters import Clusters, pose_keys, same_poses
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.random_starts import RandomStarts
@@ -58,62 +58,6 @@ class Found(NamedTuple):
         return int(self.states.shape[1])
 
 
-class _Clusters:
-    """Representatives found so far and how often each was met."""
-
-    def __init__(self, layout: Layout) -> None:
-        self.layout = layout
-        self.states = np.empty((layout.states, 0))
-        self.keys = pose_keys(layout, self.states)
-        self.met = np.empty(0, dtype=np.int64)
-        self.tried = 0
-        self.closed = 0
-        self.free = 0
-        self.closest = float("inf")
-
-    def add(self, states: Floats) -> None:
-        """Sorts assemblies (columns) into the clusters."""
-        self.closed += states.shape[1]
-        keys = pose_keys(self.layout, states)
-        while keys.shape[1]:
-            known = same_poses(self.keys, keys)
-            self.met += np.count_nonzero(known, axis=1)
-            left = np.flatnonzero(~known.any(axis=0))
-            states, keys = states[:, left], keys[:, left]
-            # the rest may be met by one of themselves: take in the first, look again
-            self.states = np.concatenate([self.states, states[:, :1]], axis=1)
-            self.keys = np.concatenate([self.keys, keys[:, :1]], axis=1)
-            self.met = np.append(self.met, np.zeros(states[:, :1].shape[1], dtype=np.int64))
-
-    @property
-    def chance(self) -> float:
-        """Estimated chance that one more closing start finds a new assembly."""
-        return max(int(np.count_nonzero(self.met == 1)), 1) / self.closed if self.closed else 1.0
-
-    @property
-    def settled(self) -> bool:
-        """Whether more starts are not worth it."""
-        if not self.closed:
-            return self.tried >= tolerances.SEARCH_HOPELESS_STARTS
-        return self.chance < tolerances.SEARCH_NEW_MODE_CHANCE
-
-    @property
-    def exhausted(self) -> bool:
-        """Whether the search gives up."""
-        crowded = self.met.size > tolerances.SEARCH_MOST_MODES
-        return crowded or self.tried >= tolerances.SEARCH_MOST_STARTS
-
-
-def same_poses(
-    known: Floats, keys: Floats, limit: float = tolerances.SAME_MODE
-) -> NDArray[np.bool_]:
-    """Which columns of `keys` are the poses of which columns of `known`: (known, keys)."""
-    found = np.ones((known.shape[1], keys.shape[1]), dtype=bool)
-    for one, other in zip(known, keys, strict=True):
-        found &= np.abs(one[:, None] - other[None, :]) < limit
-    return found
-
-
 def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Found:
     """The assemblies at one set of inputs.
 
@@ -152,8 +96,8 @@ def _search_block(
     base: Floats,
     generator: RandomStarts,
     turns: int,
-) -> _Clusters:
-    clusters = _Clusters(layout)
+) -> Clusters:
+    clusters = Clusters(layout)
     size = tolerances.SEARCH_STARTS
     values = np.repeat(inputs[:, None], size, axis=1)
     threads = _threads(layout, number)
@@ -217,24 +161,6 @@ def _randomise(
 
 def _quaternion_scalars(layout: Layout) -> list[int]:
     return [carrier.state for carrier in layout.carriers if carrier.part.letter == "S"]
-
-
-def pose_keys(layout: Layout, states: Floats) -> Floats:
-    """What tells assemblies apart: cosines and sines of turns, slides, products of quaternions."""
-    keys: list[Floats] = []
-    for carrier in layout.carriers:
-        state = carrier.state
-        if carrier.part.letter == "S":
-            q = states[state : state + 4]
-            keys.extend(q[i] * q[j] for i in range(4) for j in range(i, 4))
-            continue
-        for freedom, slide in enumerate(tree_types()[carrier.part.letter].slides):
-            value = np.ascontiguousarray(states[state + freedom])
-            if slide or carrier.part.letter == "H":
-                keys.append(value)
-            else:
-                keys.extend((functions.cos(value), functions.sin(value)))
-    return np.stack(keys) if keys else np.zeros((0, states.shape[1]))
 
 
 def with_assemblies(

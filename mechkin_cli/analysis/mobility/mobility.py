@@ -24,6 +24,7 @@ from mechkin_cli.analysis.mobility.configurations import (
 )
 from mechkin_cli.analysis.mobility.first_row import first_row
 from mechkin_cli.analysis.mobility.idle import IdleFreedom, idle_freedoms
+from mechkin_cli.analysis.mobility.inputs import input_notes
 from mechkin_cli.analysis.mobility.redundancy import Redundancy, redundancies
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.diagnostics import Diagnostic
@@ -138,7 +139,7 @@ def find_mobility(problem: Problem) -> Mobility:
         idle=idle,
         redundant=redundancies(configuration, rank.stresses, {name for name, _ in driven}),
         fixed=_fixed(reached, ranks, finite),
-        diagnostics=tuple(_input_notes(problem, configuration, motions, len(idle))),
+        diagnostics=tuple(input_notes(problem, configuration, motions, len(idle))),
     )
 
 
@@ -192,50 +193,6 @@ def _fixed(reached: list[Configuration], ranks: list[Rank], finite: bool) -> tup
             if largest[freedom] < tolerances.RANK_ZERO:
                 names.append(f"{joint.name}.{name}")
     return tuple(names)
-
-
-def _input_notes(
-    problem: Problem, configuration: Configuration, motions: Floats, idle: int
-) -> list[Diagnostic]:
-    """Inputs that are locked, depend on each other, or leave freedoms undriven."""
-    driven, joints = problem.motion.driven, problem.mechanism.joints
-    if not driven:
-        return []
-    rates = np.array(
-        [
-            configuration.rates(joints[name], motions)[joints[name].type.freedom_of[coordinate]]
-            for name, coordinate in driven
-        ]
-    ).reshape(len(driven), motions.shape[1])
-    notes = []
-    names = [f"{name}.{coordinate}" for name, coordinate in driven]
-    locked = [n for n, row in zip(names, rates, strict=True) if np.abs(row).max(initial=0) < 1e-8]
-    for name in locked:
-        message = f"the input {name} is locked: no motion changes it"
-        notes.append(Diagnostic("input-locked", "error", message, hint="drive another coordinate"))
-    rank = int(np.linalg.matrix_rank(rates, tol=tolerances.RANK_ZERO)) if rates.size else 0
-    if rank < len(driven) - len(locked):
-        notes.append(
-            Diagnostic(
-                "inputs-dependent",
-                "error",
-                f"the inputs {', '.join(names)} are not independent",
-                measured=f"{len(driven)} inputs drive {rank} freedoms",
-                hint="drive fewer coordinates",
-            )
-        )
-    left = motions.shape[1] - rank - idle
-    if left > 0:
-        notes.append(
-            Diagnostic(
-                "undriven-freedom",
-                "warning",
-                f"{left} freedoms are not driven" if left > 1 else "one freedom is not driven",
-                measured=f"{motions.shape[1]} freedoms, {idle} of them idle, {rank} driven",
-                hint="add inputs under motion",
-            )
-        )
-    return notes
 
 
 def _unknown(problem: Problem, diagnostics: list[Diagnostic]) -> Mobility:

@@ -1,0 +1,65 @@
+"""What the declared inputs do to the freedoms: locked, dependent, or too few."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.mobility.configurations import Configuration
+from mechkin_cli.analysis.problem import Problem
+from mechkin_cli.diagnostics import Diagnostic
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+
+def input_notes(
+    problem: Problem, configuration: Configuration, motions: Floats, idle: int
+) -> list[Diagnostic]:
+    """Inputs that are locked, depend on each other, or leave freedoms undriven."""
+    driven, joints = problem.motion.driven, problem.mechanism.joints
+    if not driven:
+        return []
+    rates = np.array(
+        [
+            configuration.rates(joints[name], motions)[joints[name].type.freedom_of[coordinate]]
+            for name, coordinate in driven
+        ]
+    ).reshape(len(driven), motions.shape[1])
+    notes = []
+    names = [f"{name}.{coordinate}" for name, coordinate in driven]
+    locked = [n for n, row in zip(names, rates, strict=True) if _is_still(row)]
+    for name in locked:
+        message = f"the input {name} is locked: no motion changes it"
+        notes.append(Diagnostic("input-locked", "error", message, hint="drive another coordinate"))
+    rank = int(np.linalg.matrix_rank(rates, tol=tolerances.RANK_ZERO)) if rates.size else 0
+    if rank < len(driven) - len(locked):
+        notes.append(
+            Diagnostic(
+                "inputs-dependent",
+                "error",
+                f"the inputs {', '.join(names)} are not independent",
+                measured=f"{len(driven)} inputs drive {rank} freedoms",
+                hint="drive fewer coordinates",
+            )
+        )
+    left = motions.shape[1] - rank - idle
+    if left > 0:
+        notes.append(
+            Diagnostic(
+                "undriven-freedom",
+                "warning",
+                f"{left} freedoms are not driven" if left > 1 else "one freedom is not driven",
+                measured=f"{motions.shape[1]} freedoms, {idle} of them idle, {rank} driven",
+                hint="add inputs under motion",
+            )
+        )
+    return notes
+
+
+def _is_still(rates: Floats) -> bool:
+    return float(np.abs(rates).max(initial=0.0)) < tolerances.RANK_ZERO
