@@ -46,9 +46,3 @@ def test_open_chains_have_a_power_balance_and_no_condition():
     result = arm().analyze().result
     assert (result.power_error <= 1e-15).all()
     assert np.isnan(result.condition).all()
-
-
-@pytest.mark.parametrize("load", ["-5*A.theta_dot", "3*time"])
-def test_a_load_that_varies_is_refused_by_name(load):
-    with pytest.raises(mk.InvalidFile, match=r"arm.yaml:8:74: error: loads that vary"):
-        arm(f'"{load}"')

@@ -10,6 +10,9 @@ gone). The order does not matter. The bounds hold where the assemblies are isola
   eight intersections lie on the circle at infinity.
 - no S (Raghavan, Roth 1993; Lee, Liang 1988 for 7R): 3R 3P 2, 4R 2P 8, 5R P 16, 6R 16.
 
+- a leg and one other freedom: circle or line and sphere, 2. A body on six legs: 40 (Ronga, Vust
+  1995).
+
 Blocks that are solved one after the other multiply.
 """
 
@@ -17,7 +20,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from mechkin_cli.mechanism.joint_types import JointType, tree_types
+from mechkin_cli.mechanism.joint_types import FREE, JointType, tree_types
 from mechkin_cli.solver.graph import Block, SolverGraph
 
 WITH_SPHERE = {0: 1, 1: 2, 2: 4, 3: 4}
@@ -25,6 +28,10 @@ WITH_SPHERE = {0: 1, 1: 2, 2: 4, 3: 4}
 
 WITHOUT_SPHERE = {3: 2, 4: 8, 5: 16, 6: 16}
 """Bound by the number of turns."""
+
+
+ON_SIX_LEGS = 40
+"""Bound of a body that six legs hold."""
 
 
 def most_assemblies(graph: SolverGraph) -> int | None:
@@ -39,6 +46,8 @@ def most_assemblies(graph: SolverGraph) -> int | None:
 
 
 def _of_block(graph: SolverGraph, block: Block) -> int | None:
+    if all(graph.closings[c].leg for c in block.closings):
+        return _of_legs(graph, block)
     if len(block.closings) != 1 or block.equations != len(block.unknowns):
         return None
     letters = list(_letters(graph.closings[block.closings[0]].joint.type))
@@ -49,6 +58,16 @@ def _of_block(graph: SolverGraph, block: Block) -> int | None:
     if len(letters) != 6 or turns + slides + 3 * spheres != 6:
         return None
     return (WITHOUT_SPHERE, WITH_SPHERE)[spheres].get(turns) if spheres <= 1 else None
+
+
+def _of_legs(graph: SolverGraph, block: Block) -> int | None:
+    joints = [graph.edges[number].joint for number, _ in block.unknowns]
+    if len(joints) == len(block.closings) == 1 and joints[0].letter in "RP":
+        return 2
+    held = {joint.name for joint in joints}
+    if len(block.closings) == 6 and len(held) == 1 and joints[0].letter == FREE:
+        return ON_SIX_LEGS
+    return None
 
 
 def _letters(kind: JointType) -> str:

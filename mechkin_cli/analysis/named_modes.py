@@ -1,7 +1,7 @@
 """The assembly modes at the first row with their letters.
 
-Letters follow the order of the wrapped coordinates, in joint order. An assembled drawing's own
-branch is among the modes even where the random starts miss it.
+Letters follow the order of the wrapped coordinates, in joint order, then of the joints' places. An
+assembled drawing's own branch is among the modes even where the random starts miss it.
 """
 
 from __future__ import annotations
@@ -59,14 +59,19 @@ def name_modes(
         if home.end == TrackEnd.FINISHED:
             found = with_assemblies(layout, plan, inputs, found, home.state[:, None])
     coordinates, points = probe.read(inputs, found.states)
-    return NamedModes(
-        found, coordinates, points, letters(problem.mechanism, coordinates, found.number)
+    return NamedModes(found, coordinates, points, letters(problem.mechanism, coordinates, points))
+
+
+def letters(mechanism: Mechanism, coordinates: dict[str, Floats], points: Floats) -> dict[int, str]:
+    """The name of each assembly, by its number, in the order of the names.
+
+    Assemblies that no coordinate tells apart, as of a body on legs, follow their joint points
+    (points, 3, assemblies).
+    """
+    order = sorted(
+        range(points.shape[2]),
+        key=lambda i: (_key(mechanism, coordinates, i), _places(mechanism, points[:, :, i])),
     )
-
-
-def letters(mechanism: Mechanism, coordinates: dict[str, Floats], count: int) -> dict[int, str]:
-    """The name of each of `count` assemblies, by its number, in the order of the names."""
-    order = sorted(range(count), key=lambda i: _key(mechanism, coordinates, i))
     return {i: mode_name(rank) for rank, i in enumerate(order)}
 
 
@@ -81,6 +86,11 @@ def _key(mechanism: Mechanism, coordinates: dict[str, Floats], number: int) -> t
         part = round((wrapped(value) if angle else value) / QUANTUM)
         key.append(half_turn if angle and part == -half_turn else part)
     return tuple(key)
+
+
+def _places(mechanism: Mechanism, points: Floats) -> tuple[int, ...]:
+    parts = points.reshape(-1) / (mechanism.box_diagonal() * QUANTUM)
+    return tuple(round(float(part)) for part in parts)
 
 
 def mode_name(rank: int) -> str:

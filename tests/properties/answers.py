@@ -29,7 +29,8 @@ LIMITS = {"order 0": 2.5, "order 1": 3.0, "order 2": 9.0, "order 3": 18.0, "load
 """Largest error of every family, in units of eps * condition * scale.
 
 Over 150 random loops (condition up to 210) and 140 random structures of two and three loops (up to
-200) the worst were 1.07, 1.2, 3.6 and 5.2, of jerks 7.3 over 56 of them; rarer mechanisms may be about twice as bad.
+200) the worst were 1.07, 1.2, 3.6 and 5.2, of jerks 7.3 over 56 of them; rarer
+mechanisms may be about twice as bad.
 """
 
 _RATES = {"": 0, "_dot": 1, "_ddot": 2, "_dddot": 3}
