@@ -6,22 +6,19 @@ from collections.abc import Mapping
 from typing import Any
 
 from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.building.per_link import Frames, directions_of, place_of, points_of
 from mechkin_cli.expressions.errors import nearest
 from mechkin_cli.mechanism.frames import (
     GROUND,
-    Frame,
     frame_about,
     perpendicular,
     turned_shortest,
     upright,
 )
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Part
-from mechkin_cli.mechanism.vectors import Vector, cross, norm, scale, unit
+from mechkin_cli.mechanism.vectors import Vector, cross, norm, scale
 from mechkin_cli.tolerances import PARALLEL
 from mechkin_cli.units import LENGTH
-
-Frames = tuple[Frame, Frame, tuple[Part, ...]]
-"""On the first link, on the second link, and the joint's parts."""
 
 
 def build_joints(
@@ -66,15 +63,11 @@ def lead_of(fields: Fields, path: Path, text: str) -> float:
     return lead
 
 
-def _points(fields: Fields, path: Path, section: Any) -> tuple[Vector, Vector]:
-    return _per_link(fields, (*path, "point"), section.point, section.links, False)
-
-
 def _axis_frames(fields: Fields, path: Path, section: Any) -> Frames:
     """R, P, C, H: z along the axis on either link."""
-    points = _points(fields, path, section)
+    points = points_of(fields, path, section)
     errors = fields.error_count
-    axes = _per_link(fields, (*path, "axis"), section.axis, section.links, True)
+    axes = directions_of(fields, path, section, "axis")
     x_first, x_second = _zero_directions(fields, path, section, axes, errors)
     on_first = frame_about(axes[0], x_first, points[0])
     on_second = frame_about(axes[1], x_second, points[1])
@@ -83,15 +76,15 @@ def _axis_frames(fields: Fields, path: Path, section: Any) -> Frames:
 
 def _spheric_frames(fields: Fields, path: Path, section: Any) -> Frames:
     """S: ground axes at the sphere's centre."""
-    first, second = _points(fields, path, section)
+    first, second = points_of(fields, path, section)
     on_first, on_second = upright(first), upright(second)
     return on_first, on_second, (Part("S", on_first, on_second),)
 
 
 def _plane_frames(fields: Fields, path: Path, section: Any) -> Frames:
     """Sp: turns about the sphere's centre, then slides in the plane of the second link."""
-    first, second = _points(fields, path, section)
-    normal = _per_link(fields, (*path, "normal"), section.normal, section.links, True)[1]
+    first, second = points_of(fields, path, section)
+    normal = directions_of(fields, path, section, "normal")[1]
     x = perpendicular(normal)
     on_second = frame_about(normal, x, second)
     slides = [frame_about(axis, normal, second) for axis in (on_second.x, on_second.y)]
@@ -102,53 +95,38 @@ def _plane_frames(fields: Fields, path: Path, section: Any) -> Frames:
 def _groove_frames(fields: Fields, path: Path, section: Any) -> Frames:
     """Sg: turns about the sphere's centre; where s grows the second link runs back along its
     groove."""
-    first, second = _points(fields, path, section)
-    groove = _per_link(fields, (*path, "groove"), section.groove, section.links, True)[1]
+    first, second = points_of(fields, path, section)
+    groove = directions_of(fields, path, section, "groove")[1]
     on_second = frame_about(groove, perpendicular(groove), second)
     back = frame_about(scale(-1.0, groove), on_second.x, second)
     turn = Part("S", upright(first), upright(second))
     return upright(first), on_second, (turn, Part("P", back, back))
 
 
-def _universal_frames(fields: Fields, path: Path, section: Any) -> Frames:
-    """U: about `axis` of the first link, then about `axis2` of the second; x square to both."""
-    first, second = _points(fields, path, section)
-    errors = fields.error_count
-    one = fields.direction((*path, "axis"), section.axis)
-    two = fields.direction((*path, "axis2"), section.axis2)
-    common = cross(one, two)
-    if norm(common) <= PARALLEL:
-        if fields.error_count == errors:
-            fields.error(
-                "parallel-axes",
-                (*path, "axis2"),
-                "the two axes of a universal joint are parallel",
-                "turn one of them, or use type R",
-            )
-        common = perpendicular(one)
-    x = unit(common)
-    on_first, on_second = frame_about(one, x, first), frame_about(two, x, second)
-    between = frame_about(one, x, second)
-    return on_first, on_second, (Part("R", on_first, between), Part("R", on_second, on_second))
-
-
 def _planar_frames(fields: Fields, path: Path, section: Any) -> Frames:
     """E: slides along x and y of the first link, then turns about the normal."""
-    points = _points(fields, path, section)
+    points = points_of(fields, path, section)
     errors = fields.error_count
-    normals = _per_link(fields, (*path, "normal"), section.normal, section.links, True)
-    x = _per_link(fields, (*path, "x"), section.x, section.links, True)
+    normals = directions_of(fields, path, section, "normal")
+    x = directions_of(fields, path, section, "x")
     directions: list[Vector] = []
-    for i, link in enumerate(section.links):
+    for i in range(2):
         if i == 1 and (normals[1], x[1]) == (normals[0], x[0]):
             directions.append(directions[0])
             continue
-        place: Path = (*path, "x", link) if isinstance(section.x, Mapping) else (*path, "x")
+        place = place_of(path, section, "x", i)
         directions.append(_square(fields, place, normals[i], x[i], "x", "normal", errors))
     frames = [frame_about(n, d, p) for n, d, p in zip(normals, directions, points, strict=True)]
     on_first, on_second = frames
     slides = [frame_about(axis, on_first.z, points[0]) for axis in (on_first.x, on_first.y)]
     return on_first, on_second, (*(Part("P", f, f) for f in slides), Part("R", on_first, on_second))
+
+
+def _turning_frames(fields: Fields, path: Path, section: Any) -> Frames:
+    """U, Ss, Sc, Cp: two turns."""
+    from mechkin_cli.building.two_turns import FRAMES
+
+    return FRAMES[section.type](fields, path, section)
 
 
 def _weld_frames(fields: Fields, path: Path, section: Any) -> Frames:
@@ -164,24 +142,13 @@ _FRAMES = {
     "S": _spheric_frames,
     "Sp": _plane_frames,
     "Sg": _groove_frames,
-    "U": _universal_frames,
+    "U": _turning_frames,
     "E": _planar_frames,
+    "Ss": _turning_frames,
+    "Sc": _turning_frames,
+    "Cp": _turning_frames,
     "W": _weld_frames,
 }
-
-
-def _per_link(
-    fields: Fields, path: Path, value: Any, links: tuple[str, str], direction: bool
-) -> tuple[Vector, Vector]:
-    """A vector for either link; one vector stands for both."""
-
-    def read(where: Path, texts: Any) -> Vector:
-        return fields.direction(where, texts) if direction else fields.vector(where, texts, LENGTH)
-
-    if isinstance(value, Mapping):
-        return read((*path, links[0]), value[links[0]]), read((*path, links[1]), value[links[1]])
-    both = read(path, value)
-    return both, both
 
 
 def _zero_directions(
@@ -194,7 +161,7 @@ def _zero_directions(
     if section.zero is None:
         x = perpendicular(axes[0])
         return x, turned_shortest(axes[0], axes[1], x)
-    given = _per_link(fields, (*path, "zero"), section.zero, section.links, True)
+    given = directions_of(fields, path, section, "zero")
     first, second = (
         _square(fields, (*path, "zero", link), axis, vector, "this direction", "axis", errors)
         for link, axis, vector in zip(section.links, axes, given, strict=True)

@@ -1,7 +1,8 @@
 """The joint types as the kernel's joint table knows them, by letter.
 
-A pair is a chain of elementary displacements from its first link to its second (`parts`): U is R
-R, E is P P R, Sp is S P P, Sg is S P. Freedoms count along that chain.
+A pair is a chain of elementary displacements from its first link to its second (`parts`): U and Ss
+are R R, E is P P R, Sp is S P P, Sg is S P, Sc is P R R, Cp is R R P P. Freedoms count along that
+chain.
 """
 
 from __future__ import annotations

@@ -53,7 +53,8 @@ class Joint(NamedTuple):
     """A pair between two links.
 
     `on_first` and `on_second` are the pair's frames as drawn on either link: z the axis (normal,
-    groove); they coincide where all coordinates are zero (U: but for the axes). `parts` is the
+    groove); they coincide where all coordinates are zero. U, Ss, Sc and Cp turn about z of the
+    first, then about z of the second, and x, square to both, is what coincides. `parts` is the
     same as a chain of elementary displacements. `lead` (H) is the slide per turn in m.
     """
 
@@ -78,16 +79,26 @@ class Joint(NamedTuple):
 
     @property
     def point(self) -> Attached:
-        """The joint's point: a sphere's centre rides on the first link, other points on the
-        second."""
-        if self.letter in ("Sp", "Sg"):
+        """The joint's point: what runs on a plane or in a groove of the second link rides on the
+        first, other points on the second."""
+        if self.letter in ("Sp", "Sg", "Cp"):
             return Attached(self.first, self.on_first.o)
         return Attached(self.second, self.on_second.o)
 
     @property
+    def axis(self) -> Attached:
+        """The axis (normal, groove) of a joint that has one; a cylinder's rides on the first
+        link."""
+        if self.letter in ("Sc", "Cp"):
+            return Attached(self.first, self.parts[0].before.z)
+        return Attached(self.second, self.on_second.z)
+
+    @property
     def parameter(self) -> float:
-        """U: cosine of the angle between its axes."""
-        return dot(self.on_first.z, self.on_second.z) if self.letter == "U" else 0.0
+        """Cosine of the angle between the axes of U, between axis and pin of Sc."""
+        if self.letter == "U":
+            return dot(self.on_first.z, self.on_second.z)
+        return -dot(self.axis.vector, self.on_first.y) if self.letter == "Sc" else 0.0
 
 
 class Attached(NamedTuple):

@@ -72,7 +72,8 @@ _DERIVATIVES = {
 }
 _DERIVATIVES |= dict.fromkeys(("theta1", "theta2"), _DERIVATIVES["theta"])
 _DERIVATIVES |= dict.fromkeys(("x", "y"), _DERIVATIVES["s"])
-_WITH_AXIS = ("R", "P", "C", "H", "Sp", "Sg", "E")
+_WITH_AXIS = ("R", "P", "C", "H", "Sp", "Sg", "E", "Sc", "Cp")
+_WITH_SLIP = ("Sp", "Sg", "Cp")
 _GROUND: dict[str, tuple[Kind, Dimension]] = {
     "shaking_force": ("shaking_force", FORCE),
     "shaking_moment": ("shaking_moment", MOMENT),
@@ -113,7 +114,7 @@ def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
                 yield Wanted(name, "coordinate", joint.name, dimension, False, coordinate, order)
         if joint.letter != "W":
             yield Wanted(f"{joint.name}.point", "joint_point", joint.name, LENGTH, True)
-        if joint.letter in ("Sp", "Sg"):
+        if joint.letter in _WITH_SLIP:
             yield Wanted(f"{joint.name}.slip", "slip", joint.name, LENGTH, True)
         if joint.letter in _WITH_AXIS:
             yield Wanted(f"{joint.name}.axis", "axis", joint.name, DIMENSIONLESS, True)

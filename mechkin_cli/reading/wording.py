@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from mechkin_cli.reading.nearest import nearest
 from mechkin_cli.reading.nodes import Mapping, Node, Scalar, Sequence
 
-_LONGEST_LIST = 12
+_LONGEST_LIST = 16
 """A message lists the known words up to this many."""
 
 

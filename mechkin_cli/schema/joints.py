@@ -13,8 +13,8 @@ from mechkin_cli.schema.alternatives import by_word
 from mechkin_cli.schema.base import Section, refuse
 from mechkin_cli.schema.scalars import DirectionVector, Length, LengthVector, Name
 
-JOINT_TYPES: Final = ("R", "P", "C", "H", "S", "Sp", "Sg", "U", "E", "W")
-_PER_LINK_FIELDS = ("point", "axis", "normal", "groove", "x", "zero")
+JOINT_TYPES: Final = ("R", "P", "C", "H", "S", "Sp", "Sg", "U", "E", "Ss", "Sc", "Cp", "W")
+_PER_LINK_FIELDS = ("point", "axis", "normal", "groove", "slot", "pin", "x", "zero")
 
 
 def _vector_or_per_link(value: Any) -> str:
@@ -155,6 +155,48 @@ class PlanarJoint(PointJoint):
     """Direction of the coordinate x in the plane; y = normal cross x."""
 
 
+class SlottedSphereJoint(PointJoint):
+    """Ss: a ball of the second link in a socket of the first, its pin in a slot of the socket.
+
+    Turns by theta1 about `slot` and by theta2 about `pin`: a universal joint with square axes.
+    """
+
+    type: Literal["Ss"]
+    slot: Direction
+    """Normal of the slot's plane, fixed in the first link."""
+    pin: Direction
+    """Direction of the pin, fixed in the second link and drawn in the slot's plane."""
+
+
+class SphereCylinderJoint(PointJoint):
+    """Sc: a ball of the second link in a cylinder of the first, its pin in a slot along it.
+
+    Slides by s along `axis`, then turns by theta1 about the slot's normal, `pin` cross `axis` as
+    drawn, and by theta2 about `pin`. The slot's plane holds axis and pin.
+    """
+
+    type: Literal["Sc"]
+    axis: Direction
+    """Axis of the cylinder, fixed in the first link."""
+    pin: Direction
+    """Direction of the pin, fixed in the second link."""
+
+
+class CylinderPlaneJoint(PointJoint):
+    """Cp: a cylinder of the first link on a plane of the second, in line contact.
+
+    Turns by theta1 about `axis` and by theta2 about `normal`, slides by x and y in the plane: x
+    along `axis` cross `normal`, y along `axis`, as drawn in the plane. `point` is a point of the
+    cylinder's axis; the radius does not matter.
+    """
+
+    type: Literal["Cp"]
+    axis: Direction
+    """Axis of the cylinder, fixed in the first link and drawn square to `normal`."""
+    normal: Direction
+    """Normal of the plane, fixed in the second link."""
+
+
 class WeldJoint(JointBase):
     """W: the two links are one body."""
 
@@ -176,6 +218,9 @@ Joint = Annotated[
     | Annotated[SphereGrooveJoint, Tag("(Sg)")]
     | Annotated[UniversalJoint, Tag("(U)")]
     | Annotated[PlanarJoint, Tag("(E)")]
+    | Annotated[SlottedSphereJoint, Tag("(Ss)")]
+    | Annotated[SphereCylinderJoint, Tag("(Sc)")]
+    | Annotated[CylinderPlaneJoint, Tag("(Cp)")]
     | Annotated[WeldJoint, Tag("(W)")],
     by_word("type", _tag, ", ".join(JOINT_TYPES)),
 ]

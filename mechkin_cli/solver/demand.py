@@ -126,7 +126,7 @@ class OutputPlan:
         if kind in ("axis", "joint_point"):
             joint = mechanism.joints[owner]
             if kind == "axis":
-                return self._vector(Attached(joint.second, joint.on_second.z))
+                return self._vector(joint.axis)
             return self.add_point(joint.point, 0)
         if kind == "slip":
             joint = mechanism.joints[owner]

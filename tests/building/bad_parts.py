@@ -86,6 +86,38 @@ JOINTS = [
         "zero-direction",
         "direction is zero",
     ),
+    between(
+        "{type: Ss, LINKS, point: [0, r, 10], slot: [0, 0, 1], pin: »[1, 0, 0.001]}",
+        "not-square",
+        "slot and pin of this joint must be square",
+        "cosine of their angle 0.001",
+        "limit 1e-09",
+        "give the normal of that plane",
+    ),
+    between(
+        "{type: Ss, LINKS, point: [0, r, 10], slot: [0, 0, 1], pin: »[0, 0, 0]}",
+        "zero-direction",
+        "direction is zero",
+    ),
+    between(
+        "{type: Sc, LINKS, point: [0, r, 10], axis: [0, 2, 1], pin: »[0, -4, -2]}",
+        "pin-parallel",
+        "parallel to the cylinder's axis",
+        "draw the pin where it comes out of the slot",
+    ),
+    between(
+        "{type: Sc, LINKS, point: [0, r, 10], axis: »[0, 0, 0], pin: [1, 0, 0]}",
+        "zero-direction",
+        "direction is zero",
+    ),
+    between(
+        "{type: Cp, LINKS, point: [0, r, 10], axis: [1, 0, 0], "
+        "normal: {crank: [0, 0, 1], rod: »[1, 0, 1]}}",
+        "not-square",
+        "axis and normal of this joint must be square",
+        "cosine of their angle 0.707",
+        "a cylinder touches a plane along a line",
+    ),
 ]
 
 POINTS = [

@@ -24,7 +24,8 @@ X, Y, Z, O = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)  # noqa: E741
 PITCH = 0.375
 """Slide per radian of the helical pairs under test."""
 COSINE = 0.28125
-"""Cosine of the angle between the axes of the universal joint under test."""
+"""Cosine of the angle between the axes of the universal joint, and between the axis and the pin of
+the slotted cylinder, under test."""
 
 
 def twist_matrix(angular: Sequence[Any], linear: Sequence[Any]) -> Matrix:
@@ -176,6 +177,11 @@ def from_second(m: Matrix) -> list[Any]:
     return list(m[:3, :3].T * m[:3, 3])
 
 
+def along(m: Matrix, axis: Sequence[Any]) -> Any:
+    """The second frame's origin against the first's, along an axis of the first."""
+    return sum(m[i, 3] * c for i, c in enumerate(axis))
+
+
 def angle_about_z(m: Matrix) -> Any:
     return mp.atan2(m[1, 0], m[0, 0])
 
@@ -195,6 +201,10 @@ ALONG_X = mp.matrix([[0, 0, 1, 0], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 """The frame whose z is x, whose x is y: three of them in a row turn back to the first."""
 ALONG_Y = ALONG_X * ALONG_X
 OBLIQUE = turned(X, mp.acos(COSINE))
+SQUARE = turned(X, mp.pi / 2)
+SLOTTED = turned(Z, -mp.asin(COSINE)) * ALONG_X
+"""The frame along the cylinder of Sc: its z lies in the slot's plane x y, and the pin is -y."""
+CYLINDER = vector(SLOTTED, 2)
 THETA, S = (0, angle_about_z), (0, lambda m: m[2, 3])
 
 PAIRS = {
@@ -233,6 +243,45 @@ PAIRS = {
         (("P", ALONG_X), ("P", ALONG_Y), ("R", HERE)),
         lambda m: shifted(m[0, 3], m[1, 3], 0) * turned(Z, angle_about_z(m)),
         {"x": (0, lambda m: m[0, 3]), "y": (1, lambda m: m[1, 3]), "theta": (2, angle_about_z)},
+    ),
+    "Ss": Pair(
+        (("R", HERE), ("R", SQUARE)),
+        lambda m: turned(Z, first_angle(m)) * SQUARE * turned(Z, second_angle(m)),
+        {"theta1": (0, first_angle), "theta2": (1, second_angle)},
+        home=SQUARE,
+    ),
+    "Sc": Pair(
+        (("P", SLOTTED), ("R", HERE), ("R", SQUARE)),
+        lambda m: (
+            shifted(*(along(m, CYLINDER) * c for c in CYLINDER))
+            * turned(Z, first_angle(m))
+            * SQUARE
+            * turned(Z, second_angle(m))
+        ),
+        {
+            "s": (0, lambda m: along(m, CYLINDER)),
+            "theta1": (1, first_angle),
+            "theta2": (2, second_angle),
+        },
+        home=SQUARE,
+        parameter=COSINE,
+    ),
+    "Cp": Pair(
+        (("R", HERE), ("R", SQUARE), ("P", SQUARE * ALONG_X), ("P", SQUARE * ALONG_Y)),
+        lambda m: (
+            turned(Z, first_angle(m))
+            * SQUARE
+            * turned(Z, second_angle(m))
+            * shifted(*from_second(m)[:2], 0)
+        ),
+        {
+            "theta1": (0, first_angle),
+            "theta2": (1, second_angle),
+            "x": (2, lambda m: from_second(m)[0]),
+            "y": (3, lambda m: from_second(m)[1]),
+        },
+        home=SQUARE,
+        point_on_first=True,
     ),
     "W": Pair((("W", HERE),), lambda m: mp.eye(4)),
 }

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kernel.pairs import COSINE, PAIRS, PITCH, O, X, Y, Z, derivative, mp, vector
+from kernel.pairs import COSINE, CYLINDER, PAIRS, PITCH, O, X, Y, Z, derivative, mp, vector
 from kernel.plans import (
     EVERYTHING,
     LENGTH,
@@ -38,6 +38,9 @@ DRIVES = {
     "C": [(False, O, Z), (True, O, Z)],
     "U": [(False, (0, 0, DUAL), (0, 0, CROSSED)), (False, (0, 0, CROSSED), (0, 0, DUAL))],
     "E": [(True, X, O), (True, Y, O), (False, O, Z)],
+    "Ss": [(False, Z, O), (False, O, Z)],
+    "Sc": [(True, CYLINDER, O), (False, Z, O), (False, O, Z)],
+    "Cp": [(False, Z, O), (False, O, Z), (True, O, X), (True, O, Y)],
     "W": [],
 }
 """What works on a freedom and on no other: a force or not, its parts in the first link's frame of

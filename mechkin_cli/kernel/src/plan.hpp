@@ -31,8 +31,11 @@ enum PairCode : int {
   PAIR_U = 7,
   PAIR_E = 8,
   PAIR_W = 9,
-  PAIR_CODES = 10,
-  PAIR_LEG = 10
+  PAIR_SS = 10,
+  PAIR_SC = 11,
+  PAIR_CP = 12,
+  PAIR_CODES = 13,
+  PAIR_LEG = 13
 };
 
 // Axes (columns of the rotation) and origin of a frame, in a link's frame or in ground axes.
@@ -54,7 +57,8 @@ struct ClosingJoint {
   int type;
   int first, second;        // links, -1: ground
   Frame on_first, on_second;
-  double parameter;         // U: cosine of the angle between its axes; leg: its length, the slide at zero
+  double parameter;         // U: cosine of the angle between its axes; Sc: of axis and pin at home, where the two
+                            // frames coincide in x; leg: its length, the slide at zero
   int slide;                // leg: tree joint of its slide, -1 without one
   double slide_sign;        // leg: rate of its length by the slide
   int row;                  // first closing equation within its block

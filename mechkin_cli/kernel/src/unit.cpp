@@ -179,7 +179,8 @@ constexpr PairType pair_type() {
 constexpr PairType pair_types[PAIR_CODES] = {
     pair_type<Revolute>(),      pair_type<Prismatic>(),      pair_type<Helical>(),   pair_type<Cylindric>(),
     pair_type<Spheric>(),       pair_type<SphereOnPlane>(),  pair_type<SphereInGroove>(),
-    pair_type<Universal>(),     pair_type<Planar>(),         pair_type<Weld>()};
+    pair_type<Universal>(),     pair_type<Planar>(),         pair_type<Weld>(),      pair_type<SlottedSphere>(),
+    pair_type<SphereInSlottedCylinder>(), pair_type<CylinderOnPlane>()};
 
 const KernelUnit unit = {LANES, tree_types, pair_types, workspace_size, run, search, elementwise};
 

@@ -1,0 +1,42 @@
+"""Vectors of a joint that may be given for either link: one vector stands for both."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.mechanism.frames import Frame
+from mechkin_cli.mechanism.model import Part
+from mechkin_cli.mechanism.vectors import Vector
+from mechkin_cli.units import LENGTH
+
+Frames = tuple[Frame, Frame, tuple[Part, ...]]
+"""On the first link, on the second link, and the joint's parts."""
+
+
+def points_of(fields: Fields, path: Path, section: Any) -> tuple[Vector, Vector]:
+    """The joint's point on either link, in m."""
+
+    def read(where: Path, texts: Any) -> Vector:
+        return fields.vector(where, texts, LENGTH)
+
+    return _per_link(read, (*path, "point"), section.point, section.links)
+
+
+def directions_of(fields: Fields, path: Path, section: Any, key: str) -> tuple[Vector, Vector]:
+    """The unit vector under `key` on either link."""
+    return _per_link(fields.direction, (*path, key), getattr(section, key), section.links)
+
+
+def place_of(path: Path, section: Any, key: str, side: int) -> Path:
+    """Where the vector for the first (0) or second (1) link stands in the file."""
+    given = getattr(section, key)
+    return (*path, key, section.links[side]) if isinstance(given, Mapping) else (*path, key)
+
+
+def _per_link(read: Any, path: Path, value: Any, links: tuple[str, str]) -> tuple[Vector, Vector]:
+    if isinstance(value, Mapping):
+        return read((*path, links[0]), value[links[0]]), read((*path, links[1]), value[links[1]])
+    both = read(path, value)
+    return both, both
