@@ -66,6 +66,8 @@ EDITORS_ACCEPT = {
     "zero-parallel": VALUE,
     "parallel-axes": VALUE,
     "axes-not-square": VALUE,
+    "not-square": VALUE,
+    "pin-parallel": VALUE,
 }
 """Code of the reader's error -> why editors accept the file."""
 

@@ -151,8 +151,10 @@ def test_each_coordinate_can_be_the_input(name: str, coordinate: str) -> None:
     )
     theta = float(before["O.theta"][row])
     motion = f"{coordinate}: {{at: {value}, rate: {rate}, acceleration: {acceleration}}}"
-    near = f"assembly: {{near: {{O.theta: {theta!r}}}}}\n"
     case = CASES[name]
+    others = set(model(name).problem.mechanism.coordinates) - {coordinate}
+    places = ", ".join(f"{other}: {float(before[other][row])!r}" for other in sorted(others))
+    near = f"assembly: {{near: {{{places}}}}}\n"
     driven = mk.loads(case.text.replace(case.motion, motion) + near)
     effort = f"{coordinate}.effort"
     after = driven.analyze(["O.theta", "O.theta_dot", "O.theta_ddot", effort])
@@ -161,3 +163,11 @@ def test_each_coordinate_can_be_the_input(name: str, coordinate: str) -> None:
     assert after["O.theta_ddot"][0] == pytest.approx(-3, rel=1e-9)
     power = before["O.effort"][row] * 2
     assert after[effort][0] * float(rate) == pytest.approx(power, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_mobility_by_count_and_by_rank(name: str) -> None:
+    """One freedom either way; the equivalent's bodies between the turns change nothing."""
+    for found in (model(name).mobility(), mk.loads(CASES[name].equivalent).mobility()):
+        assert (found.count, found.mobility) == (1, 1)
+        assert not found.redundant

@@ -64,7 +64,12 @@ def constraints(joint: Joint, first: Axes, second: Axes, size: float) -> list[Co
         return _along(first, second, b[2:], 2)
     if letter == "Sg":
         return _along(first, second, b[:2], 2)
-    if letter == "U":
+    if letter == "Cp":
+        return [*_along(first, second, b[2:], 2), _square(a[2], b[2])]
+    if letter == "Sc":
+        square = np.array([_cylinder(joint, first)[1], a[2]])
+        return [*_along(first, second, square, 1), _square(a[2], b[2])]
+    if letter in ("U", "Ss"):
         return [*_along(first, second, GROUND_AXES, 0), _square(a[2], b[2], joint.parameter)]
     parallel = [_square(a[2], b[0]), _square(a[2], b[1])]
     if letter == "E":
@@ -83,7 +88,7 @@ def constraints(joint: Joint, first: Axes, second: Axes, size: float) -> list[Co
 
 def on_side(joint: Joint, first: Axes, second: Axes) -> bool:
     """Whether the axes that the equations only square also point the same way."""
-    if joint.letter in ("S", "Sp", "Sg", "U"):
+    if joint.letter in ("S", "Sp", "Sg", "U", "Ss", "Sc", "Cp"):
         return True
     axes = (0, 2) if joint.letter in ("P", "W") else (2,)
     return all(float(first.axes[i] @ second.axes[i]) > 0.0 for i in axes)
@@ -93,7 +98,7 @@ def freedoms(joint: Joint, first: Axes, second: Axes, size: float) -> Floats:
     """Screws (freedoms, 6) of the second link against the first, in the order of the joint's
     coordinates."""
     a, b = first.axes, second.axes
-    at = first.o if joint.letter in ("Sp", "Sg") else second.o
+    at = first.o if joint.letter in ("Sp", "Sg", "Cp") else second.o
     ball = [_turn(axis, at) for axis in GROUND_AXES]
     z = _turn(a[2], at)
     return np.array(
@@ -106,10 +111,21 @@ def freedoms(joint: Joint, first: Axes, second: Axes, size: float) -> Floats:
             "Sp": [*ball, _slide(b[0]), _slide(b[1])],
             "Sg": [*ball, _slide(b[2])],
             "U": [z, _turn(b[2], at)],
+            "Ss": [z, _turn(b[2], at)],
+            "Sc": [_slide(_cylinder(joint, first)[0]), z, _turn(b[2], at)],
+            "Cp": [z, _turn(b[2], at), _slide(b[0]), _slide(b[1])],
             "E": [_slide(a[0]), _slide(a[1]), z],
             "W": [],
         }[joint.letter]
     ).reshape(-1, 6)
+
+
+def _cylinder(joint: Joint, first: Axes) -> tuple[Floats, Floats]:
+    """Axis of the slotted cylinder of Sc, and the direction across it in the slot's plane."""
+    cosine = joint.parameter
+    sine = np.sqrt(1.0 - cosine * cosine)
+    x, y = first.axes[:2]
+    return sine * x - cosine * y, cosine * x + sine * y
 
 
 def _turn(axis: Floats, at: Floats) -> Floats:
