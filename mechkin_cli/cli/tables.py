@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -15,6 +16,8 @@ from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
     from mechkin_cli.interface import Analysis
+    from mechkin_cli.tables.errata import PrintedTable
+    from mechkin_cli.tables.overview import OverviewRow
 
 MECHANISMS = Path("mechanisms")
 
@@ -32,25 +35,34 @@ def tables(
     """Regenerate the tables kept beside mechanism files.
 
     FOLDER/STEM.yaml has its tables in FOLDER/STEM/TABLE.csv and .md; where tables name printed
-    values, FOLDER/STEM/errata.md compares them.
+    values, FOLDER/STEM/errata.md compares them. For a folder, FOLDER/README.md is an overview of
+    its mechanisms; a README.md of your own is left alone.
     """
     files = _mechanism_files(path)
     code = ExitCode.OK
     records: list[Record] = []
+    rows: list[OverviewRow] = []
     progress = Progress(len(files), "files", quiet)
     for number, file in enumerate(files, 1):
         try:
-            outcome, record = _one(file, check, json, quiet)
+            outcome, record, row = _one(file, check, json, quiet, overview=path.is_dir())
+            rows += [row] if row else []
         except (InvalidFile, UsageError) as error:
             outcome, record = refusal(file, error)
         code = max(code, outcome)
         records.append(record)
         progress.step(number)
     progress.end()
+    found: Record = {"files": records}
+    if len(rows) == len(files):
+        from mechkin_cli.cli.overview import keep_overview
+
+        outcome, found["overview"] = keep_overview(path, rows, check, json, quiet)
+        code = max(code, outcome)
     if json:
         from mechkin_cli.tables.json_writer import json_text
 
-        put(json_text({"files": records}))
+        put(json_text(found))
     if code:
         raise typer.Exit(code)
 
@@ -66,12 +78,18 @@ def _mechanism_files(path: Path) -> list[Path]:
     return [path]
 
 
-def _one(file: Path, check: bool, json: bool, quiet: bool) -> tuple[ExitCode, Record]:
+def _one(
+    file: Path, check: bool, json: bool, quiet: bool, *, overview: bool
+) -> tuple[ExitCode, Record, OverviewRow | None]:
+    from mechkin_cli.cli.overview import overview_row
     from mechkin_cli.interface import load
+    from mechkin_cli.tables.against_print import against_print
 
     analysis = load(file).analyze()
     say_diagnostics(analysis.diagnostics, str(file))
-    fresh = _fresh_files(file, analysis)
+    printed = against_print(file, analysis.layouts, analysis.tables)
+    row = overview_row(file, analysis, printed) if overview else None
+    fresh = _fresh_files(analysis, printed)
     code = ExitCode.OK if analysis.result.complete else ExitCode.ROWS_MISSING
     folder = file.with_suffix("")
     record: Record = {
@@ -80,18 +98,17 @@ def _one(file: Path, check: bool, json: bool, quiet: bool) -> tuple[ExitCode, Re
     }
     if check:
         outcome, compared = _compare(folder, fresh, json, quiet)
-        return max(code, outcome), record | {"tables": compared}
+        return max(code, outcome), record | {"tables": compared}, row
     from mechkin_cli.tables.files import write_files
 
     written = write_files(folder, fresh)
     if not quiet:
         say(f"{folder}: {len(written)} files written")
-    return code, record | {"written": [str(path) for path in written]}
+    return code, record | {"written": [str(path) for path in written]}, row
 
 
-def _fresh_files(file: Path, analysis: Analysis) -> dict[str, bytes]:
+def _fresh_files(analysis: Analysis, printed: Sequence[PrintedTable]) -> dict[str, bytes]:
     """All that stands beside a mechanism file, by name: tables, and the errata page."""
-    from mechkin_cli.tables.against_print import against_print
     from mechkin_cli.tables.csv_writer import COMMITTED_DIGITS, csv_bytes
     from mechkin_cli.tables.errata import PAGE, errata_page
     from mechkin_cli.tables.markdown import markdown_text
@@ -100,7 +117,6 @@ def _fresh_files(file: Path, analysis: Analysis) -> dict[str, bytes]:
     for table in analysis.tables:
         fresh[f"{table.name}.csv"] = csv_bytes(table, COMMITTED_DIGITS)
         fresh[f"{table.name}.md"] = markdown_text(table, analysis.result).encode()
-    printed = against_print(file, analysis.layouts, analysis.tables)
     if printed:
         model = analysis.model
         fresh[PAGE] = errata_page(model.name, model.source, printed).encode()

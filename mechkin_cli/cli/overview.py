@@ -1,0 +1,86 @@
+"""The overview page that `mechkin tables FOLDER` keeps: what it says of a file, and its check."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import put, say
+from mechkin_cli.tables.overview import MARK, PAGE, OverviewRow, overview_page
+
+if TYPE_CHECKING:
+    from mechkin_cli.interface import Analysis, Model
+    from mechkin_cli.tables.errata import PrintedTable
+
+
+def overview_row(file: Path, analysis: Analysis, printed: Sequence[PrintedTable]) -> OverviewRow:
+    """One file in a line."""
+    from mechkin_cli.status import Status
+    from mechkin_cli.tables.errata import counts
+
+    model = analysis.model
+    solved = sum(Status(int(code)).has_solution for code in analysis.result.status)
+    return OverviewRow(
+        file.stem,
+        model.name,
+        " ".join(joint.letter for joint in model.problem.mechanism.joints.values()),
+        _mobility(model),
+        _modes(model),
+        str(solved) if solved == analysis.rows else f"{solved} of {analysis.rows}",
+        counts(one.agreement for one in printed) if printed else "",
+        model.source,
+    )
+
+
+def _mobility(model: Model) -> str:
+    """The true mobility; Kutzbach's count and idle freedoms where they differ from it."""
+    found = model.mobility()
+    text = "unclear" if found.mobility is None else str(found.mobility)
+    beside = [] if found.count == found.mobility else [f"count {found.count}"]
+    if found.idle:
+        beside.append(f"{len(found.idle)} idle")
+    return f"{text} ({', '.join(beside)})" if beside else text
+
+
+def _modes(model: Model) -> str:
+    """Number of modes found, and whether it is proven to be all."""
+    found = model.modes()
+    count = len(found.modes)
+    return f"{count} (all)" if found.complete else str(count)
+
+
+def keep_overview(
+    folder: Path, rows: Sequence[OverviewRow], check: bool, json: bool, quiet: bool
+) -> tuple[ExitCode, str]:
+    """Writes the page, or compares it; a README.md without the mark is left alone.
+
+    Returns the exit code and what became of the page: `written`, `equal`, `different`, `missing` or
+    `left`.
+    """
+    page, fresh = folder / PAGE, overview_page(rows).encode()
+    old = page.read_bytes() if page.is_file() else None
+    if old is not None and not old.startswith(MARK.encode()):
+        if not quiet:
+            say(f"{page}: left alone, it does not begin with {MARK}")
+        return ExitCode.OK, "left"
+    if not check:
+        from mechkin_cli.tables.files import write_files
+
+        write_files(folder, {PAGE: fresh})
+        return ExitCode.OK, "written"
+    return _compared(page, fresh, old, json)
+
+
+def _compared(page: Path, fresh: bytes, old: bytes | None, json: bool) -> tuple[ExitCode, str]:
+    from mechkin_cli.tables.compare import compare_files
+    from mechkin_cli.tables.comparison_report import report
+
+    (found,) = compare_files({PAGE: fresh}, {} if old is None else {PAGE: old})
+    if found.verdict == "equal":
+        return ExitCode.OK, "equal"
+    say(f"{page}: the overview on disk is not what this version makes")
+    if not json:
+        put(report([found]))
+    return ExitCode.DIFFERENCES, found.verdict
