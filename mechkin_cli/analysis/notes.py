@@ -2,14 +2,62 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.analysis.named_modes import is_cyclic
+from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.rows import RowStates
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.solver.batch import Batch
+from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.graph import SolverGraph
+from mechkin_cli.solver.layout import Layout
 from mechkin_cli.status import Status
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+SAME_INPUT = 1e-12
+"""Turns by which two rows' inputs may differ from a whole number of them and still stand for the
+same place: decimal degrees become radians by one rounding."""
+
+
+def open_turn_note(
+    problem: Problem, layout: Layout, inputs: Floats, states: Floats, reached: NDArray[np.bool_]
+) -> Diagnostic | None:
+    """Rows a full turn of the one moving input apart at which the mechanism is not the same.
+
+    `inputs` (inputs, rows) and `states` (states, rows) in kernel units.
+    """
+    moving = np.flatnonzero(np.ptp(inputs, axis=1) > 0.0)
+    if moving.size != 1:
+        return None
+    number = int(moving[0])
+    item = problem.motion.inputs[number]
+    if not is_cyclic(problem.mechanism, item.name):
+        return None
+    turns = (inputs[number] - inputs[number, 0]) / (2.0 * np.pi)
+    whole = (np.rint(turns) != 0.0) & (np.abs(turns - np.rint(turns)) <= SAME_INPUT)
+    rows = np.flatnonzero(whole & reached)
+    if not rows.size or not reached[0]:
+        return None
+    row = int(rows[0])
+    keys = pose_keys(layout, np.ascontiguousarray(states[:, [0, row]]))
+    if same_poses(keys[:, :1], keys[:, 1:])[0, 0]:
+        return None
+    count = round(abs(float(turns[row])))
+    return Diagnostic(
+        "turn-not-closed",
+        "note",
+        f"after {count} full turn{'s' * (count > 1)} of {item.name}, in row {row + 1}, the "
+        "mechanism is not back at its first row's position: it has gone on to another assembly",
+        hint="mechkin ranges shows the circuit",
+    )
 
 
 def redundancy_note(graph: SolverGraph) -> Diagnostic:

@@ -15,7 +15,7 @@ from mechkin_cli.analysis.branch_end import explain_end
 from mechkin_cli.analysis.closing_angles import unwrap_closing_angles
 from mechkin_cli.analysis.followed import followed_part
 from mechkin_cli.analysis.idle import conventional_notes, holding_notes
-from mechkin_cli.analysis.notes import not_converged_note, redundancy_note
+from mechkin_cli.analysis.notes import not_converged_note, open_turn_note, redundancy_note
 from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.result import Result
@@ -103,6 +103,9 @@ def analyze(
     rows.diagnostics += conventional_notes(problem, [*wanted, *read])
     if loads:
         rows.diagnostics += loads.diagnostics
+    if inputs.values.size:
+        note = open_turn_note(problem, layout, inputs.values, batch.states, rows.reached)
+        rows.diagnostics += [note] if note else []
     missing = ~rows.reached
     nothing = np.full(problem.motion.rows, np.nan)
     for array in (values.T, batch.residual, batch.condition, batch.power_error):
