@@ -56,6 +56,8 @@ def explain_end(
     if isinstance(limit, DeadCentre):
         number = int(np.flatnonzero(followed.direction)[0])
         _fill_before(limit, path, followed, number, rows)
+        if rows.reached.all():
+            return
         rows.status[~rows.reached] = Status.beyond_dead_centre
         rows.diagnostics.append(_dead_centre_note(problem, layout, limit, number, rows))
         return

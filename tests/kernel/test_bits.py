@@ -30,7 +30,8 @@ from mechkin_cli.solver.graph import build_graph
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.search import assemblies
 
-EVERYTHING = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES | Demand.CONDITION | Demand.POWER
+MOTION = Demand.VELOCITY | Demand.ACCELERATION | Demand.JERK
+EVERYTHING = MOTION | Demand.FORCES | Demand.CONDITION | Demand.POWER
 ROWS = 61
 # closed at the S, at an R, at the C: plans without and with quaternions, blocks of 3, 4 and 5
 CLOSED_AT = ["O3", "O4", "O2"]
@@ -46,11 +47,12 @@ def width(lanes: int) -> Any:
 
 @dataclass(frozen=True)
 class Rows:
-    """Inputs, rates, accelerations (inputs, rows) and guesses (states, rows)."""
+    """Inputs, rates, accelerations, jerks (inputs, rows) and guesses (states, rows)."""
 
     inputs: np.ndarray
     rates: np.ndarray
     accelerations: np.ndarray
+    jerks: np.ndarray
     guess: np.ndarray
 
     def take(self, rows: Any) -> Rows:
@@ -75,8 +77,8 @@ def rcsr(closed_at: str) -> tuple[Any, Rows]:
     for carrier in layout.carriers:
         if carrier.part.letter != "S":
             guess[carrier.state] += 10.0 ** generator.uniform(-14, -2, ROWS)
-    rates, accelerations = generator.uniform(-1, 1, (2, 1, ROWS))
-    return plan, Rows(inputs, rates, accelerations, guess)
+    rates, accelerations, jerks = generator.uniform(-1, 1, (3, 1, ROWS))
+    return plan, Rows(inputs, rates, accelerations, jerks, guess)
 
 
 def compute(plan: Any, rows: Rows, lanes: int = 0) -> Batch:
@@ -86,6 +88,7 @@ def compute(plan: Any, rows: Rows, lanes: int = 0) -> Batch:
         rows.guess,
         rates=rows.rates,
         accelerations=rows.accelerations,
+        jerks=rows.jerks,
         demand=EVERYTHING,
         outputs=True,
         derivatives=True,

@@ -27,7 +27,7 @@ from properties.cases import CASES, case, original
 TWICE = 2.0
 SOME = CASES[::2]
 FEW = CASES[::4]
-MIRRORED = re.compile(r"\.(theta|y(_dot|_ddot|\.effort|$))")
+MIRRORED = re.compile(r"\.(theta|y(_dot|_ddot|_dddot|\.effort|$))")
 """Coordinates and efforts that change sign in a mirror."""
 
 
