@@ -34,7 +34,7 @@ _HEAD = """\
 Each file has its tables in the folder of its name, and a page `errata.md` where they are compared
 with print. Joints stand in the order of the file. Mobility is the true one; Kutzbach's count and
 idle freedoms stand beside it where they make a difference. Modes are the ways of assembling it that
-were found at the first row. Rows counts those solved."""
+were found at the first row. Rows are those solved, of all where they differ."""
 
 
 def _cells(row: OverviewRow) -> list[str]:

@@ -48,9 +48,12 @@ def test_check_json(mechkin, write) -> None:
 
 @pytest.fixture
 def committed(folder: Path) -> Path:
-    """A copy of the RCSR tables beside their file, in `mechanisms/`."""
+    """A copy of the RCSR tables beside their file, in `mechanisms/`, with the overview of it."""
     shutil.copytree(MECHANISMS / "rcsr", folder / "mechanisms/rcsr")
     shutil.copy(RCSR, folder / "mechanisms")
+    page = (MECHANISMS / "README.md").read_text(encoding="utf-8").splitlines(keepends=True)
+    kept = [line for line in page if ".yaml)" not in line or "(rcsr.yaml)" in line]
+    (folder / "mechanisms/README.md").write_text("".join(kept), encoding="utf-8")
     return folder / "mechanisms/rcsr"
 
 
@@ -59,6 +62,38 @@ def test_tables_as_committed(mechkin, committed) -> None:
     assert (run.code, run.out) == (0, "")
     assert run.err == "mechanisms/rcsr: 23 files as committed\n"
     assert mechkin("tables", "--check", "--quiet").err == ""
+
+
+def test_tables_keeps_an_overview(mechkin, committed, folder) -> None:
+    page = folder / "mechanisms/README.md"
+    page.unlink()
+    run = mechkin("tables", "--check", "--json")
+    assert (run.code, run.json["overview"]) == (1, "missing")
+    assert not page.exists()
+    mechkin("tables")
+    (row,) = (line for line in page.read_text(encoding="utf-8").splitlines() if "rcsr" in line)
+    assert row.startswith("| [RCSR](rcsr.yaml) | R C S R | 1 | 2 | 27 | [1479 of 2106 cells agree,")
+    assert mechkin("tables", "--check").code == 0
+    page.write_text(page.read_text(encoding="utf-8").replace("| 27 |", "| 26 |"), encoding="utf-8")
+    run = mechkin("tables", "--check")
+    assert run.code == 1
+    assert "README.md: different" in run.out
+
+
+def test_tables_leaves_another_readme_alone(mechkin, committed, folder) -> None:
+    page = folder / "mechanisms/README.md"
+    page.write_text("# Mine\n", encoding="utf-8")
+    for arguments in (["tables"], ["tables", "--check"]):
+        run = mechkin(*arguments)
+        assert run.code == 0
+        assert "README.md: left alone" in run.err
+    assert page.read_text(encoding="utf-8") == "# Mine\n"
+
+
+def test_tables_of_one_file_make_no_overview(mechkin, committed, folder) -> None:
+    (folder / "mechanisms/README.md").unlink()
+    mechkin("tables", "mechanisms/rcsr.yaml")
+    assert not (folder / "mechanisms/README.md").exists()
 
 
 def test_tables_finds_a_changed_errata_page(mechkin, committed) -> None:

@@ -74,21 +74,38 @@ def test_double_hooke_middle_shaft():
     assert worst(run("double_hooke")["A.effort"], effort) <= LIMIT
 
 
-# plates of 80 mm that fold outwards alike, drawn at 45 degrees
+# lower plates of 80 mm and upper ones of 100 mm that fold outwards, drawn at 45 degrees
 
-PLATE = mp.mpf(80)
-FOLD = 45 * DEGREE
+LOWER, UPPER, FOLD = mp.mpf(80), mp.mpf(100), 45 * DEGREE
 
 
-@pytest.mark.parametrize(("joint", "factor"), [("B", -2), ("C", 1), ("D", 1), ("E", -2), ("F", 1)])
-def test_sarrus_joints(joint, factor):
-    functions = [lambda t, q=q: factor * q(t) for q in courses("sarrus", 2, 5)]
-    agrees("sarrus", f"{joint}.theta", functions)
+def upper_tilt(tilt: Number) -> Number:
+    """Both plates reach out equally far."""
+    return mp.asin(LOWER * mp.sin(tilt) / UPPER)
+
+
+SARRUS = {
+    "B": lambda q: FOLD + upper_tilt(FOLD) - (FOLD + q) - upper_tilt(FOLD + q),
+    "C": lambda q: upper_tilt(FOLD + q) - upper_tilt(FOLD),
+    "D": lambda q: q,
+}
+SARRUS |= {"E": SARRUS["B"], "F": SARRUS["C"]}
+
+
+def height(q: Number) -> Number:
+    return LOWER * mp.cos(FOLD + q) + UPPER * mp.cos(upper_tilt(FOLD + q))
+
+
+@pytest.mark.parametrize("joint", SARRUS)
+def test_sarrus_joints(joint):
+    angle = SARRUS[joint]
+    agrees(
+        "sarrus", f"{joint}.theta", [lambda t, q=q: angle(q(t)) for q in courses("sarrus", 2, 5)]
+    )
 
 
 def test_sarrus_height():
-    functions = [lambda t, q=q: 2 * PLATE * mp.cos(FOLD + q(t)) for q in courses("sarrus", 2, 5)]
-    expected = rows(functions)
+    expected = rows([lambda t, q=q: height(q(t)) for q in courses("sarrus", 2, 5)])
     for quantity, values in zip(("position", "velocity", "acceleration"), expected, strict=True):
         found = run("sarrus")[f"top.{quantity}"]
         assert worst(found[:, 2], values) <= LIMIT
@@ -96,19 +113,22 @@ def test_sarrus_height():
 
 
 def test_sarrus_effort():
-    def side(q: Course, height: Number) -> Callable[[Number], Vector]:
-        return lambda t: [
-            PLATE / 2 * mp.sin(FOLD + q(t)),
-            mp.zero,
-            height * PLATE * mp.cos(FOLD + q(t)),
-        ]
-
     efforts = []
     for q in courses("sarrus", 2, 5):
-        light = [(mp.mpf("0.2"), side(q, mp.mpf(h))) for h in ("0.5", "1.5") for _ in "xy"]
-        heavy = (mp.mpf("1.5"), lambda t, q=q: [mp.zero, mp.zero, 2 * PLATE * mp.cos(FOLD + q(t))])
+
+        def lower(t: Number, q: Course = q) -> Vector:
+            tilt = FOLD + q(t)
+            return [LOWER / 2 * mp.sin(tilt), mp.zero, LOWER / 2 * mp.cos(tilt)]
+
+        def upper(t: Number, q: Course = q) -> Vector:
+            out, _, up = lower(t, q)
+            return [out, mp.zero, up + height(q(t)) / 2]
+
+        light, heavy = mp.mpf("0.2"), mp.mpf("1.5")
+        moving = [(light, lower), (light, upper)] * 2
+        moving.append((heavy, lambda t, q=q: [mp.zero, mp.zero, height(q(t))]))
         # kg mm^2/s^2 to N mm
-        efforts.append(power([*light, heavy], mp.mpf(9810)) / 2 / 1000)
+        efforts.append(power(moving, mp.mpf(9810)) / 2 / 1000)
     assert worst(run("sarrus")["A.effort"], as_floats(efforts)) <= LIMIT
 
 
