@@ -23,6 +23,7 @@ from mechkin_cli.building.columns import used_quantities
 from mechkin_cli.building.source import open_file, open_text
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.expressions import Expression, Vector, parse
+from mechkin_cli.kernel.width import check_width
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import ANGLES, SolverGraph
@@ -143,8 +144,9 @@ class Model:
 
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
-            UsageError: an unknown table, quantity or mode.
+            UsageError: an unknown table, quantity or mode, or a width that the machine lacks.
         """
+        check_width(lanes)
         problem, _ = self.problem, self.graph
         if mode is not None:
             problem = replace(problem, assembly=replace(problem.assembly, near={}, mode=mode))

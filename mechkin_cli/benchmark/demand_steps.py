@@ -10,11 +10,11 @@ from mechkin_cli.benchmark.kernel_case import (
     PlannedRun,
     degree_rows,
     repeated,
-    widths,
 )
 from mechkin_cli.benchmark.report import Cell, Column, Table
 from mechkin_cli.benchmark.specimen import Specimen
 from mechkin_cli.benchmark.timing import in_turns
+from mechkin_cli.kernel.width import widths
 from mechkin_cli.solver.codes import Demand
 
 Step = tuple[str, tuple[str, ...], Demand]

@@ -153,10 +153,3 @@ def repeated(array: Floats, rows: int = BATCH) -> Floats:
     """(columns, rows) by repeating the columns' rows from the start."""
     times = -(-rows // array.shape[1])
     return np.ascontiguousarray(np.tile(array, times)[:, :rows])
-
-
-def widths() -> list[int]:
-    """The lane widths that this machine can run."""
-    from mechkin_cli.kernel import _kernel
-
-    return [lanes for lanes in (2, 4, 8) if lanes <= _kernel.widest]

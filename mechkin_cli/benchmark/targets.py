@@ -17,13 +17,13 @@ from mechkin_cli.benchmark.kernel_case import (
     degree_rows,
     repeated,
     sweep_rows,
-    widths,
 )
 from mechkin_cli.benchmark.process import nothing, process_times
 from mechkin_cli.benchmark.report import Cell, Column, Table
 from mechkin_cli.benchmark.specimen import Specimen
 from mechkin_cli.benchmark.timing import Timing, in_turns
 from mechkin_cli.benchmark.yardstick import LEVELS, Yardstick
+from mechkin_cli.kernel.width import widths
 
 KERNEL_LIMIT = 2.5
 SWEEP_LIMIT = 5.0

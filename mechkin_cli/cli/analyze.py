@@ -50,6 +50,10 @@ def analyze(
         list[str] | None,
         typer.Option("--table", metavar="NAME", help="Only this table; may be repeated."),
     ] = None,
+    lanes: Annotated[
+        int,
+        typer.Option("--lanes", metavar="N", help="Rows at a time: 2, 4 or 8; 0: the most."),
+    ] = 0,
     explain: Annotated[
         bool, typer.Option("--explain", help="Show the solver graph and what is skipped.")
     ] = False,
@@ -57,6 +61,9 @@ def analyze(
     quiet: Quiet = False,
 ) -> None:
     """Run the sweep of each file and write its tables."""
+    from mechkin_cli.kernel.width import force_width
+
+    force_width(lanes)
     request = _Request(parameters(set_), mode, table, _formats(format), explain, json, quiet)
     code = ExitCode.OK
     records: list[Record] = []

@@ -28,7 +28,7 @@ def bench(
     ] = False,
     json: Json = False,
 ) -> None:
-    """Measure time and error on the RCSR mechanism."""
+    """Measure time and error on the RCSR mechanism and a general 7R."""
     from mechkin_cli.benchmark.machine import machine
     from mechkin_cli.benchmark.runs import stress_tables, timing_tables
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mechkin_cli.kernel.width import INSTRUCTIONS, width, widths
 from mechkin_cli.mechanism.joint_types import FREE
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS
@@ -86,7 +87,12 @@ def _demand_lines(analysis: Analysis) -> list[str]:
         lines.append(f"loads that vary: evaluated on all rows first, from {read}")
     if forces and massless:
         lines.append("inertia: skipped, no link has mass")
-    return lines
+    return [*lines, _width_line()]
+
+
+def _width_line() -> str:
+    known = ", ".join(f"{lanes} ({INSTRUCTIONS[lanes]})" for lanes in widths())
+    return f"width: {width()} rows at a time; this machine has {known}"
 
 
 def _without(forces: bool, massless: bool) -> str:

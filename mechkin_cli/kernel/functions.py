@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.kernel.width import width
 
 FloatArray = NDArray[np.float64]
 Value = TypeVar("Value", float, FloatArray)
@@ -88,7 +89,7 @@ def power(base: Value, exponent: Value) -> Value:
 
 def _apply(operation: _Operation, first: Value, second: Value) -> Value:
     x, y = _rows(first), _rows(second)
-    result: FloatArray = _kernel.elementwise(operation, x, y)
+    result: FloatArray = _kernel.elementwise(operation, x, y, width())
     return result if isinstance(first, np.ndarray) else float(result[0])
 
 

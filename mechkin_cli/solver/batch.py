@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.kernel.width import width
 from mechkin_cli.solver.codes import Demand, RowFlag
 
 if TYPE_CHECKING:
@@ -112,7 +113,7 @@ def run(
         shift,
         iterations,
         tests,
-        lanes,
+        width(lanes),
         loads,
         jerks,
     )

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.kernel.width import width
 from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.clusters import Clusters, pose_keys, same_poses
@@ -106,7 +107,7 @@ def _search_block(
         _randomise(layout, number, states, generator, turns)
         residual, flags = np.empty(size), np.empty(size, dtype=np.uint8)
         limits = (tolerances.SEARCH_ITERATIONS, tolerances.SEARCH_RESIDUAL)
-        plan.search(number, values, states, residual, flags, *limits, 0)
+        plan.search(number, values, states, residual, flags, *limits, width())
         clusters.closest = min(clusters.closest, float(np.min(residual)))
         within = np.all(np.abs(states[threads]) <= _most_turn(turns), axis=0)
         states, free = _isolated(layout, plan, values, states[:, (flags == 0) & within])

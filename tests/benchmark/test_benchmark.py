@@ -13,7 +13,7 @@ from mechkin_cli.benchmark.arithmetic import Arithmetic, extended
 from mechkin_cli.benchmark.closure import dead_centre, drawing, kinematics
 from mechkin_cli.benchmark.dense_forces import equations
 from mechkin_cli.benchmark.elimination import eliminate
-from mechkin_cli.benchmark.kernel_case import KernelCase, PlannedRun, degree_rows, widths
+from mechkin_cli.benchmark.kernel_case import KernelCase, PlannedRun, degree_rows
 from mechkin_cli.benchmark.peers import Closure, dense_loads, differences, fsolve_positions
 from mechkin_cli.benchmark.rcsr import COORDINATES, dimensions
 from mechkin_cli.benchmark.reference import (
@@ -29,6 +29,7 @@ from mechkin_cli.benchmark.stress import NEAR_DEAD_CENTRE, SIZES, dead_centre_ta
 from mechkin_cli.benchmark.timing import Timing, in_turns
 from mechkin_cli.benchmark.yardstick import find, load
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.kernel.width import widths
 
 DOUBLE = Arithmetic("double", 2.0**-52, np.float64, np.cos, np.sin)
 EXACT_MOTION = dict(
