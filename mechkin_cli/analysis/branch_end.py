@@ -47,6 +47,11 @@ def explain_end(
 
     `path` (inputs, rows) in kernel units and `rows` are in the order in which they were followed.
     """
+    locked = _locked_inputs(problem, layout, path, followed)
+    if locked:
+        rows.status[~rows.reached] = Status.branch_lost
+        rows.diagnostics.extend(locked)
+        return
     far = tolerances.BRANCH_POINT_SPANS[0]
     row = followed.reached - 1
     while row > 0 and np.max(np.abs(followed.inputs - path[:, row])) <= far:
@@ -66,6 +71,19 @@ def explain_end(
         rows.diagnostics.append(_branch_point_note(problem, layout, followed, limit, rows))
     else:
         rows.diagnostics.append(_lost_note(problem, layout, followed, rows))
+
+
+def _locked_inputs(
+    problem: Problem, layout: Layout, path: Floats, followed: Followed
+) -> list[Diagnostic]:
+    """What the mobility of an overconstrained mechanism says of inputs that hardly moved."""
+    way = float(np.max(np.abs(followed.inputs - path[:, 0]), initial=0.0))
+    if way > tolerances.PASSED or not is_redundant(layout.graph):
+        return []
+    from mechkin_cli.analysis.mobility import find_mobility
+
+    found = find_mobility(problem).diagnostics
+    return [d for d in found if d.code in ("input-locked", "inputs-dependent")]
 
 
 def _fill_before(
