@@ -111,6 +111,9 @@ def _runs(inputs: Floats, every_row: bool) -> Iterator[tuple[int, int, Floats]]:
     """Runs (first row, end, direction); the direction's largest part is 1, zero for repeated
     rows."""
     rows = inputs.shape[1]
+    if len(inputs) == 0:
+        yield 1, rows, np.zeros(0)
+        return
     if len(inputs) == 1 and rows > 1 and not every_row:
         steps = np.diff(inputs[0])
         for sign in (1.0, -1.0):
