@@ -148,6 +148,10 @@ BRANCH_POINT_NEAR: Final = 1e-3
 """Distance from the last place on the branch up to which a branch point explains its end: steps
 are halved down to 1e-15, but next to the point Newton's residual test fails first."""
 
+RUNAWAY_SLIDE: Final = 20.0
+"""Length of a slide (length units, about sizes) from which a lost branch is said to go out of
+bounds; a search takes starts up to two sizes. Measured on RCCC: lost at 206."""
+
 # --- verdicts -------------------------------------------------------------------------------
 
 CONDITION_NEAR_SINGULAR: Final = 1e7

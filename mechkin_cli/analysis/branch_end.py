@@ -22,7 +22,9 @@ from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import Followed
 from mechkin_cli.solver.graph import is_redundant
 from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.runaway import Runaway
 from mechkin_cli.status import Status
+from mechkin_cli.units import LENGTH
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -67,7 +69,9 @@ def explain_end(
         rows.diagnostics.append(_dead_centre_note(problem, layout, limit, number, rows))
         return
     rows.status[~rows.reached] = Status.branch_lost
-    if isinstance(limit, BranchPoint):
+    if isinstance(limit, Runaway):
+        rows.diagnostics.append(_runaway_note(problem, layout, followed, limit, rows))
+    elif isinstance(limit, BranchPoint):
         rows.diagnostics.append(_branch_point_note(problem, layout, followed, limit, rows))
     else:
         rows.diagnostics.append(_lost_note(problem, layout, followed, rows))
@@ -116,6 +120,23 @@ def _dead_centre_note(
         measured=input_text(place),
         hint="end the sweep before it, or choose another assembly",
         numbers=(place,),
+    )
+
+
+def _runaway_note(
+    problem: Problem, layout: Layout, followed: Followed, limit: Runaway, rows: RowStates
+) -> Diagnostic:
+    places = input_numbers(problem, layout, followed.inputs)
+    slide = float(problem.units.from_si(limit.slide * layout.length, LENGTH))
+    return Diagnostic(
+        "unbounded",
+        "error",
+        f"the slide of {limit.joint} grows out of bounds, the branch seems to go to infinity; "
+        f"{_row_span(rows)} stay empty",
+        measured=f"{slide:.6g} {problem.units.label(LENGTH)} at the last place followed, "
+        f"{', '.join(map(input_text, places))}",
+        hint="end the sweep before it, or choose another assembly",
+        numbers=places,
     )
 
 

@@ -22,6 +22,7 @@ DECIMALS = 6
 WORDS = {
     "dead-centre": "dead centre",
     "branch-point": "branch point",
+    "unbounded": "a slide grows out of bounds",
     "branch-lost": "could not be followed further",
     "far": "no end found so far",
 }

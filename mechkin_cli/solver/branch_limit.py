@@ -1,4 +1,5 @@
-"""Why a branch cannot be followed further: a dead centre, a branch point, or no clear reason."""
+"""Why a branch cannot be followed further: a dead centre, a slide that grows out of bounds, a
+branch point, or no clear reason."""
 
 from __future__ import annotations
 
@@ -12,6 +13,7 @@ from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.dead_centre import DeadCentre, locate
 from mechkin_cli.solver.follow import Followed
 from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.runaway import Runaway, find_runaway
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,7 +34,7 @@ def find_limit(
     followed: Followed,
     inputs: Floats,
     state: Floats,
-) -> DeadCentre | BranchPoint | None:
+) -> DeadCentre | Runaway | BranchPoint | None:
     """What ended a branch, or None.
 
     Args:
@@ -51,7 +53,8 @@ def find_limit(
             fold = locate(layout, driven, number, followed.inputs, followed.state, first)
             if fold is not None and _lies_ahead(fold, followed, number):
                 return fold
-    return locate_branch_point(plan, followed, inputs, state)
+    runaway = find_runaway(layout, followed.state)
+    return runaway or locate_branch_point(plan, followed, inputs, state)
 
 
 def _derivatives(plan: Plan, followed: Followed) -> Floats | None:

@@ -21,6 +21,7 @@ from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import TrackEnd, follow
 from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.runaway import Runaway
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,14 +30,15 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-EndKind = Literal["dead-centre", "branch-point", "branch-lost", "full-turn", "far"]
+EndKind = Literal["dead-centre", "branch-point", "unbounded", "branch-lost", "full-turn", "far"]
 
 
 class End(NamedTuple):
     """Where a branch ends: the input there (kernel units), and what may lie beyond.
 
-    `full-turn`: it came to an assembly that was met before, turns ago; `far`: not found within the
-    reach that is looked over. `last` are the states at the last place before a dead centre.
+    `unbounded`: a slide grew out of bounds before it; `full-turn`: it came to an assembly that was
+    met before, turns ago; `far`: not found within the reach that is looked over. `last` are the
+    states at the last place before a dead centre.
     """
 
     kind: EndKind
@@ -146,6 +148,8 @@ class Walker:
                 last = float(way.inputs[self.number])
                 if isinstance(limit, DeadCentre):
                     return End("dead-centre", limit.value, limit, way.state), places
+                if isinstance(limit, Runaway):
+                    return End("unbounded", last), places
                 if isinstance(limit, BranchPoint):
                     return End("branch-point", last + direction * limit.distance), places
                 return End("branch-lost", last), places

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from mechanisms.runs import MECHANISMS, model
+from mechanisms.runs import MECHANISMS, edited, model
 from mpmath import mp, mpf
 
 import mechkin_cli as mk
@@ -143,3 +143,15 @@ def test_unknown_names_are_told() -> None:
         rcsr.ranges("O2.theta")
     with pytest.raises(mk.UsageError, match=r"there is no coordinate O9\.theta"):
         rcsr.ranges(outputs=["O9.theta"])
+
+
+def test_slides_of_rccc_grow_out_of_bounds() -> None:
+    """Where its turns have a dead centre, its slides go with their rates, which are infinite."""
+    for item in model("rccc").ranges().ranges:
+        assert (item.lower.kind, item.upper.kind) == ("unbounded", "unbounded")
+    inputs = {"J1.theta": {"from": 0, "to": 100, "step": 2}}
+    result = edited("rccc", ["J4.s"], motion={"inputs": inputs})
+    (note,) = result.diagnostics
+    assert note.code == "unbounded"
+    assert "the slide of J4 grows out of bounds" in note.message
+    assert abs(result["J4.s"][result["row.status"] == "ok"][-1]) > 100
