@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.analysis.idle import spin_errors
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.result import Result
 from mechkin_cli.analysis.sweep import analyze as run_sweep
@@ -24,6 +23,7 @@ from mechkin_cli.building.source import open_file, open_text
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.expressions import Expression, Vector, parse
 from mechkin_cli.kernel.width import check_width
+from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import ANGLES, SolverGraph
@@ -167,7 +167,11 @@ class Model:
     def _refuse_loaded_spin(self, problem: Problem, names: Iterable[str]) -> None:
         """Forces need what spins freely to have no cause to spin."""
         known = problem.quantities()
+        if not find_legs(problem.mechanism):
+            return
         if demand_of(problem.mechanism, [known[name] for name in names]) & Demand.FORCES:
+            from mechkin_cli.analysis.idle import spin_errors
+
             for _, diagnostic in spin_errors(problem):
                 raise UsageError(str(diagnostic))
 

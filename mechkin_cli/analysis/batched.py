@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.analysis.rows import KernelInputs, RowStates
+from mechkin_cli.analysis.rows import RowStates
+from mechkin_cli.analysis.setup import Setup
 from mechkin_cli.solver.batch import Batch, run
 from mechkin_cli.solver.codes import Demand
 
@@ -19,15 +20,13 @@ if TYPE_CHECKING:
 
 
 def run_reached(
-    plan: Plan,
-    inputs: KernelInputs,
-    rows: RowStates,
-    demand: Demand,
-    lanes: int,
-    shift: int = 0,
-    loads: Floats | None = None,
+    setup: Setup, rows: RowStates, *, shift: int = 0, loads: Floats | None = None
 ) -> Batch:
-    """Runs all rows; those without a guess repeat a neighbour's and are emptied later."""
+    """Runs all rows; those without a guess repeat a neighbour's and are emptied later.
+
+    `shift` and `loads` as in `solver.batch.run`.
+    """
+    plan, inputs, demand = setup.outputs.plan, setup.inputs, setup.demand
     values, guess = inputs.values, rows.guess
     if not rows.reached.all():
         if not rows.reached.any():
@@ -47,7 +46,7 @@ def run_reached(
         demand=demand,
         outputs=True,
         shift=shift,
-        lanes=lanes,
+        lanes=setup.lanes,
     )
 
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.rows import (
     MAY_BE_RIGID,
     RowStates,
@@ -15,13 +14,13 @@ from mechkin_cli.analysis.rows import (
     input_numbers,
     input_text,
 )
+from mechkin_cli.analysis.setup import Setup
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.solver.branch_limit import find_limit
 from mechkin_cli.solver.branch_point import BranchPoint
 from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import Followed
 from mechkin_cli.solver.graph import is_redundant
-from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.runaway import Runaway
 from mechkin_cli.status import Status
 from mechkin_cli.units import LENGTH
@@ -29,27 +28,18 @@ from mechkin_cli.units import LENGTH
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.kernel._kernel import Plan
-
     Floats = NDArray[np.float64]
 
 
 MAY_BE_SPECIAL = "this may be a branch point or a special position; sweep from its other side"
 
 
-def explain_end(
-    problem: Problem,
-    layout: Layout,
-    plan: Plan,
-    path: Floats,
-    followed: Followed,
-    rows: RowStates,
-) -> None:
+def explain_end(setup: Setup, path: Floats, followed: Followed, rows: RowStates) -> None:
     """Finds why a branch ended; rows before a dead centre get their guesses from its shape.
 
     `path` (inputs, rows) in kernel units and `rows` are in the order in which they were followed.
     """
-    locked = _locked_inputs(problem, layout, path, followed)
+    locked = _locked_inputs(setup, path, followed)
     if locked:
         rows.status[~rows.reached] = Status.branch_lost
         rows.diagnostics.extend(locked)
@@ -58,7 +48,7 @@ def explain_end(
     row = followed.reached - 1
     while row > 0 and np.max(np.abs(followed.inputs - path[:, row])) <= far:
         row -= 1
-    driven = problem.motion.driven
+    layout, plan, driven = setup.layout, setup.outputs.plan, setup.problem.motion.driven
     limit = find_limit(layout, plan, driven, followed, path[:, row], rows.guess[:, row])
     if isinstance(limit, DeadCentre):
         number = int(np.flatnonzero(followed.direction)[0])
@@ -66,27 +56,25 @@ def explain_end(
         if rows.reached.all():
             return
         rows.status[~rows.reached] = Status.beyond_dead_centre
-        rows.diagnostics.append(_dead_centre_note(problem, layout, limit, number, rows))
+        rows.diagnostics.append(_dead_centre_note(setup, limit, number, rows))
         return
     rows.status[~rows.reached] = Status.branch_lost
     if isinstance(limit, Runaway):
-        rows.diagnostics.append(_runaway_note(problem, layout, followed, limit, rows))
+        rows.diagnostics.append(_runaway_note(setup, followed, limit, rows))
     elif isinstance(limit, BranchPoint):
-        rows.diagnostics.append(_branch_point_note(problem, layout, followed, limit, rows))
+        rows.diagnostics.append(_branch_point_note(setup, followed, limit, rows))
     else:
-        rows.diagnostics.append(_lost_note(problem, layout, followed, rows))
+        rows.diagnostics.append(_lost_note(setup, followed, rows))
 
 
-def _locked_inputs(
-    problem: Problem, layout: Layout, path: Floats, followed: Followed
-) -> list[Diagnostic]:
+def _locked_inputs(setup: Setup, path: Floats, followed: Followed) -> list[Diagnostic]:
     """What the mobility of an overconstrained mechanism says of inputs that hardly moved."""
     way = float(np.max(np.abs(followed.inputs - path[:, 0]), initial=0.0))
-    if way > tolerances.PASSED or not is_redundant(layout.graph):
+    if way > tolerances.PASSED or not is_redundant(setup.graph):
         return []
     from mechkin_cli.analysis.mobility import find_mobility
 
-    found = find_mobility(problem).diagnostics
+    found = find_mobility(setup.problem).diagnostics
     return [d for d in found if d.code in ("input-locked", "inputs-dependent")]
 
 
@@ -109,10 +97,8 @@ def _row_span(rows: RowStates) -> str:
     return f"row {missing[0]}" if missing.size == 1 else f"rows {missing[0]} to {missing[-1]}"
 
 
-def _dead_centre_note(
-    problem: Problem, layout: Layout, fold: DeadCentre, number: int, rows: RowStates
-) -> Diagnostic:
-    place = input_number(problem, layout, number, fold.value)
+def _dead_centre_note(setup: Setup, fold: DeadCentre, number: int, rows: RowStates) -> Diagnostic:
+    place = input_number(setup.problem, setup.layout, number, fold.value)
     return Diagnostic(
         "dead-centre",
         "warning",
@@ -123,17 +109,16 @@ def _dead_centre_note(
     )
 
 
-def _runaway_note(
-    problem: Problem, layout: Layout, followed: Followed, limit: Runaway, rows: RowStates
-) -> Diagnostic:
-    places = input_numbers(problem, layout, followed.inputs)
-    slide = float(problem.units.from_si(limit.slide * layout.length, LENGTH))
+def _runaway_note(setup: Setup, followed: Followed, limit: Runaway, rows: RowStates) -> Diagnostic:
+    places = input_numbers(setup.problem, setup.layout, followed.inputs)
+    units = setup.problem.units
+    slide = float(units.from_si(limit.slide * setup.layout.length, LENGTH))
     return Diagnostic(
         "unbounded",
         "error",
         f"the slide of {limit.joint} grows out of bounds, the branch seems to go to infinity; "
         f"{_row_span(rows)} stay empty",
-        measured=f"{slide:.6g} {problem.units.label(LENGTH)} at the last place followed, "
+        measured=f"{slide:.6g} {units.label(LENGTH)} at the last place followed, "
         f"{', '.join(map(input_text, places))}",
         hint="end the sweep before it, or choose another assembly",
         numbers=places,
@@ -141,9 +126,11 @@ def _runaway_note(
 
 
 def _branch_point_note(
-    problem: Problem, layout: Layout, followed: Followed, point: BranchPoint, rows: RowStates
+    setup: Setup, followed: Followed, point: BranchPoint, rows: RowStates
 ) -> Diagnostic:
-    places = input_numbers(problem, layout, followed.inputs + point.distance * followed.direction)
+    places = input_numbers(
+        setup.problem, setup.layout, followed.inputs + point.distance * followed.direction
+    )
     return Diagnostic(
         "branch-point",
         "error",
@@ -156,13 +143,13 @@ def _branch_point_note(
     )
 
 
-def _lost_note(problem: Problem, layout: Layout, followed: Followed, rows: RowStates) -> Diagnostic:
-    places = input_numbers(problem, layout, followed.inputs)
+def _lost_note(setup: Setup, followed: Followed, rows: RowStates) -> Diagnostic:
+    places = input_numbers(setup.problem, setup.layout, followed.inputs)
     return Diagnostic(
         "branch-lost",
         "error",
         f"the branch could not be followed further; {_row_span(rows)} stay empty",
         measured=f"last place {', '.join(map(input_text, places))}",
-        hint=MAY_BE_RIGID if is_redundant(layout.graph) else MAY_BE_SPECIAL,
+        hint=MAY_BE_RIGID if is_redundant(setup.graph) else MAY_BE_SPECIAL,
         numbers=places,
     )

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.analysis.setup import Setup
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.batch import run
-from mechkin_cli.solver.demand import OutputPlan
+from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.follow import follow
 from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.solver.layout import Layout
@@ -30,44 +31,35 @@ FINEST_STEP = 0.1
 it unless they run thirty times as fast as the input."""
 
 
-def unwrap_closing_angles(
-    layout: Layout,
-    outputs: OutputPlan,
-    wanted: list[Wanted],
-    values: Floats,
-    inputs: Floats,
-    start: Floats,
-    row: int,
-    reached: NDArray[np.bool_],
-) -> None:
+def unwrap_closing_angles(setup: Setup, values: Floats, reached: NDArray[np.bool_]) -> None:
     """Makes the angles of closing joints in `values` (slots, rows) continuous, in place.
 
-    `inputs` (inputs, rows) in kernel units, `start` the states at row number `row`, `reached` tells
-    the rows that have a solution.
+    `values` are the outputs of `setup`; `reached` tells the rows that have a solution.
     """
-    angles = [
-        quantity
-        for quantity in wanted
-        if quantity.kind == "coordinate"
+    start = setup.start
+    angles = [quantity for quantity in setup.wanted if _is_closing_angle(setup.layout, quantity)]
+    if not angles or start.state is None or not reached[start.row]:
+        return
+    own = setup.reading(angles, Demand.POSITION).outputs
+    slots = [own.slots[quantity.name].first for quantity in angles]
+    turns = np.zeros((len(angles), reached.size))
+    for way in (slice(start.row, None), slice(start.row, None, -1)):
+        count = _leading(reached[way])
+        part = turns[:, way]
+        inputs = setup.inputs.values[:, way][:, :count]
+        part[:, :count] = _turns(own.plan, inputs, start.state, slots)
+    first = int(np.argmax(reached))
+    for quantity, counted in zip(angles, turns, strict=True):
+        values[setup.outputs.slots[quantity.name].first] -= (counted - counted[first]) * (2.0 * pi)
+
+
+def _is_closing_angle(layout: Layout, quantity: Wanted) -> bool:
+    return (
+        quantity.kind == "coordinate"
         and quantity.coordinate in ANGLES
         and quantity.order == 0
         and layout.joint_reference[quantity.owner] < 0
-    ]
-    if not angles or not reached[row]:
-        return
-    plan = layout.build()
-    own = OutputPlan(layout, plan, outputs.inputs)
-    for quantity in angles:
-        own.add(quantity)
-    slots = [own.slots[quantity.name].first for quantity in angles]
-    turns = np.zeros((len(angles), reached.size))
-    for way in (slice(row, None), slice(row, None, -1)):
-        count = _leading(reached[way])
-        part = turns[:, way]
-        part[:, :count] = _turns(plan, inputs[:, way][:, :count], start, slots)
-    first = int(np.argmax(reached))
-    for quantity, counted in zip(angles, turns, strict=True):
-        values[outputs.slots[quantity.name].first] -= (counted - counted[first]) * (2.0 * pi)
+    )
 
 
 def _leading(reached: NDArray[np.bool_]) -> int:

@@ -8,13 +8,12 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.named_modes import is_cyclic
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.rows import RowStates
+from mechkin_cli.analysis.setup import Setup
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.solver.batch import Batch
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.graph import SolverGraph
-from mechkin_cli.solver.layout import Layout
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
@@ -27,19 +26,18 @@ SAME_INPUT = 1e-12
 same place: decimal degrees become radians by one rounding."""
 
 
-def open_turn_note(
-    problem: Problem, layout: Layout, inputs: Floats, states: Floats, reached: NDArray[np.bool_]
-) -> Diagnostic | None:
+def open_turn_note(setup: Setup, states: Floats, reached: NDArray[np.bool_]) -> Diagnostic | None:
     """Rows a full turn of the one moving input apart at which the mechanism is not the same.
 
-    `inputs` (inputs, rows) and `states` (states, rows) in kernel units.
+    `states` (states, rows) in kernel units.
     """
+    inputs = setup.inputs.values
     moving = np.flatnonzero(np.ptp(inputs, axis=1) > 0.0)
     if moving.size != 1:
         return None
     number = int(moving[0])
-    item = problem.motion.inputs[number]
-    if not is_cyclic(problem.mechanism, item.name):
+    item = setup.problem.motion.inputs[number]
+    if not is_cyclic(setup.problem.mechanism, item.name):
         return None
     turns = (inputs[number] - inputs[number, 0]) / (2.0 * np.pi)
     whole = (np.rint(turns) != 0.0) & (np.abs(turns - np.rint(turns)) <= SAME_INPUT)
@@ -47,7 +45,7 @@ def open_turn_note(
     if not rows.size or not reached[0]:
         return None
     row = int(rows[0])
-    keys = pose_keys(layout, np.ascontiguousarray(states[:, [0, row]]))
+    keys = pose_keys(setup.layout, np.ascontiguousarray(states[:, [0, row]]))
     if same_poses(keys[:, :1], keys[:, 1:])[0, 0]:
         return None
     count = round(abs(float(turns[row])))

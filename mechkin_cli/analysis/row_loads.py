@@ -10,17 +10,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.analysis.assembly import Start
 from mechkin_cli.analysis.batched import failed_rows, run_reached
 from mechkin_cli.analysis.closing_angles import unwrap_closing_angles
 from mechkin_cli.analysis.load_laws import law_values, quantities_read
 from mechkin_cli.analysis.problem import Problem
-from mechkin_cli.analysis.rows import KernelInputs, RowStates
+from mechkin_cli.analysis.rows import RowStates
+from mechkin_cli.analysis.setup import Setup
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import OutputPlan, demand_of
-from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.varying_loads import kernel_loads
 
 if TYPE_CHECKING:
@@ -37,31 +36,18 @@ class RowLoads(NamedTuple):
     diagnostics: list[Diagnostic]
 
 
-def row_loads(
-    problem: Problem,
-    layout: Layout,
-    inputs: KernelInputs,
-    start: Start,
-    rows: RowStates,
-    lanes: int,
-) -> RowLoads:
+def row_loads(setup: Setup, rows: RowStates) -> RowLoads:
     """The loads of all rows; `rows` is left as it is."""
+    problem = setup.problem
     known = problem.quantities()
     wanted = [known[name] for name in quantities_read(problem)]
-    plan = layout.build()
-    outputs = OutputPlan(layout, plan, problem.motion.driven)
-    for quantity in wanted:
-        outputs.add(quantity)
     # velocities also tell on which side of a fold a row lies
-    demand = demand_of(problem.mechanism, wanted) | Demand.VELOCITY
-    batch = run_reached(plan, inputs, rows, demand, lanes)
+    reading = setup.reading(wanted, demand_of(problem.mechanism, wanted) | Demand.VELOCITY)
+    batch = run_reached(reading, rows)
     values = batch.outputs
     assert values is not None
     reached = rows.reached & ~failed_rows(batch, rows)
-    if start.state is not None:
-        unwrap_closing_angles(
-            layout, outputs, wanted, values, inputs.values, start.state, start.row, reached
-        )
+    unwrap_closing_angles(reading, values, reached)
     given = _given(problem)
 
     def resolve(name: str) -> Quantity:
@@ -72,7 +58,7 @@ def row_loads(
         dimension = known[name].dimension
         if name in given:
             return Quantity(given[name], dimension)
-        slot = outputs.slots[name]
+        slot = reading.outputs.slots[name]
         columns = values[slot.first : slot.first + slot.width]
         if known[name].vector:
             return Quantity(Vector(columns[0], columns[1], columns[2]), dimension)
@@ -80,7 +66,7 @@ def row_loads(
 
     found = law_values(problem, resolve, reached)
     lost = reached & np.isnan(found.values).any(axis=0)
-    return RowLoads(kernel_loads(layout, found.values), lost, found.diagnostics)
+    return RowLoads(kernel_loads(setup.layout, found.values), lost, found.diagnostics)
 
 
 def _given(problem: Problem) -> dict[str, Floats]:

@@ -12,6 +12,7 @@ from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.solver.layout import Layout, is_slide
+from mechkin_cli.status import Status
 from mechkin_cli.units import ANGLE, LENGTH
 
 if TYPE_CHECKING:
@@ -37,6 +38,19 @@ class RowStates:
     nodes: int
     diagnostics: list[Diagnostic]
     numbers: NDArray[np.int64]
+
+    @classmethod
+    def without_guesses(cls, states: int, rows: int) -> RowStates:
+        """Rows of which nothing is known yet; none is reached."""
+        return cls(
+            guess=np.zeros((states, rows)),
+            limit=np.zeros(rows),
+            reached=np.zeros(rows, dtype=bool),
+            status=np.full(rows, int(Status.ok), dtype=np.int8),
+            nodes=0,
+            diagnostics=[],
+            numbers=np.arange(rows),
+        )
 
     def part(self, rows: slice) -> RowStates:
         """Some of the rows, in the slice's order: views of the same arrays."""
