@@ -1,4 +1,4 @@
-"""From the solver graph to the kernel's plan: scaled lengths, link frames, reversed joints.
+"""How a mechanism lies in the kernel: numbering, scaled lengths, link frames, reversed joints.
 
 The kernel's length unit is a power of two near the mechanism's size, so scaling never rounds. Its
 origin is the ground origin unless the drawing lies far from it.
@@ -8,29 +8,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import frexp, ldexp, pi
+from math import frexp, ldexp
 from typing import TYPE_CHECKING, NamedTuple
 
-from mechkin_cli.mechanism.frames import GROUND, Frame, turned_tensor, upright
+from mechkin_cli.mechanism.frames import GROUND, Frame, upright
 from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.mechanism.legs import frame_on
 from mechkin_cli.mechanism.model import (
     GROUND_NAME,
     Attached,
-    Damper,
-    Joint,
-    JointLoad,
-    LinkLoad,
     Mechanism,
     Part,
-    Spring,
-    Varying,
-    varying,
 )
 from mechkin_cli.mechanism.vectors import ZERO, Vector, norm, scale, subtract
-from mechkin_cli.solver.axes import coordinate_axis
-from mechkin_cli.solver.codes import LoadCode
-from mechkin_cli.solver.graph import Closing, SolverGraph, TreeEdge
+from mechkin_cli.solver.graph import SolverGraph, TreeEdge
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
@@ -38,11 +29,6 @@ if TYPE_CHECKING:
 FAR_DRAWING = 4.0
 """Distance of the drawing from the ground origin, in sizes, beyond which the kernel works about
 its own origin."""
-
-
-NO_AXIS = -1
-"""Stands for the axis of a coordinate that no user knows: it is driven only while a dead centre is
-looked for."""
 
 
 class Carrier(NamedTuple):
@@ -62,7 +48,7 @@ class Carrier(NamedTuple):
 
 @dataclass(frozen=True)
 class Layout:
-    """How a mechanism lies in the kernel: numbering, scale, frames. All methods are pure."""
+    """Numbers, scale and frames of a mechanism and its solver graph. All methods are pure."""
 
     mechanism: Mechanism
     graph: SolverGraph
@@ -179,185 +165,9 @@ class Layout:
 
     def build(self, size: float | None = None) -> Plan:
         """The kernel's plan without outputs; `size` (m) normalises residual and condition."""
-        from mechkin_cli.kernel import _kernel
+        from mechkin_cli.solver.plan import build_plan
 
-        plan = _kernel.Plan(self.length, self.origin, size or self.mechanism.box_diagonal())
-        for carrier in self.carriers:
-            lead = self.graph.edges[carrier.edge].joint.lead
-            plan.add_tree_joint(
-                tree_types()[carrier.part.letter].code,
-                carrier.parent,
-                lead / (2.0 * pi) / self.length,
-                self.frame_on(carrier.parent, carrier.part.before),
-            )
-        for closing in self.graph.closings:
-            self._add_closing(plan, closing)
-        self._add_places(plan)
-        self._add_blocks(plan)
-        for (edge, freedom), (name, coordinate) in zip(
-            self.graph.inputs, self.graph.driven, strict=True
-        ):
-            joint = self.graph.edges[edge].joint
-            along_thread = joint.letter == "H" and coordinate == "s"
-            force_per_torque = 2.0 * pi * self.length / joint.lead if along_thread else 1.0
-            axis = self.axis_number.get((name, coordinate), NO_AXIS)
-            plan.add_input(self.column(edge, freedom), axis, force_per_torque)
-        self._add_inertias(plan)
-        for load in self.mechanism.loads:
-            self._add_load(plan, load)
-        plan.finish()
-        return plan
-
-    def _add_closing(self, plan: Plan, closing: Closing) -> None:
-        joint, leg = closing.joint, closing.leg
-        loop = [(k, s) for e, s in closing.loop for k in self._parts_of(e)]
-        if leg is None:
-            first, second = self.link_number[joint.first], self.link_number[joint.second]
-            frames = self.frame_on(first, joint.on_first), self.frame_on(second, joint.on_second)
-            plan.add_closing_joint(joint.type.code, first, second, *frames, joint.parameter, loop)
-            return
-        first, second = self.link_number[leg.first], self.link_number[leg.second]
-        ends = frame_on(leg.start, leg.first), frame_on(leg.end, leg.second)
-        plan.add_leg(
-            self.link_number[leg.body],
-            self.link_number[leg.rod] if leg.rod else -1,
-            first,
-            second,
-            self.frame_on(first, ends[0]),
-            self.frame_on(second, ends[1]),
-            norm(leg.span) / self.length,
-            leg.line,
-            leg.slide_sign,
-            loop,
-        )
-
-    def _parts_of(self, edge: int) -> list[int]:
-        return [k for k, carrier in enumerate(self.carriers) if carrier.edge == edge]
-
-    def _add_places(self, plan: Plan) -> None:
-        backward = {e.joint.name for e in self.graph.edges if not e.forward}
-        # a leg pushes the link at its end, whether that is the sphere's first or second
-        backward |= {
-            c.joint.name
-            for c in self.graph.closings
-            if c.leg is not None and c.leg.second == c.joint.first
-        }
-        for name, joint in self.mechanism.joints.items():
-            plan.add_place(
-                self.joint_reference[name],
-                self.link_number[joint.first],
-                self.link_number[joint.second],
-                self.link_number[joint.point.link],
-                self.point(joint.point),
-                -1.0 if name in backward else 1.0,
-            )
-        for name, coordinate in self.axis_number:
-            axis = coordinate_axis(self.mechanism.joints[name], coordinate)
-            (one, two) = axis.terms
-            plan.add_axis(
-                self.place_number[name],
-                axis.slide,
-                self.link_number[one.link],
-                self.vector(one),
-                self.link_number[two.link],
-                self.vector(two),
-            )
-
-    def _add_blocks(self, plan: Plan) -> None:
-        placed: set[int] = set()
-        for block in self.graph.blocks:
-            joints = [self.graph.closings[c].joint for c in block.closings]
-            needed = {k for joint in joints for k in self._ways(joint)}
-            unknown = [self.column(k, f) for k, f in block.unknowns]
-            plan.add_block(len(block.closings), sorted(needed - placed), unknown)
-            placed |= needed
-        plan.set_rest([k for k in range(len(self.carriers)) if k not in placed])
-
-    def _ways(self, joint: Joint) -> set[int]:
-        """Kernel joints on the ways from ground to both links of a joint."""
-        found = set()
-        for link in (joint.first, joint.second):
-            k = self.link_number[link]
-            while k >= 0:
-                found.add(k)
-                k = self.carriers[k].parent
-        return found
-
-    def _add_inertias(self, plan: Plan) -> None:
-        plan.set_gravity(scale(1.0 / self.length, self.mechanism.gravity))
-        for name, link in self.mechanism.links.items():
-            if name == GROUND_NAME or not link.has_mass:
-                continue
-            centre = self.point(Attached(name, link.center_of_mass))
-            tensor = [
-                i / (self.length * self.length)
-                for i in turned_tensor(link.inertia, self.link_frame[name])
-            ]
-            plan.set_inertia(self.link_number[name], link.mass, centre, tensor)
-
-    def _add_load(self, plan: Plan, load: LinkLoad | JointLoad | Spring | Damper) -> None:
-        unit = self.length
-        if isinstance(load, LinkLoad):
-            self._add_link_load(plan, load)
-        elif isinstance(load, JointLoad):
-            axis, reference, freedom, slide = self._coordinate(load.joint, load.coordinate)
-            varies = isinstance(load.value, Varying)
-            constant = 0.0 if isinstance(load.value, Varying) else load.value
-            value = (constant / (unit if slide else (unit * unit)), 0.0, 0.0)
-            code = LoadCode.COORDINATE
-            plan.add_load(code, axis, reference, freedom, ZERO, ZERO, value, varies)
-        elif load.between:
-            p, q = load.between
-            if isinstance(load, Spring):
-                data = (load.stiffness, load.free / unit, load.preload / unit)
-                code = LoadCode.SPRING
-            else:
-                data, code = (load.damping, 0.0, 0.0), LoadCode.DAMPER
-            links = self.link_number[p.link], self.link_number[q.link]
-            plan.add_load(code, *links, 0, self.point(p), self.point(q), data)
-        else:
-            self._add_joint_spring(plan, load)
-
-    def _add_link_load(self, plan: Plan, load: LinkLoad) -> None:
-        own_axes = load.axes == "link"
-        x, y, z = (0.0 if isinstance(amount, Varying) else amount for amount in load.value)
-        value = self.vector(Attached(load.link, (x, y, z))) if own_axes else (x, y, z)
-        if load.kind == "force":
-            code = LoadCode.FORCE_LINK if own_axes else LoadCode.FORCE_GROUND
-            value, point = (
-                scale(1.0 / self.length, value),
-                self.point(Attached(load.link, load.point)),
-            )
-        else:
-            code = LoadCode.TORQUE_LINK if own_axes else LoadCode.TORQUE_GROUND
-            value, point = scale(1.0 / (self.length * self.length), value), ZERO
-        link, varies = self.link_number[load.link], bool(varying(load))
-        plan.add_load(code, link, -1, 0, point, ZERO, value, varies)
-
-    def _coordinate(self, name: str, coordinate: str) -> tuple[int, int, int, bool]:
-        """Axis, kernel joint and freedom there of a joint's coordinate, and whether it is a
-        slide."""
-        joint = self.mechanism.joints[name]
-        freedom = joint.type.freedom_of[coordinate]
-        slide = is_slide(coordinate)
-        axis = self.axis_number[name, coordinate]
-        for number, edge in enumerate(self.graph.edges):
-            if edge.joint.name == name:
-                return axis, *self.carrier_of(number, freedom), slide
-        return axis, self.joint_reference[name], freedom, slide
-
-    def _add_joint_spring(self, plan: Plan, load: Spring | Damper) -> None:
-        axis, reference, freedom, slide = self._coordinate(load.joint or "", load.coordinate or "")
-        per = 1.0 if slide else (self.length * self.length)
-        if isinstance(load, Spring):
-            code = LoadCode.COORDINATE_SPRING
-            free = load.free / self.length if slide else load.free
-            preload = load.preload / (self.length if slide else (self.length * self.length))
-            data = (load.stiffness / per, free, preload)
-        else:
-            code = LoadCode.COORDINATE_DAMPER
-            data = (load.damping / per, 0.0, 0.0)
-        plan.add_load(code, axis, reference, freedom, ZERO, ZERO, data)
+        return build_plan(self, size)
 
 
 def is_slide(coordinate: str) -> bool:

@@ -6,9 +6,8 @@ import numpy as np
 from mechanisms.runs import model
 
 from mechkin_cli.analysis.notes import open_turn_note
-from mechkin_cli.analysis.rows import kernel_inputs
+from mechkin_cli.analysis.setup import prepare
 from mechkin_cli.solver.clusters import pose_keys, same_poses
-from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.search import assemblies
 
 
@@ -21,19 +20,19 @@ def test_a_turn_that_closes_is_not_mentioned() -> None:
 def test_a_turn_that_ends_at_another_assembly_is_told() -> None:
     """The two assemblies of an RSSR put at either end of its turn."""
     rssr = model("rssr")
-    layout = Layout(rssr.problem.mechanism, rssr.graph)
-    inputs = kernel_inputs(rssr.problem, layout).values
+    setup = prepare(rssr.problem, (), verdicts=False, closed_at=None, lanes=0)
+    layout, inputs = setup.layout, setup.inputs.values
     found = assemblies(layout, layout.build(), inputs[:, 0])
     assert found.number == 2
     keys = pose_keys(layout, found.states)
     assert not same_poses(keys[:, :1], keys[:, 1:])[0, 0]
     states = np.repeat(found.states[:, :1], inputs.shape[1], axis=1)
     reached = np.ones(inputs.shape[1], dtype=bool)
-    assert open_turn_note(rssr.problem, layout, inputs, states, reached) is None
+    assert open_turn_note(setup, states, reached) is None
     states[:, -1] = found.states[:, 1]
-    note = open_turn_note(rssr.problem, layout, inputs, states, reached)
+    note = open_turn_note(setup, states, reached)
     assert note is not None
     assert (note.code, note.severity) == ("turn-not-closed", "note")
     assert "after 1 full turn of O1.theta, in row 37" in note.message
     reached[-1] = False
-    assert open_turn_note(rssr.problem, layout, inputs, states, reached) is None
+    assert open_turn_note(setup, states, reached) is None
