@@ -1,0 +1,46 @@
+"""The Python interface: load a mechanism file, analyze it, read quantities by name.
+
+The commands are thin calls of these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from mechkin_cli.building.build import build
+from mechkin_cli.building.source import open_file, open_text
+from mechkin_cli.interface.analysis import Analysis
+from mechkin_cli.interface.model import Model
+from mechkin_cli.interface.settings import Setting, parameter_texts
+
+__all__ = ["Analysis", "Model", "load", "loads"]
+
+_NO_PARAMETERS: Mapping[str, Setting] = MappingProxyType({})
+
+
+def load(path: str | Path, parameters: Mapping[str, Setting] = _NO_PARAMETERS) -> Model:
+    """Reads and checks a mechanism file.
+
+    Args:
+        path: the YAML file.
+        parameters: what replaces values of its `parameters:`, such as {"P1": "0.6 in"}; a number
+            has no unit.
+
+    Raises:
+        UsageError: the file cannot be read, or an unknown parameter.
+        InvalidFile: with every independent error and its place.
+
+    Example:
+        >>> load("mechanisms/rcsr.yaml").name
+        'RCSR'
+    """
+    return Model(build(open_file(path, parameter_texts(parameters))), Path(path).stem)
+
+
+def loads(
+    text: str, name: str = "text", parameters: Mapping[str, Setting] = _NO_PARAMETERS
+) -> Model:
+    """As `load`, for the text of a mechanism file; `name` stands for the file in messages."""
+    return Model(build(open_text(text, name, parameter_texts(parameters))), Path(name).stem)

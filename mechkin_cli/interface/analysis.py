@@ -1,0 +1,107 @@
+"""The results of one sweep: its tables, and any quantity or expression as an array."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.analysis.result import Result
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.expressions import Expression, Vector, parse
+from mechkin_cli.tables.columns import Columns, evaluate, mode_words, status_words
+from mechkin_cli.tables.layout import ROW_TEXTS, TableLayout
+from mechkin_cli.tables.uniqueness import unique_cells
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.interface.model import Model
+
+
+class Analysis:
+    """Results of a sweep: `r["O2.theta"]` is an array over the rows, in the file's units."""
+
+    def __init__(
+        self,
+        model: Model,
+        layouts: tuple[TableLayout, ...],
+        sweep: Callable[[Iterable[str]], Result],
+        names: Iterable[str],
+    ) -> None:
+        self.model = model
+        self.layouts = layouts
+        self.result = sweep(names)
+        self._sweep = sweep
+        self._more: dict[str, Result] = {}
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return self.result.rows
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Everything that the run has to say."""
+        return self.result.diagnostics
+
+    @cached_property
+    def tables(self) -> tuple[Columns, ...]:
+        """The tables that were asked for, evaluated in the file's units."""
+        return tuple(evaluate(layout, self.result) for layout in self.layouts)
+
+    def __getitem__(self, text: str) -> NDArray[Any]:
+        """A quantity or an expression of quantities, in the file's units.
+
+        Returns (rows,), for a vector (rows, 3); nan where a row has no solution; `row.status` and
+        `row.mode` are arrays of words. What the run did
+        not compute is computed now.
+
+        Raises:
+            ExpressionError: no such quantity, or dimensions that do not fit.
+        """
+        if text in ROW_TEXTS:
+            words = mode_words if text == "row.mode" else status_words
+            return np.array(words(self.result).texts())
+        for given in (self.result.inputs, self.result.input_rates):
+            if text in given:
+                return given[text].copy()
+        expression = parse(text)
+        result = self._with(expression.names)
+        columns = self._columns(expression, result)
+        others = [self._columns(expression, other) for other in result.alternatives]
+        settled = [
+            unique_cells(column, [other[i] for other in others]) for i, column in enumerate(columns)
+        ]
+        return np.stack(settled, axis=1) if len(settled) > 1 else settled[0]
+
+    def _columns(self, expression: Expression, result: Result) -> list[NDArray[np.float64]]:
+        """The value of an expression in the file's units: one column, or three of a vector."""
+        found = expression.evaluate(result.quantity, result.units)
+        value = found.value
+        parts = [value.x, value.y, value.z] if isinstance(value, Vector) else [value]
+        return [self._column(part, found.dimension) for part in parts]
+
+    def _column(self, value: object, dimension: object) -> NDArray[np.float64]:
+        rows = np.array(np.broadcast_to(np.asarray(value, float), (self.rows,)))
+        return np.asarray(self.result.units.from_si(rows, dimension), float)  # type: ignore[arg-type]
+
+    def _with(self, names: Iterable[str]) -> Result:
+        """A result that has all the quantities among some dotted names."""
+        known = self.model.quantities
+        wanted = []
+        for name in names:
+            quantity = name if name in known else name.rpartition(".")[0]
+            if quantity in known and quantity not in self.result.slots:
+                wanted.append(quantity)
+        computed = sorted(name for name in wanted if name != "time")
+        wanted = [name for name in computed if not name.startswith("row.")]
+        if not wanted:
+            return self.result
+        key = " ".join(wanted)
+        if key not in self._more:
+            every = [*self.result.slots, *wanted]
+            self._more[key] = self._sweep(every)
+        return self._more[key]

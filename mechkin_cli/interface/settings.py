@@ -1,0 +1,53 @@
+"""What a caller gives beside the file: values of parameters and of inputs, as numbers or texts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from mechkin_cli.analysis.problem import Problem
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
+from mechkin_cli.solver.graph import ANGLES
+from mechkin_cli.units import ANGLE, LENGTH
+
+Setting = str | float
+
+
+def parameter_texts(parameters: Mapping[str, Setting]) -> dict[str, str]:
+    """Parameters as texts; a number stands for itself, without a unit."""
+    return {k: v if isinstance(v, str) else repr(float(v)) for k, v in parameters.items()}
+
+
+def input_values(problem: Problem, at: Setting | Mapping[str, Setting]) -> dict[str, float]:
+    """Inputs by name in the file's units; a bare value is for the first input that is swept.
+
+    Raises:
+        UsageError: an unknown input, or a value that is none.
+    """
+    inputs = {item.name: item for item in problem.motion.inputs}
+    if not isinstance(at, Mapping):
+        swept = [name for name, item in inputs.items() if np.ptp(item.written) > 0.0]
+        names = swept or list(inputs)
+        if not names:
+            raise UsageError(f"{problem.mechanism.name} has no input to be put at {at}")
+        at = {names[0]: at}
+    places = {}
+    for name, value in at.items():
+        if name not in inputs:
+            raise UsageError(f"{name} is no input; inputs are {', '.join(inputs) or 'none'}")
+        places[name] = _input_value(problem, name, value)
+    return places
+
+
+def _input_value(problem: Problem, name: str, value: Setting) -> float:
+    """A value of an input in the file's units."""
+    text = value if isinstance(value, str) else repr(float(value))
+    dimension = ANGLE if name.partition(".")[2] in ANGLES else LENGTH
+    resolve = lookup(problem.parameters)
+    try:
+        return constant_in_file_units(text, dimension, problem.units, resolve)
+    except ExpressionError as error:
+        hint = f"; {error.hint}" if error.hint else ""
+        raise UsageError(f"{name} at {text}: {error.message}{hint}") from None
