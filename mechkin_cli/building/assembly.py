@@ -1,0 +1,37 @@
+"""`assembly:` and `follow:`: which assembly is meant, and which loops are followed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from mechkin_cli.building.coordinates import dimension_of, is_coordinate
+from mechkin_cli.building.fields import Fields
+from mechkin_cli.expressions.errors import nearest
+from mechkin_cli.mechanism.model import Joint
+from mechkin_cli.mechanism.motion import Assembly
+from mechkin_cli.schema.assembly import AssemblySection
+
+
+def build_assembly(
+    fields: Fields, section: AssemblySection | None, joints: Mapping[str, Joint]
+) -> Assembly:
+    """The assembly that the section means, with its coordinates in SI."""
+    if section is None:
+        return Assembly()
+    near = {}
+    for name, text in section.near.items():
+        path = ("assembly", "near", name)
+        if is_coordinate(fields, path, name, joints):
+            near[name] = fields.number(path, text, dimension_of(name.partition(".")[2]))
+    return Assembly(near, section.mode, section.turns)
+
+
+def build_follow(
+    fields: Fields, names: tuple[str, ...] | None, joints: Mapping[str, Joint]
+) -> tuple[str, ...] | None:
+    """The joints that `follow:` lists, each of which must be there; None without it."""
+    for i, name in enumerate(names or ()):
+        if name not in joints and not fields.is_refused(name):
+            hint = nearest(name, list(joints))
+            fields.error("unknown-joint", ("follow", i), f"there is no joint {name}", hint)
+    return names
