@@ -51,39 +51,44 @@ def platform(seed: int, turn: Floats | None = None) -> mk.Model:
     return mk.loads(f"format: 1\nlinks: {{body: {{}}{links}}}\njoints:\n{joints}")
 
 
-def other_count(seed: int, starts: int) -> int:
-    """Newton's method for rotation matrix and shift: lengths and orthogonality, 12 unknowns."""
-    feet, heads = ends(seed)
+def newton_step(feet: Floats, heads: Floats, r: Floats, t: Floats) -> tuple[Floats, Floats]:
+    """One step for matrices r (starts, 3, 3) and shifts t (starts, 3): 6 lengths, r^T r = 1."""
     squares = ((heads - feet) ** 2).sum(axis=1)
+    i, j = np.triu_indices(3)
+    rows = np.arange(6)
+    d = heads @ r.transpose(0, 2, 1) + t[:, None] - feet
+    gap = r.transpose(0, 2, 1) @ r - np.eye(3)
+    value = np.concatenate([(d * d).sum(axis=2) - squares, gap[:, i, j]], axis=1)
+    matrix = np.zeros((len(r), 12, 12))
+    matrix[:, :6, :9] = 2 * np.einsum("ska,kb->skab", d, heads).reshape(-1, 6, 9)
+    matrix[:, :6, 9:] = 2 * d
+    for a in range(3):
+        matrix[:, 6 + rows, 3 * a + i] += r[:, a, j]
+        matrix[:, 6 + rows, 3 * a + j] += r[:, a, i]
+    step = np.linalg.solve(matrix, -value[:, :, None])[:, :, 0]
+    step *= np.minimum(1.0, 1.0 / np.abs(step).max(axis=1, keepdims=True))
+    return step[:, :9].reshape(-1, 3, 3), step[:, 9:]
+
+
+def other_count(seed: int, starts: int) -> int:
+    """Newton's method for rotation matrix and shift from many starts at once, 12 unknowns."""
+    feet, heads = ends(seed)
     rng = np.random.default_rng(seed)
+    r = np.array([rotation(rng.normal(size=4)) for _ in range(starts)])
+    t = rng.uniform(-3, 3, (starts, 3))
     found: list[Floats] = []
-    for _ in range(starts):
-        r, t = rotation(rng.normal(size=4)), rng.uniform(-3, 3, 3)
-        for _ in range(60):
-            d = heads @ r.T + t - feet
-            gap = r.T @ r - np.eye(3)
-            upper = np.triu_indices(3)
-            value = np.concatenate([(d * d).sum(axis=1) - squares, gap[upper]])
-            matrix = np.zeros((12, 12))
-            for k in range(6):
-                matrix[k, :9] = 2 * np.outer(d[k], heads[k]).reshape(-1)
-                matrix[k, 9:] = 2 * d[k]
-            for row, (i, j) in enumerate(zip(*upper, strict=True)):
-                for a in range(3):
-                    matrix[6 + row, 3 * a + i] += r[a, j]
-                    matrix[6 + row, 3 * a + j] += r[a, i]
-            try:
-                step = np.linalg.solve(matrix, -value)
-            except np.linalg.LinAlgError:
-                break
-            step *= min(1.0, 1.0 / np.abs(step).max())
-            r, t = r + step[:9].reshape(3, 3), t + step[9:]
-            if np.abs(step).max() < 1e-12:
-                pose = np.concatenate([r.reshape(-1), t])
-                proper = np.linalg.det(r) > 0
-                if proper and all(np.abs(pose - p).max() > 1e-6 for p in found):
-                    found.append(pose)
-                break
+    for _ in range(60):
+        turn, shift = newton_step(feet, heads, r, t)
+        r, t = r + turn, t + shift
+        last = np.maximum(np.abs(turn).max(axis=(1, 2)), np.abs(shift).max(axis=1))
+        done = last < 1e-12
+        for pose in np.concatenate([r.reshape(-1, 9), t], axis=1)[done]:
+            proper = np.linalg.det(pose[:9].reshape(3, 3)) > 0
+            if proper and all(np.abs(pose - p).max() > 1e-6 for p in found):
+                found.append(pose)
+        r, t = r[~done], t[~done]
+        if not len(r):
+            break
     return len(found)
 
 
