@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 
 def mobility(file: File, set_: Set = None, json: Json = False, quiet: Quiet = False) -> None:
-    """Compare Kutzbach's count with the true mobility; name idle freedoms and redundancies."""
+    """Find what can move: mobility, idle freedoms, redundancies.
+
+    Compares Kutzbach's count with the true mobility.
+    """
     from mechkin_cli.interface import load
 
     try:

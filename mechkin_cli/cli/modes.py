@@ -31,7 +31,7 @@ def modes(
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """List the ways to assemble a mechanism at one position of its inputs."""
+    """List the ways to assemble a mechanism."""
     from mechkin_cli.interface import load
 
     try:

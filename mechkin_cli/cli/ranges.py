@@ -46,7 +46,10 @@ def ranges(
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """List the range of an input for each assembly mode, its dead centres and circuits."""
+    """Find from where to where an input can go in each mode.
+
+    Lists dead centres, branch points and full turns, and the circuits that the modes form.
+    """
     from mechkin_cli.interface import load
 
     try:
