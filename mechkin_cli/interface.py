@@ -24,6 +24,7 @@ from mechkin_cli.building.source import open_file, open_text
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.expressions import Expression, Vector, parse
 from mechkin_cli.kernel.width import check_width
+from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import ANGLES, SolverGraph
@@ -154,7 +155,8 @@ class Model:
         names = [*used_quantities(layouts, problem.quantities()), *(quantities or ())]
         for name in names:
             if name not in self.quantities:
-                raise UsageError(f"there is no quantity {name}")
+                hint = hint_of(name)
+                raise UsageError(f"there is no quantity {name}" + (f"; {hint}" if hint else ""))
         self._refuse_loaded_spin(problem, names)
         closings = list(closed_at) if closed_at else None
         sweep = partial(run_sweep, problem, closed_at=closings, lanes=lanes)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.derived_quantities import derived_catalogue
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
 from mechkin_cli.mechanism.quantities import Wanted, catalogue
@@ -33,4 +34,7 @@ class Problem:
 
     def quantities(self) -> dict[str, Wanted]:
         """The quantities that the mechanism has, by name."""
-        return catalogue(self.mechanism, self.motion.driven, timed=self.motion.time is not None)
+        mechanism, motion = self.mechanism, self.motion
+        leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
+        found = catalogue(mechanism, motion.driven, timed=motion.time is not None)
+        return found | derived_catalogue(mechanism, motion.driven, leading)

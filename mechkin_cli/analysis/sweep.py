@@ -20,6 +20,7 @@ from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.result import Result
 from mechkin_cli.analysis.rows import KernelInputs, RowStates, kernel_inputs
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.batch import Batch
@@ -70,6 +71,13 @@ def analyze(
         problem = followed
         graph = build_graph(problem.mechanism, problem.motion.driven, closed_at)
     layout = Layout(problem.mechanism, graph)
+    asked = wanted
+    derived = [quantity for quantity in wanted if quantity.kind in DERIVED_KINDS]
+    if derived:
+        from mechkin_cli.analysis.derived import basis_of
+
+        wanted = [quantity for quantity in wanted if quantity.kind not in DERIVED_KINDS]
+        wanted += basis_of(problem.mechanism, derived)
     if problem.hold_idle and demand_of(problem.mechanism, wanted) & Demand.FORCES:
         held = {known[f"{leg.body}.holding_moment"] for leg in find_legs(problem.mechanism)}
         wanted += sorted(held.difference(wanted))
@@ -100,7 +108,7 @@ def analyze(
     if (rows.status == Status.not_converged).any():
         rows.diagnostics.append(not_converged_note(rows, batch))
     read = [known[name] for law in problem.load_laws if loads for name in law.reads]
-    rows.diagnostics += conventional_notes(problem, [*wanted, *read])
+    rows.diagnostics += conventional_notes(problem, [*asked, *read])
     if loads:
         rows.diagnostics += loads.diagnostics
     if inputs.values.size:
@@ -119,6 +127,14 @@ def analyze(
     )
     if shifted:
         rows.diagnostics.append(redundancy_note(graph))
+    slots = {name: slot for name, slot in outputs.slots.items() if name in known}
+    if derived:
+        from mechkin_cli.analysis.derived import Run, derived_columns
+
+        run = Run(problem, layout, inputs, start, rows, lanes, values, outputs.slots)
+        added, more = derived_columns(run, derived)
+        values, slots = np.concatenate((values, added)), slots | more
+        shifted = tuple(np.concatenate((other, added)) for other in shifted)
     return Result(
         problem=problem,
         graph=graph,
@@ -130,7 +146,7 @@ def analyze(
         condition=nothing if batch.condition is None else batch.condition,
         power_error=nothing if batch.power_error is None else batch.power_error,
         outputs=values,
-        slots=outputs.slots,
+        slots=slots,
         nodes=rows.nodes,
         shifted=shifted,
         unloaded=loads.lost if loads else None,

@@ -11,6 +11,8 @@ from collections.abc import Iterable
 from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
+from mechkin_cli.mechanism.derived_quantities import reference_point
+from mechkin_cli.mechanism.frames import GROUND
 from mechkin_cli.mechanism.model import Attached, Damper, Load, Mechanism, varying
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO, Vector
@@ -123,6 +125,11 @@ class OutputPlan:
             return self.add_point(mechanism.points[owner], wanted.order)
         if kind == "direction":
             return self._vector(mechanism.directions[owner])
+        if kind == "link_direction":
+            axis: Vector = getattr(GROUND, wanted.coordinate)
+            return self._vector(Attached(owner, axis))
+        if kind == "link_point":
+            return self.add_point(reference_point(mechanism, owner), wanted.order)
         if kind in ("axis", "joint_point"):
             joint = mechanism.joints[owner]
             if kind == "axis":
