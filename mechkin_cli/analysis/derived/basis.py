@@ -49,6 +49,11 @@ class Run(NamedTuple):
     values: Floats
     slots: Mapping[str, Slot]
 
+    def scalar(self, name: str) -> Floats:
+        """A scalar output over the rows."""
+        found: Floats = self.values[self.slots[name].first]
+        return found
+
     def vector(self, name: str) -> RowVector:
         """A vector output over the rows."""
         return vector_at(self.values, self.slots, name)

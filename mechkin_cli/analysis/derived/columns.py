@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.analysis.derived.advantage import mechanical_advantages
-from mechkin_cli.analysis.derived.basis import Run
+from mechkin_cli.analysis.derived.basis import Run, basis_of
 from mechkin_cli.analysis.derived.orientation import continuous_quaternion, turn
 from mechkin_cli.analysis.derived.screws import finite_screw, instant_screw
 from mechkin_cli.analysis.derived.transmission import transmission_angle
+from mechkin_cli.analysis.derived.unit_rate import at_unit_rate
 from mechkin_cli.mechanism.derived_quantities import FINITE_KINDS, INSTANT_KINDS, QUATERNION
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.demand import Slot
@@ -35,9 +36,17 @@ def derived_columns(run: Run, wanted: Sequence[Wanted]) -> tuple[Floats, dict[st
     return np.stack(columns), slots
 
 
+def _moving(run: Run, instant: list[Wanted]) -> Run:
+    """The run whose rates instant screws have: a file that gives none moves at unit rate."""
+    if not instant or run.inputs.rates.any() or run.problem.motion.leading is None:
+        return run
+    return at_unit_rate(run, basis_of(run.layout.mechanism, instant))
+
+
 def _computed(run: Run, wanted: Sequence[Wanted]) -> list[list[Floats]]:
     quaternion = cache(lambda owner: continuous_quaternion(run, owner))
-    instant = cache(lambda owner: instant_screw(run, owner))
+    moving = _moving(run, [quantity for quantity in wanted if quantity.kind in INSTANT_KINDS])
+    instant = cache(lambda owner: instant_screw(moving, owner))
     finite = cache(lambda owner: finite_screw(run, owner))
     asked = [quantity for quantity in wanted if quantity.kind == "mechanical_advantage"]
     advantages = iter(mechanical_advantages(run, asked) if asked else ())

@@ -80,4 +80,5 @@ def angle(q: Quaternion) -> Floats:
 def rotation_vector(q: Quaternion) -> RowVector:
     """Axis times angle of an upright quaternion; the angle is in [0, pi]."""
     size = length(q[1:])
-    return scale(np.where(size == 0.0, 2.0, angle(q) / size), q[1:])
+    none = size == 0.0
+    return scale(np.where(none, 2.0, angle(q) / np.where(none, 1.0, size)), q[1:])
