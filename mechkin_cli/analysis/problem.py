@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
@@ -32,8 +33,12 @@ class Problem:
     hold_idle: bool = False
     follow: tuple[str, ...] | None = None
 
-    def quantities(self) -> dict[str, Wanted]:
+    def quantities(self) -> Mapping[str, Wanted]:
         """The quantities that the mechanism has, by name."""
+        return self._quantities
+
+    @cached_property
+    def _quantities(self) -> Mapping[str, Wanted]:
         mechanism, motion = self.mechanism, self.motion
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
         found = catalogue(mechanism, motion.driven, timed=motion.time is not None)

@@ -48,7 +48,7 @@ class Result:
     unloaded: NDArray[np.bool_] | None = None
 
     @cached_property
-    def _known(self) -> dict[str, Wanted]:
+    def _known(self) -> Mapping[str, Wanted]:
         return self.problem.quantities()
 
     @property
