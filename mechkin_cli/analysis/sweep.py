@@ -125,7 +125,8 @@ def analyze(
     shifted = _shifted_outputs(
         plan, graph, inputs, rows, demand, lanes, outputs, wanted, values, columns
     )
-    if shifted:
+    balanced = any(quantity.kind == "transmission_angle" for quantity in derived)
+    if shifted or (balanced and is_redundant(graph)):
         rows.diagnostics.append(redundancy_note(graph))
     slots = {name: slot for name, slot in outputs.slots.items() if name in known}
     if derived:

@@ -130,8 +130,12 @@ def test_the_closing_joint_does_not_matter():
 
 
 def test_rows_without_solution_stay_empty():
+    names = ["O3.q0", "O3.turn", "rocker.screw_axis", "coupler.finite_slide"]
+    names += [f"O4.theta.{name}" for name in ("mechanical_advantage", "transmission_angle")]
     motion = {"inputs": {"O1.theta": {"from": 196, "to": 210, "step": 2}}}
-    found = edited("rcsr", ["O3.q0", "O3.turn"], motion=motion)
+    found = edited("rcsr", names, motion=motion)
     beyond = found["O1.theta"] > 205.2
-    assert np.array_equal(np.isnan(found["O3.q0"]), beyond)
-    assert np.array_equal(np.isnan(found["O3.turn"]).all(axis=1), beyond)
+    for name in names:
+        empty = np.isnan(found[name]).reshape(beyond.size, -1)
+        assert np.array_equal(empty.all(axis=1), beyond), name
+        assert np.array_equal(empty.any(axis=1), beyond), name

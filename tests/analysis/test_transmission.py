@@ -208,6 +208,7 @@ def test_a_force_that_is_not_unique_leaves_the_cells_empty():
     found = mk.loads(text).analyze(["D.theta.transmission_angle"], tables=[])
     assert not found.result.status.any()
     assert np.isnan(found["D.theta.transmission_angle"]).all()
+    assert [note.code for note in found.diagnostics] == ["not-unique"]
 
 
 @pytest.mark.parametrize("name", ["rcsr", "rsgc", "rspr"])
