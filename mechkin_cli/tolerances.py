@@ -185,6 +185,21 @@ TABLE_END: Final = 1e-9
 """Parts of a table's range by which a row may lie beyond its ends and still take the end's value:
 coordinates at an end are computed to 1e-12, and written numbers have nine digits and more."""
 
+# --- derived quantities ------------------------------------------------------------------------
+
+HALF_TURN: Final = 1e-14
+"""Scalar part of a unit quaternion up to which a turn counts as half a turn, where either sense of
+its axis is right and one must be chosen: forty roundings, an angle of 2e-14 rad."""
+
+NO_TURN: Final = 1e-12
+"""Vector part of a unit quaternion up to which a link counts as not turned, and distance (length
+units) up to which it counts as not moved: rounding leaves 1e-16 times the condition of the row."""
+
+STANDS_STILL: Final = 1e-12
+"""Rate (rad and length units) in parts of the inputs' rates up to which something counts as
+standing still: rounding leaves 1e-16 times the condition of the row. Measured on a coupler that
+only shifts: 5e-17."""
+
 # --- numbers of the file ------------------------------------------------------------------------
 
 LARGEST_NUMBER: Final = 1e100

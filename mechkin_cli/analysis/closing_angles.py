@@ -44,7 +44,7 @@ def unwrap_closing_angles(setup: Setup, values: Floats, reached: NDArray[np.bool
     slots = [own.slots[quantity.name].first for quantity in angles]
     turns = np.zeros((len(angles), reached.size))
     for way in (slice(start.row, None), slice(start.row, None, -1)):
-        count = _leading(reached[way])
+        count = leading_rows(reached[way])
         part = turns[:, way]
         inputs = setup.inputs.values[:, way][:, :count]
         part[:, :count] = _turns(own.plan, inputs, start.state, slots)
@@ -62,7 +62,7 @@ def _is_closing_angle(layout: Layout, quantity: Wanted) -> bool:
     )
 
 
-def _leading(reached: NDArray[np.bool_]) -> int:
+def leading_rows(reached: NDArray[np.bool_]) -> int:
     """How many rows have a solution before the first that has none."""
     return int(reached.size if reached.all() else np.argmin(reached))
 
@@ -72,6 +72,17 @@ def _turns(plan: Plan, inputs: Floats, start: Floats, slots: list[int]) -> Float
     turns = np.zeros((len(slots), inputs.shape[1]))
     if inputs.shape[1] < 2:
         return turns
+    outputs, rows = outputs_between(plan, inputs, start)
+    for number, slot in enumerate(slots):
+        along = outputs[slot]
+        jumps = np.cumsum(np.rint(np.diff(along, prepend=along[:1]) / (2.0 * pi)))
+        turns[number, : rows.size] = jumps[rows]
+    return turns
+
+
+def outputs_between(plan: Plan, inputs: Floats, start: Floats) -> tuple[Floats, NDArray[np.int64]]:
+    """Outputs (slots, places) along the refined path through some rows, and the places of the rows
+    that were reached; `start` is the state at the first."""
     path, rows = refined(inputs)
     followed = follow(plan, path, start)
     count = followed.reached
@@ -82,12 +93,7 @@ def _turns(plan: Plan, inputs: Floats, start: Floats, slots: list[int]) -> Float
         outputs=True,
     )
     assert batch.outputs is not None
-    rows = rows[rows < count]
-    for number, slot in enumerate(slots):
-        along = batch.outputs[slot]
-        jumps = np.cumsum(np.rint(np.diff(along, prepend=along[:1]) / (2.0 * pi)))
-        turns[number, : rows.size] = jumps[rows]
-    return turns
+    return batch.outputs, rows[rows < count]
 
 
 def refined(inputs: Floats) -> tuple[Floats, NDArray[np.int64]]:

@@ -15,6 +15,11 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.derived_quantities import (
+    FINITE_KINDS,
+    INSTANT_KINDS,
+    ORIENTATION_KINDS,
+)
 from mechkin_cli.mechanism.legs import Leg, find_legs, frame_on
 from mechkin_cli.mechanism.model import Attached, Damper, Link, LinkLoad, Mechanism, Spring
 from mechkin_cli.mechanism.quantities import Wanted
@@ -158,8 +163,11 @@ def _asymmetry(body: Link, line: Vector) -> float:
 
 
 def _is_conventional(mechanism: Mechanism, leg: Leg, quantity: Wanted) -> bool:
-    if quantity.kind in ("omega", "alpha"):
+    if quantity.kind in ("omega", "alpha") or quantity.kind in INSTANT_KINDS | FINITE_KINDS:
         return quantity.owner in leg.links
+    if quantity.kind in ORIENTATION_KINDS:
+        joint = mechanism.joints[quantity.owner]
+        return joint.first in leg.links or joint.second in leg.links
     if quantity.kind == "point":
         at = mechanism.points[quantity.owner]
         return at.link in leg.links and not _on_line(leg, at)

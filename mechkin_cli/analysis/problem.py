@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.derived_quantities import derived_catalogue
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
 from mechkin_cli.mechanism.quantities import Wanted, catalogue
@@ -31,6 +33,13 @@ class Problem:
     hold_idle: bool = False
     follow: tuple[str, ...] | None = None
 
-    def quantities(self) -> dict[str, Wanted]:
+    def quantities(self) -> Mapping[str, Wanted]:
         """The quantities that the mechanism has, by name."""
-        return catalogue(self.mechanism, self.motion.driven, timed=self.motion.time is not None)
+        return self._quantities
+
+    @cached_property
+    def _quantities(self) -> Mapping[str, Wanted]:
+        mechanism, motion = self.mechanism, self.motion
+        leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
+        found = catalogue(mechanism, motion.driven, timed=motion.time is not None)
+        return found | derived_catalogue(mechanism, motion.driven, leading)

@@ -12,6 +12,7 @@ import numpy as np
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
+from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import Slot
@@ -47,7 +48,7 @@ class Result:
     unloaded: NDArray[np.bool_] | None = None
 
     @cached_property
-    def _known(self) -> dict[str, Wanted]:
+    def _known(self) -> Mapping[str, Wanted]:
         return self.problem.quantities()
 
     @property
@@ -114,7 +115,7 @@ class Result:
             return Quantity(given, wanted.dimension)
         slot = self.slots.get(name)
         if slot is None or wanted is None:
-            raise UnknownName(name, sorted(self.slots))
+            raise UnknownName(name, sorted(self.slots), hint_of(name))
         columns = self.outputs[slot.first : slot.first + slot.width]
         if wanted.vector:
             return Quantity(Vector(columns[0], columns[1], columns[2]), wanted.dimension)

@@ -10,6 +10,7 @@ from mechkin_cli.analysis.assembly import Start, choose_start
 from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.rows import KernelInputs, kernel_inputs
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.codes import Demand
@@ -20,10 +21,14 @@ from mechkin_cli.solver.layout import Layout
 
 @dataclass(frozen=True)
 class Setup:
-    """A sweep that is ready to run; `outputs` holds the kernel's plan with the wanted quantities,
-    `lanes` the width of its packs (0 for the widest)."""
+    """A sweep that is ready to run.
+
+    `asked` are the quantities asked for; `wanted` those that the kernel computes for them, whose
+    plan `outputs` holds; `lanes` is the width of its packs (0 for the widest).
+    """
 
     problem: Problem
+    asked: tuple[Wanted, ...]
     wanted: tuple[Wanted, ...]
     demand: Demand
     layout: Layout
@@ -36,6 +41,11 @@ class Setup:
     def graph(self) -> SolverGraph:
         """Tree, closing joints and blocks of the part that is followed."""
         return self.layout.graph
+
+    @property
+    def derived(self) -> list[Wanted]:
+        """The quantities asked for that are computed from a finished run."""
+        return [quantity for quantity in self.asked if quantity.kind in DERIVED_KINDS]
 
     def reading(self, wanted: Iterable[Wanted], demand: Demand) -> Setup:
         """The same sweep for other quantities."""
@@ -59,9 +69,10 @@ def prepare(
         KeyError: an unknown quantity.
     """
     known = problem.quantities()
-    wanted = [known[name] for name in dict.fromkeys(quantities)]
-    problem, graph = _followed(problem, wanted, closed_at)
+    asked = [known[name] for name in dict.fromkeys(quantities)]
+    problem, graph = _followed(problem, asked, closed_at)
     layout = Layout(problem.mechanism, graph)
+    wanted = _computed(problem, asked)
     if problem.hold_idle and demand_of(problem.mechanism, wanted) & Demand.FORCES:
         held = {known[f"{leg.body}.holding_moment"] for leg in find_legs(problem.mechanism)}
         wanted += sorted(held.difference(wanted))
@@ -71,6 +82,7 @@ def prepare(
     size = None if start.state is None else probe.size(inputs.values[:, start.row], start.state)
     return Setup(
         problem=problem,
+        asked=tuple(asked),
         wanted=tuple(wanted),
         demand=_demand(problem, graph, wanted, verdicts),
         layout=layout,
@@ -94,6 +106,17 @@ def _followed(
     if part is problem:
         return problem, graph
     return part, build_graph(part.mechanism, part.motion.driven, closed_at)
+
+
+def _computed(problem: Problem, asked: list[Wanted]) -> list[Wanted]:
+    """What the kernel computes for the quantities asked for."""
+    derived = [quantity for quantity in asked if quantity.kind in DERIVED_KINDS]
+    if not derived:
+        return list(asked)
+    from mechkin_cli.analysis.derived import basis_of
+
+    plain = [quantity for quantity in asked if quantity.kind not in DERIVED_KINDS]
+    return plain + basis_of(problem.mechanism, derived)
 
 
 def _demand(problem: Problem, graph: SolverGraph, wanted: list[Wanted], verdicts: bool) -> Demand:

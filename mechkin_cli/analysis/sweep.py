@@ -23,6 +23,7 @@ from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.solver.batch import Batch
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
+from mechkin_cli.solver.graph import is_redundant
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
@@ -67,7 +68,8 @@ def analyze(
     _empty_missing_rows(run)
     run.rows.diagnostics += _notes(setup, run)
     shifted = other_reactions(setup, run.rows, run.values, run.loads and run.loads.columns)
-    if shifted:
+    balanced = any(quantity.kind == "transmission_angle" for quantity in setup.derived)
+    if shifted or (balanced and is_redundant(setup.graph)):
         run.rows.diagnostics.append(redundancy_note(setup.graph))
     return _result(setup, run, shifted)
 
@@ -139,7 +141,7 @@ def _notes(setup: Setup, run: _Run) -> list[Diagnostic]:
         from mechkin_cli.analysis.idle import conventional_notes
 
         read = [known[name] for law in problem.load_laws if run.loads for name in law.reads]
-        notes += conventional_notes(problem, [*setup.wanted, *read])
+        notes += conventional_notes(problem, [*setup.asked, *read])
     if run.loads:
         notes += run.loads.diagnostics
     note = open_turn_note(setup, run.batch.states, run.rows.reached)
@@ -153,6 +155,15 @@ def _notes(setup: Setup, run: _Run) -> list[Diagnostic]:
 
 def _result(setup: Setup, run: _Run, shifted: tuple[Floats, ...]) -> Result:
     rows, batch, start = run.rows, run.batch, setup.start
+    known = setup.problem.quantities()
+    values = run.values
+    slots = {name: slot for name, slot in setup.outputs.slots.items() if name in known}
+    if setup.derived:
+        from mechkin_cli.analysis.derived import FinishedRun, derived_columns
+
+        added, more = derived_columns(FinishedRun(setup, rows, values), setup.derived)
+        values, slots = np.concatenate((values, added)), slots | more
+        shifted = tuple(np.concatenate((other, added)) for other in shifted)
     nothing = np.full(setup.problem.motion.rows, np.nan)
     return Result(
         problem=setup.problem,
@@ -164,8 +175,8 @@ def _result(setup: Setup, run: _Run, shifted: tuple[Floats, ...]) -> Result:
         residual=batch.residual,
         condition=nothing if batch.condition is None else batch.condition,
         power_error=nothing if batch.power_error is None else batch.power_error,
-        outputs=run.values,
-        slots=setup.outputs.slots,
+        outputs=values,
+        slots=slots,
         nodes=rows.nodes,
         shifted=shifted,
         unloaded=run.loads.lost if run.loads else None,

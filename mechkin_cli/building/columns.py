@@ -9,6 +9,7 @@ import numpy as np
 
 from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector, parse
+from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.tables.layout import (
     ROW_TEXTS,
@@ -82,7 +83,8 @@ class _Sample:
             raise AlreadyRefused(name)
         wanted = self.quantities.get(name)
         if wanted is None:
-            raise UnknownName(name, [*self.parameters, *self.quantities, *ROW_TEXTS])
+            known = [*self.parameters, *self.quantities, *ROW_TEXTS]
+            raise UnknownName(name, known, hint_of(name))
         one = np.ones(1)
         value = Vector(one, one, one) if wanted.vector else one
         return Quantity(value, wanted.dimension)

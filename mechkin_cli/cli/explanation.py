@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mechkin_cli.kernel.width import INSTRUCTIONS, width, widths
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, POWER_KINDS
 from mechkin_cli.mechanism.joint_types import FREE
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS
@@ -12,6 +13,7 @@ from mechkin_cli.solver.demand import WRENCH_KINDS
 if TYPE_CHECKING:
     from mechkin_cli.interface import Analysis
     from mechkin_cli.mechanism.model import Joint
+    from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.graph import Block, SolverGraph
 
 
@@ -66,7 +68,8 @@ def _demand_lines(analysis: Analysis) -> list[str]:
     massless = not any(link.has_mass for link in mechanism.links.values())
     forces = bool(demand & Demand.FORCES)
     known = analysis.model.problem.quantities()
-    reactions = any(known[name].kind in WRENCH_KINDS for name in result.slots)
+    asked = [known[name] for name in result.slots]
+    reactions = any(quantity.kind in WRENCH_KINDS for quantity in asked)
     lines = [
         f"positions: {result.rows} rows, {result.nodes} nodes followed, the rest filled in between",
         _line("velocities", bool(demand & Demand.VELOCITY), "no column reads a rate"),
@@ -85,6 +88,7 @@ def _demand_lines(analysis: Analysis) -> list[str]:
 
         read = ", ".join(quantities_read(analysis.model.problem))
         lines.append(f"loads that vary: evaluated on all rows first, from {read}")
+    lines += _derived_lines(asked)
     if forces and massless:
         lines.append("inertia: skipped, no link has mass")
     return [*lines, _width_line()]
@@ -93,6 +97,19 @@ def _demand_lines(analysis: Analysis) -> list[str]:
 def _width_line() -> str:
     known = ", ".join(f"{lanes} ({INSTRUCTIONS[lanes]})" for lanes in widths())
     return f"width: {width()} rows at a time; this machine has {known}"
+
+
+def _derived_lines(asked: list[Wanted]) -> list[str]:
+    lines = []
+    simple = [quantity.name for quantity in asked if quantity.kind in DERIVED_KINDS - POWER_KINDS]
+    if simple:
+        lines.append(f"derived from positions and rates: {', '.join(simple)}")
+    if any(quantity.kind == "mechanical_advantage" for quantity in asked):
+        lines.append("mechanical advantages: one more run, with unit rate of one input")
+    angles = sum(quantity.kind == "transmission_angle" for quantity in asked)
+    if angles:
+        lines.append(f"transmission angles: static runs with a unit load, {angles} in all")
+    return lines
 
 
 def _without(forces: bool, massless: bool) -> str:

@@ -28,17 +28,19 @@ class ExpressionError(MechkinError):
 
 
 class UnknownName(KeyError):
-    """Raised by a resolver for a name that it does not have; `known` are the names that it has."""
+    """Raised by a resolver for a name that it does not have; `known` are the names that it has,
+    `reason` why it has none of this kind."""
 
-    def __init__(self, name: str, known: Iterable[str] = ()) -> None:
+    def __init__(self, name: str, known: Iterable[str] = (), reason: str | None = None) -> None:
         self.name = name
         self.known = known
+        self.reason = reason
         super().__init__(name)
 
     @property
     def hint(self) -> str | None:
-        """The nearest known names, or all of them when they are few."""
-        return nearest(self.name, self.known)
+        """The reason, or else the nearest known names, or all of them when they are few."""
+        return self.reason or nearest(self.name, self.known)
 
 
 SHORT_LIST = 8

@@ -15,6 +15,7 @@ from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.settings import Setting, input_values
 from mechkin_cli.kernel.width import check_width
+from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
@@ -106,7 +107,8 @@ class Model:
         names = [*used_quantities(layouts, problem.quantities()), *(quantities or ())]
         for name in names:
             if name not in self.quantities:
-                raise UsageError(f"there is no quantity {name}")
+                hint = hint_of(name)
+                raise UsageError(f"there is no quantity {name}" + (f"; {hint}" if hint else ""))
         self._refuse_loaded_spin(problem, names)
         closings = list(closed_at) if closed_at else None
         sweep = partial(run_sweep, problem, closed_at=closings, lanes=lanes)

@@ -69,6 +69,12 @@ class Motion(NamedTuple):
         """(joint, coordinate) of the inputs."""
         return [(i.joint, i.coordinate) for i in self.inputs]
 
+    @property
+    def leading(self) -> DrivenInput | None:
+        """The first input that moves over the rows; the first of all if none does."""
+        moving = (i for i in self.inputs if (i.values != i.values[0]).any())
+        return next(moving, self.inputs[0] if self.inputs else None)
+
 
 @dataclass(frozen=True)
 class Assembly:

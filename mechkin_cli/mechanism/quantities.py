@@ -2,7 +2,7 @@
 
 `J.theta`, `J.theta_dot`, `J.force`, `p.position`, `L.omega`, `ground.shaking_force`,
 `row.residual`, `time`, ... (format 1, Quantities). Directions and parameters stand by their own
-names.
+names; those that are computed from others after a run stand in `derived_quantities`.
 """
 
 from __future__ import annotations
@@ -51,7 +51,21 @@ Kind = Literal[
     "condition",
     "power_error",
     "time",
+    "quaternion",
+    "turn",
+    "screw_axis",
+    "screw_point",
+    "screw_pitch",
+    "finite_axis",
+    "finite_point",
+    "finite_angle",
+    "finite_slide",
+    "mechanical_advantage",
+    "transmission_angle",
+    "link_direction",
+    "link_point",
 ]
+"""The last two are of no use to users: what derived quantities are computed from."""
 
 
 class Wanted(NamedTuple):

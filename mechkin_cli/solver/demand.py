@@ -11,6 +11,8 @@ from collections.abc import Iterable
 from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, reference_point
+from mechkin_cli.mechanism.frames import GROUND
 from mechkin_cli.mechanism.model import Attached, Damper, Load, Mechanism, varying
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO, Vector
@@ -77,8 +79,8 @@ class OutputPlan:
         self.slots: dict[str, Slot] = {}
 
     def add(self, wanted: Wanted) -> None:
-        """Plans one quantity; quantities of the row itself need no slot."""
-        if wanted.name in self.slots or wanted.owner == "row":
+        """Plans one quantity; those of the row itself and derived ones need no slot."""
+        if wanted.name in self.slots or wanted.owner == "row" or wanted.kind in DERIVED_KINDS:
             return
         if wanted.kind == "coordinate":
             first = self._add_coordinate(wanted)
@@ -123,6 +125,11 @@ class OutputPlan:
             return self.add_point(mechanism.points[owner], wanted.order)
         if kind == "direction":
             return self._vector(mechanism.directions[owner])
+        if kind == "link_direction":
+            axis: Vector = getattr(GROUND, wanted.coordinate)
+            return self._vector(Attached(owner, axis))
+        if kind == "link_point":
+            return self.add_point(reference_point(mechanism, owner), wanted.order)
         if kind in ("axis", "joint_point"):
             joint = mechanism.joints[owner]
             if kind == "axis":

@@ -88,3 +88,19 @@ def test_loads_that_vary_are_evaluated_first(mechkin, tmp_path) -> None:
     read = "loads that vary: evaluated on all rows first, from O4.theta, O4.theta_dot"
     assert read in lines(mechkin, place, "--table", "table_16")
     assert read not in lines(mechkin, place, "--table", "table_04")
+
+
+def test_derived_quantities_say_what_they_take(mechkin, write) -> None:
+    text = RCSR.read_text(encoding="utf-8")
+    columns = ", ".join(
+        f"{{label: c{k}, value: {value}}}"
+        for k, value in enumerate(
+            ("O3.q0", "O4.theta.mechanical_advantage", "O4.theta.transmission_angle")
+        )
+    )
+    text = text[: text.index("\ntables:")] + f"\ntables: [{{name: t, columns: [{columns}]}}]\n"
+    found = lines(mechkin, write("derived.yaml", text))
+    assert "derived from positions and rates: O3.q0" in found
+    assert "mechanical advantages: one more run, with unit rate of one input" in found
+    assert "transmission angles: static runs with a unit load, 1 in all" in found
+    assert any(line.startswith("input efforts and closing wrenches: skipped") for line in found)

@@ -53,6 +53,7 @@ EXPORTED void solve_tall(int m, int n, const double* a, const double* b, const d
 EXPORTED void least_singular_value(int m, int n, const double* a, double* sigma) {
   Pack matrix[LARGEST * LARGEST];
   load(m * n, a, matrix);
-  const Pack least = smallest_singular_value(matrix, m, n);
+  Pack squares[LARGEST];
+  const Pack least = smallest_singular_value(matrix, m, n, squares);
   store(1, &least, sigma);
 }

@@ -20,6 +20,7 @@ import numpy as np
 from oracle.document import Document, to_text
 
 import mechkin_cli as mk
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.units import ANGLE
 
 EPS = 2.0**-52
@@ -66,12 +67,17 @@ def kind(name: str) -> Kind:
 
 
 def answers(source: str | Document, **options: Any) -> Values:
-    """Every quantity over all rows in file units, angles in rad; (rows,) or (rows, 3).
+    """Every quantity but derived ones over all rows in file units, angles in rad; (rows,) or
+    (rows, 3).
 
     An effort has its long name only: `J1.theta.effort`.
     """
     model = mk.loads(source if isinstance(source, str) else to_text(source))
-    names = [name for name in model.quantities if not name.startswith("row.")]
+    names = [
+        name
+        for name, wanted in model.problem.quantities().items()
+        if wanted.owner != "row" and wanted.kind not in DERIVED_KINDS
+    ]
     analysis = model.analyze(names, tables=[], **options)
     assert analysis.diagnostics == ()
     assert not analysis.result.status.any()

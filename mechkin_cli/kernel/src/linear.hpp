@@ -112,39 +112,46 @@ inline void solve_transposed(Factors f, Pack* b) { MECHKIN_SIZED(solve_transpose
 #undef MECHKIN_AND_B
 #undef MECHKIN_SIZED
 
+inline Pack column_square(const Pack* a, int m, int n, int column) {
+  Pack sum = 0.0;
+  for (int i = 0; i < m; ++i) sum += a[i * n + column] * a[i * n + column];
+  return sum;
+}
+
 // Smallest singular value of the m x n matrix a (destroyed), by one-sided Jacobi rotations of its
 // columns (Demmel and Veselic 1992: accurate to high relative precision). A pair of columns that is
-// orthogonal to rounding is left alone, lane by lane.
-inline Pack smallest_singular_value(Pack* a, int m, int n) {
-  const Pack negligible = 1e-15;
+// orthogonal to rounding is left alone, lane by lane. Cosines between columns that were below 1e-8 throughout
+// a sweep are below rounding after it (quadratic convergence), so no sweep is needed to see that.
+// `square` is room for n packs.
+inline Pack smallest_singular_value(Pack* a, int m, int n, Pack* square) {
+  const Pack negligible = 1e-30, last = 1e-16;  // squared cosines
   for (int sweep = 0; sweep < 30; ++sweep) {
-    bool rotated = false;
+    bool again = false;
+    for (int j = 0; j < n; ++j) square[j] = column_square(a, m, n, j);
     for (int p = 0; p < n; ++p)
       for (int q = p + 1; q < n; ++q) {
-        Pack alpha = 0.0, beta = 0.0, gamma = 0.0;
-        for (int i = 0; i < m; ++i) {
-          const Pack x = a[i * n + p], y = a[i * n + q];
-          alpha += x * x, beta += y * y, gamma += x * y;
-        }
-        const Mask turn = abs(gamma) > negligible * sqrt(alpha * beta);
+        Pack gamma = 0.0;
+        for (int i = 0; i < m; ++i) gamma += a[i * n + p] * a[i * n + q];
+        const Pack size = square[p] * square[q], cosine = gamma * gamma;
+        const Mask turn = cosine > negligible * size;
         if (!any(turn)) continue;
-        rotated = true;
-        const Pack zeta = (beta - alpha) / (Pack(2.0) * select(turn, gamma, Pack(1.0)));
-        const Pack t = copysign(Pack(1.0), zeta) / (abs(zeta) + sqrt(Pack(1.0) + zeta * zeta));
+        again = again || any(cosine > last * size);
+        const Pack zeta = (square[q] - square[p]) / (Pack(2.0) * select(turn, gamma, Pack(1.0)));
+        const Pack t = select(turn, copysign(Pack(1.0), zeta) / (abs(zeta) + sqrt(Pack(1.0) + zeta * zeta)), Pack(0.0));
         const Pack c = Pack(1.0) / sqrt(Pack(1.0) + t * t), s = c * t;
+        square[p] -= t * gamma, square[q] += t * gamma;
         for (int i = 0; i < m; ++i) {
           const Pack x = a[i * n + p], y = a[i * n + q];
-          a[i * n + p] = select(turn, c * x - s * y, x);
-          a[i * n + q] = select(turn, s * x + c * y, y);
+          a[i * n + p] = c * x - s * y;
+          a[i * n + q] = s * x + c * y;
         }
       }
-    if (!rotated) break;
+    if (!again) break;
   }
   Pack least = 0.0;
   for (int j = 0; j < n; ++j) {
-    Pack square = 0.0;
-    for (int i = 0; i < m; ++i) square += a[i * n + j] * a[i * n + j];
-    least = j ? min(least, square) : square;
+    const Pack square_now = column_square(a, m, n, j);
+    least = j ? min(least, square_now) : square_now;
   }
   return sqrt(least);
 }

@@ -46,7 +46,7 @@ Pack block_condition(const Plan& p, Workspace& w, int index) {
     const Pack weight = p.column_weight[p.unknown[b.column_begin + u]];
     for (int i = 0; i < m; ++i) w.scratch[i * n + u] *= weight;
   }
-  return Pack(1.0) / smallest_singular_value(w.scratch, m, n);
+  return Pack(1.0) / smallest_singular_value(w.scratch, m, n, w.right);
 }
 
 void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {

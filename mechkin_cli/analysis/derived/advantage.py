@@ -1,0 +1,39 @@
+"""Mechanical advantage: the rate of the leading input over the rate of a coordinate.
+
+Without losses the powers of input and load are equal, so it is the load that a unit of input effort
+balances.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.derived.basis import FinishedRun
+from mechkin_cli.analysis.derived.unit_rate import at_unit_rate
+from mechkin_cli.mechanism.quantities import Wanted
+from mechkin_cli.solver.layout import is_slide
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+
+def mechanical_advantages(run: FinishedRun, wanted: Sequence[Wanted]) -> list[Floats]:
+    """Each quantity's values (rows,) in SI; nan where the coordinate stands still."""
+    known, leading = run.problem.quantities(), run.problem.motion.leading
+    assert leading is not None
+    names = [f"{quantity.owner}.{quantity.coordinate}_dot" for quantity in wanted]
+    influence = at_unit_rate(run, [known[name] for name in (f"{leading.name}_dot", *names)])
+    given = influence.scalar(f"{leading.name}_dot")
+    found = []
+    for quantity, name in zip(wanted, names, strict=True):
+        rate = influence.scalar(name)
+        size = run.layout.length if is_slide(quantity.coordinate) else 1.0
+        moves = np.abs(rate) > tolerances.STANDS_STILL * size
+        found.append(np.where(moves, given / rate, np.nan))
+    return found

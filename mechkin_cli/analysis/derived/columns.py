@@ -1,0 +1,71 @@
+"""The derived quantities of a run as further columns of its outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.analysis.derived.advantage import mechanical_advantages
+from mechkin_cli.analysis.derived.basis import FinishedRun, basis_of
+from mechkin_cli.analysis.derived.orientation import continuous_quaternion, turn
+from mechkin_cli.analysis.derived.screws import finite_screw, instant_screw
+from mechkin_cli.analysis.derived.transmission import transmission_angle
+from mechkin_cli.analysis.derived.unit_rate import at_unit_rate
+from mechkin_cli.mechanism.derived_quantities import FINITE_KINDS, INSTANT_KINDS, QUATERNION
+from mechkin_cli.mechanism.quantities import Wanted
+from mechkin_cli.solver.demand import Slot
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+
+def derived_columns(run: FinishedRun, wanted: Sequence[Wanted]) -> tuple[Floats, dict[str, Slot]]:
+    """The columns (slots, rows) of some derived quantities, in SI, and their slots, counted behind
+    those of the run."""
+    columns: list[Floats] = []
+    slots: dict[str, Slot] = {}
+    with np.errstate(all="ignore"):
+        for quantity, parts in zip(wanted, _computed(run, wanted), strict=True):
+            slots[quantity.name] = Slot(len(run.values) + len(columns), len(parts))
+            columns += parts
+    return np.stack(columns), slots
+
+
+def _moving(run: FinishedRun, instant: list[Wanted]) -> FinishedRun:
+    """The run whose rates instant screws have: a file that gives none moves at unit rate."""
+    if not instant or run.inputs.rates.any() or run.problem.motion.leading is None:
+        return run
+    return at_unit_rate(run, basis_of(run.layout.mechanism, instant))
+
+
+def _computed(run: FinishedRun, wanted: Sequence[Wanted]) -> list[list[Floats]]:
+    quaternion = cache(lambda owner: continuous_quaternion(run, owner))
+    moving = _moving(run, [quantity for quantity in wanted if quantity.kind in INSTANT_KINDS])
+    instant = cache(lambda owner: instant_screw(moving, owner))
+    finite = cache(lambda owner: finite_screw(run, owner))
+    asked = [quantity for quantity in wanted if quantity.kind == "mechanical_advantage"]
+    advantages = iter(mechanical_advantages(run, asked) if asked else ())
+
+    def parts(quantity: Wanted) -> list[Floats]:
+        owner = quantity.owner
+        if quantity.kind == "quaternion":
+            return [quaternion(owner)[QUATERNION.index(quantity.coordinate)]]
+        if quantity.kind == "turn":
+            return [*turn(run, owner)]
+        if quantity.kind == "mechanical_advantage":
+            return [next(advantages)]
+        if quantity.kind == "transmission_angle":
+            return [transmission_angle(run, quantity)]
+        if quantity.kind in INSTANT_KINDS:
+            value = getattr(instant(owner), quantity.kind.removeprefix("screw_"))
+        else:
+            assert quantity.kind in FINITE_KINDS
+            value = getattr(finite(owner), quantity.kind.removeprefix("finite_"))
+        return [*value] if quantity.vector else [value]
+
+    return [parts(quantity) for quantity in wanted]

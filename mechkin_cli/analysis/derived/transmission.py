@@ -1,0 +1,103 @@
+"""Transmission angle of a link that is guided on ground by one joint and driven by one other.
+
+A unit load on the coordinate, without masses and other loads, is balanced by the force F of the
+driving joint; v is the velocity of that joint's point on the link when the coordinate alone moves.
+The angle is asin(|F.v|/(|F||v|)), 90 degrees less the angle between their lines: 90 degrees where
+the force does nothing but drive, 0 at the link's dead centre (Sutherland and Roth, A transmission
+index for spatial mechanisms, J. Eng. Industry 95, 1973). In a plane four-bar it is the angle
+between coupler and rocker.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.batched import run_reached
+from mechkin_cli.analysis.derived.basis import FinishedRun, vector_at
+from mechkin_cli.analysis.derived.row_vectors import (
+    add,
+    choose,
+    cross,
+    dot,
+    length,
+    scale,
+    subtract,
+)
+from mechkin_cli.kernel.functions import atan2
+from mechkin_cli.mechanism.derived_quantities import driving_joint
+from mechkin_cli.mechanism.model import Joint, JointLoad, Link, Mechanism
+from mechkin_cli.mechanism.quantities import Wanted
+from mechkin_cli.mechanism.vectors import ZERO
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.graph import is_redundant
+from mechkin_cli.solver.layout import Layout
+from mechkin_cli.status import Status
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.analysis.derived.row_vectors import RowVector
+
+    Floats = NDArray[np.float64]
+
+
+def transmission_angle(run: FinishedRun, quantity: Wanted) -> Floats:
+    """The angle (rad, 0 to pi/2) of one coordinate over the rows; nan where the force is not
+    unique, or where the driving joint's point does not move with the coordinate."""
+    mechanism = run.layout.mechanism
+    guide = mechanism.joints[quantity.owner]
+    driver = driving_joint(mechanism, guide)
+    assert driver is not None
+    layout = Layout(_with_unit_load(mechanism, quantity), run.layout.graph)
+    known = run.problem.quantities()
+    names = (f"{driver.name}.force", f"{driver.name}.point", f"{guide.name}.point")
+    wanted = [known[name] for name in (*names, f"{guide.name}.axis")]
+    setup = replace(run.setup, layout=layout).reading(wanted, Demand.FORCES)
+    slots = setup.outputs.slots
+
+    def angle(shift: int) -> Floats:
+        batch = run_reached(setup, run.rows, shift=shift)
+        values = batch.outputs
+        assert values is not None
+        force, point, centre = (vector_at(values, slots, name) for name in names)
+        axis = vector_at(values, slots, f"{guide.name}.axis")
+        arm = subtract(point, centre)
+        return _between(force, _velocity(guide, quantity.coordinate, axis, arm, layout.length))
+
+    found = angle(0)
+    lost = ~run.rows.reached | (run.rows.status == Status.rank_unclear)
+    for shift in (1, 2) if is_redundant(run.layout.graph) else ():
+        lost |= ~(np.abs(angle(shift) - found) <= tolerances.UNIQUE_CELL)
+    return np.where(lost, np.nan, found)
+
+
+def _with_unit_load(mechanism: Mechanism, quantity: Wanted) -> Mechanism:
+    """The mechanism without masses and loads but one on a coordinate."""
+    slide = quantity.coordinate == "s"
+    load = JointLoad(quantity.owner, "s" if slide else "theta", 1.0)
+    links = {name: Link(name) for name in mechanism.links}
+    return replace(mechanism, links=links, loads=(load,), gravity=ZERO)
+
+
+def _velocity(
+    guide: Joint, coordinate: str, axis: RowVector, arm: RowVector, unit: float
+) -> RowVector:
+    """Velocity of a point of the link, up to its sense, in lengths per length or rad; zero where it
+    is zero to rounding."""
+    if guide.letter != "H" and coordinate == "s":
+        return axis
+    around = cross(axis, arm)
+    if guide.letter == "H":
+        around = add(around, scale(guide.lead / (2.0 * pi), axis))
+    return choose(length(around) > tolerances.STANDS_STILL * unit, around, 0.0)
+
+
+def _between(force: RowVector, velocity: RowVector) -> Floats:
+    """asin of |F.v|/(|F||v|), accurate at both ends; nan where either is zero."""
+    along, across = np.abs(dot(force, velocity)), length(cross(force, velocity))
+    return np.where((along > 0.0) | (across > 0.0), atan2(along, across), np.nan)

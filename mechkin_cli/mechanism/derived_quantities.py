@@ -1,0 +1,137 @@
+"""The quantities that are derived from others after a run, by name.
+
+`J.q0` ... `J.q3`, `J.turn` of joints whose orientation has no coordinate; `L.screw_axis`,
+`L.finite_axis`, ... of links; `J.theta.mechanical_advantage` of every coordinate that is no input;
+`J.theta.transmission_angle` where one joint alone drives a link that is hinged to ground.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism
+from mechkin_cli.mechanism.quantities import Kind, Wanted
+from mechkin_cli.mechanism.vectors import ZERO
+from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, Dimension
+
+QUATERNION = ("q0", "q1", "q2", "q3")
+"""Names of a joint's quaternion, scalar first."""
+
+ORIENTATION_KINDS = {"quaternion", "turn"}
+INSTANT_KINDS = {"screw_axis", "screw_point", "screw_pitch"}
+FINITE_KINDS = {"finite_axis", "finite_point", "finite_angle", "finite_slide"}
+POWER_KINDS = {"mechanical_advantage", "transmission_angle"}
+DERIVED_KINDS = ORIENTATION_KINDS | INSTANT_KINDS | FINITE_KINDS | POWER_KINDS
+
+_ORIENTED = ("S", "Sp", "Sg")
+_GUIDED = ("R", "P", "H", "C")
+_SCREWS: tuple[tuple[Kind, Dimension, bool, int], ...] = (
+    ("screw_axis", DIMENSIONLESS, True, 1),
+    ("screw_point", LENGTH, True, 1),
+    ("screw_pitch", LENGTH / ANGLE, False, 1),
+    ("finite_axis", DIMENSIONLESS, True, 0),
+    ("finite_point", LENGTH, True, 0),
+    ("finite_angle", ANGLE, False, 0),
+    ("finite_slide", LENGTH, False, 0),
+)
+_HINTS = {
+    "transmission_angle": (
+        "a transmission angle has theta or s, unless an input, of an R, P, H or C between ground "
+        "and a link with exactly one other joint, of type S, Sp or Sg"
+    ),
+    "mechanical_advantage": (
+        "a mechanical advantage has every coordinate that is no input (J.theta, J.s, ...), where "
+        "there is an input"
+    ),
+    "turn": f"joints of type {', '.join(_ORIENTED)} have an orientation",
+} | dict.fromkeys(QUATERNION, f"joints of type {', '.join(_ORIENTED)} have an orientation")
+
+
+def derived_catalogue(
+    mechanism: Mechanism,
+    inputs: Sequence[tuple[str, str]],
+    leading: tuple[str, str] | None,
+) -> dict[str, Wanted]:
+    """Every derived quantity by name; `inputs` (joint, coordinate), `leading` the one of them that
+    mechanical advantages refer to."""
+    found = [*_of_orientations(mechanism), *_of_screws(mechanism)]
+    if leading is not None:
+        found += _of_advantages(mechanism, inputs, leading[1])
+    found += _of_transmissions(mechanism, inputs)
+    return {wanted.name: wanted for wanted in found}
+
+
+def hint_of(name: str) -> str | None:
+    """Which owners have the derived quantity that an unknown name asks for; None for others.
+
+    >>> hint_of("A.turn")
+    'joints of type S, Sp, Sg have an orientation'
+    """
+    return _HINTS.get(name.rpartition(".")[2]) if "." in name else None
+
+
+def driving_joint(mechanism: Mechanism, joint: Joint) -> Joint | None:
+    """The joint that alone drives the link which `joint` guides on ground; None where the
+    structure is another."""
+    if joint.letter not in _GUIDED or GROUND_NAME not in (joint.first, joint.second):
+        return None
+    link = output_link(joint)
+    others = [
+        other
+        for other in mechanism.joints.values()
+        if other is not joint and link in (other.first, other.second)
+    ]
+    return others[0] if len(others) == 1 and others[0].letter in _ORIENTED else None
+
+
+def output_link(joint: Joint) -> str:
+    """The moving link of a joint on ground."""
+    return joint.second if joint.first == GROUND_NAME else joint.first
+
+
+def reference_point(mechanism: Mechanism, link: str) -> Attached:
+    """A point of a link near its joints, as drawn; the ground origin if it has only welds."""
+    points = (at for _, at in mechanism.joint_points() if at.link == link)
+    return next(points, Attached(link, ZERO))
+
+
+def _of_orientations(mechanism: Mechanism) -> Iterator[Wanted]:
+    for joint in mechanism.joints.values():
+        if joint.letter in _ORIENTED:
+            for word in QUATERNION:
+                name = f"{joint.name}.{word}"
+                yield Wanted(name, "quaternion", joint.name, DIMENSIONLESS, False, word)
+            yield Wanted(f"{joint.name}.turn", "turn", joint.name, ANGLE, True)
+
+
+def _of_screws(mechanism: Mechanism) -> Iterator[Wanted]:
+    for link in mechanism.links:
+        if link != GROUND_NAME:
+            for kind, dimension, vector, order in _SCREWS:
+                yield Wanted(f"{link}.{kind}", kind, link, dimension, vector, order=order)
+
+
+def _of_advantages(
+    mechanism: Mechanism, inputs: Sequence[tuple[str, str]], leading: str
+) -> Iterator[Wanted]:
+    for joint in mechanism.joints.values():
+        for coordinate in joint.type.coordinates:
+            if (joint.name, coordinate) not in inputs:
+                name = f"{joint.name}.{coordinate}.mechanical_advantage"
+                dimension = _dimension(leading) / _dimension(coordinate)
+                kind: Kind = "mechanical_advantage"
+                yield Wanted(name, kind, joint.name, dimension, False, coordinate)
+
+
+def _of_transmissions(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
+    for joint in mechanism.joints.values():
+        if driving_joint(mechanism, joint) is not None:
+            for coordinate in joint.type.coordinates:
+                if (joint.name, coordinate) not in inputs:
+                    name = f"{joint.name}.{coordinate}.transmission_angle"
+                    kind: Kind = "transmission_angle"
+                    yield Wanted(name, kind, joint.name, ANGLE, False, coordinate)
+
+
+def _dimension(coordinate: str) -> Dimension:
+    return ANGLE if coordinate.startswith("theta") else LENGTH
