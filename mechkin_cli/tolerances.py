@@ -61,6 +61,13 @@ from it."""
 SEARCH_CONDITION: Final = 1e12
 """An end point of the search that is more singular is no isolated assembly."""
 
+SEARCH_SLIDES: Final = 2.0
+"""Bound of random slides in sizes of the home drawing: a chain of links reaches no farther."""
+
+MODE_ORDER: Final = 1e-6
+"""Coordinates (rad, parts of the size) that differ less are equal for the order of the modes'
+letters, so that rounding cannot change it."""
+
 NEAR_RUNNER_UP: Final = 1.2
 """Ratio of distances below which the nearest assembly is not clearly the one that was meant."""
 
@@ -99,6 +106,14 @@ NODE_PIVOT: Final = 1e-6
 over its square, so that below it no test of the tangent tells one branch from another. Measured
 without it: a path ran through the branch point of a parallelogram onto the crossed branch."""
 
+SAME_LINE: Final = 1e-12
+"""Distance from a straight line, in parts of the inputs, up to which rows count as one run of the
+path: written numbers round at 1e-16 of their size."""
+
+CLOSING_ANGLE_STEP: Final = 0.1
+"""Step of the inputs (rad, length units) on the path on which turns of closing joints are counted:
+angles turn less than half a turn in it unless they run thirty times as fast as the input."""
+
 MOST_STEPS: Final = 20000
 """Steps of one path. Measured: R-Sg-C takes 32 for 315 degrees; a path that needs thousands is no
 sweep."""
@@ -108,6 +123,13 @@ sweep."""
 DEAD_CENTRE_STEP: Final = 1e-12
 """Newton on d(input)/d(coordinate) = 0 ends when the coordinate moves less (rad or parts of the
 size)."""
+
+DEAD_CENTRE_STRIDE: Final = 0.2
+"""Longest step of the driven coordinate (rad or length units) that Newton's guess still follows."""
+
+DEAD_CENTRE_BEHIND: Final = 1e-9
+"""How far (rad or length units) a dead centre may lie behind the last place followed: rounding of
+that place, which is about the root of a rounding away from it."""
 
 DEAD_CENTRE_ITERATIONS: Final = 40
 """Far more than quadratic convergence needs; a search that uses them all has found none."""
@@ -121,6 +143,10 @@ root of a rounding."""
 FOLD_CROSSING: Final = 0.02
 """Step of the fastest coordinate (rad, length units) by which a dead centre is left on its other
 side: short against the way between two of them, long against its own doubt of 1e-8."""
+
+SAME_TURN: Final = 1e-12
+"""Turns by which two rows' inputs may differ from a whole number of them and still stand for the
+same place: decimal degrees become radians by one rounding."""
 
 MOST_BRANCHES: Final = 64
 """Branches of one circuit that are walked through."""
@@ -202,6 +228,18 @@ only shifts: 5e-17."""
 
 # --- numbers of the file ------------------------------------------------------------------------
 
+LAST_ROW: Final = 1e-9
+"""Steps by which the last row may lie beyond the end of a sweep, part of format 1: the quotient of
+written numbers is wrong by 1e-16 times the number of rows, of which there are at most 1e7."""
+
+FAR_DRAWING: Final = 4.0
+"""Distance of the drawing from the ground origin, in sizes, beyond which the kernel works about its
+own origin: nearer, the origin costs three bits at most."""
+
+OPPOSITE_COSINE: Final = -1.0 + 1e-15
+"""Cosine up to which two unit vectors are opposite, so that the shortest turn between them has no
+axis of its own: nine roundings from -1. The kernel has the same number in `legs.hpp`."""
+
 LARGEST_NUMBER: Final = 1e100
 """SI value of a field above which it is a slip of the pen: products of three such values are the
 last that stay doubles (1.8e308); beyond, cells would be empty without a reason."""
@@ -227,6 +265,22 @@ MOBILITY_TIGHT: Final = 1e-14
 
 MOBILITY_ITERATIONS: Final = 80
 """Newton halves the distance to a configuration that is singular; 80 halvings leave nothing."""
+
+MOBILITY_RANK: Final = 1e-11
+"""Singular values below this part of the largest are left out of a Newton step: above rounding, far
+below those of a regular configuration, so that the step stays bounded next to a singular one."""
+
+MOBILITY_STRIDE: Final = 0.3
+"""Longest Newton step (largest turn in rad or length in parts of the size), so that a poor start
+does not leave the neighbourhood in which linear terms tell the way."""
+
+MOBILITY_NO_TWIST: Final = 1e-9
+"""Parts of a unit twist below which it does not turn, or does not advance: written numbers have
+nine digits and more."""
+
+MOBILITY_NO_WRENCH: Final = 1e-6
+"""Parts of a unit stress or wrench that count as none: a null vector is known to rounding over the
+gap of the singular values, at least 1e3 above 1e-10 for a drawing with ten digits."""
 
 MOBILITY_STUCK: Final = 8
 """Steps without a tenth of progress after which Newton gives up."""

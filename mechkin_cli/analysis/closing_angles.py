@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.analysis.setup import Setup
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.batch import run
@@ -25,10 +26,6 @@ if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
 
     Floats = NDArray[np.float64]
-
-FINEST_STEP = 0.1
-"""Step of the inputs (rad, length units) on the refined path; angles turn less than half a turn in
-it unless they run thirty times as fast as the input."""
 
 
 def unwrap_closing_angles(setup: Setup, values: Floats, reached: NDArray[np.bool_]) -> None:
@@ -103,7 +100,7 @@ def refined(inputs: Floats) -> tuple[Floats, NDArray[np.int64]]:
     for k in range(1, inputs.shape[1]):
         a, b = inputs[:, k - 1 : k], inputs[:, k : k + 1]
         largest = float(np.max(np.abs(b - a), initial=0.0))
-        parts = max(1, int(np.ceil(largest / FINEST_STEP)))
+        parts = max(1, int(np.ceil(largest / tolerances.CLOSING_ANGLE_STEP)))
         fractions = np.arange(1, parts) / parts
         pieces.extend((a + (b - a) * fractions, b))
         places.append(places[-1] + parts)

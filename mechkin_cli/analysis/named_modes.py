@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.analysis.home import follow_from_home, is_home_assembled
 from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.problem import Problem
@@ -27,10 +28,6 @@ if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
 
     Floats = NDArray[np.float64]
-
-QUANTUM = 1e-6
-"""Coordinates (rad, parts of the size) that differ less are equal for the order, so that rounding
-cannot change it."""
 
 
 @dataclass(frozen=True)
@@ -76,20 +73,20 @@ def letters(mechanism: Mechanism, coordinates: dict[str, Floats], points: Floats
 
 
 def _key(mechanism: Mechanism, coordinates: dict[str, Floats], number: int) -> tuple[int, ...]:
-    half_turn, size = round(pi / QUANTUM), mechanism.box_diagonal()
+    half_turn, size = round(pi / tolerances.MODE_ORDER), mechanism.box_diagonal()
     key = []
     for name, values in coordinates.items():
         value = float(values[number])
         angle = is_cyclic(mechanism, name)
         if is_slide(name.partition(".")[2]):
             value /= size
-        part = round((wrapped(value) if angle else value) / QUANTUM)
+        part = round((wrapped(value) if angle else value) / tolerances.MODE_ORDER)
         key.append(half_turn if angle and part == -half_turn else part)
     return tuple(key)
 
 
 def _places(mechanism: Mechanism, points: Floats) -> tuple[int, ...]:
-    parts = points.reshape(-1) / (mechanism.box_diagonal() * QUANTUM)
+    parts = points.reshape(-1) / (mechanism.box_diagonal() * tolerances.MODE_ORDER)
     return tuple(round(float(part)) for part in parts)
 
 

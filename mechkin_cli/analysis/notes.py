@@ -21,10 +21,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-SAME_INPUT = 1e-12
-"""Turns by which two rows' inputs may differ from a whole number of them and still stand for the
-same place: decimal degrees become radians by one rounding."""
-
 
 def open_turn_note(setup: Setup, states: Floats, reached: NDArray[np.bool_]) -> Diagnostic | None:
     """Rows a full turn of the one moving input apart at which the mechanism is not the same.
@@ -40,7 +36,7 @@ def open_turn_note(setup: Setup, states: Floats, reached: NDArray[np.bool_]) -> 
     if not is_cyclic(setup.problem.mechanism, item.name):
         return None
     turns = (inputs[number] - inputs[number, 0]) / (2.0 * np.pi)
-    whole = (np.rint(turns) != 0.0) & (np.abs(turns - np.rint(turns)) <= SAME_INPUT)
+    whole = (np.rint(turns) != 0.0) & (np.abs(turns - np.rint(turns)) <= tolerances.SAME_TURN)
     rows = np.flatnonzero(whole & reached)
     if not rows.size or not reached[0]:
         return None

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.sequences import by_count, by_step
 from mechkin_cli.units import Dimension
@@ -37,7 +38,7 @@ def spaced(fields: Fields, path: Path, section: Any, dimension: Dimension) -> Fl
             text = "the step is zero"
             fields.error("zero-step", (*path, "step"), text, "give the distance of rows")
         return np.array([first])
-    ratio = abs(last - first) / step + 1e-9
+    ratio = abs(last - first) / step + tolerances.LAST_ROW
     if _too_many(fields, (*path, "step"), ratio + 1.0):
         return np.array([first])
     return by_step(first, step if last >= first else -step, int(ratio) + 1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from mechkin_cli import tolerances
 from mechkin_cli.mechanism.vectors import ZERO, Vector, add, cross, dot, scale, subtract, unit
 
 
@@ -68,7 +69,7 @@ def turned_shortest(a: Vector, b: Vector, vector: Vector) -> Vector:
     Rodrigues' formula with axis a x b; for opposite a and b the half turn about `perpendicular(a)`.
     """
     axis, cosine = cross(a, b), dot(a, b)
-    if cosine <= -1.0 + 1e-15:
+    if cosine <= tolerances.OPPOSITE_COSINE:
         p = perpendicular(a)
         return subtract(scale(2.0 * dot(p, vector), p), vector)
     along = scale(dot(axis, vector) / (1.0 + cosine), axis)

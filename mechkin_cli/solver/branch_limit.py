@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.branch_point import BranchPoint, locate_branch_point
 from mechkin_cli.solver.codes import Demand
@@ -21,10 +22,6 @@ if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
 
     Floats = NDArray[np.float64]
-
-BEHIND = 1e-9
-"""How far (rad or length units) a dead centre may lie behind the last place followed: rounding of
-that place, which is about the root of a rounding away from it."""
 
 
 def find_limit(
@@ -76,4 +73,4 @@ def _lies_ahead(fold: DeadCentre, followed: Followed, number: int) -> bool:
     direction = float(followed.direction[number])
     ahead = (fold.value - float(followed.inputs[number])) * direction
     curvature = float(fold.second[fold.exchanged.input_column]) * direction
-    return ahead >= -BEHIND and curvature < 0.0
+    return ahead >= -tolerances.DEAD_CENTRE_BEHIND and curvature < 0.0

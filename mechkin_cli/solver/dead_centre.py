@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-LARGEST_STEP = 0.2
-"""Step of the driven coordinate (rad or length units) that Newton's guess still follows."""
 
 MOTION = Demand.VELOCITY | Demand.ACCELERATION
 
@@ -183,5 +181,5 @@ def locate(
             fold = inputs.copy()
             fold[exchanged.input] = value
             return DeadCentre(exchanged, fold, state, found.first[:, 0], found.second[:, 0])
-        value += max(-LARGEST_STEP, min(LARGEST_STEP, step))
+        value += max(-tolerances.DEAD_CENTRE_STRIDE, min(tolerances.DEAD_CENTRE_STRIDE, step))
     return None

@@ -35,9 +35,6 @@ LIMITS = (
     tolerances.NODE_PIVOT,
 )
 
-SAME_LINE = 1e-12
-"""Distance from a straight line, in parts of the inputs, up to which rows count as one run."""
-
 
 class TrackEnd(IntEnum):
     """How a run ended."""
@@ -142,7 +139,8 @@ def _end_of_run(inputs: Floats, begin: int, leading: int, direction: Floats) -> 
     if inputs.shape[0] > 1:
         line = origin + direction[:, None] * along
         scale = 1.0 + np.abs(inputs[:, begin - 1 :]).max(axis=1, keepdims=True)
-        on_line = np.all(np.abs(inputs[:, begin - 1 :] - line) <= SAME_LINE * scale, axis=0)
+        off_line = np.abs(inputs[:, begin - 1 :] - line)
+        on_line = np.all(off_line <= tolerances.SAME_LINE * scale, axis=0)
         onward &= on_line[1:]
     stops = np.flatnonzero(~onward)
     return begin + (int(stops[0]) if stops.size else onward.size)

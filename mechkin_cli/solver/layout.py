@@ -11,6 +11,7 @@ from functools import cached_property
 from math import frexp, ldexp
 from typing import TYPE_CHECKING, NamedTuple
 
+from mechkin_cli import tolerances
 from mechkin_cli.mechanism.frames import GROUND, Frame, upright
 from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.mechanism.legs import frame_on
@@ -25,10 +26,6 @@ from mechkin_cli.solver.graph import SolverGraph, TreeEdge
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
-
-FAR_DRAWING = 4.0
-"""Distance of the drawing from the ground origin, in sizes, beyond which the kernel works about
-its own origin."""
 
 
 class Carrier(NamedTuple):
@@ -64,7 +61,8 @@ class Layout:
         """The kernel's origin in m."""
         points = [at.vector for _, at in self.mechanism.joint_points()]
         centre = scale(1.0 / len(points), _sum(points)) if points else ZERO
-        return centre if norm(centre) > FAR_DRAWING * self.mechanism.box_diagonal() else ZERO
+        near = tolerances.FAR_DRAWING * self.mechanism.box_diagonal()
+        return centre if norm(centre) > near else ZERO
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:

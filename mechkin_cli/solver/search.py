@@ -29,9 +29,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-SLIDE_RANGE = 2.0
-"""Bound of random slides in sizes of the home drawing: a chain of links reaches no farther."""
-
 
 class Found(NamedTuple):
     """Assemblies (columns of `states`), their condition, and how the search went.
@@ -145,7 +142,7 @@ def _randomise(
 ) -> None:
     """Fills the unknown states of a block with random starts."""
     rows = states.shape[1]
-    reach = SLIDE_RANGE * layout.mechanism.box_diagonal() / layout.length
+    reach = tolerances.SEARCH_SLIDES * layout.mechanism.box_diagonal() / layout.length
     for edge, freedom in layout.graph.blocks[number].unknowns:
         k, local = layout.carrier_of(edge, freedom)
         carrier = layout.carriers[k]

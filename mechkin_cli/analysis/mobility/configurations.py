@@ -136,11 +136,13 @@ class Configuration:
             if here.miss < tolerances.MOBILITY_TIGHT or stuck > tolerances.MOBILITY_STUCK:
                 break
             misses = np.array([row.miss for _, row in here.rows])
-            step = -np.linalg.lstsq(here.gradient, misses, rcond=1e-11)[0]
+            step = -np.linalg.lstsq(here.gradient, misses, rcond=tolerances.MOBILITY_RANK)[0]
             largest = float(np.max(np.abs(step)))
             if not largest < np.inf:
                 break
-            here = Configuration(here.body, here.poses.moved(step * min(1.0, 0.3 / largest)))
+            here = Configuration(
+                here.body, here.poses.moved(step * min(1.0, tolerances.MOBILITY_STRIDE / largest))
+            )
         return here
 
 

@@ -20,9 +20,6 @@ if TYPE_CHECKING:
 MOST_LINKS = 3
 """Links of one idle group: a leg of S-P-S has two."""
 
-SMALL = 1e-9
-"""Parts of a unit twist below which it does not turn, or does not advance."""
-
 
 class IdleFreedom(NamedTuple):
     """The links that move together, and how, in words."""
@@ -101,9 +98,9 @@ def _words(border: list[Joint], twist: Floats) -> tuple[str, str]:
     """Verb, and about or along what."""
     spin, slide = twist[:3], twist[3:]
     names = ", ".join(joint.name for joint in border)
-    if np.max(np.abs(spin)) < SMALL:
+    if np.max(np.abs(spin)) < tolerances.MOBILITY_NO_TWIST:
         return "slide", f"along the axis of {names}"
-    if abs(float(spin @ slide)) > SMALL:
+    if abs(float(spin @ slide)) > tolerances.MOBILITY_NO_TWIST:
         return "move", f"along the thread of {names}"
     if all(joint.letter in ("S", "Sp", "Sg") for joint in border):
         return "spin", "about " + "-".join(joint.name for joint in border)

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-SMALL = 1e-6
-"""Parts of a unit stress or wrench that count as none."""
 
 MOST_CHANGES = 3
 """Joints changed by one cure."""
@@ -83,7 +81,10 @@ def _groups(
 ) -> Iterator[list[Joint]]:
     """Joints that carry stresses, in groups that do not stress each other."""
     left = [
-        j for j in joints if np.abs(shares[np.ix_(places[j.name], places[j.name])]).max() > SMALL
+        j
+        for j in joints
+        if np.abs(shares[np.ix_(places[j.name], places[j.name])]).max()
+        > tolerances.MOBILITY_NO_WRENCH
     ]
     while left:
         group, grown = [left.pop(0)], True
@@ -91,7 +92,7 @@ def _groups(
             grown = False
             for joint in list(left):
                 touching = (shares[np.ix_(places[joint.name], places[g.name])] for g in group)
-                if any(np.abs(block).max() > SMALL for block in touching):
+                if any(np.abs(block).max() > tolerances.MOBILITY_NO_WRENCH for block in touching):
                     group.append(joint)
                     left.remove(joint)
                     grown = True
@@ -119,7 +120,7 @@ def describe(wrenches: Floats, configuration: Configuration) -> str:
     """A space of wrenches (6, count; moment first, scaled, about the centre) as forces and
     moments."""
     left, values, right = np.linalg.svd(wrenches[3:])
-    forces = int(np.count_nonzero(values > SMALL))
+    forces = int(np.count_nonzero(values > tolerances.MOBILITY_NO_WRENCH))
     moments = (wrenches @ right[forces:].T)[:3]
     parts = []
     if moments.shape[1]:
@@ -139,7 +140,11 @@ def _directions(noun: str, word: str, basis: Floats, count: int) -> str:
     if count == 1:
         return f"{noun} {word} {_axis(basis[:, 0])}"
     normal = basis[:, 2]
-    named = [name for name, part in zip("xyz", normal, strict=True) if abs(part) < SMALL]
+    named = [
+        name
+        for name, part in zip("xyz", normal, strict=True)
+        if abs(part) < tolerances.MOBILITY_NO_WRENCH
+    ]
     if len(named) == 2:
         return f"{noun}s {word} {' and '.join(named)}"
     return f"{noun}s {word} axes square to {_axis(normal)}"
@@ -151,7 +156,7 @@ def _line(wrench: Floats, configuration: Configuration) -> str:
     square = float(force @ force)
     pitch = float(force @ moment) / square
     axis = f"along {_axis(force / np.sqrt(square))}"
-    if abs(pitch) < SMALL:
+    if abs(pitch) < tolerances.MOBILITY_NO_WRENCH:
         return f"force {axis}"
     return f"force {axis} together with a moment about it"
 
@@ -161,10 +166,10 @@ def _point(wrenches: Floats, configuration: Configuration) -> str:
     rows = np.concatenate([_crossed(force) for force in wrenches[3:].T])
     moments = wrenches[:3].T.ravel()
     point = np.linalg.lstsq(rows, moments, rcond=None)[0]
-    if np.abs(rows @ point - moments).max() > SMALL:
+    if np.abs(rows @ point - moments).max() > tolerances.MOBILITY_NO_WRENCH:
         return ", each with a moment of its own"
     joints = configuration.frames.items()
-    near = [n for n, (a, _) in joints if np.abs(a.o - point).max() < SMALL]
+    near = [n for n, (a, _) in joints if np.abs(a.o - point).max() < tolerances.MOBILITY_NO_WRENCH]
     return f" through {near[0]}" if near else " through one point"
 
 
@@ -176,7 +181,7 @@ def _crossed(force: Floats) -> Floats:
 
 def _axis(direction: Floats) -> str:
     for name, part in zip("xyz", direction, strict=True):
-        if abs(part) > 1.0 - SMALL:
+        if abs(part) > 1.0 - tolerances.MOBILITY_NO_WRENCH:
             return name
     sign = 1.0 if direction[np.argmax(np.abs(direction))] > 0.0 else -1.0
     return "(" + ", ".join(f"{sign * part + 0.0:.4g}" for part in direction) + ")"
