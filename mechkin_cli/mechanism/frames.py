@@ -72,7 +72,9 @@ def turned_shortest(a: Vector, b: Vector, vector: Vector) -> Vector:
     if cosine <= tolerances.OPPOSITE_COSINE:
         p = perpendicular(a)
         return subtract(scale(2.0 * dot(p, vector), p), vector)
-    along = scale(dot(axis, vector) / (1.0 + cosine), axis)
+    # 1 / (1 + cosine), from |axis|^2 = (1 + cosine)(1 - cosine) where 1 + cosine cancels
+    inverse = (1.0 - cosine) / dot(axis, axis) if cosine < 0.0 else 1.0 / (1.0 + cosine)
+    along = scale(dot(axis, vector) * inverse, axis)
     return add(add(scale(cosine, vector), cross(axis, vector)), along)
 
 

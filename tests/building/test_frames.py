@@ -1,6 +1,7 @@
 """Home drawing: where points stand at a coordinate, against poses worked out by hand."""
 
 import pytest
+from mpmath import mp
 
 import mechkin_cli as mk
 
@@ -117,3 +118,20 @@ def test_a_tensor_in_turned_axes() -> None:
     model = mk.loads(text.replace("{arm: {}}", f"{{arm: {{inertia: {tensor}}}}}"))
     inertia = model.problem.mechanism.links["arm"].inertia
     assert inertia == pytest.approx((41, 34, 60, -12, 0, 0), abs=1e-13)
+
+
+@pytest.mark.parametrize("off", [1e-2, 1e-4, 1e-6])
+def test_nearly_opposite_axes_come_into_line_by_the_shortest_turn(off: float) -> None:
+    """Rodrigues' formula at 40 digits, for the axis (3, 4, 0) sin(off)/5 - z of the arm."""
+    with mp.workdps(40):
+        axis = [mp.mpf(3) / 5 * mp.sin(off), mp.mpf(4) / 5 * mp.sin(off), -mp.cos(off)]
+        arm = "[" + ", ".join(mp.nstr(x, 30) for x in axis) + "]"
+        n, p, angle = mp.matrix([0.8, -0.6, 0]), mp.matrix([1, 2, 3]), mp.pi - off
+        n /= mp.norm(n)
+        across = mp.matrix([n[1] * p[2] - n[2] * p[1], -n[0] * p[2], n[0] * p[1] - n[1] * p[0]])
+        along = n * (n.T * p)[0]
+        turned = [float(x) for x in along + mp.cos(angle) * (p - along) + mp.sin(angle) * across]
+    axes = f"axis: {{ground: [0, 0, 1], arm: {arm}}}"
+    found = places(f"{{type: R, links: [ground, arm], point: [0, 0, 0], {axes}}}")
+    # the axis itself is known to a rounding, its azimuth to one over `off`
+    assert found[0] == pytest.approx(turned, abs=1e-15 / off + 1e-14)
