@@ -2,7 +2,7 @@
 
 Nothing else moves with that spin, so its pose is a convention (the shortest turn from the drawing)
 and its rate is taken as zero. Forces are exact as long as nothing turns the leg about its line;
-otherwise the spin is a dynamic freedom that a kinematic analysis cannot know (design section 4.13).
+otherwise the spin is a dynamic freedom that a kinematic analysis cannot know.
 """
 
 from __future__ import annotations

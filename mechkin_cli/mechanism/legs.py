@@ -3,7 +3,7 @@
 A link whose only joints are two spherical joints (S-S), or two links that slide on each other along
 the line of their spheres (S-P-S), keep the distance of two points of other links and nothing else;
 they spin freely about the line of their spheres. So they close a loop with one equation, and need
-no freedom of their own (design section 4.4).
+no freedom of their own.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 ended.
 
 The path of the inputs is straight between neighbouring rows. Rows in one line make a run, which the
-kernel's tracker follows with a few careful nodes and fills in (design section 4.6).
+kernel's tracker follows with a few careful nodes and fills in.
 """
 
 from __future__ import annotations

@@ -15,6 +15,7 @@ MECHKIN_INLINE void turn_shortest(Pose& pose, Vec3 a, Vec3 b) {
   const Vec3 v = cross(a, b);
   const Pack c = dot(a, b), square = dot(v, v), one = 1.0;
   // 1 / (1 + c), from |v|^2 = (1 + c)(1 - c) where 1 + c cancels
+  // nine roundings from -1: nearer, a x b has no direction (tolerances.OPPOSITE_COSINE)
   const Mask opposite = c <= Pack(-1.0 + 1e-15);
   const Mask beyond = c < Pack(0.0);
   const Pack inverse = select(beyond, (one - c) / select(opposite, one, square), one / select(beyond, one, one + c));

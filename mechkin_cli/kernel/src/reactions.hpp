@@ -1,4 +1,4 @@
-// Reactions by transposition (virtual power with the screws of the motion; design section 4.11).
+// Reactions by transposition (virtual power with the screws of the motion).
 //
 // Every link needs the wrench (inertia - applied loads) from its joints. Summed over subtrees and
 // projected on the screws of the unknown freedoms, it gives the wrenches of the closing joints from the

@@ -8,6 +8,8 @@
 
 namespace {
 
+// Damping at the start, its least, and where a lane is stuck; its factors after a step that lowers the sum of squares
+// and after one that does not. Least and stuck leave fourteen decades of room, as much as double precision tells.
 struct SearchScales {
   double start = 1e-2, least = 1e-12, stuck = 1e10, success = 0.15, failure = 5.0;
 };
@@ -34,6 +36,7 @@ inline void damped_step(Workspace& w, const BlockMatrices& at, Pack damping) {
       normal[i * n + j] = s;
     }
   }
+  // 1e-6: an unknown that no equation moves (a zero column) is damped, too
   for (int i = 0; i < n; ++i) normal[i * n + i] += damping * (normal[i * n + i] + Pack(1e-6));
   const Factors f = {normal, at.swap, n};
   factor(f);

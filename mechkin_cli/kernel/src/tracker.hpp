@@ -1,4 +1,4 @@
-// Following a branch along a straight path of the inputs: skeleton and infill (design section 4.6).
+// Following a branch along a straight path of the inputs: skeleton and infill.
 //
 // x(sigma) = x0 + sigma u. Few careful steps (second-order predictor, Newton, jump and turning tests)
 // give nodes with first and second derivatives; the guesses for all rows come from quintic Hermite
