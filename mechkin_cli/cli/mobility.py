@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import typer
-
-from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Record, put, refusal, say_diagnostics
-from mechkin_cli.cli.options import File, Json, Quiet, Set, parameters
-from mechkin_cli.diagnostics import InvalidFile, UsageError
+from mechkin_cli.cli.answer import Question, answer
+from mechkin_cli.cli.messages import Record, put
+from mechkin_cli.cli.options import File, Json, Quiet, Set
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.mobility import Mobility
@@ -20,24 +17,13 @@ def mobility(file: File, set_: Set = None, json: Json = False, quiet: Quiet = Fa
 
     Compares Kutzbach's count with the true mobility.
     """
-    from mechkin_cli.interface import load
-
-    try:
-        found = load(file, parameters(set_)).mobility()
-    except (InvalidFile, UsageError) as error:
-        code, record = refusal(file, error)
-    else:
-        say_diagnostics(found.diagnostics, str(file))
-        code = ExitCode.OK if found.mobility is not None else ExitCode.ROWS_MISSING
-        record = {"file": str(file), **_record(found)}
-        if not json:
-            put("\n".join(_lines(found, quiet)) + "\n")
-    if json:
-        from mechkin_cli.tables.json_writer import json_text
-
-        put(json_text(record))
-    if code:
-        raise typer.Exit(code)
+    question = Question(
+        ask=lambda model: model.mobility(),
+        is_answered=lambda found: found.mobility is not None,
+        record=lambda _, found: _record(found),
+        show=lambda _, found: put("\n".join(_lines(found, quiet)) + "\n"),
+    )
+    answer(file, set_, json, question)
 
 
 def _record(found: Mobility) -> Record:

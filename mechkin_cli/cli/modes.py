@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Record, put, refusal, say, say_diagnostics
-from mechkin_cli.cli.options import File, Json, Quiet, Set, parameters
-from mechkin_cli.diagnostics import InvalidFile, UsageError
+from mechkin_cli.cli.answer import Question, answer
+from mechkin_cli.cli.messages import Record, put, say
+from mechkin_cli.cli.options import File, Json, Quiet, Set
+from mechkin_cli.diagnostics import UsageError
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.modes import Modes
@@ -32,26 +32,13 @@ def modes(
     quiet: Quiet = False,
 ) -> None:
     """List the ways to assemble a mechanism."""
-    from mechkin_cli.interface import load
-
-    try:
-        model = load(file, parameters(set_))
-        found = model.modes(_place(at))
-    except (InvalidFile, UsageError) as error:
-        code, record = refusal(file, error)
-    else:
-        say_diagnostics(found.diagnostics, str(file))
-        code, record = (ExitCode.OK if found.modes else ExitCode.ROWS_MISSING), {}
-        if json:
-            record = {"file": str(file), **_record(model, found)}
-        else:
-            _print(model, found, quiet)
-    if json:
-        from mechkin_cli.tables.json_writer import json_text
-
-        put(json_text(record))
-    if code:
-        raise typer.Exit(code)
+    question = Question(
+        ask=lambda model: model.modes(_place(at)),
+        is_answered=lambda found: bool(found.modes),
+        record=_record,
+        show=lambda model, found: _print(model, found, quiet),
+    )
+    answer(file, set_, json, question)
 
 
 def _place(texts: list[str] | None) -> str | dict[str, str] | None:

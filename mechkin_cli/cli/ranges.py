@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Record, put, refusal, say, say_diagnostics
-from mechkin_cli.cli.options import File, Json, Quiet, Set, parameters
-from mechkin_cli.diagnostics import InvalidFile, UsageError
+from mechkin_cli.cli.answer import Question, answer
+from mechkin_cli.cli.messages import Record, put, say
+from mechkin_cli.cli.options import File, Json, Quiet, Set
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.ranges import Range, Ranges
@@ -50,26 +49,13 @@ def ranges(
 
     Lists dead centres, branch points and full turns, and the circuits that the modes form.
     """
-    from mechkin_cli.interface import load
-
-    try:
-        model = load(file, parameters(set_))
-        found = model.ranges(input, output or ())
-    except (InvalidFile, UsageError) as error:
-        code, record = refusal(file, error)
-    else:
-        say_diagnostics(found.diagnostics, str(file))
-        code, record = (ExitCode.OK if found.ranges else ExitCode.ROWS_MISSING), {}
-        if json:
-            record = {"file": str(file), **_record(model, found)}
-        else:
-            _print(model, found, quiet)
-    if json:
-        from mechkin_cli.tables.json_writer import json_text
-
-        put(json_text(record))
-    if code:
-        raise typer.Exit(code)
+    question = Question(
+        ask=lambda model: model.ranges(input, output or ()),
+        is_answered=lambda found: bool(found.ranges),
+        record=_record,
+        show=lambda model, found: _print(model, found, quiet),
+    )
+    answer(file, set_, json, question)
 
 
 def _record(model: Model, found: Ranges) -> Record:
