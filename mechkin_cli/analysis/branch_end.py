@@ -34,16 +34,19 @@ if TYPE_CHECKING:
 MAY_BE_SPECIAL = "this may be a branch point or a special position; sweep from its other side"
 
 
-def explain_end(setup: Setup, path: Floats, followed: Followed, rows: RowStates) -> None:
+def explain_end(setup: Setup, path: Floats, followed: Followed, rows: RowStates) -> int | None:
     """Finds why a branch ended; rows before a dead centre get their guesses from its shape.
 
     `path` (inputs, rows) in kernel units and `rows` are in the order in which they were followed.
+
+    Returns the row from which the way can be followed anew, back from the last place on the branch;
+    None where it ends.
     """
     locked = _locked_inputs(setup, path, followed)
     if locked:
         rows.status[~rows.reached] = Status.branch_lost
         rows.diagnostics.extend(locked)
-        return
+        return None
     far = tolerances.BRANCH_POINT_SPANS[0]
     row = followed.reached - 1
     while row > 0 and np.max(np.abs(followed.inputs - path[:, row])) <= far:
@@ -52,12 +55,12 @@ def explain_end(setup: Setup, path: Floats, followed: Followed, rows: RowStates)
     limit = find_limit(layout, plan, driven, followed, path[:, row], rows.guess[:, row])
     if isinstance(limit, DeadCentre):
         number = int(np.flatnonzero(followed.direction)[0])
-        _fill_before(limit, path, followed, number, rows)
-        if rows.reached.all():
-            return
+        back = _fill_before(limit, path, followed, number, rows)
+        if back is not None or rows.reached.all():
+            return back
         rows.status[~rows.reached] = Status.beyond_dead_centre
-        rows.diagnostics.append(_dead_centre_note(setup, limit, number, rows))
-        return
+        rows.diagnostics.append(_dead_centre_note(setup, limit, number, path, rows))
+        return None
     rows.status[~rows.reached] = Status.branch_lost
     if isinstance(limit, Runaway):
         rows.diagnostics.append(_runaway_note(setup, followed, limit, rows))
@@ -65,6 +68,7 @@ def explain_end(setup: Setup, path: Floats, followed: Followed, rows: RowStates)
         rows.diagnostics.append(_branch_point_note(setup, followed, limit, rows))
     else:
         rows.diagnostics.append(_lost_note(setup, followed, rows))
+    return None
 
 
 def _locked_inputs(setup: Setup, path: Floats, followed: Followed) -> list[Diagnostic]:
@@ -80,16 +84,27 @@ def _locked_inputs(setup: Setup, path: Floats, followed: Followed) -> list[Diagn
 
 def _fill_before(
     fold: DeadCentre, path: Floats, followed: Followed, number: int, rows: RowStates
-) -> None:
-    row = followed.reached
-    while row < rows.reached.size:
-        guess = fold.guess(float(path[number, row]), followed.state)
+) -> int | None:
+    """Guesses for the rows between the last place followed and the fold.
+
+    Returns the first row after them that turns back from the fold, None if there is none.
+    """
+    others = np.arange(len(path)) != number
+    before = float(followed.inputs[number])
+    for row in range(followed.reached, rows.reached.size):
+        if np.any(path[others, row] != followed.inputs[others]):
+            return None
+        value = float(path[number, row])
+        if (value - before) * float(followed.direction[number]) < 0.0:
+            return row if row > followed.reached else None
+        guess = fold.guess(value, followed.state)
         if guess is None:
-            return
+            return None
         rows.guess[:, row] = guess
         rows.limit[row] = tolerances.JUMP_LIMIT
         rows.reached[row] = True
-        row += 1
+        before = value
+    return None
 
 
 def _row_span(rows: RowStates) -> str:
@@ -97,12 +112,24 @@ def _row_span(rows: RowStates) -> str:
     return f"row {missing[0]}" if missing.size == 1 else f"rows {missing[0]} to {missing[-1]}"
 
 
-def _dead_centre_note(setup: Setup, fold: DeadCentre, number: int, rows: RowStates) -> Diagnostic:
+def _stay_empty(rows: RowStates, where: str = "") -> str:
+    """The missing rows in words, and `where` they lie."""
+    one = int(np.count_nonzero(~rows.reached)) == 1
+    lie = f"{'lies' if one else 'lie'} {where} and " if where else ""
+    return f"{_row_span(rows)} {lie}{'stays' if one else 'stay'} empty"
+
+
+def _dead_centre_note(
+    setup: Setup, fold: DeadCentre, number: int, path: Floats, rows: RowStates
+) -> Diagnostic:
     place = input_number(setup.problem, setup.layout, number, fold.value)
+    inwards = float(fold.second[fold.exchanged.input_column])
+    beyond = (path[number, ~rows.reached] - fold.value) * inwards <= 0.0
+    where = "beyond it" if beyond.all() else "beyond it on the way of the rows"
     return Diagnostic(
         "dead-centre",
         "warning",
-        f"the branch ends at a dead centre; {_row_span(rows)} lie beyond it and stay empty",
+        f"the branch ends at a dead centre; {_stay_empty(rows, where)}",
         measured=input_text(place),
         hint="end the sweep before it, or choose another assembly",
         numbers=(place,),
@@ -117,7 +144,7 @@ def _runaway_note(setup: Setup, followed: Followed, limit: Runaway, rows: RowSta
         "unbounded",
         "error",
         f"the slide of {limit.joint} grows out of bounds, the branch seems to go to infinity; "
-        f"{_row_span(rows)} stay empty",
+        f"{_stay_empty(rows)}",
         measured=f"{slide:.6g} {units.label(LENGTH)} at the last place followed, "
         f"{', '.join(map(input_text, places))}",
         hint="end the sweep before it, or choose another assembly",
@@ -135,7 +162,7 @@ def _branch_point_note(
         "branch-point",
         "error",
         "the branch comes to a branch point, where it crosses another and the mechanism may go "
-        f"either way; {_row_span(rows)} stay empty",
+        f"either way; {_stay_empty(rows)}",
         measured=", ".join(map(input_text, places)),
         hint="begin another sweep beyond it with assembly: {near: ...}, or change the dimensions "
         "a little",
@@ -148,7 +175,7 @@ def _lost_note(setup: Setup, followed: Followed, rows: RowStates) -> Diagnostic:
     return Diagnostic(
         "branch-lost",
         "error",
-        f"the branch could not be followed further; {_row_span(rows)} stay empty",
+        f"the branch could not be followed further; {_stay_empty(rows)}",
         measured=f"last place {', '.join(map(input_text, places))}",
         hint=MAY_BE_RIGID if is_redundant(setup.graph) else MAY_BE_SPECIAL,
         numbers=places,
