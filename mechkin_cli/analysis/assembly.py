@@ -16,6 +16,7 @@ from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.rows import MAY_BE_RIGID, input_numbers, input_text
 from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.graph import SolverGraph, is_redundant
 from mechkin_cli.solver.layout import Layout, is_slide
@@ -86,7 +87,13 @@ def _from_home(problem: Problem, layout: Layout, plan: Plan, path: Floats) -> St
         hint=f"choose another assembly with assembly: {{near: ...}}{rigid}",
         numbers=places,
     )
-    return Start(None, "home", "", [diagnostic], Status.beyond_dead_centre)
+    from mechkin_cli.solver.branch_limit import find_limit
+
+    driven = problem.motion.driven
+    limit = find_limit(layout, plan, driven, followed, followed.inputs, followed.state)
+    folds = isinstance(limit, DeadCentre)
+    status = Status.beyond_dead_centre if folds else Status.branch_lost
+    return Start(None, "home", "", [diagnostic], status)
 
 
 def nothing_found(

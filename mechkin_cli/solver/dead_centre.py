@@ -119,7 +119,8 @@ def exchange(
         for coordinate, freedom in edge.joint.type.freedom_of.items():
             if (k, freedom) not in inputs and edge.joint.letter + coordinate != "Hs":
                 speed = abs(float(first[layout.column(k, freedom)]))
-                candidates.append((-speed, k, freedom, coordinate))
+                if speed >= tolerances.EXCHANGE_SPEED:
+                    candidates.append((-speed, k, freedom, coordinate))
     closed_at = [closing.joint.name for closing in graph.closings]
     for _, k, freedom, coordinate in sorted(candidates):
         swapped = list(names)
