@@ -32,6 +32,10 @@ if TYPE_CHECKING:
 
 
 MAY_BE_SPECIAL = "this may be a branch point or a special position; sweep from its other side"
+MAY_BE_FOLD = (
+    "this may be a dead centre of the inputs that move together (it is located where one moves), a "
+    "branch point or a special position"
+)
 
 
 def explain_end(setup: Setup, path: Floats, followed: Followed, rows: RowStates) -> int | None:
@@ -172,11 +176,13 @@ def _branch_point_note(
 
 def _lost_note(setup: Setup, followed: Followed, rows: RowStates) -> Diagnostic:
     places = input_numbers(setup.problem, setup.layout, followed.inputs)
+    together = np.count_nonzero(followed.direction) > 1
+    special = MAY_BE_FOLD if together else MAY_BE_SPECIAL
     return Diagnostic(
         "branch-lost",
         "error",
         f"the branch could not be followed further; {_stay_empty(rows)}",
         measured=f"last place {', '.join(map(input_text, places))}",
-        hint=MAY_BE_RIGID if is_redundant(setup.graph) else MAY_BE_SPECIAL,
+        hint=MAY_BE_RIGID if is_redundant(setup.graph) else special,
         numbers=places,
     )

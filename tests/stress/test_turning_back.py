@@ -64,3 +64,19 @@ def test_rows_after_one_beyond_stay_empty_and_the_message_says_why() -> None:
 def test_one_missing_row_is_told_in_the_singular() -> None:
     (note,) = mk.loads(TEXT.format(values=[30, 47])).analyze(["D.theta"]).diagnostics
     assert "row 2 lies beyond it and stays empty" in note.message
+
+
+def test_inputs_that_move_together_may_have_come_to_a_dead_centre() -> None:
+    """Crank and ground's length change at once: e = 2l at another place of both."""
+    text = TEXT.format(values=[30, 40, 50]).replace(
+        "D: {type: R, links: [ground, rocker]", "D: {type: R, links: [slide, rocker]"
+    )
+    text = text.replace("rocker: {}}", "rocker: {}, slide: {}}", 1).replace(
+        "motion:",
+        "  P: {type: P, links: [ground, slide], point: [4, 0, 0], axis: [1, 0, 0]}\nmotion:",
+    )
+    text = text.replace("50]}}}", "50]}, P.s: {values: [0, 0.1, 0.2]}}}")
+    analysis = mk.loads(text).analyze(["D.theta"])
+    assert analysis["row.status"].tolist() == ["ok", "ok", "branch-lost"]
+    (note,) = analysis.diagnostics
+    assert "dead centre of the inputs that move together" in note.hint
