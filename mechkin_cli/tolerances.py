@@ -204,6 +204,10 @@ ON_LINE: Final = 1e-9
 """Parts of a leg's length (of the largest entry of a tensor) up to which a mass centre lies on the
 line of its spheres (a tensor is symmetric about it): written numbers have nine digits and more."""
 
+LOOP_RANK: Final = 1e-6
+"""Pivot of a loop's screws (moments in sizes) below which they are dependent as drawn: written
+numbers leave 1e-9, and loops that close only by their dimensions are drawn more exactly still."""
+
 PARALLEL: Final = 1e-9
 """Sine of the angle below which a reference direction is parallel to the axis it should stand
 square to."""

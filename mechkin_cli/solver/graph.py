@@ -15,6 +15,7 @@ from typing import NamedTuple
 from mechkin_cli.diagnostics import Diagnostic, MechkinError
 from mechkin_cli.mechanism.legs import Leg
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism, Spring
+from mechkin_cli.solver.loop_rank import loop_order
 from mechkin_cli.solver.reduction import Reduction, cut_links, reduce
 
 ANGLES = ("theta", "theta1", "theta2")
@@ -306,18 +307,35 @@ def _smallest_group(
 ) -> tuple[Closing, ...] | None:
     """The smallest group of closing joints with at least as many equations as unknowns.
 
-    Where there are more equations (overconstrained loops) the dimensions decide whether they close.
+    Where there are more equations (overconstrained loops) the dimensions decide whether they close;
+    of the equations only those count that a loop of its order has (a plane five-bar has too many by
+    number, but needs another loop to move it), unless no group is left then.
     A loop on a moving link comes after, or together with, the loops that move this link.
     """
+    doubtful = None
     for size in range(1, len(left) + 1):
         for group in combinations(left, size):
             equations = sum(c.equations for c in group)
             unknowns = _unknowns(edges, group, solved)
             others = _unknowns(edges, [c for c in left if c not in group], solved)
             moves_later = set(others) - set(unknowns)
-            if 0 < len(unknowns) <= equations and not moves_later & _carrying(edges, group):
+            if not 0 < len(unknowns) <= equations or moves_later & _carrying(edges, group):
+                continue
+            # a single loop is left to its dimensions whatever its order
+            alone = len(left) == 1 or equations == len(unknowns)
+            if alone or len(unknowns) <= sum(_independent(edges, c) for c in group):
                 return group
-    return None
+            doubtful = doubtful or group
+    return doubtful
+
+
+def _independent(edges: Sequence[TreeEdge], closing: Closing) -> int:
+    """How many of a closing joint's equations its loop's order leaves, at least one."""
+    if closing.leg is not None or closing.equations == 1:
+        return 1
+    joints = sorted((closing.joint, *(edges[k].joint for k, _ in closing.loop)))
+    order = loop_order(tuple(joints))
+    return max(1, min(closing.equations, order - closing.joint.type.freedoms))
 
 
 def _carrying(edges: Sequence[TreeEdge], group: Iterable[Closing]) -> set[tuple[int, int]]:
