@@ -241,6 +241,6 @@ def test_nothing_is_loaded_where_nothing_is_asked_for():
     )
     path = str(MECHANISMS / "rcsr.yaml")
     done = subprocess.run(
-        [sys.executable, "-c", code, path], capture_output=True, text=True, check=True
+        [sys.executable, "-P", "-c", code, path], capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "False"
