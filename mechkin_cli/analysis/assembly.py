@@ -13,9 +13,9 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.home import follow_from_home, is_home_assembled, nearest_to_home
 from mechkin_cli.analysis.named_modes import NamedModes, is_cyclic, name_modes, wrapped
 from mechkin_cli.analysis.probe import Probe
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.rows import MAY_BE_RIGID, input_numbers, input_text
 from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.graph import SolverGraph, is_redundant
@@ -24,11 +24,8 @@ from mechkin_cli.solver.search import Found
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-    Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -26,9 +26,7 @@ from mechkin_cli.status import Status
 from mechkin_cli.units import LENGTH
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 MAY_BE_SPECIAL = "this may be a branch point or a special position; sweep from its other side"

@@ -23,9 +23,8 @@ from mechkin_cli.solver.layout import Layout
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-    Floats = NDArray[np.float64]
 
 
 def unwrap_closing_angles(setup: Setup, values: Floats, reached: NDArray[np.bool_]) -> None:

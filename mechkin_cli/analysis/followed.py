@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of

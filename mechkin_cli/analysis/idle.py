@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.derived_quantities import (
     FINITE_KINDS,
@@ -22,6 +21,7 @@ from mechkin_cli.mechanism.derived_quantities import (
 )
 from mechkin_cli.mechanism.legs import Leg, find_legs, frame_on
 from mechkin_cli.mechanism.model import Attached, Damper, Link, LinkLoad, Mechanism, Spring
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale, subtract
 from mechkin_cli.units import LENGTH, MOMENT

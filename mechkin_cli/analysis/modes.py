@@ -18,9 +18,9 @@ from mechkin_cli.analysis.assembly import choose_start, nothing_found
 from mechkin_cli.analysis.bounds import most_assemblies
 from mechkin_cli.analysis.named_modes import NamedModes, is_cyclic, name_modes, wrapped
 from mechkin_cli.analysis.probe import Probe
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.rows import input_numbers, input_text, kernel_inputs
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.follow import TrackEnd, follow
 from mechkin_cli.solver.graph import ANGLES, SolverGraph
@@ -29,11 +29,8 @@ from mechkin_cli.solver.search import Found, assemblies, with_assemblies
 from mechkin_cli.units import ANGLE, LENGTH, Dimension
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-    Floats = NDArray[np.float64]
 
 UNNAMED = "-"
 """Name of a mode that no branch from the first row reaches."""

@@ -10,24 +10,19 @@ from dataclasses import dataclass
 from math import ceil, pi
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.home import follow_from_home, is_home_assembled
 from mechkin_cli.analysis.probe import Probe
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.mechanism.model import Mechanism
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.solver.layout import Layout, is_slide
 from mechkin_cli.solver.search import Found, assemblies, with_assemblies
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-    Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

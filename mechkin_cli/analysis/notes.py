@@ -19,7 +19,7 @@ from mechkin_cli.status import Status
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 def open_turn_note(setup: Setup, states: Floats, reached: NDArray[np.bool_]) -> Diagnostic | None:

@@ -15,10 +15,7 @@ from mechkin_cli.solver.demand import WRENCH_KINDS
 from mechkin_cli.solver.graph import is_redundant
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 SHIFTS = (1, 2)
 """Two: one alone may leave a cell unchanged by chance."""

@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.analysis.problem import Problem
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 class Probe:

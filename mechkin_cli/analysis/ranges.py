@@ -14,9 +14,9 @@ from mechkin_cli.analysis.assembly import nothing_found
 from mechkin_cli.analysis.home import is_home_assembled, nearest_to_home
 from mechkin_cli.analysis.named_modes import NamedModes, name_modes
 from mechkin_cli.analysis.probe import Probe
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.rows import input_number, kernel_inputs
 from mechkin_cli.diagnostics import Diagnostic, UsageError
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.circuit import Branch, End, Walker
@@ -29,9 +29,7 @@ from mechkin_cli.solver.layout import Layout
 from mechkin_cli.units import ANGLE, LENGTH
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 SAMPLES = 720
 """Places of a range at which the sign of an output's rate is read."""

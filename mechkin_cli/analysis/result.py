@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import hint_of
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import Slot
@@ -23,7 +23,7 @@ from mechkin_cli.units import DIMENSIONLESS, UnitSystem
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,12 @@ import numpy as np
 
 from mechkin_cli.analysis.batched import failed_rows, run_reached
 from mechkin_cli.analysis.closing_angles import unwrap_closing_angles
-from mechkin_cli.analysis.load_laws import law_values, quantities_read
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.rows import RowStates
 from mechkin_cli.analysis.setup import Setup
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
+from mechkin_cli.mechanism.load_laws import law_values, quantities_read
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.varying_loads import kernel_loads
@@ -25,7 +25,7 @@ from mechkin_cli.solver.varying_loads import kernel_loads
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 class RowLoads(NamedTuple):

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.solver.layout import Layout, is_slide
 from mechkin_cli.status import Status
@@ -18,7 +18,7 @@ from mechkin_cli.units import ANGLE, LENGTH
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 MAY_BE_RIGID = (
     "an overconstrained loop moves only if its dimensions are exact (write expressions); else "

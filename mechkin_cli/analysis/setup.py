@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 from mechkin_cli.analysis.assembly import Start, choose_start
 from mechkin_cli.analysis.probe import Probe
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.rows import KernelInputs, kernel_inputs
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.mechanism.legs import find_legs
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import OutputPlan, demand_of

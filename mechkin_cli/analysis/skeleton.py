@@ -13,9 +13,7 @@ from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.search import wrap_angles
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 def follow_rows(setup: Setup, *, every_row: bool = False) -> RowStates:

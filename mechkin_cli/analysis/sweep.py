@@ -13,13 +13,13 @@ from mechkin_cli.analysis.batched import failed_rows, run_reached
 from mechkin_cli.analysis.closing_angles import unwrap_closing_angles
 from mechkin_cli.analysis.notes import not_converged_note, open_turn_note, redundancy_note
 from mechkin_cli.analysis.other_reactions import other_reactions
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.result import Result
 from mechkin_cli.analysis.rows import RowStates
 from mechkin_cli.analysis.setup import Setup, prepare
 from mechkin_cli.analysis.skeleton import follow_rows
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.legs import find_legs
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.batch import Batch
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
@@ -27,11 +27,8 @@ from mechkin_cli.solver.graph import is_redundant
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from mechkin_cli.analysis.row_loads import RowLoads
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 def analyze(

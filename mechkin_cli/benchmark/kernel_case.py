@@ -18,11 +18,8 @@ from mechkin_cli.solver.follow import follow
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-    Floats = NDArray[np.float64]
 
 BATCH = 2048
 """Rows of a timed call."""

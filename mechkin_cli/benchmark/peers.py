@@ -13,9 +13,7 @@ from mechkin_cli.benchmark.dense_forces import equations, wrenches
 from mechkin_cli.benchmark.rcsr import ACCELERATION, COORDINATES, RATE, Dimensions
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 STEP = 1e-4
 """Step of the differences, rad: rounding (1e-16 / step^2) and truncation (step^2 times a derivative

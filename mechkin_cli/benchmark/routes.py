@@ -29,9 +29,7 @@ from mechkin_cli.benchmark.specimen import Specimen
 from mechkin_cli.benchmark.timing import Timing, in_turns
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 BY_HAND_ROUNDS = 5
 """The peers in Python take a thousand times as long; they are timed in few rounds."""

@@ -27,8 +27,6 @@ from mechkin_cli.status import Status
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
-
 SIZES = tuple(10.0**k for k in range(-6, 7))
 """Factors on all lengths; at 1 the mechanism is about 9 m long."""
 

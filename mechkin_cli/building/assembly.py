@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 from mechkin_cli.building.coordinates import dimension_of, is_coordinate
 from mechkin_cli.building.fields import Fields
-from mechkin_cli.expressions.errors import nearest
 from mechkin_cli.mechanism.model import Joint
 from mechkin_cli.mechanism.motion import Assembly
+from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.schema.assembly import AssemblySection
 
 
@@ -32,6 +32,6 @@ def build_follow(
     """The joints that `follow:` lists, each of which must be there; None without it."""
     for i, name in enumerate(names or ()):
         if name not in joints and not fields.is_refused(name):
-            hint = nearest(name, list(joints))
+            hint = nearest_hint(name, list(joints))
             fields.error("unknown-joint", ("follow", i), f"there is no joint {name}", hint)
     return names

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.building.assembly import build_assembly, build_follow
 from mechkin_cli.building.columns import build_tables, used_quantities
 from mechkin_cli.building.fields import Fields, Path, read_parameters, read_units
@@ -20,6 +19,7 @@ from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.model import Attached, Link, Mechanism
 from mechkin_cli.mechanism.motion import Motion
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.reading.parser import in_order
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.solver.codes import Demand

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.expressions.errors import nearest
 from mechkin_cli.mechanism.model import Joint
+from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.units import ANGLE, LENGTH, TIME, Dimension
 
@@ -28,7 +28,7 @@ def is_coordinate(fields: Fields, path: Path, name: str, joints: Mapping[str, Jo
         fields.key_error(CODE, path, *without(joints[joint], coordinate))
     elif not fields.is_refused(joint):
         known = [c for joint in joints.values() for c in joint.coordinates]
-        fields.key_error(CODE, path, f"{name} is no coordinate", nearest(name, known))
+        fields.key_error(CODE, path, f"{name} is no coordinate", nearest_hint(name, known))
     return False
 
 

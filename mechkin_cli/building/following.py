@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from mechkin_cli.arrays import Floats
 from mechkin_cli.building.coordinates import dimension_of
 from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
 from mechkin_cli.expressions import (
@@ -27,8 +27,6 @@ from mechkin_cli.expressions.fields import scalar
 from mechkin_cli.expressions.jets import Jet, constant
 from mechkin_cli.mechanism.motion import Moments
 from mechkin_cli.units import TIME
-
-Floats = NDArray[np.float64]
 
 
 class Following:

@@ -7,7 +7,6 @@ from typing import Any
 
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.per_link import Frames, directions_of, place_of, points_of
-from mechkin_cli.expressions.errors import nearest
 from mechkin_cli.mechanism.frames import (
     GROUND,
     frame_about,
@@ -17,6 +16,7 @@ from mechkin_cli.mechanism.frames import (
 )
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Part
 from mechkin_cli.mechanism.vectors import Vector, cross, norm, scale
+from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.tolerances import PARALLEL
 from mechkin_cli.units import LENGTH
 
@@ -40,7 +40,7 @@ def _links_known(fields: Fields, path: Path, section: Any, links: Mapping[str, A
     known = True
     for i, link in enumerate(section.links):
         if link != GROUND_NAME and link not in links:
-            hint = nearest(link, [GROUND_NAME, *links])
+            hint = nearest_hint(link, [GROUND_NAME, *links])
             fields.error("unknown-link", (*path, "links", i), f"there is no link {link}", hint)
             known = False
     return known

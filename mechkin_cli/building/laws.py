@@ -17,13 +17,11 @@ from math import pi, prod
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from mechkin_cli.arrays import Floats
 from mechkin_cli.building.coordinates import dimension_of
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.units import TIME, Conversion, UnitSystem, conversion
-
-Floats = NDArray[np.float64]
 
 
 class Clock(NamedTuple):

@@ -8,8 +8,8 @@ from itertools import pairwise
 from mechkin_cli.building.fields import Fields
 from mechkin_cli.building.joints import build_joints
 from mechkin_cli.building.links import build_links
-from mechkin_cli.expressions.errors import nearest
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Link
+from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.schema.file import MechanismFile
 
 
@@ -26,7 +26,7 @@ def is_link(fields: Fields, path: tuple[str, ...], name: str, links: Mapping[str
     if name == GROUND_NAME or name in links:
         return True
     fields.refused.add(path[1])
-    hint = nearest(name, [GROUND_NAME, *links])
+    hint = nearest_hint(name, [GROUND_NAME, *links])
     fields.error("unknown-link", path, f"there is no link {name}", hint)
     return False
 

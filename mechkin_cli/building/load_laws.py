@@ -10,10 +10,10 @@ from collections.abc import Mapping, Set
 
 import numpy as np
 
-from mechkin_cli.analysis.load_laws import LoadLaw
 from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
 from mechkin_cli.expressions import Expression, ExpressionError, Quantity, UnknownName, Vector
 from mechkin_cli.expressions.fields import scalar
+from mechkin_cli.mechanism.load_laws import LoadLaw
 from mechkin_cli.mechanism.model import Varying
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.units import Dimension

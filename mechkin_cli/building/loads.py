@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Literal
 from mechkin_cli.building.coordinates import CODE, without
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.expressions import ExpressionError, parse
-from mechkin_cli.expressions.errors import nearest
 from mechkin_cli.mechanism.model import (
     GROUND_NAME,
     Amount,
@@ -24,6 +23,7 @@ from mechkin_cli.mechanism.model import (
 )
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO, Vector, add
+from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.units import (
     ACCELERATION,
@@ -39,8 +39,8 @@ from mechkin_cli.units import (
 )
 
 if TYPE_CHECKING:
-    from mechkin_cli.analysis.load_laws import LoadLaw
     from mechkin_cli.building.load_laws import LoadLaws
+    from mechkin_cli.mechanism.load_laws import LoadLaw
 
 
 class LoadBuilder:
@@ -179,7 +179,7 @@ class LoadBuilder:
         if self.fields.is_refused(name):
             return False
         what = "link" if key == "link" else "point"
-        hint = nearest(name, list(known))
+        hint = nearest_hint(name, list(known))
         self.fields.error(f"unknown-{what}", (*path, key), f"there is no {what} {name}", hint)
         return False
 
@@ -188,7 +188,7 @@ class LoadBuilder:
         if self.fields.is_refused(name):
             return False
         if joint is None:
-            hint = nearest(name, list(self.joints))
+            hint = nearest_hint(name, list(self.joints))
             self.fields.error("unknown-joint", (*path, "joint"), f"there is no joint {name}", hint)
             return False
         if coordinate not in joint.type.coordinates:

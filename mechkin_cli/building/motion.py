@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from mechkin_cli.arrays import Floats
 from mechkin_cli.building.coordinates import dimension_of, is_coordinate
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.spacing import spaced
@@ -15,8 +15,6 @@ from mechkin_cli.mechanism.model import Joint
 from mechkin_cli.mechanism.motion import DrivenInput, Moments, Motion
 from mechkin_cli.tolerances import LARGEST_NUMBER
 from mechkin_cli.units import TIME
-
-Floats = NDArray[np.float64]
 
 _RATES = ("rate", "acceleration", "jerk")
 _ORDERS = ("value", *_RATES)

@@ -11,9 +11,8 @@ from __future__ import annotations
 from decimal import Decimal
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from mechkin_cli.arrays import Floats
 
 EXACT = 2**53
 """Whole numbers up to this one are doubles."""

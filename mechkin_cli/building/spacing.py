@@ -8,14 +8,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mechkin_cli import tolerances
+from mechkin_cli.arrays import Floats
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.sequences import by_count, by_step
 from mechkin_cli.units import Dimension
-
-Floats = NDArray[np.float64]
 
 MOST_ROWS = 10_000_000
 """More rows than this are a slip of the pen: their tables would not fit into memory."""

@@ -84,7 +84,7 @@ def _demand_lines(analysis: Analysis) -> list[str]:
         ),
     ]
     if forces and analysis.model.problem.load_laws:
-        from mechkin_cli.analysis.load_laws import quantities_read
+        from mechkin_cli.mechanism.load_laws import quantities_read
 
         read = ", ".join(quantities_read(analysis.model.problem))
         lines.append(f"loads that vary: evaluated on all rows first, from {read}")

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from mechkin_cli.arrays import Floats
 from mechkin_cli.expressions import jets, scalar_functions
 from mechkin_cli.expressions.expression import Expression
-from mechkin_cli.expressions.jets import Floats, Jet
+from mechkin_cli.expressions.jets import Jet
 from mechkin_cli.expressions.nodes import Number, Operation
 from mechkin_cli.kernel import functions as kernel
 from mechkin_cli.units import conversion

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from mechkin_cli.diagnostics import MechkinError
+from mechkin_cli.nearest import nearest_hint
 
 
 class ExpressionError(MechkinError):
@@ -40,22 +41,4 @@ class UnknownName(KeyError):
     @property
     def hint(self) -> str | None:
         """The reason, or else the nearest known names, or all of them when they are few."""
-        return self.reason or nearest(self.name, self.known)
-
-
-SHORT_LIST = 8
-"""Up to so many known names are listed when none of them is near."""
-
-LONGEST_COMPARED = 100
-"""Characters of a name that are compared; the comparison takes the square of them."""
-
-
-def nearest(name: str, known: Iterable[str]) -> str | None:
-    """A hint that names the known names most like `name`."""
-    from difflib import get_close_matches
-
-    names = sorted(known)
-    close = get_close_matches(name[:LONGEST_COMPARED], names, 3, 0.6)
-    if close:
-        return f"did you mean {' or '.join(close)}?"
-    return f"known are {', '.join(names)}" if 0 < len(names) <= SHORT_LIST else None
+        return self.reason or nearest_hint(self.name, self.known)

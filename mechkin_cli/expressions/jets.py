@@ -12,7 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from mechkin_cli.arrays import Floats
+
 Jet = NDArray[np.float64]
 
 ORDERS = 4

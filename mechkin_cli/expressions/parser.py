@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 
-from mechkin_cli.expressions.errors import ExpressionError, nearest
+from mechkin_cli.expressions.errors import ExpressionError
 from mechkin_cli.expressions.functions import FUNCTIONS
 from mechkin_cli.expressions.limits import MAX_DEPTH, MAX_NODES, MAX_QUOTED
 from mechkin_cli.expressions.nodes import Name, Node, Number, Operation
 from mechkin_cli.expressions.number_unit import UnitReader
 from mechkin_cli.expressions.tokens import Token, tokenize
+from mechkin_cli.nearest import nearest_hint
 
 _BINDING = {"+": 10, "-": 10, "*": 20, "/": 20, "^": 40, "**": 40}
 _SIGN_BINDING = 30
@@ -149,7 +150,7 @@ class _Parser:
             raise ExpressionError(
                 f"there is no function {name.text[:MAX_QUOTED]}",
                 name.start,
-                nearest(name.text, FUNCTIONS) or f"functions are {', '.join(FUNCTIONS)}",
+                nearest_hint(name.text, FUNCTIONS) or f"functions are {', '.join(FUNCTIONS)}",
             )
         count = self.arguments(")", self.take())
         if not function.accepts(count):

@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.sweep import analyze as run_sweep
 from mechkin_cli.building.build import Built
 from mechkin_cli.building.columns import used_quantities
@@ -17,6 +16,7 @@ from mechkin_cli.interface.settings import Setting, input_values
 from mechkin_cli.kernel.width import check_width
 from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.mechanism.legs import find_legs
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import SolverGraph

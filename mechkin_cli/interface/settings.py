@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.units import ANGLE, LENGTH
 

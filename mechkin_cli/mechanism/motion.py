@@ -7,10 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 ORDERS = ("", "_dot", "_ddot", "_dddot")
 """What the names of a coordinate's derivatives end in, from order 0 on."""

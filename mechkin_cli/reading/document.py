@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from mechkin_cli.diagnostics import Place, UsageError
-from mechkin_cli.reading.nearest import nearest
+from mechkin_cli.nearest import nearest
 from mechkin_cli.reading.nodes import (
     Entry,
     Mapping,

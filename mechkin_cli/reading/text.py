@@ -8,8 +8,8 @@ import stat
 from pathlib import Path
 
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, Place, UsageError
+from mechkin_cli.nearest import nearest
 from mechkin_cli.reading.limits import MOST_BYTES
-from mechkin_cli.reading.nearest import nearest
 
 _LINE_BREAK = re.compile(r"\r\n|\r|\n")
 _TAB_IN_INDENTATION = re.compile(r"^ *(\t)[ \t]*[^ \t\r\n#]", re.MULTILINE)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from typing import Any, NamedTuple
 
-from mechkin_cli.reading.nearest import nearest
+from mechkin_cli.nearest import nearest
 from mechkin_cli.reading.nodes import Mapping, Node, Scalar, Sequence
 
 _LONGEST_LIST = 16

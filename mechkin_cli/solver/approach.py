@@ -18,11 +18,8 @@ from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.follow import Followed, TrackEnd, follow
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-    Floats = NDArray[np.float64]
 
 NODES = 9
 """Places that are read."""

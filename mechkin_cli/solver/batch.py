@@ -13,9 +13,8 @@ from mechkin_cli.solver.codes import Demand, RowFlag
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-    Floats = NDArray[np.float64]
 
 RESIDUAL_TESTS = (
     tolerances.RESIDUAL_TIGHT,

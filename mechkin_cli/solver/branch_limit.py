@@ -17,11 +17,8 @@ from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.runaway import Runaway, find_runaway
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-    Floats = NDArray[np.float64]
 
 
 def find_limit(

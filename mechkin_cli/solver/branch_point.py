@@ -16,11 +16,8 @@ from mechkin_cli.solver.approach import Extrapolated, approach, zero_of
 from mechkin_cli.solver.follow import Followed
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-    Floats = NDArray[np.float64]
 
 
 class BranchPoint(NamedTuple):

@@ -24,11 +24,8 @@ from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.runaway import Runaway
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-    Floats = NDArray[np.float64]
 
 EndKind = Literal["dead-centre", "branch-point", "unbounded", "branch-lost", "full-turn", "far"]
 
@@ -47,7 +44,7 @@ class End(NamedTuple):
     last: Floats | None = None
 
 
-class Place(NamedTuple):
+class Passage(NamedTuple):
     """States where the input has its first value, or whole turns more."""
 
     value: float
@@ -60,7 +57,7 @@ class Branch:
 
     lower: End
     upper: End
-    places: list[Place] = field(default_factory=list)
+    places: list[Passage] = field(default_factory=list)
 
 
 class Walker:
@@ -92,7 +89,7 @@ class Walker:
     def circuit(self, state: Floats) -> list[Branch]:
         """All branches of the circuit through an assembly at the first value, that one first."""
         origin = float(self.inputs[self.number])
-        start = Place(origin, state)
+        start = Passage(origin, state)
         upper, above = self._climb(start, 1.0, start)
         if upper.kind == "full-turn":
             return [Branch(upper._replace(value=origin), upper, [start, *above])]
@@ -121,7 +118,7 @@ class Walker:
             end = far
         return found, False
 
-    def _beyond(self, end: End, direction: float) -> Place | None:
+    def _beyond(self, end: End, direction: float) -> Passage | None:
         """A place on the other side of a dead centre that was met going in a direction."""
         fold, last = end.fold, end.last
         if fold is None or last is None:
@@ -129,14 +126,14 @@ class Walker:
         bend = abs(float(fold.second[fold.exchanged.input_column]))
         value = fold.value - direction * 0.5 * bend * tolerances.FOLD_CROSSING**2
         state = fold.guess(value, 2.0 * fold.state - last)
-        return None if state is None else Place(value, state)
+        return None if state is None else Passage(value, state)
 
     def _climb(
-        self, start: Place, direction: float, first: Place | None
-    ) -> tuple[End, list[Place]]:
+        self, start: Passage, direction: float, first: Passage | None
+    ) -> tuple[End, list[Passage]]:
         """Follows a branch in a direction to its end; places on the way."""
         place = start
-        places: list[Place] = []
+        places: list[Passage] = []
         for _ in range(tolerances.MOST_TURNS):
             target = self._next(place.value, direction)
             path = np.repeat(self.inputs[:, None], 2, axis=1)
@@ -153,7 +150,7 @@ class Walker:
                 if isinstance(limit, BranchPoint):
                     return End("branch-point", last + direction * limit.distance), places
                 return End("branch-lost", last), places
-            place = Place(target, way.state)
+            place = Passage(target, way.state)
             if self.period is None and target != self.inputs[self.number]:
                 return End("far", target), places
             if first is not None and self._is_same(place.state, first.state):

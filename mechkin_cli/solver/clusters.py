@@ -14,7 +14,7 @@ from mechkin_cli.solver.layout import Layout
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 class Clusters:

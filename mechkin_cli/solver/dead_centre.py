@@ -18,11 +18,8 @@ from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-    Floats = NDArray[np.float64]
 
 
 MOTION = Demand.VELOCITY | Demand.ACCELERATION

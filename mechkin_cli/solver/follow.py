@@ -16,11 +16,8 @@ import numpy as np
 from mechkin_cli import tolerances
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-    Floats = NDArray[np.float64]
 
 LIMITS = (
     tolerances.TURN_LIMIT_COSINE,

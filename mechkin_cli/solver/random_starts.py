@@ -16,7 +16,7 @@ from mechkin_cli.kernel import functions
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 SEED = 20_240_229
 """Fixed, so that the same file gives the same starts."""

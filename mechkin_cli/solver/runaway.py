@@ -7,16 +7,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 class Runaway(NamedTuple):

@@ -23,11 +23,8 @@ from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.random_starts import RandomStarts
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-    Floats = NDArray[np.float64]
 
 
 class Found(NamedTuple):

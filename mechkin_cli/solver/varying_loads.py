@@ -15,9 +15,7 @@ from mechkin_cli.mechanism.model import Amount, JointLoad, LinkLoad, Load, Varyi
 from mechkin_cli.solver.layout import Layout, is_slide
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 def kernel_loads(layout: Layout, values: Floats) -> Floats:

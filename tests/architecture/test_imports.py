@@ -7,19 +7,14 @@ from pathlib import Path
 import pytest
 from architecture.package import FILES, NAMES, imports, room
 
-BASE = {"diagnostics", "status", "tolerances"}
+BASE = {"arrays", "diagnostics", "nearest", "status", "tolerances"}
 KERNEL = BASE | {"kernel"}
 UNITS = BASE | {"units"}
 EXPRESSIONS = KERNEL | UNITS | {"expressions"}
-MECHANISM = KERNEL | UNITS | {"mechanism"}
+MECHANISM = EXPRESSIONS | {"mechanism"}
 SOLVER = MECHANISM | {"solver"}
-ANALYSIS = SOLVER | EXPRESSIONS | {"analysis"}
-BUILDING = (
-    EXPRESSIONS
-    | SOLVER
-    | {"reading", "schema", "building", "tables.layout"}
-    | {"analysis.problem", "analysis.idle", "analysis.load_laws"}
-)
+ANALYSIS = SOLVER | {"analysis"}
+BUILDING = SOLVER | {"reading", "schema", "building", "tables.layout"} | {"analysis.idle"}
 INTERFACE = BUILDING | {"analysis", "tables", "interface"}
 BENCHMARK = INTERFACE | {"benchmark"}
 ALLOWED = {

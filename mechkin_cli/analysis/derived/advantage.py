@@ -18,9 +18,7 @@ from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.layout import is_slide
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 def mechanical_advantages(run: FinishedRun, wanted: Sequence[Wanted]) -> list[Floats]:

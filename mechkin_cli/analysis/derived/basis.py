@@ -21,19 +21,15 @@ from mechkin_cli.units import ANGULAR_RATE, DIMENSIONLESS, LENGTH, VELOCITY
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    import numpy as np
-    from numpy.typing import NDArray
-
     from mechkin_cli.analysis.assembly import Start
     from mechkin_cli.analysis.derived.rotations import Rotation
     from mechkin_cli.analysis.derived.row_vectors import RowVector
-    from mechkin_cli.analysis.problem import Problem
     from mechkin_cli.analysis.rows import KernelInputs, RowStates
     from mechkin_cli.analysis.setup import Setup
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.solver.demand import Slot
     from mechkin_cli.solver.layout import Layout
-
-    Floats = NDArray[np.float64]
 
 AXES = ("x", "y", "z")
 

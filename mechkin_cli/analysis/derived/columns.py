@@ -19,9 +19,7 @@ from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.demand import Slot
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 def derived_columns(run: FinishedRun, wanted: Sequence[Wanted]) -> tuple[Floats, dict[str, Slot]]:

@@ -23,12 +23,9 @@ from mechkin_cli.analysis.derived.rotations import (
 from mechkin_cli.solver.codes import Demand
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from mechkin_cli.analysis.derived.rotations import Quaternion
     from mechkin_cli.analysis.derived.row_vectors import RowVector
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 def turn(run: FinishedRun, joint: str) -> RowVector:

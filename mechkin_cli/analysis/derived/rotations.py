@@ -16,11 +16,9 @@ from mechkin_cli.analysis.derived.row_vectors import dot, length, scale
 from mechkin_cli.kernel.functions import atan2
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from mechkin_cli.analysis.derived.row_vectors import RowVector
+    from mechkin_cli.arrays import Floats
 
-    Floats = NDArray[np.float64]
     Quaternion = tuple[Floats, Floats, Floats, Floats]
     Rotation = tuple[RowVector, RowVector, RowVector]
 

@@ -9,7 +9,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
+
     RowVector = tuple[Floats, Floats, Floats]
 
 

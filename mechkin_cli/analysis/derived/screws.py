@@ -31,11 +31,8 @@ from mechkin_cli.analysis.derived.row_vectors import (
 from mechkin_cli.mechanism.derived_quantities import reference_point
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from mechkin_cli.analysis.derived.row_vectors import RowVector
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 class InstantScrew(NamedTuple):

@@ -39,11 +39,8 @@ from mechkin_cli.solver.layout import Layout
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from mechkin_cli.analysis.derived.row_vectors import RowVector
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 def transmission_angle(run: FinishedRun, quantity: Wanted) -> Floats:

@@ -24,9 +24,7 @@ from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
 from mechkin_cli.solver.random_starts import RandomStarts
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 class Poses(NamedTuple):

@@ -20,9 +20,7 @@ from mechkin_cli.mechanism.frames import Frame
 from mechkin_cli.mechanism.model import Joint
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 GROUND_AXES = np.eye(3)
 

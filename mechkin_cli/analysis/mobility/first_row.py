@@ -7,9 +7,9 @@ import numpy as np
 from mechkin_cli.analysis.assembly import choose_start
 from mechkin_cli.analysis.mobility.configurations import Body, Configuration, Poses
 from mechkin_cli.analysis.probe import Probe
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.analysis.rows import kernel_inputs
 from mechkin_cli.mechanism.model import Attached
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.graph import UnsolvableGraph, build_graph

@@ -13,9 +13,7 @@ from mechkin_cli.analysis.mobility.configurations import Configuration
 from mechkin_cli.mechanism.model import Joint
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 MOST_LINKS = 3
 """Links of one idle group: a leg of S-P-S has two."""

@@ -8,13 +8,11 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.mobility.configurations import Configuration
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.problem import Problem
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 def input_notes(

@@ -26,15 +26,13 @@ from mechkin_cli.analysis.mobility.first_row import first_row
 from mechkin_cli.analysis.mobility.idle import IdleFreedom, idle_freedoms
 from mechkin_cli.analysis.mobility.inputs import input_notes
 from mechkin_cli.analysis.mobility.redundancy import Redundancy, redundancies
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.model import Mechanism
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.random_starts import RandomStarts
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 class Rank(NamedTuple):

@@ -18,9 +18,7 @@ from mechkin_cli.analysis.mobility.configurations import Configuration
 from mechkin_cli.mechanism.model import Joint
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from mechkin_cli.arrays import Floats
 
 
 MOST_CHANGES = 3

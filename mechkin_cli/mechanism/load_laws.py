@@ -12,19 +12,17 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.analysis.problem import Problem
 from mechkin_cli.diagnostics import Diagnostic, Place
 from mechkin_cli.expressions import Expression, Quantity
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
 from mechkin_cli.units import UnitSystem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.mechanism.curve import Curve
-
-    Floats = NDArray[np.float64]
-    Bools = NDArray[np.bool_]
 
 Resolve = Callable[[str], Quantity]
 

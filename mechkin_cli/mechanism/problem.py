@@ -14,8 +14,8 @@ from mechkin_cli.mechanism.motion import Assembly, Motion
 from mechkin_cli.mechanism.quantities import Wanted, catalogue
 
 if TYPE_CHECKING:
-    from mechkin_cli.analysis.load_laws import LoadLaw
     from mechkin_cli.expressions import Quantity
+    from mechkin_cli.mechanism.load_laws import LoadLaw
     from mechkin_cli.units import UnitSystem
 
 
