@@ -68,9 +68,10 @@ def _demand_lines(analysis: Analysis) -> list[str]:
     massless = not any(link.has_mass for link in mechanism.links.values())
     forces = bool(demand & Demand.FORCES)
     known = analysis.model.problem.quantities()
-    asked = [known[name] for name in result.slots]
+    asked = [known[name] for name in result.columns if name in known]
     reactions = any(quantity.kind in WRENCH_KINDS for quantity in asked)
     lines = [
+        f"first assembly: {result.how or 'none found'}",
         f"positions: {result.rows} rows, {result.nodes} nodes followed, the rest filled in between",
         _line("velocities", bool(demand & Demand.VELOCITY), "no column reads a rate"),
         _line("accelerations", bool(demand & Demand.ACCELERATION), _without(forces, massless)),

@@ -111,7 +111,7 @@ class OutputPlan:
             return self._output(OutputCode.CLOSING, number, factor, wanted.order, freedom=freedom)
         if joint.letter == "H" and slide:
             factor = joint.lead / (2.0 * pi)
-        edge = next(k for k, e in enumerate(layout.graph.edges) if e.joint.name == joint.name)
+        edge = layout.edge_number[joint.name]
         if wanted.order == 0:
             return self._output(OutputCode.STATE, layout.state(edge, freedom), factor)
         code = (OutputCode.RATE, OutputCode.ACCELERATION, OutputCode.JERK)[wanted.order - 1]

@@ -98,6 +98,11 @@ class Layout:
         return {name: self.body_frame[number] for name, number in self.link_number.items()}
 
     @cached_property
+    def edge_number(self) -> dict[str, int]:
+        """Number of the tree edge of each joint that is one."""
+        return {edge.joint.name: k for k, edge in enumerate(self.graph.edges)}
+
+    @cached_property
     def joint_reference(self) -> dict[str, int]:
         """The kernel's number of a joint: k of its last part for a tree joint, -1-c for a closing
         joint."""

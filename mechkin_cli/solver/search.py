@@ -8,7 +8,7 @@ with M = 0 the chance is known only to be of order 1 / C).
 
 from __future__ import annotations
 
-from math import pi
+from math import isfinite, pi
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -25,6 +25,14 @@ from mechkin_cli.solver.random_starts import RandomStarts
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
+
+
+class Within(NamedTuple):
+    """A box of states: `radius` (states,) about `centre` (states,), infinite where any value will
+    do."""
+
+    centre: Floats
+    radius: Floats
 
 
 class Found(NamedTuple):
@@ -53,7 +61,9 @@ class Found(NamedTuple):
         return int(self.states.shape[1])
 
 
-def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Found:
+def assemblies(
+    layout: Layout, plan: Plan, inputs: Floats, turns: int = 1, within: Within | None = None
+) -> Found:
     """The assemblies at one set of inputs.
 
     Args:
@@ -61,6 +71,7 @@ def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Fo
         plan: its plan.
         inputs: (inputs,) in kernel units.
         turns: turns of helical joints to either side.
+        within: where random starts are taken; None: everywhere.
     """
     generator = RandomStarts()
     partial: list[Floats] = [np.zeros((plan.states, 1))]
@@ -71,7 +82,7 @@ def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Fo
     for number in range(len(layout.graph.blocks)):
         continued: list[Floats] = []
         for base in partial:
-            clusters = _search_block(layout, plan, number, inputs, base, generator, turns)
+            clusters = _search_block(layout, plan, number, inputs, base, generator, turns, within)
             continued.extend(state[:, None] for state in clusters.states.T)
             starts, closed = starts + clusters.tried, closed + clusters.closed
             chance = max(chance, clusters.chance if clusters.closed else 0.0)
@@ -83,6 +94,17 @@ def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Fo
     return Found(states, residual, condition, starts, closed, chance, closest, stopped, free)
 
 
+def single_assembly(layout: Layout, plan: Plan, inputs: Floats, state: Floats) -> Floats:
+    """Where one start (states,) ends, block by block; closed or not."""
+    values, states = np.ascontiguousarray(inputs[:, None]), state[:, None].copy()
+    residual, flags = np.empty(1), np.empty(1, dtype=np.uint8)
+    limits = (tolerances.SEARCH_ITERATIONS, tolerances.SEARCH_RESIDUAL)
+    for number in range(len(layout.graph.blocks)):
+        plan.search(number, values, states, residual, flags, *limits, width())
+    found: Floats = states[:, 0].copy()
+    return found
+
+
 def _search_block(
     layout: Layout,
     plan: Plan,
@@ -91,6 +113,7 @@ def _search_block(
     base: Floats,
     generator: RandomStarts,
     turns: int,
+    within: Within | None,
 ) -> Clusters:
     clusters = Clusters(layout)
     size = tolerances.SEARCH_STARTS
@@ -99,12 +122,14 @@ def _search_block(
     while not (clusters.settled or clusters.exhausted):
         states = np.repeat(base, size, axis=1)
         _randomise(layout, number, states, generator, turns)
+        if within is not None:
+            _bring_within(layout, number, states, generator, within)
         residual, flags = np.empty(size), np.empty(size, dtype=np.uint8)
         limits = (tolerances.SEARCH_ITERATIONS, tolerances.SEARCH_RESIDUAL)
         plan.search(number, values, states, residual, flags, *limits, width())
         clusters.closest = min(clusters.closest, float(np.min(residual)))
-        within = np.all(np.abs(states[threads]) <= _most_turn(turns), axis=0)
-        states, free = _isolated(layout, plan, values, states[:, (flags == 0) & within])
+        turned = np.all(np.abs(states[threads]) <= _most_turn(turns), axis=0)
+        states, free = _isolated(layout, plan, values, states[:, (flags == 0) & turned])
         clusters.add(states)
         clusters.free += free
         clusters.tried += size
@@ -152,6 +177,18 @@ def _randomise(
         else:
             half = _most_turn(turns) if carrier.part.letter == "H" else pi
             states[state] = generator.between(half, rows)
+
+
+def _bring_within(
+    layout: Layout, number: int, states: Floats, generator: RandomStarts, within: Within
+) -> None:
+    """Takes the starts of a block from a box, where it is bounded."""
+    for edge, freedom in layout.graph.blocks[number].unknowns:
+        k, local = layout.carrier_of(edge, freedom)
+        state = layout.carriers[k].state + local
+        radius = float(within.radius[state])
+        if isfinite(radius):
+            states[state] = within.centre[state] + generator.between(radius, states.shape[1])
 
 
 def _quaternion_scalars(layout: Layout) -> list[int]:

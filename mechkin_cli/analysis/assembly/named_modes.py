@@ -11,18 +11,17 @@ from math import ceil, pi
 from typing import TYPE_CHECKING
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.home import follow_from_home, is_home_assembled
-from mechkin_cli.analysis.probe import Probe
+from mechkin_cli.analysis.assembly.home import follow_from_home, is_home_assembled
+from mechkin_cli.analysis.assembly.probe import Probe
 from mechkin_cli.mechanism.model import Mechanism
-from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.graph import ANGLES
-from mechkin_cli.solver.layout import Layout, is_slide
-from mechkin_cli.solver.search import Found, assemblies, with_assemblies
+from mechkin_cli.solver.layout import is_slide
+from mechkin_cli.solver.search import Found, with_assemblies
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.session import Session
 
 
 @dataclass(frozen=True)
@@ -41,17 +40,22 @@ class NamedModes:
         return self.found.number
 
 
-def name_modes(
-    problem: Problem, layout: Layout, plan: Plan, inputs: Floats, probe: Probe
-) -> NamedModes:
+def name_modes(session: Session, inputs: Floats) -> NamedModes:
     """The modes at the first row, `inputs` (inputs,) in kernel units."""
-    found = assemblies(layout, plan, inputs, problem.assembly.turns)
-    if is_home_assembled(layout, plan):
-        home = follow_from_home(layout, plan, inputs)
+    return session.once(("modes", inputs.tobytes()), lambda: _name_modes(session, inputs))
+
+
+def _name_modes(session: Session, inputs: Floats) -> NamedModes:
+    found = session.search(inputs)
+    if is_home_assembled(session):
+        home = follow_from_home(session, inputs)
         if home.end == TrackEnd.FINISHED:
-            found = with_assemblies(layout, plan, inputs, found, home.state[:, None])
-    coordinates, points = probe.read(inputs, found.states)
-    return NamedModes(found, coordinates, points, letters(problem.mechanism, coordinates, points))
+            found = with_assemblies(
+                session.layout, session.plan, inputs, found, home.state[:, None]
+            )
+    coordinates, points = Probe.of(session).read(inputs, found.states)
+    names = letters(session.problem.mechanism, coordinates, points)
+    return NamedModes(found, coordinates, points, names)
 
 
 def letters(mechanism: Mechanism, coordinates: dict[str, Floats], points: Floats) -> dict[int, str]:
