@@ -1,5 +1,5 @@
-"""`assembly: {near: ...}` takes the nearest of all assemblies, whether it is found by Newton's method
-alone, by a search about what is named, or by a search everywhere."""
+"""`assembly: {near: ...}` takes the nearest of all assemblies, whether it is found by Newton's
+method alone, by a search about what is named, or by a search everywhere."""
 
 from __future__ import annotations
 
@@ -82,4 +82,4 @@ def test_a_close_name_needs_no_search_and_a_coarse_one_says_how_it_was_found() -
     assert "by Newton's method, no other within" in exact.result.how
     there = {name: value + (10.0 if "theta" in name else 0.1) for name, value in mode.items()}
     coarse = near(file, there)
-    assert "starts within" in coarse.result.how
+    assert "starts found there" in coarse.result.how

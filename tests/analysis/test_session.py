@@ -10,7 +10,6 @@ from mechanisms.runs import LECTURES, NAMES
 from references import MECHANISMS
 
 import mechkin_cli as mk
-
 from mechkin_cli.solver.session import Session
 
 
@@ -39,11 +38,26 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> Iterator[Calls]:
     yield found
 
 
-COLUMNS = (
-    "O2.theta O2.s O4.theta O2.theta_dot O2.s_dot O4.theta_dot O2.theta_ddot O2.s_ddot "
-    "O4.theta_ddot O1.effort O1.force O2.force O3.force O4.moment coupler.omega coupler.alpha "
-    "O4.theta_dddot coupler.finite_angle"
-).split()
+COLUMNS = [
+    "O2.theta",
+    "O2.s",
+    "O4.theta",
+    "O2.theta_dot",
+    "O2.s_dot",
+    "O4.theta_dot",
+    "O2.theta_ddot",
+    "O2.s_ddot",
+    "O4.theta_ddot",
+    "O1.effort",
+    "O1.force",
+    "O2.force",
+    "O3.force",
+    "O4.moment",
+    "coupler.omega",
+    "coupler.alpha",
+    "O4.theta_dddot",
+    "coupler.finite_angle",
+]
 
 
 def test_reading_more_of_a_run_neither_searches_nor_follows(calls: Calls) -> None:

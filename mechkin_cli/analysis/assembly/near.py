@@ -34,32 +34,45 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.session import Session
 
 
-class Near(NamedTuple):
-    """The assembly (states,) that Newton's method finds, its distance from what is named, and the
-    distance from it within which there is no other."""
+class Named(NamedTuple):
+    """What `near` names: states (states,), the others as drawn; the states that are named unknowns;
+    whether these are all unknowns."""
 
     state: Floats
-    distance: float
+    unknowns: frozenset[int]
+    complete: bool
+
+
+class Near(NamedTuple):
+    """The assembly (states,) that Newton's method finds, and the distance from it within which
+    there is no other, 0 where none is known."""
+
+    state: Floats
     unique: float
 
-    @property
-    def is_nearest(self) -> bool:
-        """Whether no other assembly is nearer, or about as near."""
-        return (1.0 + tolerances.NEAR_RUNNER_UP) * self.distance < self.unique
+    def is_nearest(self, distance: float) -> bool:
+        """Whether no other assembly is nearer, or about as near, where this is at a distance."""
+        return (1.0 + tolerances.NEAR_RUNNER_UP) * distance < self.unique
 
 
-def named_state(session: Session) -> Floats | None:
-    """States where `near` names every unknown, the others as drawn; None where it does not."""
-    layout, near = session.layout, session.problem.assembly.near
-    state = home_state(layout)
+def named_by(session: Session) -> Named:
+    """What the problem's `near` names."""
+    layout = session.layout
+    state, named = home_state(layout), set()
     left = {freedom for block in session.graph.blocks for freedom in block.unknowns}
-    for name, value in near.items():
+    complete = True
+    for name, value in session.problem.assembly.near.items():
         place = _unknown(session, name)
         if place is None:
-            return None
-        left.discard(place[0])
-        state[layout.state(*place[0])] = value / place[1]
-    return None if left else state
+            complete = False
+            continue
+        freedom, unit = place
+        number = layout.state(*freedom)
+        state[number] = value / unit
+        if freedom in left:
+            named.add(number)
+            left.discard(freedom)
+    return Named(state, frozenset(named), complete and not left)
 
 
 def _unknown(session: Session, name: str) -> tuple[tuple[int, int], float] | None:
@@ -67,7 +80,7 @@ def _unknown(session: Session, name: str) -> tuple[tuple[int, int], float] | Non
     joint_name, _, coordinate = name.partition(".")
     joint = session.problem.mechanism.joints[joint_name]
     edge = session.layout.edge_number.get(joint_name)
-    if edge is None or not joint.type.freedom_of:
+    if edge is None:
         return None
     unit = 1.0
     if is_slide(coordinate):
@@ -75,32 +88,30 @@ def _unknown(session: Session, name: str) -> tuple[tuple[int, int], float] | Non
     return (edge, joint.type.freedom_of[coordinate]), unit
 
 
-def newton_from(session: Session, inputs: Floats, state: Floats) -> Near | None:
-    """The assembly that Newton's method reaches from a state (states,); None if it reaches none.
+def newton_from(session: Session, inputs: Floats, named: Named) -> Near | None:
+    """The assembly that Newton's method reaches from what is named; None if it reaches none.
 
-    Args:
-        session: a mechanism all of whose unknowns are scalars.
-        inputs: (inputs,) in kernel units.
-        state: where to start; distances count from it.
+    `inputs` (inputs,) in kernel units.
     """
-    start = single_assembly(session.layout, session.plan, inputs, state)
+    start = single_assembly(session.layout, session.plan, inputs, named.state)
     batch = session.close(inputs[:, None], start[:, None], Demand.CONDITION)
     if not batch.good[0] or batch.condition is None:
         return None
-    found = batch.states[:, 0]
-    miss = _scaled(session.layout, found - state)
-    distance = sqrt(float(sum(part * part for part in miss)))
-    return Near(found, distance, _unique(session, found, float(batch.condition[0])))
+    found, condition = batch.states[:, 0], float(batch.condition[0])
+    if not condition < tolerances.SEARCH_CONDITION:
+        return None
+    return Near(found, _unique(session, found, condition) if named.complete else 0.0)
 
 
-def box_about(session: Session, state: Floats, radius: float) -> Within:
-    """The box of all unknowns within `radius` (rad, parts of the size) of a state (states,)."""
+def box_about(session: Session, named: Named, radius: float) -> Within:
+    """The box of all states whose named unknowns lie within `radius` (rad, parts of the size)."""
     layout = session.layout
     size = layout.mechanism.box_diagonal() / layout.length
-    radii = np.full(state.size, inf)
+    radii = np.full(named.state.size, inf)
     for number, slide in _unknown_states(layout):
-        radii[number] = radius * size if slide else radius
-    return Within(state, radii)
+        if number in named.unknowns:
+            radii[number] = radius * size if slide else radius
+    return Within(named.state, radii)
 
 
 def _unknown_states(layout: Layout) -> list[tuple[int, bool]]:
@@ -112,16 +123,6 @@ def _unknown_states(layout: Layout) -> list[tuple[int, bool]]:
             carrier = layout.carriers[k]
             found.append((carrier.state + local, tree_types()[carrier.part.letter].slides[local]))
     return found
-
-
-def _scaled(layout: Layout, step: Floats) -> list[float]:
-    """A difference of states by unknown: turns in rad, the shorter way round; slides in sizes."""
-    size = layout.mechanism.box_diagonal() / layout.length
-    parts = []
-    for number, slide in _unknown_states(layout):
-        value = float(step[number])
-        parts.append(value / size if slide else value)
-    return parts
 
 
 def _unique(session: Session, state: Floats, condition: float) -> float:

@@ -17,7 +17,7 @@ from mechkin_cli.analysis.assembly.home import (
     nearest_to_home,
 )
 from mechkin_cli.analysis.assembly.named_modes import NamedModes, is_cyclic, name_modes, wrapped
-from mechkin_cli.analysis.assembly.near import Near, box_about, named_state, newton_from
+from mechkin_cli.analysis.assembly.near import Near, box_about, named_by, newton_from
 from mechkin_cli.analysis.assembly.probe import Probe
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.solver.clusters import pose_keys, same_poses
@@ -94,44 +94,52 @@ def mode_letter(session: Session, start: Start) -> str:
 
 
 def _from_near(session: Session, inputs: Floats) -> Start | None:
-    """By Newton's method where all unknowns are named: at once if what it finds is proven to be the
-    nearest, else after a search about what is named; None where Newton's method fails."""
-    named = named_state(session)
-    if named is None:
+    """By Newton's method: at once if what it finds is proven to be the nearest, else after a search
+    about what is named; None where it finds none that narrows the search."""
+    named = named_by(session)
+    newton = newton_from(session, inputs, named) if named.unknowns else None
+    if newton is None:
         return None
-    found = newton_from(session, inputs, named)
-    if found is None:
-        return None
-    if found.is_nearest:
+    distance = _distances(session, inputs, newton.state[:, None])[0]
+    if newton.is_nearest(distance):
         how = (
-            f"near, {found.distance:.2g} rad or sizes off by Newton's method, no other within "
-            f"{found.unique:.2g}"
+            f"near, {distance:.2g} rad or sizes off by Newton's method, no other within "
+            f"{newton.unique:.2g}"
         )
-        return Start(found.state, NEAR, how)
-    return _searched_about(session, inputs, named, found)
-
-
-def _searched_about(session: Session, inputs: Floats, named: Floats, newton: Near) -> Start | None:
-    """The nearest of all assemblies about as near as the one that Newton's method found."""
-    radius = tolerances.NEAR_RUNNER_UP * newton.distance
+        return Start(newton.state, NEAR, how)
+    # what is named exactly is named to rounding
+    radius = tolerances.NEAR_RUNNER_UP * max(distance, tolerances.SAME_MODE)
     if radius > tolerances.NEAR_BALL:
         return None
     found = session.search(inputs, box_about(session, named, radius))
+    return _nearest_about(session, inputs, newton, found, radius)
+
+
+def _nearest_about(
+    session: Session, inputs: Floats, newton: Near, found: Found, radius: float
+) -> Start | None:
+    """The nearest of all assemblies about as near as the one that Newton's method found."""
     found = with_assemblies(session.layout, session.plan, inputs, found, newton.state[:, None])
-    coordinates, _ = Probe.of(session).read(inputs, found.states)
-    distances = _distances_near(session.problem, coordinates)
-    order = [i for i in np.argsort(distances) if distances[i] <= radius]
+    distances = _distances(session, inputs, found.states)
+    order = sorted(range(found.number), key=lambda i: distances[i])
+    order = [i for i in order if distances[i] <= radius]
     if not order:
         return None
+    best = distances[order[0]]
     how = (
-        f"near, {distances[order[0]]:.2g} rad or sizes off, nearest of {len(order)} that "
-        f"{found.starts} starts within {radius:.2g} found"
+        f"near, {best:.2g} rad or sizes off, of {len(order)} within {radius:.2g} that "
+        f"{found.starts} starts found there"
     )
     notes = []
-    if len(order) > 1:
-        both = (distances[order[0]], distances[order[1]])
-        notes.append(_unclear("two assemblies", both))
+    if len(order) > 1 and distances[order[1]] < tolerances.NEAR_RUNNER_UP * best:
+        notes.append(_unclear("two assemblies", (best, distances[order[1]])))
     return Start(found.states[:, order[0]], NEAR, how, notes)
+
+
+def _distances(session: Session, inputs: Floats, states: Floats) -> list[float]:
+    """Of assemblies (states, number) from what `near` names."""
+    coordinates, _ = Probe.of(session).read(inputs, states)
+    return _distances_near(session.problem, coordinates)
 
 
 def _from_home(session: Session, path: Floats) -> Start:
