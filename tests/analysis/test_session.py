@@ -1,8 +1,6 @@
-"""A run is one thing: what it found is kept, and reading more of it follows and searches nothing."""
+"""A run is one thing: what it found is kept, reading more of it follows and searches nothing."""
 
 from __future__ import annotations
-
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
@@ -25,7 +23,7 @@ class Calls:
 
 
 @pytest.fixture
-def calls(monkeypatch: pytest.MonkeyPatch) -> Iterator[Calls]:
+def calls(monkeypatch: pytest.MonkeyPatch) -> Calls:
     found = Calls()
     for verb in found.count:
         own = getattr(Session, verb)
@@ -35,29 +33,15 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> Iterator[Calls]:
             return _own(self, *args, **more)
 
         monkeypatch.setattr(Session, verb, counted)
-    yield found
+    return found
 
 
-COLUMNS = [
-    "O2.theta",
-    "O2.s",
-    "O4.theta",
-    "O2.theta_dot",
-    "O2.s_dot",
-    "O4.theta_dot",
-    "O2.theta_ddot",
-    "O2.s_ddot",
-    "O4.theta_ddot",
-    "O1.effort",
-    "O1.force",
-    "O2.force",
-    "O3.force",
-    "O4.moment",
-    "coupler.omega",
-    "coupler.alpha",
-    "O4.theta_dddot",
+COLUMNS = (
+    *("O2.theta", "O2.s", "O4.theta", "O2.theta_dot", "O2.s_dot", "O4.theta_dot"),
+    *("O2.theta_ddot", "O2.s_ddot", "O4.theta_ddot", "O1.effort", "O1.force", "O2.force"),
+    *("O3.force", "O4.moment", "coupler.omega", "coupler.alpha", "O4.theta_dddot"),
     "coupler.finite_angle",
-]
+)
 
 
 def test_reading_more_of_a_run_neither_searches_nor_follows(calls: Calls) -> None:
