@@ -15,11 +15,12 @@ from mechkin_cli.analysis.named_modes import NamedModes, is_cyclic, name_modes, 
 from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.rows import MAY_BE_RIGID, input_numbers, input_text
 from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.graph import SolverGraph, is_redundant
-from mechkin_cli.solver.layout import Layout, is_slide
+from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.search import Found
 from mechkin_cli.status import Status
 
@@ -136,7 +137,7 @@ def _distances_near(problem: Problem, modes: NamedModes) -> list[float]:
             miss = float(modes.coordinates[name][i]) - target
             if is_cyclic(mechanism, name):
                 miss = wrapped(miss)
-            elif is_slide(name.partition(".")[2]):
+            elif not is_angle(name.partition(".")[2]):
                 miss /= size
             total += miss * miss
         distances.append(sqrt(total))

@@ -13,11 +13,11 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.setup import Setup
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.follow import follow
-from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def unwrap_closing_angles(setup: Setup, values: Floats, reached: NDArray[np.bool
 def _is_closing_angle(layout: Layout, quantity: Wanted) -> bool:
     return (
         quantity.kind == "coordinate"
-        and quantity.coordinate in ANGLES
+        and is_angle(quantity.coordinate)
         and quantity.order == 0
         and layout.joint_reference[quantity.owner] < 0
     )

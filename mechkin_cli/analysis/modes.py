@@ -20,13 +20,14 @@ from mechkin_cli.analysis.named_modes import NamedModes, is_cyclic, name_modes, 
 from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.rows import input_numbers, input_text, kernel_inputs
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.follow import TrackEnd, follow
-from mechkin_cli.solver.graph import ANGLES, SolverGraph
+from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.search import Found, assemblies, with_assemblies
-from mechkin_cli.units import ANGLE, LENGTH, Dimension
+from mechkin_cli.units import Dimension
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -211,7 +212,7 @@ def _result(
         )
         for i in order
     )
-    threads = any(joint.letter == "H" for joint in problem.mechanism.joints.values())
+    threads = any(joint.type.is_threaded for joint in problem.mechanism.joints.values())
     return Modes(
         modes=modes,
         inputs=inputs,
@@ -238,7 +239,7 @@ def _in_file_units(problem: Problem, name: str, value: float) -> float:
 
 
 def _dimension(name: str) -> Dimension:
-    return ANGLE if name.partition(".")[2] in ANGLES else LENGTH
+    return dimension_of(name.partition(".")[2])
 
 
 def _free_note(found: Found) -> Diagnostic:

@@ -16,6 +16,7 @@ from mechkin_cli.analysis.named_modes import NamedModes, name_modes
 from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.rows import input_number, kernel_inputs
 from mechkin_cli.diagnostics import Diagnostic, UsageError
+from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.batch import run
@@ -24,9 +25,8 @@ from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.follow import follow
-from mechkin_cli.solver.graph import ANGLES, SolverGraph
+from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.solver.layout import Layout
-from mechkin_cli.units import ANGLE, LENGTH
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -110,7 +110,7 @@ def find_ranges(
         named = name_modes(problem, layout, plan, first, probe)
     item = problem.motion.inputs[number]
     at = {i.name: float(i.written[0]) for i in problem.motion.inputs if i is not item}
-    unit = problem.units.label(ANGLE if item.coordinate in ANGLES else LENGTH)
+    unit = problem.units.label(dimension_of(item.coordinate))
     if named.number == 0:
         note = nothing_found(problem, graph, named.found)
         return Ranges(item.name, unit, at, (), (), (*problem.diagnostics, note))

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
-from mechkin_cli.solver.graph import ANGLES
-from mechkin_cli.solver.layout import Layout, is_slide
+from mechkin_cli.solver.layout import Layout
 from mechkin_cli.status import Status
-from mechkin_cli.units import ANGLE, LENGTH
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -74,10 +72,7 @@ def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
     def table(name: str) -> Floats:
         columns = []
         for item in inputs:
-            joint = problem.mechanism.joints[item.joint]
-            unit = 1.0
-            if is_slide(item.coordinate):
-                unit = joint.lead / (2.0 * pi) if joint.letter == "H" else layout.length
+            unit = problem.mechanism.joints[item.joint].unit_of(item.coordinate, layout.length)
             columns.append(getattr(item, name) / unit)
         return np.ascontiguousarray(np.stack(columns)) if columns else np.empty((0, rows))
 
@@ -87,12 +82,8 @@ def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
 def input_number(problem: Problem, layout: Layout, number: int, value: float) -> Number:
     """A value of input `number` in kernel units as a number in the file's units."""
     item = problem.motion.inputs[number]
-    if item.coordinate in ANGLES:
-        dimension, si = ANGLE, value
-    else:
-        joint = problem.mechanism.joints[item.joint]
-        dimension = LENGTH
-        si = value * (joint.lead / (2.0 * pi) if joint.letter == "H" else layout.length)
+    dimension = dimension_of(item.coordinate)
+    si = value * problem.mechanism.joints[item.joint].unit_of(item.coordinate, layout.length)
     in_file = float(problem.units.from_si(si, dimension))
     return Number(item.name, in_file, problem.units.label(dimension))
 

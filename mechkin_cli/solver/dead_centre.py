@@ -113,8 +113,8 @@ def exchange(
     inputs = set(graph.inputs)
     candidates = []
     for k, edge in enumerate(graph.edges):
-        for coordinate, freedom in edge.joint.type.freedom_of.items():
-            if (k, freedom) not in inputs and edge.joint.letter + coordinate != "Hs":
+        for coordinate, freedom in edge.joint.type.scalars.items():
+            if (k, freedom) not in inputs:
                 speed = abs(float(first[layout.column(k, freedom)]))
                 if speed >= tolerances.EXCHANGE_SPEED:
                     candidates.append((-speed, k, freedom, coordinate))

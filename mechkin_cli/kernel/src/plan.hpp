@@ -5,7 +5,7 @@
 // carried by tree joint k; ground is -1. Link frames: the frame of the link's tree joint, moved.
 #pragma once
 
-// Displacements that carry links in the tree; other pairs are chains of these (joint_types.py).
+// Displacements that carry links in the tree; other pairs are chains of these (joint_table.py).
 // TREE_L hangs the body of a leg between two points (legs.hpp).
 enum TreeCode : int {
   TREE_R = 0,
