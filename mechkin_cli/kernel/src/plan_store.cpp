@@ -94,7 +94,7 @@ void PlanStore::add_closing_joint(int type, int first, int second, const FrameDa
                                   const FrameData& on_second, double parameter,
                                   const std::vector<std::pair<int, double>>& loop) {
   require(!finished_, "the plan is finished");
-  require(type >= 0 && type < PAIR_CODES && pair_type(type).equations > 0, "this pair cannot close a loop");
+  require(type >= 0 && type < kernel_unit()->pair_codes, "this pair cannot close a loop");
   check_link(first);
   check_link(second);
   const auto [begin, end] = add_loop(loop);
