@@ -64,16 +64,18 @@ struct CylinderOnPlane : Pair<Conditions<InPlane<BZ>, KeptAngle<Square>>,
   static constexpr char letter[] = "Cp";
 };
 
-using Pairs = Entries<Revolute, Prismatic, Cylindric, Spheric, SphereOnPlane, SphereInGroove, Universal, Planar, Weld,
-                      SphereInSlottedCylinder, CylinderOnPlane>;
+// Two spheres with a leg between them: no pair of the file format.
+struct LegEnds : Pair<Conditions<Distance>, Coordinates<>> {
+  static constexpr char letter[] = "";
+};
 
-// Two spheres with a leg between them: no pair of its own.
-struct LegEnds : Pair<Conditions<Distance>, Coordinates<>> {};
+// The code of a pair is its place; LegEnds is PAIR_LEG.
+using Pairs = Entries<LegEnds, Revolute, Prismatic, Cylindric, Spheric, SphereOnPlane, SphereInGroove, Universal, Planar,
+                      Weld, SphereInSlottedCylinder, CylinderOnPlane>;
 
 // Calls f with the entry of what closes a loop.
 template <class F>
 MECHKIN_INLINE void with_closing_joint(int type, F&& f) {
-  if (type == PAIR_LEG) return f(LegEnds{});
   Pairs::call(type, f);
 }
 

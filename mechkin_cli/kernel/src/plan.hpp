@@ -20,7 +20,7 @@ enum TreeCode : int {
 
 // Pairs that close loops have their place in the list of pairs.hpp as code. PAIR_LEG is no pair of the file format: the
 // distance of two points that a leg keeps.
-enum PairCode : int { PAIR_LEG = -1 };
+enum PairCode : int { PAIR_LEG = 0 };
 
 // Axes (columns of the rotation) and origin of a frame, in a link's frame or in ground axes.
 struct Frame {
