@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from mechkin_cli.kernel.width import INSTRUCTIONS, width, widths
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, POWER_KINDS
-from mechkin_cli.mechanism.joint_types import FREE
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS
 
@@ -58,7 +57,7 @@ def _freedom(joint: Joint, freedom: int) -> str:
 
 
 def _joint(joint: Joint, words: str) -> str:
-    kind = "six unknowns" if joint.letter == FREE else joint.letter
+    kind = "six unknowns" if joint.type.is_free else joint.letter
     return f"{joint.name} ({kind}{words})"
 
 

@@ -15,9 +15,8 @@ widest: Final[int]
 class JointTableRow(TypedDict):
     letter: str
     code: int
-    parts: str
-    coordinates: str
     equations: int
+    lengths: int
 
 class TreeTableRow(TypedDict):
     code: int

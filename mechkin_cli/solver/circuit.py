@@ -73,8 +73,7 @@ class Walker:
         layout = session.layout
         edge, freedom = layout.graph.inputs[number]
         joint = layout.graph.edges[edge].joint
-        slide = joint.type.slides[freedom]
-        self.period = None if slide or joint.letter == "H" else 2.0 * pi
+        self.period = 2.0 * pi if joint.type.chain[freedom].is_cyclic else None
 
     def circuit(self, state: Floats) -> list[Branch]:
         """All branches of the circuit through an assembly at the first value, that one first."""

@@ -108,8 +108,8 @@ def exchange(session: Session, number: int, first: Floats) -> Exchanged | None:
     inputs = set(graph.inputs)
     candidates = []
     for k, edge in enumerate(graph.edges):
-        for coordinate, freedom in edge.joint.type.freedom_of.items():
-            if (k, freedom) not in inputs and edge.joint.letter + coordinate != "Hs":
+        for coordinate, freedom in edge.joint.type.scalars.items():
+            if (k, freedom) not in inputs:
                 speed = abs(float(first[layout.column(k, freedom)]))
                 if speed >= tolerances.EXCHANGE_SPEED:
                     candidates.append((-speed, k, freedom, coordinate))

@@ -8,7 +8,6 @@ section 8).
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, reference_point
@@ -17,7 +16,7 @@ from mechkin_cli.mechanism.model import Attached, Damper, Load, Mechanism, varyi
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO, Vector
 from mechkin_cli.solver.codes import Demand, OutputCode
-from mechkin_cli.solver.layout import Layout, is_slide
+from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
@@ -102,15 +101,12 @@ class OutputPlan:
     def _add_coordinate(self, wanted: Wanted) -> int:
         layout = self.layout
         joint = layout.mechanism.joints[wanted.owner]
-        slide = is_slide(wanted.coordinate)
-        factor = layout.length if slide else 1.0
+        factor = joint.unit_of(wanted.coordinate, layout.length)
         freedom = joint.type.freedom_of[wanted.coordinate]
         reference = layout.joint_reference[wanted.owner]
         if reference < 0:
             number = -1 - reference
             return self._output(OutputCode.CLOSING, number, factor, wanted.order, freedom=freedom)
-        if joint.letter == "H" and slide:
-            factor = joint.lead / (2.0 * pi)
         edge = layout.edge_number[joint.name]
         if wanted.order == 0:
             return self._output(OutputCode.STATE, layout.state(edge, freedom), factor)
@@ -152,11 +148,8 @@ class OutputPlan:
             return self._output(code, layout.place_number[owner], factor)
         if kind == "effort":
             number = self.inputs.index((owner, wanted.coordinate))
-            joint = mechanism.joints[owner]
-            factor = length if is_slide(wanted.coordinate) else length * length
-            if joint.letter == "H" and wanted.coordinate == "s":
-                # a force along s does the work of the torque force * slide per radian
-                factor = length * length / (joint.lead / (2.0 * pi))
+            # a force along a thread does the work of the torque force * slide per radian
+            factor = length * length / mechanism.joints[owner].unit_of(wanted.coordinate, length)
             return self._output(OutputCode.EFFORT, number, factor)
         if kind == "holding_moment":
             number = layout.leg_number[owner]

@@ -5,15 +5,12 @@ Slides are in the kernel's length unit; a helical joint is driven by its angle.
 
 from __future__ import annotations
 
-from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from mechkin_cli.diagnostics import Number
-from mechkin_cli.solver.graph import ANGLES
-from mechkin_cli.solver.layout import is_slide
-from mechkin_cli.units import ANGLE, LENGTH
+from mechkin_cli.mechanism.joint_table import dimension_of
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -60,16 +57,13 @@ def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
 
 def input_unit(layout: Layout, item: DrivenInput) -> float:
     """The SI value of one kernel unit of an input."""
-    if not is_slide(item.coordinate):
-        return 1.0
-    joint = layout.mechanism.joints[item.joint]
-    return joint.lead / (2.0 * pi) if joint.letter == "H" else layout.length
+    return layout.mechanism.joints[item.joint].unit_of(item.coordinate, layout.length)
 
 
 def input_number(problem: Problem, layout: Layout, number: int, value: float) -> Number:
     """A value of input `number` in kernel units as a number in the file's units."""
     item = problem.motion.inputs[number]
-    dimension = ANGLE if item.coordinate in ANGLES else LENGTH
+    dimension = dimension_of(item.coordinate)
     in_file = float(problem.units.from_si(value * input_unit(layout, item), dimension))
     return Number(item.name, in_file, problem.units.label(dimension))
 

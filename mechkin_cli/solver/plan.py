@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from math import pi
 from typing import TYPE_CHECKING
 
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.frames import turned_tensor
-from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.mechanism.legs import frame_on
 from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint
 from mechkin_cli.mechanism.vectors import norm, scale
@@ -28,11 +26,10 @@ def build_plan(layout: Layout, size: float | None = None) -> Plan:
     """As `Layout.build`."""
     plan = _kernel.Plan(layout.length, layout.origin, size or layout.mechanism.box_diagonal())
     for carrier in layout.carriers:
-        lead = layout.graph.edges[carrier.edge].joint.lead
         plan.add_tree_joint(
-            tree_types()[carrier.part.letter].code,
+            carrier.part.type.code,
             carrier.parent,
-            lead / (2.0 * pi) / layout.length,
+            layout.graph.edges[carrier.edge].joint.pitch / layout.length,
             layout.frame_on(carrier.parent, carrier.part.before),
         )
     for closing in layout.graph.closings:
@@ -131,8 +128,9 @@ def _add_inputs(layout: Layout, plan: Plan) -> None:
     graph = layout.graph
     for (edge, freedom), (name, coordinate) in zip(graph.inputs, graph.driven, strict=True):
         joint = graph.edges[edge].joint
-        along_thread = joint.letter == "H" and coordinate == "s"
-        force_per_torque = 2.0 * pi * layout.length / joint.lead if along_thread else 1.0
+        # a force along a thread is driven as the torque about it
+        known = joint.type.coordinate[coordinate]
+        force_per_torque = layout.length / joint.pitch if known.on_thread else 1.0
         axis = layout.axis_number.get((name, coordinate), NO_AXIS)
         plan.add_input(layout.column(edge, freedom), axis, force_per_torque)
 

@@ -15,7 +15,6 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel.width import width
-from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.clusters import Clusters, pose_keys, same_poses
 from mechkin_cli.solver.codes import Demand
@@ -152,7 +151,7 @@ def _isolated(layout: Layout, plan: Plan, values: Floats, states: Floats) -> tup
 def _threads(layout: Layout, number: int) -> list[int]:
     """States of a block that are turns of threads."""
     unknowns = (layout.carrier_of(*u)[0] for u in layout.graph.blocks[number].unknowns)
-    return [layout.carriers[k].state for k in unknowns if layout.carriers[k].part.letter == "H"]
+    return [layout.carriers[k].state for k in unknowns if layout.carriers[k].part.type.is_thread]
 
 
 def _most_turn(turns: int) -> float:
@@ -169,13 +168,13 @@ def _randomise(
         k, local = layout.carrier_of(edge, freedom)
         carrier = layout.carriers[k]
         state = carrier.state + local
-        if carrier.part.letter == "S":
+        if carrier.part.type.is_ball:
             if local == 0:
                 states[state : state + 4] = generator.quaternions(rows)
-        elif tree_types()[carrier.part.letter].slides[local]:
+        elif carrier.part.type.slides[local]:
             states[state] = generator.between(reach, rows)
         else:
-            half = _most_turn(turns) if carrier.part.letter == "H" else pi
+            half = _most_turn(turns) if carrier.part.type.is_thread else pi
             states[state] = generator.between(half, rows)
 
 
@@ -192,7 +191,7 @@ def _bring_within(
 
 
 def _quaternion_scalars(layout: Layout) -> list[int]:
-    return [carrier.state for carrier in layout.carriers if carrier.part.letter == "S"]
+    return [carrier.state for carrier in layout.carriers if carrier.part.type.is_ball]
 
 
 def with_assemblies(
@@ -230,8 +229,8 @@ def wrap_angles(layout: Layout, states: Floats) -> None:
     """Brings the angles of unknown turns into (-pi, pi], in place; threads keep their turns."""
     driven = {layout.state(edge, freedom) for edge, freedom in layout.graph.inputs}
     for carrier in layout.carriers:
-        if carrier.part.letter not in "RC" or carrier.state in driven:
-            continue
-        row = states[carrier.state]
-        turns = np.ceil((row - pi) / (2.0 * pi))
-        row -= turns * (2.0 * pi)
+        for number, freedom in enumerate(carrier.part.type.freedoms, start=carrier.state):
+            if freedom.is_cyclic and number not in driven:
+                row = states[number]
+                turns = np.ceil((row - pi) / (2.0 * pi))
+                row -= turns * (2.0 * pi)

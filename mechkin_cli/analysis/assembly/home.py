@@ -19,7 +19,7 @@ def home_state(layout: Layout) -> Floats:
     """States of the home drawing: every coordinate zero."""
     state = np.zeros(layout.states)
     for carrier in layout.carriers:
-        if carrier.part.letter == "S":
+        if carrier.part.type.is_ball:
             state[carrier.state] = 1.0
     return state
 

@@ -15,8 +15,7 @@ from mechkin_cli.analysis.assembly.home import follow_from_home, is_home_assembl
 from mechkin_cli.analysis.assembly.probe import Probe
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.solver.follow import TrackEnd
-from mechkin_cli.solver.graph import ANGLES
-from mechkin_cli.solver.layout import is_slide
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.solver.search import Found, with_assemblies
 
 if TYPE_CHECKING:
@@ -77,7 +76,7 @@ def _key(mechanism: Mechanism, coordinates: dict[str, Floats], number: int) -> t
     for name, values in coordinates.items():
         value = float(values[number])
         angle = is_cyclic(mechanism, name)
-        if is_slide(name.partition(".")[2]):
+        if not is_angle(name.partition(".")[2]):
             value /= size
         part = round((wrapped(value) if angle else value) / tolerances.MODE_ORDER)
         key.append(half_turn if angle and part == -half_turn else part)
@@ -102,7 +101,8 @@ def mode_name(rank: int) -> str:
 def is_cyclic(mechanism: Mechanism, name: str) -> bool:
     """Whether a turn more of a coordinate is the same place: angles but for those of threads."""
     joint, _, coordinate = name.partition(".")
-    return coordinate in ANGLES and mechanism.joints[joint].letter != "H"
+    kind = mechanism.joints[joint].type
+    return kind.chain[kind.freedom_of[coordinate]].is_cyclic
 
 
 def wrapped(angle: float) -> float:

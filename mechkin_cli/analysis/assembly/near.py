@@ -14,18 +14,16 @@ most n times the root of the sum of both squares.
 
 from __future__ import annotations
 
-from math import inf, pi, sqrt
+from math import inf, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.home import home_state
-from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.mechanism.model import GROUND_NAME
 from mechkin_cli.mechanism.vectors import norm
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.layout import is_slide
 from mechkin_cli.solver.search import Within, single_assembly
 
 if TYPE_CHECKING:
@@ -82,9 +80,7 @@ def _unknown(session: Session, name: str) -> tuple[tuple[int, int], float] | Non
     edge = session.layout.edge_number.get(joint_name)
     if edge is None:
         return None
-    unit = 1.0
-    if is_slide(coordinate):
-        unit = joint.lead / (2.0 * pi) if joint.letter == "H" else session.layout.length
+    unit = joint.unit_of(coordinate, session.layout.length)
     return (edge, joint.type.freedom_of[coordinate]), unit
 
 
@@ -121,7 +117,7 @@ def _unknown_states(layout: Layout) -> list[tuple[int, bool]]:
         for edge, freedom in block.unknowns:
             k, local = layout.carrier_of(edge, freedom)
             carrier = layout.carriers[k]
-            found.append((carrier.state + local, tree_types()[carrier.part.letter].slides[local]))
+            found.append((carrier.state + local, carrier.part.type.slides[local]))
     return found
 
 
@@ -157,8 +153,8 @@ def _reach(layout: Layout, number: int, state: Floats) -> tuple[float, float]:
             continue
         if carrier.parent >= 0:
             total += norm(layout.body_frame[carrier.parent].local(carrier.part.before.o))
-        pitch = abs(layout.graph.edges[carrier.edge].joint.lead) / (2.0 * pi)
-        for local, slide in enumerate(tree_types()[carrier.part.letter].slides):
+        pitch = abs(layout.graph.edges[carrier.edge].joint.pitch)
+        for local, slide in enumerate(carrier.part.type.slides):
             value = abs(float(state[carrier.state + local]))
             if slide:
                 total, slides = total + value * layout.length, slides + 1.0

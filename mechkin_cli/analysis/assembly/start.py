@@ -20,11 +20,11 @@ from mechkin_cli.analysis.assembly.named_modes import NamedModes, is_cyclic, nam
 from mechkin_cli.analysis.assembly.near import Near, box_about, named_by, newton_from
 from mechkin_cli.analysis.assembly.probe import Probe
 from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.inputs import input_numbers, input_text
-from mechkin_cli.solver.layout import is_slide
 from mechkin_cli.solver.search import Found, with_assemblies
 from mechkin_cli.status import Status
 
@@ -209,7 +209,7 @@ def _distances_near(problem: Problem, coordinates: Mapping[str, Floats]) -> list
             miss = float(coordinates[name][i]) - target
             if is_cyclic(mechanism, name):
                 miss = wrapped(miss)
-            elif is_slide(name.partition(".")[2]):
+            elif not is_angle(name.partition(".")[2]):
                 miss /= size
             total += miss * miss
         distances.append(sqrt(total))

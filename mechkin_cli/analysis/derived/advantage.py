@@ -14,8 +14,8 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.derived.basis import Reading
 from mechkin_cli.analysis.derived.unit_rate import at_unit_rate
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.quantities import Wanted
-from mechkin_cli.solver.layout import is_slide
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -32,7 +32,7 @@ def mechanical_advantages(run: Reading, wanted: Sequence[Wanted]) -> list[Floats
     found = []
     for quantity, name in zip(wanted, names, strict=True):
         rate = influence.scalar(name)
-        size = layout.length if is_slide(quantity.coordinate) else 1.0
+        size = 1.0 if is_angle(quantity.coordinate) else layout.length
         moves = np.abs(rate) > tolerances.STANDS_STILL * size
         found.append(np.where(moves, given / rate, np.nan))
     return found

@@ -11,7 +11,6 @@ between coupler and rocker.
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -69,8 +68,7 @@ def transmission_angle(run: Reading, quantity: Wanted) -> Floats:
 
 def _with_unit_load(mechanism: Mechanism, quantity: Wanted) -> Mechanism:
     """The mechanism without masses and loads but one on a coordinate."""
-    slide = quantity.coordinate == "s"
-    load = JointLoad(quantity.owner, "s" if slide else "theta", 1.0)
+    load = JointLoad(quantity.owner, quantity.coordinate, 1.0)
     links = {name: Link(name) for name in mechanism.links}
     return replace(mechanism, links=links, loads=(load,), gravity=ZERO)
 
@@ -80,11 +78,11 @@ def _velocity(
 ) -> RowVector:
     """Velocity of a point of the link, up to its sense, in lengths per length or rad; zero where it
     is zero to rounding."""
-    if guide.letter != "H" and coordinate == "s":
+    if guide.type.chain[guide.type.freedom_of[coordinate]].is_slide:
         return axis
     around = cross(axis, arm)
-    if guide.letter == "H":
-        around = add(around, scale(guide.lead / (2.0 * pi), axis))
+    if guide.type.is_threaded:
+        around = add(around, scale(guide.pitch, axis))
     return choose(length(around) > tolerances.STANDS_STILL * unit, around, 0.0)
 
 

@@ -19,14 +19,14 @@ from mechkin_cli.analysis.assembly.probe import Probe
 from mechkin_cli.analysis.assembly.start import Start, choose_start, nothing_found
 from mechkin_cli.analysis.modes.bounds import most_assemblies
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.follow import TrackEnd
-from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.solver.inputs import input_numbers, input_text, kernel_inputs
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.search import Found, with_assemblies
-from mechkin_cli.units import ANGLE, LENGTH, Dimension
+from mechkin_cli.units import Dimension
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -214,7 +214,7 @@ def _result(
         )
         for i in order
     )
-    threads = any(joint.letter == "H" for joint in problem.mechanism.joints.values())
+    threads = any(joint.type.is_threaded for joint in problem.mechanism.joints.values())
     return Modes(
         modes=modes,
         inputs=inputs,
@@ -241,7 +241,7 @@ def _in_file_units(problem: Problem, name: str, value: float) -> float:
 
 
 def _dimension(name: str) -> Dimension:
-    return ANGLE if name.partition(".")[2] in ANGLES else LENGTH
+    return dimension_of(name.partition(".")[2])
 
 
 def _free_note(found: Found) -> Diagnostic:

@@ -14,14 +14,13 @@ from mechkin_cli.analysis.assembly.home import is_home_assembled, nearest_to_hom
 from mechkin_cli.analysis.assembly.named_modes import NamedModes, name_modes
 from mechkin_cli.analysis.assembly.start import nothing_found
 from mechkin_cli.diagnostics import Diagnostic, UsageError
+from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.circuit import Branch, End, Walker
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.solver.inputs import input_number
-from mechkin_cli.units import ANGLE, LENGTH
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -103,7 +102,7 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
         named = name_modes(session, first)
     item = problem.motion.inputs[number]
     at = {i.name: float(i.written[0]) for i in problem.motion.inputs if i is not item}
-    unit = problem.units.label(ANGLE if item.coordinate in ANGLES else LENGTH)
+    unit = problem.units.label(dimension_of(item.coordinate))
     if named.number == 0:
         note = nothing_found(session, named.found)
         return Ranges(item.name, unit, at, (), (), (*problem.diagnostics, note))

@@ -14,7 +14,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism.quantities import Wanted
-from mechkin_cli.solver.graph import ANGLES
+from mechkin_cli.mechanism.joint_table import is_angle
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -47,7 +47,7 @@ def make_continuous(result: Result, wanted: Sequence[Wanted], columns: Columns) 
 def _is_closing_angle(layout: Layout, quantity: Wanted) -> bool:
     return (
         quantity.kind == "coordinate"
-        and quantity.coordinate in ANGLES
+        and is_angle(quantity.coordinate)
         and quantity.order == 0
         and layout.joint_reference[quantity.owner] < 0
     )

@@ -94,7 +94,7 @@ void PlanStore::add_closing_joint(int type, int first, int second, const FrameDa
                                   const FrameData& on_second, double parameter,
                                   const std::vector<std::pair<int, double>>& loop) {
   require(!finished_, "the plan is finished");
-  require(type >= 0 && type < PAIR_CODES && pair_type(type).equations > 0, "this pair cannot close a loop");
+  require(type > PAIR_LEG && type < kernel_unit()->pair_codes, "this pair cannot close a loop");
   check_link(first);
   check_link(second);
   const auto [begin, end] = add_loop(loop);
@@ -161,7 +161,7 @@ void PlanStore::add_block(int closing_joints, const std::vector<int>& joints, co
   int rows = 0;
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     closing_[c].row = rows;
-    rows += closing_[c].type == PAIR_LEG ? 1 : pair_type(closing_[c].type).equations;
+    rows += pair_type(closing_[c].type).equations;
   }
   for (int k : joints) {
     require(k >= 0 && k < (int)joints_.size(), "block places an unknown joint");

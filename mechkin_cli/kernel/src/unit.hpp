@@ -9,14 +9,15 @@ struct TreeType {
   int slides;  // bit f: freedom f is a length
 };
 struct PairType {
-  const char *letter, *parts, *coordinates;
-  int equations;  // as a closing joint; 0: closes no loop
+  const char* letter;
+  int equations, lengths;  // how many close it, and how many of them, the first ones, are lengths
 };
 
 struct KernelUnit {
   int lanes;
   const TreeType* tree_types;  // TREE_CODES
-  const PairType* pair_types;  // PAIR_CODES
+  const PairType* pair_types;
+  int pair_codes;
   long (*workspace_size)(const Plan&);
   void (*run)(const Plan&, const Request&, char* workspace);
   void (*search)(const Plan&, const SearchRequest&, char* workspace);
