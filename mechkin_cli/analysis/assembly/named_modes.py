@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.home import follow_from_home, is_home_assembled
 from mechkin_cli.analysis.assembly.probe import Probe
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.solver.follow import TrackEnd
-from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.solver.search import Found, with_assemblies
 
 if TYPE_CHECKING:

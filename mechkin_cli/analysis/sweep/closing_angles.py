@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.joint_table import is_angle
+from mechkin_cli.mechanism.quantities import Wanted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
