@@ -8,12 +8,12 @@ kernel's tracker follows with a few careful nodes and fills in.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.solver.codes import TrackEnd as TrackEnd
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -31,15 +31,6 @@ LIMITS = (
     *(tolerances.RESIDUAL_TIGHT, tolerances.STEP_COARSE, tolerances.RESIDUAL_ACCEPT),
     tolerances.NODE_PIVOT,
 )
-
-
-class TrackEnd(IntEnum):
-    """How a run ended."""
-
-    FINISHED = 0
-    STALLED = 1
-    EXHAUSTED = 2
-    START_NOT_CLOSED = 3
 
 
 class Followed(NamedTuple):

@@ -22,6 +22,8 @@ from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.random_starts import RandomStarts
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
 
@@ -96,12 +98,30 @@ def assemblies(
 def single_assembly(layout: Layout, plan: Plan, inputs: Floats, state: Floats) -> Floats:
     """Where one start (states,) ends, block by block; closed or not."""
     values, states = np.ascontiguousarray(inputs[:, None]), state[:, None].copy()
-    residual, flags = np.empty(1), np.empty(1, dtype=np.uint8)
-    limits = (tolerances.SEARCH_ITERATIONS, tolerances.SEARCH_RESIDUAL)
     for number in range(len(layout.graph.blocks)):
-        plan.search(number, values, states, residual, flags, *limits, width())
+        _ends(plan, number, values, states)
     found: Floats = states[:, 0].copy()
     return found
+
+
+def _ends(
+    plan: Plan, number: int, values: Floats, states: Floats
+) -> tuple[Floats, NDArray[np.uint8]]:
+    """Takes the starts `states` (states, starts) of a block to their ends, in place; residuals and
+    flags."""
+    size = states.shape[1]
+    residual, flags = np.empty(size), np.empty(size, dtype=np.uint8)
+    plan.search(
+        block=number,
+        inputs=values,
+        states=states,
+        residual=residual,
+        flags=flags,
+        iterations=tolerances.SEARCH_ITERATIONS,
+        tests=(tolerances.SEARCH_RESIDUAL,),
+        lanes=width(),
+    )
+    return residual, flags
 
 
 def _search_block(
@@ -123,9 +143,7 @@ def _search_block(
         _randomise(layout, number, states, generator, turns)
         if within is not None:
             _bring_within(layout, number, states, generator, within)
-        residual, flags = np.empty(size), np.empty(size, dtype=np.uint8)
-        limits = (tolerances.SEARCH_ITERATIONS, tolerances.SEARCH_RESIDUAL)
-        plan.search(number, values, states, residual, flags, *limits, width())
+        residual, flags = _ends(plan, number, values, states)
         clusters.closest = min(clusters.closest, float(np.min(residual)))
         turned = np.all(np.abs(states[threads]) <= _most_turn(turns), axis=0)
         states, free = _isolated(layout, plan, values, states[:, (flags == 0) & turned])

@@ -11,8 +11,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, TypeVar, cast
 
-import numpy as np
-
 from mechkin_cli import tolerances
 from mechkin_cli.solver.batch import RESIDUAL_TESTS, Batch
 from mechkin_cli.solver.batch import run as run_kernel
@@ -26,7 +24,7 @@ from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.kernel._kernel import Outputs, Plan
     from mechkin_cli.mechanism.model import Attached
     from mechkin_cli.mechanism.motion import Assembly
     from mechkin_cli.mechanism.problem import Problem
@@ -52,7 +50,7 @@ class Packing:
 class Readout(NamedTuple):
     """Outputs of a plan: where each quantity stands, and the first columns of points."""
 
-    plan: Plan
+    outputs: Outputs
     slots: Mapping[str, Slot]
     points: Sequence[int]
 
@@ -98,7 +96,7 @@ class Session:
     @cached_property
     def plan(self) -> Plan:
         """The frozen plan; residual and condition in parts of `size` (m; None: the drawing's)."""
-        return self.layout.build(self.size)
+        return self.layout.build()
 
     @cached_property
     def inputs(self) -> KernelInputs:
@@ -122,8 +120,8 @@ class Session:
         """The same session with residual and condition in parts of another size (m)."""
         if size == self.size:
             return self
-        other = self._changed(size=size, _readouts={})
-        other.__dict__.pop("plan", None)
+        other = self._changed(size=size)
+        other.__dict__["plan"] = self.plan.with_size(size)
         return other
 
     def assembled(self, assembly: Assembly) -> Session:
@@ -132,6 +130,7 @@ class Session:
 
     def _changed(self, **changes: object) -> Session:
         """A session that shares graph, layout, plan, inputs and what was found."""
+        _ = self.plan  # made before it is shared: outputs belong to one structure
         other = object.__new__(Session)
         other.__dict__.update(self.__dict__)
         other.__dict__.update(changes)
@@ -142,11 +141,11 @@ class Session:
         wanted, points = tuple(wanted), tuple(points)
         key = (tuple(quantity.name for quantity in wanted), points)
         if key not in self._readouts:
-            outputs = OutputPlan(self.layout, self.layout.build(self.size), self.driven)
+            outputs = OutputPlan(self.layout, self.plan, self.driven)
             for quantity in wanted:
                 outputs.add(quantity)
             slots = [outputs.add_point(at, 0) for at in points]
-            self._readouts[key] = Readout(outputs.plan, outputs.slots, slots)
+            self._readouts[key] = Readout(outputs.outputs, outputs.slots, slots)
         return self._readouts[key]
 
     def once(self, key: object, find: Callable[[], T]) -> T:
@@ -193,20 +192,21 @@ class Session:
         """Closes all rows and computes what is demanded; arguments as those of
         `solver.batch.run`."""
         return run_kernel(
-            self.plan if readout is None else readout.plan,
-            np.ascontiguousarray(inputs),
-            np.ascontiguousarray(guess),
+            self.plan,
+            inputs,
+            guess,
             rates=rates,
             accelerations=accelerations,
             jerks=jerks,
             loads=loads,
             demand=demand,
-            outputs=readout is not None,
+            outputs=None if readout is None else readout.outputs,
             derivatives=derivatives,
             shift=shift,
             iterations=iterations,
             tests=tests,
             lanes=self.packing.lanes,
+            threads=self.packing.threads,
         )
 
     def exchanged(self, number: int, coordinate: Coordinate) -> Session | None:

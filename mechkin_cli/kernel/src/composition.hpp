@@ -68,6 +68,13 @@ struct Conditions<One, Rest...> {
 // In the order of the pair's freedoms; a pair may leave out the last ones that have no name.
 template <class... All>
 struct Coordinates {
+  // bit f: freedom f has a name
+  static constexpr int coordinates() {
+    int mask = 0, next = 0;
+    ((mask |= has_name<All> << next++), ...);
+    return mask;
+  }
+
   static MECHKIN_INLINE void coordinate(const Closure& k, const PairMotion& p, int freedom, Pack* out) {
     int next = 0;
     const bool named = ((freedom == next++ ? (All::of(k, p, out), true) : false) || ...);

@@ -53,6 +53,11 @@ struct Nameless {
     for (int order = 0; order <= p.order; ++order) out[order] = Pack(__builtin_nan(""));
   }
 };
+template <class Coordinate>
+constexpr bool has_name = true;
+template <>
+constexpr bool has_name<Nameless> = false;
+
 struct About {
   static MECHKIN_INLINE void of(const Closure& k, const PairMotion& p, Pack* out) { about(k, p, out); }
 };

@@ -11,6 +11,7 @@ struct TreeType {
 struct PairType {
   const char* letter;
   int equations, lengths;  // how many close it, and how many of them, the first ones, are lengths
+  int coordinates;         // bit f: freedom f is one
 };
 
 struct KernelUnit {
@@ -20,7 +21,9 @@ struct KernelUnit {
   int pair_codes;
   long (*workspace_size)(const Plan&);
   void (*run)(const Plan&, const Request&, char* workspace);
-  void (*search)(const Plan&, const SearchRequest&, char* workspace);
+  // Rows [begin, end) alone; what a row gets does not depend on the cut.
+  void (*run_rows)(const Plan&, const Request&, long begin, long end, char* workspace);
+  void (*search_rows)(const Plan&, const SearchRequest&, long begin, long end, char* workspace);
   void (*elementwise)(int operation, const double* x, const double* y, double* out, long n);
 };
 
