@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.kernel.width import width
+from mechkin_cli.kernel.width import threads_for, width
 from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.clusters import Clusters, pose_keys, same_poses
@@ -109,6 +109,8 @@ def _search_block(
             iterations=tolerances.SEARCH_ITERATIONS,
             tests=(tolerances.SEARCH_RESIDUAL,),
             lanes=width(),
+            # an iteration of a start costs as much as a row or more
+            threads=threads_for(size * tolerances.SEARCH_ITERATIONS),
         )
         clusters.closest = min(clusters.closest, float(np.min(residual)))
         within = np.all(np.abs(states[threads]) <= _most_turn(turns), axis=0)

@@ -41,7 +41,7 @@ class Hostile:
         except REFUSALS as refusal:
             self.counts[type(refusal).__name__] += 1
             return None
-        self.counts["done"] += 1
+        self.counts[f"{call.__name__} done"] += 1
         return found
 
     def index(self, least: int, end: int) -> Any:
@@ -255,6 +255,8 @@ class Hostile:
             self.attempt(plan.with_constants, self.random.choice(WRONG))
         if self.bad():
             self.attempt(plan.with_size, self.number())
+        arrays = {"inputs": self.array(plan.inputs, 1), "guess": self.array(plan.states, 1)}
+        self.attempt(plan.assembly_size, **arrays, iterations=3, tests=(1e-12, 1e-8, 1e-10))
         return self.attempt(plan.with_constants, values) or plan
 
     def trial(self) -> Counter[str]:
