@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.kernel.width import width
+from mechkin_cli.kernel.width import threads_for, width
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.clusters import Clusters, pose_keys, same_poses
 from mechkin_cli.solver.codes import Demand
@@ -120,6 +120,8 @@ def _ends(
         iterations=tolerances.SEARCH_ITERATIONS,
         tests=(tolerances.SEARCH_RESIDUAL,),
         lanes=width(),
+        # an iteration of a start costs as much as a row or more
+        threads=threads_for(size * tolerances.SEARCH_ITERATIONS),
     )
     return residual, flags
 

@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "arguments.hpp"
+#include "assembly_size.hpp"
 #include "bindings.hpp"
 #include "output_list.hpp"
 #include "plan_builder.hpp"
@@ -53,6 +54,22 @@ FrozenPlan with_size(const FrozenPlan& plan, double size) {
   FrozenPlan other(plan);
   if (!other.assign_size(size)) throw nb::value_error("the size must be finite and positive");
   return other;
+}
+
+double measured_size(const FrozenPlan& plan, const nb::kwargs& keywords) {
+  const Plan& p = plan.view();
+  Arguments given(keywords);
+  const double* const inputs = given.read_required("inputs", p.inputs);
+  const double* const guess = given.read_required("guess", p.states);
+  const int iterations = (int)given.integer("iterations", 0, MOST_ITERATIONS, 0);
+  const std::vector<double> tests = given.limits("tests", 3);
+  given.finish();
+  if (given.rows() != 1) throw nb::value_error("the size is that of one assembly");
+  const KernelUnit& unit = *kernel_unit(2);
+  SizeMemory memory(p, unit);
+  nb::gil_scoped_release released;
+  FloatingPointState state;
+  return assembly_size(p, unit, inputs, guess, {tests[0], tests[1], tests[2], iterations}, memory);
 }
 
 // What is demanded goes with what is given.
@@ -239,6 +256,7 @@ void bind_plan(nb::module_& m) {
       .def_prop_ro("constants", &constants_of<FrozenPlan>, nb::rv_policy::automatic)
       .def("with_constants", &with_constants<FrozenPlan>, "constants"_a)
       .def("with_size", &with_size, "size"_a)
+      .def("assembly_size", &measured_size, "arguments"_a)
       .def("run", &run, "arguments"_a)
       .def("search", &search, "arguments"_a);
   bind_outputs(m);

@@ -87,7 +87,7 @@ class Stepper {
     n->state_second.assign(plan_.states, 0.0);
     for (int k = 0; k < plan_.links; ++k) {
       const TreeJoint& j = plan_.joints[k];
-      const double *first = &n->first[j.column], *second = &n->second[j.column];
+      const double *first = n->first.data() + j.column, *second = n->second.data() + j.column;
       if (j.type != TREE_S) {
         const int freedoms = unit_.tree_types[j.type].freedoms;
         for (int f = 0; f < freedoms; ++f) {
