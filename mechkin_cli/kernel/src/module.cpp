@@ -50,6 +50,8 @@ unsigned char* row_flags(const Flags& a, long rows) {
 void check_demand(const PlanStore& store, const Request& r) {
   if (!store.finished()) throw nb::value_error("the plan is not finished");
   if (r.outputs && (store.demand() & ~r.demand)) throw nb::value_error("the outputs need more than is demanded");
+  if (r.demand && store.view().columns && !store.view().blocks && !store.view().inputs)
+    throw nb::value_error("a tree without inputs and blocks has poses only");
   const bool moving = r.demand & DEMAND_VELOCITY;
   if (moving && !r.rates) throw nb::value_error("velocities need rates of the inputs");
   if (r.demand & DEMAND_ACCELERATION && (!moving || !r.accelerations))

@@ -260,10 +260,12 @@ int PlanStore::add_output(int type, int index, int freedom, int order, const Tri
 }
 
 void PlanStore::finish() {
+  // a tree whose states are given whole: only its poses are asked for
+  const bool posed = block_.empty() && input_column_.empty();
   for (int c = 0; c < plan_.columns; ++c) {
     bool input = false;
     for (int i : input_column_) input = input || i == c;
-    require(input != (column_block_[c] >= 0), "every column must be an input or an unknown, not both");
+    require(posed || input != (column_block_[c] >= 0), "every column must be an input or an unknown, not both");
   }
   require(block_.empty() ? closing_.empty() : block_.back().closing_end == (int)closing_.size(),
           "every closing joint must belong to a block");
