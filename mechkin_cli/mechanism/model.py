@@ -13,6 +13,7 @@ from typing import Literal, NamedTuple
 from mechkin_cli.mechanism.frames import Frame
 from mechkin_cli.mechanism.joint_types import JointType, joint_types
 from mechkin_cli.mechanism.vectors import ZERO, Vector, dot
+from mechkin_cli.tape.scalars import largest, nonzero, smallest
 
 GROUND_NAME = "ground"
 
@@ -31,7 +32,7 @@ class Link(NamedTuple):
     @property
     def has_mass(self) -> bool:
         """Whether the link has inertia of any kind."""
-        return self.mass != 0.0 or any(self.inertia)
+        return any(moment != 0.0 for moment in (self.mass, *self.inertia))
 
 
 class Part(NamedTuple):
@@ -225,6 +226,6 @@ def diagonal(points: list[Vector]) -> float:
 
     if not points:
         return 1.0
-    low = tuple(min(p[i] for p in points) for i in range(3))
-    high = tuple(max(p[i] for p in points) for i in range(3))
-    return norm(subtract(high, low)) or 1.0  # type: ignore[arg-type]
+    low = tuple(smallest(*(p[i] for p in points)) for i in range(3))
+    high = tuple(largest(*(p[i] for p in points)) for i in range(3))
+    return nonzero(norm(subtract(high, low)))  # type: ignore[arg-type]

@@ -26,7 +26,15 @@ looked for."""
 
 def build_plan(layout: Layout, size: float | None = None) -> Plan:
     """As `Layout.build`."""
-    plan = _kernel.Plan(layout.length, layout.origin, size or layout.mechanism.box_diagonal())
+    size = layout.mechanism.box_diagonal() if size is None else size
+    plan = _kernel.Plan(layout.length, layout.origin, size)
+    describe(layout, plan)
+    plan.finish()
+    return plan
+
+
+def describe(layout: Layout, plan: Plan) -> None:
+    """Adds all of a layout to a plan that is new."""
     for carrier in layout.carriers:
         lead = layout.graph.edges[carrier.edge].joint.lead
         plan.add_tree_joint(
@@ -43,8 +51,6 @@ def build_plan(layout: Layout, size: float | None = None) -> Plan:
     _add_inertias(layout, plan)
     for load in layout.mechanism.loads:
         add_load(layout, plan, load)
-    plan.finish()
-    return plan
 
 
 def _add_closing(layout: Layout, plan: Plan, closing: Closing) -> None:

@@ -13,6 +13,7 @@
 #include "number_text.hpp"
 #include "operations.hpp"
 #include "plan_store.hpp"
+#include "tape_store.hpp"
 #include "tracker.hpp"
 #include "units.hpp"
 
@@ -199,6 +200,7 @@ NB_MODULE(_kernel, m) {
   m.def("tree_table", &tree_table);
   m.def("elementwise", &elementwise, "operation"_a, "x"_a, "y"_a, "lanes"_a = 0);
   bind_text(m);
+  bind_tape(m);
 
   nb::class_<PlanStore>(m, "Plan")
       .def(nb::init<double, Triple, double>(), "length"_a, "origin"_a, "size"_a)

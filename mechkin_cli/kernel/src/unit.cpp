@@ -5,6 +5,7 @@
 #include "elementwise.hpp"
 #include "outputs.hpp"
 #include "search.hpp"
+#include "tape_replay.hpp"
 
 namespace {
 
@@ -182,7 +183,8 @@ constexpr PairType pair_types[PAIR_CODES] = {
     pair_type<Universal>(),     pair_type<Planar>(),         pair_type<Weld>(),      pair_type<SlottedSphere>(),
     pair_type<SphereInSlottedCylinder>(), pair_type<CylinderOnPlane>()};
 
-const KernelUnit unit = {LANES, tree_types, pair_types, workspace_size, run, search, elementwise};
+const KernelUnit unit = {LANES, tree_types, pair_types, workspace_size, run, search, elementwise,
+                         replay_size, replay};
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "plan.hpp"
+#include "tape.hpp"
 
 // The constants of a tree displacement and of a pair, read off their entries.
 struct TreeType {
@@ -21,6 +22,8 @@ struct KernelUnit {
   void (*run)(const Plan&, const Request&, char* workspace);
   void (*search)(const Plan&, const SearchRequest&, char* workspace);
   void (*elementwise)(int operation, const double* x, const double* y, double* out, long n);
+  long (*replay_size)(const Tape&);
+  void (*replay)(const Tape&, const TapeRequest&, char* workspace);
 };
 
 extern "C" {
