@@ -30,7 +30,6 @@ from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
 from mechkin_cli.tables.layout import TableLayout, default_table
 from mechkin_cli.units import LENGTH
 
-
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})
 
 

@@ -124,9 +124,7 @@ def _values(fields: Fields, path: Path, item: Any, coordinate: str) -> Floats:
         return of_numbers([fields.written((*path, "at"), item.at, dimension)])
     if hasattr(item, "values"):
         texts = enumerate(item.values)
-        return of_numbers(
-            fields.written((*path, "values", i), t, dimension) for i, t in texts
-        )
+        return of_numbers(fields.written((*path, "values", i), t, dimension) for i, t in texts)
     return spaced(fields, path, item, dimension)
 
 

@@ -61,7 +61,7 @@ def larger(left: Scalar, right: Scalar) -> Scalar:
 def wrap(angle: Scalar) -> Scalar:
     """The angle in (-pi, pi] that differs by whole turns; an angle already there is unchanged."""
     if isinstance(angle, Traced):
-        return _wrapped(angle)  # type: ignore[return-value]
+        return _wrapped(angle)
     turns = np.rint(np.divide(angle, math.tau))
     turned = (angle - turns * _TURN_HIGH) - turns * _TURN_LOW
     turned = np.where(turned > math.pi, turned - math.tau, turned)

@@ -37,6 +37,20 @@ def csv_text(
     significant_digits: int = 0,
 ) -> bytes: ...
 
+class Tape:
+    def __init__(
+        self,
+        inputs: int,
+        constants: Floats,
+        operations: NDArray[np.uint8],
+        operands: NDArray[np.int32],
+        outputs: NDArray[np.int32],
+        guards: NDArray[np.int32],
+        expected: NDArray[np.uint8],
+        advice: NDArray[np.uint8],
+    ) -> None: ...
+    def replay(self, inputs: Floats, lanes: int = 0) -> tuple[Floats, NDArray[np.uint8]]: ...
+
 class Plan:
     def __init__(self, length: float, origin: Triple, size: float) -> None: ...
     @property

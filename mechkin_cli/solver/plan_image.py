@@ -36,7 +36,7 @@ class PlanImage:
             self.constants += numbers
             entry.append(len(numbers) if numbers else argument)
         self.structure.append(tuple(entry))
-        return sum(call[0] == name for call in self.structure) - 1
+        return len([call for call in self.structure if call[0] == name]) - 1
 
 
 def _numbers(argument: Any) -> Iterator[float]:

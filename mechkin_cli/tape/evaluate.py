@@ -8,14 +8,14 @@ from typing import NamedTuple
 from mechkin_cli.tape.floats import meaning
 from mechkin_cli.tape.operations import Operation
 from mechkin_cli.tape.recorder import ARITY
-from mechkin_cli.tape.tape import Tape
+from mechkin_cli.tape.tape import Tape, Verdict
 
 
 class Replayed(NamedTuple):
-    """The outputs, and whether every guard found what it found when the tape was recorded."""
+    """The outputs, and what the guards say of them."""
 
     outputs: list[float]
-    holds: bool
+    verdict: Verdict
 
 
 def evaluate(tape: Tape, values: Sequence[float]) -> Replayed:
@@ -30,8 +30,10 @@ def evaluate(tape: Tape, values: Sequence[float]) -> Replayed:
         operation = Operation(code)
         arguments = (registers[r] for r in operands[: ARITY[operation]])
         registers.append(meaning(operation)(*arguments))
-    holds = all(
-        (meaning(Operation(code))(registers[a], registers[b]) != 0.0) is bool(expected)
-        for (code, a, b), expected in zip(tape.guards.tolist(), tape.expected, strict=True)
-    )
-    return Replayed([registers[r] for r in tape.outputs.tolist()], holds)
+    verdict = Verdict.SAME
+    every = zip(tape.guards.tolist(), tape.expected, tape.advice, strict=True)
+    for (code, a, b), expected, advice in every:
+        found = meaning(Operation(code))(registers[a], registers[b]) != 0.0
+        if found is not bool(expected):
+            verdict = max(verdict, Verdict.OTHER_ADVICE if advice else Verdict.OTHER_WAY)
+    return Replayed([registers[r] for r in tape.outputs.tolist()], verdict)

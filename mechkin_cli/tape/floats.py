@@ -10,6 +10,9 @@ from mechkin_cli.tape.operations import Operation
 _ROUNDER = 6755399441055744.0
 """1.5 * 2^52: adding it rounds to the nearest whole number."""
 
+_LARGEST_HALF = math.ldexp(0.7, 1024)
+"""The power of two next to a larger number is beyond the range of floats."""
+
 
 def power_of_two(x: float) -> float:
     """The power of two next to a positive number: 2^n with x / 2^n in (0.7, 1.4].
@@ -40,7 +43,9 @@ def _whole(a: float) -> float:
 
 
 def _power_of_two_or_nan(a: float) -> float:
-    return power_of_two(a) if 0.0 < a < math.inf else math.nan
+    if not 0.0 < a < math.inf:
+        return math.nan
+    return power_of_two(a) if a <= _LARGEST_HALF else math.inf
 
 
 MEANING: dict[Operation, Callable[..., float]] = {

@@ -32,6 +32,7 @@ class Recorder:
         self._instructions: dict[Instruction, int] = {}
         self._written: dict[int, Instruction] = {}
         self._guards: dict[Instruction, bool] = {}
+        self._serious: set[Instruction] = set()
 
     def constant(self, value: float) -> int:
         """The register of a constant; zeros of either sign are two constants."""
@@ -50,9 +51,12 @@ class Recorder:
             self._written[number] = instruction
         return self._instructions[instruction]
 
-    def guard(self, condition: Operation, a: int, b: int) -> bool:
-        """What a condition finds now; a replay must find the same."""
+    def guard(self, condition: Operation, a: int, b: int, *, advice: bool = False) -> bool:
+        """What a condition finds now; a replay must find the same, or where that is only `advice`
+        say so."""
         instruction = (condition, a, b, 0)
+        if not advice:
+            self._serious.add(instruction)
         if instruction not in self._guards:
             found = meaning(condition)(self.values[a], self.values[b]) != 0.0
             self._guards[instruction] = found
@@ -78,6 +82,7 @@ class Recorder:
             np.array([number[r] for r in outputs], dtype=np.int32),
             np.array(guards, dtype=np.int32).reshape(-1, 3),
             np.array(list(self._guards.values()), dtype=np.bool_),
+            np.array([g not in self._serious for g in self._guards], dtype=np.bool_),
         )
 
     def _register(self, value: float) -> int:
@@ -105,8 +110,20 @@ def _renumbered(instruction: Instruction, number: dict[int, int]) -> tuple[int, 
     return a, b, c
 
 
-_ONE = (Operation.NEGATE, Operation.MAGNITUDE, Operation.SQUARE_ROOT, Operation.POWER_OF_TWO)
-_ONE += (Operation.WHOLE, Operation.SIN, Operation.COS, Operation.TAN, Operation.ASIN)
-_ONE += (Operation.ACOS, Operation.ATAN, Operation.EXP, Operation.LOG)
+_ONE = {
+    Operation.NEGATE,
+    Operation.MAGNITUDE,
+    Operation.SQUARE_ROOT,
+    Operation.POWER_OF_TWO,
+    Operation.WHOLE,
+    Operation.SIN,
+    Operation.COS,
+    Operation.TAN,
+    Operation.ASIN,
+    Operation.ACOS,
+    Operation.ATAN,
+    Operation.EXP,
+    Operation.LOG,
+}
 ARITY = dict.fromkeys(Operation, 2) | dict.fromkeys(_ONE, 1) | {Operation.CHOOSE: 3}
 """How many operands an operation has."""

@@ -1,13 +1,14 @@
 """What code does with scalars that may be recorded: the same bits for a float as ever.
 
-For a float every function is what its name says; for a `Traced` number it goes on the tape.
+For a float every function is what its name says; for a `Traced` number it goes on the tape. In
+annotations a `float` is either.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeGuard, TypeVar
 
 from mechkin_cli.tape.floats import meaning, power_of_two
 from mechkin_cli.tape.operations import Operation
@@ -17,7 +18,7 @@ LARGEST_FLOAT = 1.7976931348623157e308
 Result = TypeVar("Result", bound=tuple[Any, ...])
 
 
-def is_number(value: object) -> bool:
+def is_number(value: object) -> TypeGuard[float]:
     """Whether a value is one number, not rows or a vector."""
     return isinstance(value, float | Traced)
 
@@ -37,7 +38,7 @@ def is_finite(value: float) -> bool:
 def square_root(value: float) -> float:
     """The square root of a number that is not negative."""
     if isinstance(value, Traced):
-        return value.apply(Operation.SQUARE_ROOT)  # type: ignore[return-value]
+        return value.apply(Operation.SQUARE_ROOT)
     return math.sqrt(value)
 
 
@@ -64,7 +65,7 @@ def smallest(first: float, *others: float) -> float:
 def nonzero(value: float) -> float:
     """The value, or 1 where it is zero."""
     if isinstance(value, Traced):
-        return (value == 0.0).choose(1.0, value)  # type: ignore[return-value]
+        return (value == 0.0).choose(1.0, value)
     return value or 1.0
 
 
@@ -81,10 +82,20 @@ def either(
     return chosen() if condition else other()
 
 
+def advice(condition: bool) -> bool:
+    """The truth of a condition on which no more than a warning hangs."""
+    if isinstance(condition, Condition):
+        found = condition.recorder.guard(
+            condition.operation, condition.left, condition.right, advice=True
+        )
+        return found is not condition.negated
+    return condition
+
+
 def next_power_of_two(value: float) -> float:
     """The power of two next to a positive number, as `floats.power_of_two`."""
     if isinstance(value, Traced):
-        return value.apply(Operation.POWER_OF_TWO)  # type: ignore[return-value]
+        return value.apply(Operation.POWER_OF_TWO)
     return power_of_two(value)
 
 

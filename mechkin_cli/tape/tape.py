@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import IntEnum
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,15 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.arrays import Floats
+
+
+class Verdict(IntEnum):
+    """What the guards say of some inputs: all as recorded, all but for a warning, or that the code
+    would have gone another way, so that the outputs mean nothing."""
+
+    SAME = 0
+    OTHER_ADVICE = 1
+    OTHER_WAY = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +37,7 @@ class Tape:
         outputs: (outputs,) registers of the numbers computed.
         guards: (guards, 3): `Operation` out of `CONDITIONS`, and its two registers.
         expected: (guards,) what each guard found when the tape was recorded.
+        advice: (guards,) whether only a warning hangs on it.
     """
 
     inputs: tuple[str, ...]
@@ -36,6 +47,7 @@ class Tape:
     outputs: NDArray[np.int32]
     guards: NDArray[np.int32]
     expected: NDArray[np.bool_]
+    advice: NDArray[np.bool_]
 
     @property
     def registers(self) -> int:

@@ -42,13 +42,17 @@ struct Tape {
   const std::int32_t* output;     // registers
   const std::int32_t* guard;      // guards x 3: TAPE_LESS, TAPE_NOT_MORE or TAPE_EQUAL, and two registers
   const std::uint8_t* expected;   // guards: what each found when the tape was recorded
+  const std::uint8_t* advice;     // guards: whether only a warning hangs on it
   int registers() const { return inputs + constants + instructions; }
 };
+
+// What the guards say of one set of inputs: as recorded, but for a warning, or another way of computing.
+enum TapeVerdict : std::uint8_t { TAPE_SAME = 0, TAPE_OTHER_ADVICE = 1, TAPE_OTHER_WAY = 2 };
 
 // Replays over many sets of inputs.
 struct TapeRequest {
   long count;            // sets of inputs
   const double* inputs;  // inputs x count
   double* outputs;       // count x outputs
-  unsigned char* holds;  // count: whether every guard found what was expected
+  std::uint8_t* verdict;  // count
 };

@@ -75,16 +75,17 @@ void replay(const Tape& t, const TapeRequest& request, char* memory) {
       r[k] = load(values);
     }
     replay_pack(t, r);
-    Mask holds = all_lanes(true);
+    Mask same = all_lanes(true), advised = all_lanes(true);
     for (int g = 0; g < t.guards; ++g) {
       const std::int32_t* const guard = t.guard + 3 * g;
       const Mask found = tape_condition(guard[0], r[guard[1]], r[guard[2]]);
+      Mask& holds = t.advice[g] ? advised : same;
       holds = holds & (t.expected[g] ? found : ~found);
     }
     for (int i = 0; i < count; ++i) {
       double* const out = request.outputs + (first + i) * t.outputs;
       for (int k = 0; k < t.outputs; ++k) out[k] = ((const double*)(r + t.output[k]))[i];
-      request.holds[first + i] = lane(holds, i);
+      request.verdict[first + i] = !lane(same, i) ? TAPE_OTHER_WAY : lane(advised, i) ? TAPE_SAME : TAPE_OTHER_ADVICE;
     }
   }
 }

@@ -43,7 +43,7 @@ nb::ndarray<nb::numpy, Number> new_array(Number** data, std::initializer_list<st
   return nb::ndarray<nb::numpy, Number>(*data, shape, owner);
 }
 
-// inputs x count to (outputs (count, outputs), holds (count,)).
+// inputs x count to (outputs (count, outputs), verdicts (count,) of TapeVerdict).
 nb::tuple replay(const TapeStore& store, Rows<double> inputs, int lanes) {
   const Tape& t = store.view();
   const KernelUnit* const unit = kernel_unit(lanes);
@@ -51,28 +51,30 @@ nb::tuple replay(const TapeStore& store, Rows<double> inputs, int lanes) {
   if ((int)inputs.shape(0) != t.inputs) throw nb::value_error("one row of numbers per input of the tape");
   const std::size_t count = inputs.shape(1);
   double* outputs;
-  bool* holds;
+  std::uint8_t* verdicts;
   auto out = new_array<double>(&outputs, {count, (std::size_t)t.outputs});
-  auto held = new_array<bool>(&holds, {count});
+  auto verdict = new_array<std::uint8_t>(&verdicts, {count});
   {
     nb::gil_scoped_release released;
     FloatingPointState state;
     std::vector<char> memory(unit->replay_size(t));
-    unit->replay(t, {(long)count, inputs.data(), outputs, (unsigned char*)holds}, memory.data());
+    unit->replay(t, {(long)count, inputs.data(), outputs, verdicts}, memory.data());
   }
-  return nb::make_tuple(out, held);
+  return nb::make_tuple(out, verdict);
 }
 
 }  // namespace
 
 TapeStore::TapeStore(int inputs, std::vector<double> constants, std::vector<std::uint8_t> operations,
                      std::vector<std::int32_t> operands, std::vector<std::int32_t> outputs,
-                     std::vector<std::int32_t> guards, std::vector<std::uint8_t> expected)
+                     std::vector<std::int32_t> guards, std::vector<std::uint8_t> expected,
+                     std::vector<std::uint8_t> advice)
     : constants_(std::move(constants)), operations_(std::move(operations)), operands_(std::move(operands)),
-      outputs_(std::move(outputs)), guards_(std::move(guards)), expected_(std::move(expected)) {
+      outputs_(std::move(outputs)), guards_(std::move(guards)), expected_(std::move(expected)),
+      advice_(std::move(advice)) {
   require(inputs > 0, "a tape has inputs");
   require(operands_.size() == 3 * operations_.size(), "three operands an instruction");
-  require(guards_.size() == 3 * expected_.size(), "three numbers a guard");
+  require(guards_.size() == 3 * expected_.size() && advice_.size() == expected_.size(), "three numbers a guard");
   const long first = inputs + (long)constants_.size(), last = first + (long)operations_.size();
   require(last < (1 << 30), "the tape is too long");
   for (std::size_t i = 0; i < operations_.size(); ++i) {
@@ -89,7 +91,8 @@ TapeStore::TapeStore(int inputs, std::vector<double> constants, std::vector<std:
     for (int k = 1; k < 3; ++k) require(guards_[3 * g + k] >= 0 && guards_[3 * g + k] < last, "unknown register");
   }
   tape_ = {inputs, (int)constants_.size(), (int)operations_.size(), (int)outputs_.size(), (int)expected_.size(),
-           constants_.data(), operations_.data(), operands_.data(), outputs_.data(), guards_.data(), expected_.data()};
+           constants_.data(), operations_.data(), operands_.data(), outputs_.data(), guards_.data(), expected_.data(),
+           advice_.data()};
 }
 
 void bind_tape(nb::module_& m) {
@@ -97,10 +100,10 @@ void bind_tape(nb::module_& m) {
       .def("__init__",
            [](TapeStore* self, int inputs, Row<double> constants, Row<std::uint8_t> operations,
               Rows<std::int32_t> operands, Row<std::int32_t> outputs, Rows<std::int32_t> guards,
-              Row<std::uint8_t> expected) {
+              Row<std::uint8_t> expected, Row<std::uint8_t> advice) {
              new (self) TapeStore(inputs, copy_of(constants), copy_of(operations), copy_of(operands), copy_of(outputs),
-                                  copy_of(guards), copy_of(expected));
+                                  copy_of(guards), copy_of(expected), copy_of(advice));
            },
-           "inputs"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "guards"_a, "expected"_a)
+           "inputs"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "guards"_a, "expected"_a, "advice"_a)
       .def("replay", &replay, "inputs"_a, "lanes"_a = 0);
 }

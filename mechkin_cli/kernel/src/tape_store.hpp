@@ -15,7 +15,7 @@ class TapeStore {
   // Throws std::invalid_argument for an operation or a register that is none.
   TapeStore(int inputs, std::vector<double> constants, std::vector<std::uint8_t> operations,
             std::vector<std::int32_t> operands, std::vector<std::int32_t> outputs, std::vector<std::int32_t> guards,
-            std::vector<std::uint8_t> expected);
+            std::vector<std::uint8_t> expected, std::vector<std::uint8_t> advice);
   TapeStore(const TapeStore&) = delete;
   const Tape& view() const { return tape_; }
 
@@ -23,7 +23,7 @@ class TapeStore {
   std::vector<double> constants_;
   std::vector<std::uint8_t> operations_;
   std::vector<std::int32_t> operands_, outputs_, guards_;
-  std::vector<std::uint8_t> expected_;
+  std::vector<std::uint8_t> expected_, advice_;
   Tape tape_;
 };
 
