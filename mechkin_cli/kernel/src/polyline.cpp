@@ -160,17 +160,24 @@ class RowFollower {
 
   // Rows (first, last] without a corner between them.
   bool stretch(long first, long last) {
-    const RowCurve path(plan_, rows_, first, last, limits_.knot);
+    RowCurve path(plan_, rows_, first, last, limits_.knot);
     Stepper stepper(path, unit_, limits_);
     Node node, next;
     long row = first;
-    bool placed = false;
+    bool placed = false;  // whether `node` stands at `row`
     double h = limits_.longest_step;
     while (row < last) {
       if (!placed) {
         placed = stepper.close(path.length(row), result_.state.data(), &node);
         if (placed && !result_.turn.empty()) adopt_turns(stepper, result_.turn, &node);
-        if (placed) h = std::fmin(h, stepper.wanted_step(node));
+        const double wanted = placed ? stepper.wanted_step(node) : h;
+        if (wanted < 0.5 * h) {
+          // the derivatives were read over too long a way
+          h = wanted, placed = false;
+          path.read_for_step(h);
+          continue;
+        }
+        h = std::fmin(h, wanted);
       }
       const long target = placed ? std::min(last, path.row_before(node.sigma + h)) : row;
       const bool good = target > row && step(stepper, path, node, target, &next);
@@ -181,9 +188,11 @@ class RowFollower {
         take(node);
         row = target, result_.reached = row + 1, ++result_.steps;
         h = std::fmin(stepper.wanted_step(node), 4.0 * taken);
+        path.read_for_step(h);
       } else if (target > row + 1) {
         h = 0.5 * (path.length(target) - node.sigma);
         h = std::fmax(h, path.length(row + 1) - node.sigma), ++result_.rejected;
+        path.read_for_step(h), placed = false;
       } else {
         if (!line(row, row + 1)) return false;
         ++row, placed = false, h = 4.0 * (path.length(row) - path.length(row - 1));

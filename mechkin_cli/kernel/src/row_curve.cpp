@@ -17,9 +17,13 @@ double InputRows::turn_cosine(long row) const {
 }
 
 RowCurve::RowCurve(const Plan& plan, const InputRows& rows, long first, long last, double knot)
-    : plan_(plan), rows_(rows), first_(first), last_(last), knot_(knot), length_(last - first + 1, 0.0) {
+    : plan_(plan), rows_(rows), first_(first), last_(last), largest_knot_(knot), knot_(knot), length_(last - first + 1, 0.0) {
   for (long row = first + 1; row <= last; ++row)
     length_[row - first] = length_[row - 1 - first] + rows.distance(row - 1, row);
+}
+
+void RowCurve::read_for_step(double h) {
+  knot_ = std::fmin(largest_knot_, std::fmax(h / 8.0, 1e-3 * largest_knot_));
 }
 
 long RowCurve::row_before(double sigma) const {

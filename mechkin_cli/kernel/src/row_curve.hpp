@@ -17,7 +17,7 @@ struct InputRows {
 };
 
 // Three rows at least. At a row the curve has the row's inputs; its derivatives are those of the parabola through the row and two others,
-// `knot` away where rows are nearer than that, so that rounding of the inputs does not count.
+// at least `knot` away, so that rounding of the inputs does not count; where the curve bends sharply less.
 class RowCurve : public Path {
  public:
   RowCurve(const Plan& plan, const InputRows& rows, long first, long last, double knot);
@@ -26,6 +26,8 @@ class RowCurve : public Path {
   // Length of the way to a row; `lengths` begins at the first one.
   double length(long row) const { return length_[row - first_]; }
   const double* lengths(long row) const { return &length_[row - first_]; }
+  // Reads the derivatives over an eighth of a step, at most the knot given first and at least a thousandth of it.
+  void read_for_step(double h);
   // The last row of the stretch that lies no farther than sigma.
   long row_before(double sigma) const;
 
@@ -35,6 +37,6 @@ class RowCurve : public Path {
   const Plan& plan_;
   const InputRows& rows_;
   long first_, last_;
-  double knot_;
+  double largest_knot_, knot_;
   std::vector<double> length_;
 };
