@@ -13,8 +13,8 @@
 #include "number_text.hpp"
 #include "operations.hpp"
 #include "plan_store.hpp"
+#include "stepper_binding.hpp"
 #include "tape_store.hpp"
-#include "tracker.hpp"
 #include "units.hpp"
 
 namespace nb = nanobind;
@@ -120,30 +120,6 @@ void search(const PlanStore& store, int block, Array2 inputs, Array2 states, Arr
   unit.search(p, r, memory.data());
 }
 
-// limits in the order of TrackLimits; returns (end, rows reached, steps, rejected, sigma, refused step);
-// `last` receives the states of the last node.
-nb::tuple track(const PlanStore& store, std::vector<double> x0, std::vector<double> u, Array1 sigma, Array1 start,
-                Array2 guess, Array1 limit, Array1 last, std::array<double, 12> l) {
-  const Plan& p = store.view();
-  const long rows = (long)sigma.shape(0);
-  if ((int)x0.size() != p.inputs || (int)u.size() != p.inputs) throw nb::value_error("one start and rate per input");
-  per_row(start, p.states, "start");
-  double* const end_state = per_row(last, p.states, "last");
-  double* const guess_data = columns(guess, p.states, rows, "guess");
-  double* const limit_data = per_row(limit, rows, "limit");
-  const TrackLimits limits = {l[0], l[1], l[2], l[3], l[4], l[5], l[6], (int)l[7], l[8], l[9], l[10], l[11], 6};
-  const KernelUnit& unit = unit_or_throw(2);
-  Track t;
-  {
-    nb::gil_scoped_release released;
-    FloatingPointState state;
-    t = follow(p, unit, x0.data(), u.data(), rows, sigma.data(), start.data(), limits, guess_data, limit_data);
-  }
-  if ((long)t.last.state.size() == p.states)
-    for (int s = 0; s < p.states; ++s) end_state[s] = t.last.state[s];
-  return nb::make_tuple((int)t.end, t.reached, t.steps, t.rejected, t.last.sigma, t.refused_step);
-}
-
 using Values = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using NewValues = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
 
@@ -229,6 +205,6 @@ NB_MODULE(_kernel, m) {
            "iterations"_a, "tests"_a, "lanes"_a,
            "loads"_a.none() = nb::none(), "jerks"_a.none() = nb::none())
       .def("search", &search, "block"_a, "inputs"_a, "states"_a, "residual"_a, "flags"_a, "iterations"_a,
-           "accept"_a, "lanes"_a)
-      .def("track", &track, "x0"_a, "u"_a, "sigma"_a, "start"_a, "guess"_a, "limit"_a, "last"_a, "limits"_a);
+           "accept"_a, "lanes"_a);
+  bind_stepper(m);
 }

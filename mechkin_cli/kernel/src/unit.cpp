@@ -50,12 +50,36 @@ Pack block_condition(const Plan& p, Workspace& w, int index) {
   return Pack(1.0) / smallest_singular_value(w.scratch, m, n, w.right);
 }
 
+// Angles and orientations of closing joints with their first and second derivatives.
+void write_turns(const Plan& p, const Workspace& w, const Request& r, const Reader& in) {
+  const Writer value = {r.turn, in.rows, in.row, in.count}, first = {r.turn_first, in.rows, in.row, in.count},
+               second = {r.turn_second, in.rows, in.row, in.count};
+  for (int t = 0; t < r.turn_count; ++t) {
+    const ClosingTurn& turn = r.turns[t];
+    if (turn.freedom >= 0) {
+      Pack k[4];
+      closing_coordinate(p, w, turn.closing, turn.freedom, 2, k);
+      value.put(turn.slot, k[0]), first.put(turn.slot, k[1]), second.put(turn.slot, k[2]);
+      continue;
+    }
+    const ClosingJoint& j = p.closing[turn.closing];
+    const Pose &A = w.closure[turn.closing].A, &B = w.closure[turn.closing].B;
+    const Quaternion q = quaternion_of(A.components(B.X), A.components(B.Y), A.components(B.Z));
+    const Motion a = motion_of(w, j.first), b = motion_of(w, j.second);
+    const Vec3 omega = b.velocity.angular - a.velocity.angular;
+    const Vec3 alpha = b.acceleration.angular - a.acceleration.angular - cross(a.velocity.angular, omega);
+    value.put(turn.slot, q.w), value.put(turn.slot + 1, Vec3{q.x, q.y, q.z});
+    first.put(turn.slot, A.components(omega)), first.put(turn.slot + 3, Pack(0.0));
+    second.put(turn.slot, A.components(alpha)), second.put(turn.slot + 3, Pack(0.0));
+  }
+}
+
 void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
   const bool velocities = r.demand & DEMAND_VELOCITY, accelerations = r.demand & DEMAND_ACCELERATION;
   for (int s = 0; s < p.states; ++s) w.q[s] = in.get(r.guess, s);
   for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
 
-  Pack residual = 0.0, correction = 0.0, condition = 0.0, orientation = 1.0, pivot = __builtin_inf();
+  Pack residual = 0.0, correction = 0.0, condition = 0.0, orientation = 1.0;
   Mask converged = all_lanes(true), side = all_lanes(true);
   for (int b = 0; b < p.blocks; ++b) {
     const Closed closed = close_block(p, w, b, r);
@@ -73,8 +97,10 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
       for (long e = 0; e < at.m * at.n; ++e)
         Writer{r.jacobian, in.rows, in.row, in.count}.put(at.jacobian - w.jacobian + e, at.jacobian[e]);
     at.factor_jacobian();
-    if (at.m == at.n) orientation *= determinant_sign(at.lu());
-    if (r.pivot) pivot = min(pivot, at.least());
+    const Pack block_side = at.m == at.n ? determinant_sign(at.lu()) : Pack(1.0);
+    orientation *= block_side;
+    if (r.side) Writer{r.side, in.rows, in.row, in.count}.put(b, block_side);
+    if (r.pivot) Writer{r.pivot, in.rows, in.row, in.count}.put(b, at.least());
   }
   for (int k = 0; k < p.rest_count; ++k) {
     place_joint(p, w, p.rest[k]);
@@ -107,7 +133,7 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
   writer(r.residual).put(0, residual);
   writer(r.correction).put(0, correction);
   if (r.orientation) writer(r.orientation).put(0, orientation);
-  if (r.pivot) writer(r.pivot).put(0, pivot);
+  if (r.turn_count) write_turns(p, w, r, in);
   if (r.demand & DEMAND_CONDITION) writer(r.condition).put(0, condition);
 
   const auto outputs = [&](const Balance* balance) {
