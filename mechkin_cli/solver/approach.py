@@ -66,7 +66,7 @@ def approach(
         np.ascontiguousarray(path[:, 1:]),
         np.ascontiguousarray(way.guess[:, 1:]),
         rates=np.repeat(followed.direction[:, None], NODES, axis=1),
-        demand=Demand.VELOCITY | Demand.CONDITION,
+        demand=Demand.VELOCITY | Demand.CONDITION | Demand.SINGULAR,
     )
     return Approach(before, batch) if batch.good.all() else None
 

@@ -53,6 +53,7 @@ class Demand(IntFlag):
     CONDITION = 8
     POWER = 16
     JERK = 32
+    SINGULAR = 64
 
 
 class RowFlag(IntFlag):

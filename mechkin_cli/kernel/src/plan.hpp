@@ -156,7 +156,8 @@ enum Demand : unsigned {
   DEMAND_FORCES = 4,  // closing wrenches, wrenches of tree joints, efforts
   DEMAND_CONDITION = 8,
   DEMAND_POWER = 16,
-  DEMAND_JERK = 32
+  DEMAND_JERK = 32,
+  DEMAND_SINGULAR = 64  // with DEMAND_CONDITION: to rounding instead of to 1 %
 };
 
 // A joint as its user knows it: where its wrench is read off, and where its point rides.

@@ -2,6 +2,7 @@
 // MECHKIN_UNIT set by the build.
 #include "unit.hpp"
 
+#include "condition.hpp"
 #include "elementwise.hpp"
 #include "outputs.hpp"
 #include "search.hpp"
@@ -29,25 +30,6 @@ void write_flags(unsigned char* flags, const Reader& in, Mask converged, Mask si
     if (!lane(side, i)) f |= ROW_SIDE_CONDITION;
     flags[in.row + i] = (unsigned char)f;
   }
-}
-
-// Smallest singular value of the block's Jacobian with lengths in parts of the size, as 1 / sigma.
-Pack block_condition(const Plan& p, Workspace& w, int index) {
-  const Block& b = p.block[index];
-  const int m = b.rows, n = b.size;
-  block_jacobian(p, w, index, w.scratch);
-  for (int c = b.closing_begin; c < b.closing_end; ++c) {
-    const ClosingJoint& j = p.closing[c];
-    with_closing_joint(j.type, [&](auto entry) {
-      for (int i = 0; i < entry.lengths; ++i)
-        for (int u = 0; u < n; ++u) w.scratch[(j.row + i) * n + u] *= Pack(p.row_weight);
-    });
-  }
-  for (int u = 0; u < n; ++u) {
-    const Pack weight = p.column_weight[p.unknown[b.column_begin + u]];
-    for (int i = 0; i < m; ++i) w.scratch[i * n + u] *= weight;
-  }
-  return Pack(1.0) / smallest_singular_value(w.scratch, m, n, w.right);
 }
 
 // Angles and orientations of closing joints with their first and second derivatives.
@@ -89,18 +71,15 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     converged = converged & closed.converged;
     side = side & closed.side;
     if (!r.demand) continue;
-    const BlockMatrices at = matrices_of(p, w, b);
-    block_screws(p, w, p.block[b]);
-    if (r.demand & DEMAND_CONDITION) condition = max(block_condition(p, w, b), condition);
-    block_jacobian(p, w, b, at.jacobian);
-    if (r.jacobian)
-      for (long e = 0; e < at.m * at.n; ++e)
-        Writer{r.jacobian, in.rows, in.row, in.count}.put(at.jacobian - w.jacobian + e, at.jacobian[e]);
-    at.factor_jacobian();
-    const Pack block_side = at.m == at.n ? determinant_sign(at.lu()) : Pack(1.0);
-    orientation *= block_side;
-    if (r.side) Writer{r.side, in.rows, in.row, in.count}.put(b, block_side);
-    if (r.pivot) Writer{r.pivot, in.rows, in.row, in.count}.put(b, at.least());
+    const Writer out = {nullptr, in.rows, in.row, in.count};
+    const BlockVerdict verdict = judge_block(p, w, b, r, closed, [&](const BlockMatrices& at) {
+      if (!r.jacobian) return;
+      for (long e = 0; e < at.m * at.n; ++e) out.to(r.jacobian).put(at.jacobian - w.jacobian + e, at.jacobian[e]);
+    });
+    orientation *= verdict.side;
+    condition = max(verdict.condition, condition);
+    if (r.side) out.to(r.side).put(b, verdict.side);
+    if (r.pivot) out.to(r.pivot).put(b, matrices_of(p, w, b).least());
   }
   for (int k = 0; k < p.rest_count; ++k) {
     place_joint(p, w, p.rest[k]);
