@@ -331,3 +331,7 @@ finite."""
 MOBILITY_CONFIGURATIONS: Final = 3
 """Configurations along the motion at which the rank is taken besides the first: at a special one
 it drops, at a general one it is the least freedom seen."""
+
+THREAD_ROWS: Final = 512
+"""Rows that make a thread worth waking: at 0.3 us a row or more, ten times the 15 us that it takes
+to wake and to wait for it."""

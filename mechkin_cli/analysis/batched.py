@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
 
 
 def run_reached(
@@ -29,7 +28,7 @@ def run_reached(
     values, guess = inputs.values, rows.guess
     if not rows.reached.all():
         if not rows.reached.any():
-            return _no_rows(plan, rows.reached.size)
+            return _no_rows(setup, rows.reached.size)
         stand_in = np.where(
             rows.reached, np.arange(rows.reached.size), int(np.argmax(rows.reached))
         )
@@ -43,7 +42,7 @@ def run_reached(
         jerks=inputs.jerks if demand & Demand.JERK else None,
         loads=loads,
         demand=demand,
-        outputs=True,
+        outputs=setup.outputs.outputs,
         shift=shift,
         lanes=setup.lanes,
     )
@@ -61,11 +60,12 @@ def failed_rows(batch: Batch, rows: RowStates) -> NDArray[np.bool_]:
     return rows.reached & failed
 
 
-def _no_rows(plan: Plan, count: int) -> Batch:
+def _no_rows(setup: Setup, count: int) -> Batch:
+    plan, slots = setup.outputs.plan, setup.outputs.outputs.slots
     nothing = np.full(count, np.nan)
     return Batch(
         states=np.empty((plan.states, count)),
-        outputs=np.full((plan.slots, count), np.nan),
+        outputs=np.full((slots, count), np.nan),
         first=None,
         second=None,
         residual=nothing,

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.demand import OutputPlan
 
 
 def unwrap_closing_angles(setup: Setup, values: Floats, reached: NDArray[np.bool_]) -> None:
@@ -43,7 +43,7 @@ def unwrap_closing_angles(setup: Setup, values: Floats, reached: NDArray[np.bool
         count = leading_rows(reached[way])
         part = turns[:, way]
         inputs = setup.inputs.values[:, way][:, :count]
-        part[:, :count] = _turns(own.plan, inputs, start.state, slots)
+        part[:, :count] = _turns(own, inputs, start.state, slots)
     first = int(np.argmax(reached))
     for quantity, counted in zip(angles, turns, strict=True):
         values[setup.outputs.slots[quantity.name].first] -= (counted - counted[first]) * (2.0 * pi)
@@ -63,12 +63,12 @@ def leading_rows(reached: NDArray[np.bool_]) -> int:
     return int(reached.size if reached.all() else np.argmin(reached))
 
 
-def _turns(plan: Plan, inputs: Floats, start: Floats, slots: list[int]) -> Floats:
+def _turns(own: OutputPlan, inputs: Floats, start: Floats, slots: list[int]) -> Floats:
     """Whole turns by which the arctangents have jumped back since the first row (slots, rows)."""
     turns = np.zeros((len(slots), inputs.shape[1]))
     if inputs.shape[1] < 2:
         return turns
-    outputs, rows = outputs_between(plan, inputs, start)
+    outputs, rows = outputs_between(own, inputs, start)
     for number, slot in enumerate(slots):
         along = outputs[slot]
         jumps = np.cumsum(np.rint(np.diff(along, prepend=along[:1]) / (2.0 * pi)))
@@ -76,17 +76,19 @@ def _turns(plan: Plan, inputs: Floats, start: Floats, slots: list[int]) -> Float
     return turns
 
 
-def outputs_between(plan: Plan, inputs: Floats, start: Floats) -> tuple[Floats, NDArray[np.int64]]:
+def outputs_between(
+    own: OutputPlan, inputs: Floats, start: Floats
+) -> tuple[Floats, NDArray[np.int64]]:
     """Outputs (slots, places) along the refined path through some rows, and the places of the rows
     that were reached; `start` is the state at the first."""
     path, rows = refined(inputs)
-    followed = follow(plan, path, start)
+    followed = follow(own.plan, path, start)
     count = followed.reached
     batch = run(
-        plan,
+        own.plan,
         np.ascontiguousarray(path[:, :count]),
         np.ascontiguousarray(followed.guess[:, :count]),
-        outputs=True,
+        outputs=own.outputs,
     )
     assert batch.outputs is not None
     return batch.outputs, rows[rows < count]

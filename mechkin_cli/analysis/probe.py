@@ -34,7 +34,7 @@ class Probe:
         """Coordinates by name (SI) and the joint points of the moving links (points, 3,
         assemblies)."""
         values = np.repeat(inputs[:, None], states.shape[1], axis=1)
-        batch = run(self.plan, values, states, outputs=True)
+        batch = run(self.plan, values, states, outputs=self.outputs.outputs)
         assert batch.outputs is not None
         out = batch.outputs
         coordinates = {name: out[self.outputs.slots[name].first] for name in self.coordinates}

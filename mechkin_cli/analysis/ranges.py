@@ -215,6 +215,7 @@ class _Stationary:
         layout = survey.layout
         self.plan = layout.build()
         outputs = OutputPlan(layout, self.plan, survey.problem.motion.driven)
+        self.outputs = outputs
         known = survey.problem.quantities()
         self.slots = []
         for suffix in ("", "_dot", "_ddot"):
@@ -255,7 +256,7 @@ class _Stationary:
             rates=rates,
             accelerations=np.zeros_like(rates),
             demand=Demand.VELOCITY | Demand.ACCELERATION,
-            outputs=True,
+            outputs=self.outputs.outputs,
         )
         assert batch.outputs is not None
         return batch.outputs[self.slots]

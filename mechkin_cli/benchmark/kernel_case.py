@@ -60,7 +60,7 @@ class PlannedRun:
             rates=rates,
             accelerations=accelerations,
             demand=self.demand,
-            outputs=True,
+            outputs=self.outputs.outputs,
             iterations=iterations,
             lanes=lanes,
         )

@@ -2,6 +2,7 @@
 float64."""
 
 from collections.abc import Callable, Sequence
+from enum import IntEnum, IntFlag
 from typing import Final, TypedDict
 
 import numpy as np
@@ -25,6 +26,80 @@ class TreeTableRow(TypedDict):
     states: int
     slides: int
 
+class TreeCode(IntEnum):
+    R = 0
+    P = 1
+    H = 2
+    C = 3
+    S = 4
+    W = 5
+    L = 6
+
+class LoadCode(IntEnum):
+    FORCE_GROUND = 0
+    FORCE_LINK = 1
+    TORQUE_GROUND = 2
+    TORQUE_LINK = 3
+    COORDINATE = 4
+    SPRING = 5
+    DAMPER = 6
+    COORDINATE_SPRING = 7
+    COORDINATE_DAMPER = 8
+
+class OutputCode(IntEnum):
+    STATE = 0
+    RATE = 1
+    ACCELERATION = 2
+    CLOSING = 3
+    SLIP = 4
+    POINT = 5
+    VECTOR = 6
+    OMEGA = 7
+    ALPHA = 8
+    JOINT_FORCE = 9
+    JOINT_MOMENT = 10
+    JOINT_MOMENT_ORIGIN = 11
+    EFFORT = 12
+    SHAKING_FORCE = 13
+    SHAKING_MOMENT = 14
+    INERTIA_FORCE = 15
+    INERTIA_MOMENT = 16
+    HOLDING_MOMENT = 17
+    JERK = 18
+
+class Demand(IntFlag):
+    POSITION = 0
+    VELOCITY = 1
+    ACCELERATION = 2
+    FORCES = 4
+    CONDITION = 8
+    POWER = 16
+    JERK = 32
+    SINGULAR = 64
+
+class RowFlag(IntFlag):
+    GOOD = 0
+    NOT_CONVERGED = 1
+    SIDE_CONDITION = 2
+
+class TrackEnd(IntEnum):
+    FINISHED = 0
+    STALLED = 1
+    EXHAUSTED = 2
+    START_NOT_CLOSED = 3
+
+class Operation(IntEnum):
+    SIN = 0
+    COS = 1
+    TAN = 2
+    ASIN = 3
+    ACOS = 4
+    ATAN = 5
+    ATAN2 = 6
+    EXP = 7
+    LOG = 8
+    POWER = 9
+
 def joint_table() -> list[JointTableRow]: ...
 def tree_table() -> list[TreeTableRow]: ...
 def elementwise(operation: int, x: Floats, y: Floats, lanes: int = 0) -> Floats: ...
@@ -36,6 +111,9 @@ def csv_text(
     missing: NDArray[np.bool_] | None = None,
     significant_digits: int = 0,
 ) -> bytes: ...
+def available_processors() -> int: ...
+def output_width(type: int) -> int: ...
+def output_demand(type: int, order: int = 0) -> Demand: ...
 
 class Tape:
     def __init__(
@@ -51,14 +129,12 @@ class Tape:
     ) -> None: ...
     def replay(self, inputs: Floats, lanes: int = 0) -> tuple[Floats, NDArray[np.uint8]]: ...
 
-class Plan:
+class PlanBuilder:
     def __init__(self, length: float, origin: Triple, size: float) -> None: ...
     @property
     def states(self) -> int: ...
     @property
     def columns(self) -> int: ...
-    @property
-    def slots(self) -> int: ...
     def add_tree_joint(self, type: int, parent: int, pitch: float, at: Sequence[float]) -> None: ...
     def add_closing_joint(
         self,
@@ -109,44 +185,77 @@ class Plan:
         vector: Triple,
         varying: bool = False,
     ) -> None: ...
-    def add_output(
-        self, type: int, index: int, freedom: int, order: int, data: Triple, factor: float
-    ) -> int: ...
-    def finish(self) -> None: ...
+    def add_size_point(self, link: int, point: Triple) -> None: ...
+    def finish(self) -> Plan: ...
+
+class Outputs:
+    def __init__(
+        self, plan: Plan, records: Sequence[tuple[int, int, int, int, Triple, float]]
+    ) -> None: ...
+    @property
+    def slots(self) -> int: ...
+    @property
+    def demand(self) -> Demand: ...
+    @property
+    def constants(self) -> Floats: ...
+    def with_constants(self, constants: Floats) -> Outputs: ...
+
+class Plan:
+    @property
+    def states(self) -> int: ...
+    @property
+    def columns(self) -> int: ...
+    @property
+    def inputs(self) -> int: ...
+    @property
+    def load_values(self) -> int: ...
+    @property
+    def blocks(self) -> int: ...
+    @property
+    def size(self) -> float: ...
+    @property
+    def constants(self) -> Floats: ...
+    def with_constants(self, constants: Floats) -> Plan: ...
+    def with_size(self, size: float) -> Plan: ...
     def run(
         self,
+        *,
         inputs: Floats,
-        rates: Floats | None,
-        accelerations: Floats | None,
         guess: Floats,
+        rates: Floats | None = None,
+        accelerations: Floats | None = None,
+        jerks: Floats | None = None,
+        loads: Floats | None = None,
+        outputs: Outputs | None = None,
         states: Floats,
-        outputs: Floats | None,
-        first: Floats | None,
-        second: Floats | None,
+        values: Floats | None = None,
+        first: Floats | None = None,
+        second: Floats | None = None,
         residual: Floats,
         correction: Floats,
-        orientation: Floats | None,
-        condition: Floats | None,
-        power_error: Floats | None,
+        orientation: Floats | None = None,
+        condition: Floats | None = None,
+        power_error: Floats | None = None,
         flags: NDArray[np.uint8],
-        demand: int,
-        shift: int,
-        iterations: int,
+        demand: int = 0,
+        shift: int = 0,
+        iterations: int = 0,
         tests: tuple[float, float, float],
-        lanes: int,
-        loads: Floats | None = None,
-        jerks: Floats | None = None,
+        lanes: int = 0,
+        threads: int = 1,
     ) -> None: ...
     def search(
         self,
+        *,
         block: int,
         inputs: Floats,
         states: Floats,
         residual: Floats,
         flags: NDArray[np.uint8],
-        iterations: int,
-        accept: float,
-        lanes: int,
+        iterations: int = 0,
+        tests: tuple[float],
+        lanes: int = 0,
+        threads: int = 1,
     ) -> None: ...
 
 class StepLimits:

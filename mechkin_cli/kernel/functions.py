@@ -9,7 +9,6 @@ arguments; special values (signed zeros, infinities, nan, values outside the dom
 
 from __future__ import annotations
 
-from enum import IntEnum
 from typing import TypeVar
 
 import numpy as np
@@ -22,19 +21,7 @@ FloatArray = NDArray[np.float64]
 Value = TypeVar("Value", float, FloatArray)
 
 
-class _Operation(IntEnum):
-    """The numbers of `src/operations.hpp`."""
-
-    SIN = 0
-    COS = 1
-    TAN = 2
-    ASIN = 3
-    ACOS = 4
-    ATAN = 5
-    ATAN2 = 6
-    EXP = 7
-    LOG = 8
-    POWER = 9
+_Operation = _kernel.Operation
 
 
 def sin(x: Value) -> Value:

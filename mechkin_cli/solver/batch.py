@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, overload
 
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.kernel.width import width
+from mechkin_cli.kernel.width import threads_for, width
 from mechkin_cli.solver.codes import Demand, RowFlag
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.kernel._kernel import Outputs, Plan
 
 RESIDUAL_TESTS = (
     tolerances.RESIDUAL_TIGHT,
@@ -58,12 +58,13 @@ def run(
     loads: Floats | None = None,
     jerks: Floats | None = None,
     demand: Demand = Demand.POSITION,
-    outputs: bool = False,
+    outputs: Outputs | None = None,
     derivatives: bool = False,
     shift: int = 0,
     iterations: int = tolerances.NEWTON_ITERATIONS,
     tests: tuple[float, float, float] = RESIDUAL_TESTS,
     lanes: int = 0,
+    threads: int = 0,
 ) -> Batch:
     """Closes all rows from their guesses and computes what is demanded.
 
@@ -77,44 +78,59 @@ def run(
         loads: values of varying loads (columns, rows) as `varying_loads.kernel_loads` gives them,
             needed for forces where there are any.
         demand: what to compute beyond positions.
-        outputs: fill the plan's outputs.
-        derivatives: return the columns' first and second derivatives.
+        outputs: quantities to write, of a plan of the same structure.
+        derivatives: return the columns' first and second derivatives, as far as they are demanded.
         shift: 1 or 2 adds a fixed part of the null space to reactions that are not unique.
         iterations: Newton steps at most.
         tests: residual tests (tight, coarse, accept).
         lanes: width of the packs, 0 for the widest; the results do not depend on it.
+        threads: how many split the rows, 0 for as many as pay; the results do not depend on it.
+
+    Raises:
+        ValueError: shapes, codes or numbers that do not fit the plan or each other.
     """
     rows = inputs.shape[1]
     states = np.empty((plan.states, rows))
-    values = np.empty((plan.slots, rows)) if outputs else None
-    first = np.empty((plan.columns, rows)) if derivatives else None
-    second = np.empty((plan.columns, rows)) if derivatives else None
+    values = None if outputs is None else np.empty((outputs.slots, rows))
+    moving, second_order = demand & Demand.VELOCITY, demand & Demand.ACCELERATION
+    first = np.empty((plan.columns, rows)) if derivatives and moving else None
+    second = np.empty((plan.columns, rows)) if derivatives and second_order else None
     residual, correction, orientation = np.empty(rows), np.empty(rows), np.ones(rows)
     condition = np.empty(rows) if demand & Demand.CONDITION else None
     power_error = np.empty(rows) if demand & Demand.POWER else None
     flags = np.empty(rows, dtype=np.uint8)
     plan.run(
-        inputs,
-        rates,
-        accelerations,
-        guess,
-        states,
-        values,
-        first,
-        second,
-        residual,
-        correction,
-        orientation,
-        condition,
-        power_error,
-        flags,
-        int(demand),
-        shift,
-        iterations,
-        tests,
-        width(lanes),
-        loads,
-        jerks,
+        inputs=_contiguous(inputs),
+        guess=_contiguous(guess),
+        rates=_contiguous(rates),
+        accelerations=_contiguous(accelerations),
+        jerks=_contiguous(jerks),
+        loads=_contiguous(loads),
+        outputs=outputs,
+        states=states,
+        values=values,
+        first=first,
+        second=second,
+        residual=residual,
+        correction=correction,
+        orientation=orientation,
+        condition=condition,
+        power_error=power_error,
+        flags=flags,
+        demand=int(demand),
+        shift=shift,
+        iterations=iterations,
+        tests=tests,
+        lanes=width(lanes),
+        threads=threads_for(rows, threads),
     )
     measured = (residual, correction, orientation, condition, power_error)
     return Batch(states, values, first, second, *measured, flags)
+
+
+@overload
+def _contiguous(array: Floats) -> Floats: ...
+@overload
+def _contiguous(array: Floats | None) -> Floats | None: ...
+def _contiguous(array: Floats | None) -> Floats | None:
+    return None if array is None else np.ascontiguousarray(array, np.float64)

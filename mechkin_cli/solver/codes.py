@@ -1,64 +1,34 @@
-"""Codes that the kernel's plan uses (kernel/src/plan.hpp)."""
+"""The kernel's enumerations; they are bound from its sources and said only there."""
 
 from __future__ import annotations
 
-from enum import IntEnum, IntFlag
+from typing import TYPE_CHECKING
 
+if TYPE_CHECKING:
+    from mechkin_cli.kernel._kernel import (
+        Demand as Demand,
+    )
+    from mechkin_cli.kernel._kernel import (
+        LoadCode as LoadCode,
+    )
+    from mechkin_cli.kernel._kernel import (
+        OutputCode as OutputCode,
+    )
+    from mechkin_cli.kernel._kernel import (
+        RowFlag as RowFlag,
+    )
+    from mechkin_cli.kernel._kernel import (
+        TrackEnd as TrackEnd,
+    )
+    from mechkin_cli.kernel._kernel import (
+        TreeCode as TreeCode,
+    )
+else:
+    from mechkin_cli.kernel import _kernel
 
-class LoadCode(IntEnum):
-    """Kinds of loads."""
-
-    FORCE_GROUND = 0
-    FORCE_LINK = 1
-    TORQUE_GROUND = 2
-    TORQUE_LINK = 3
-    COORDINATE = 4
-    SPRING = 5
-    DAMPER = 6
-    COORDINATE_SPRING = 7
-    COORDINATE_DAMPER = 8
-
-
-class OutputCode(IntEnum):
-    """Kinds of outputs."""
-
-    STATE = 0
-    RATE = 1
-    ACCELERATION = 2
-    CLOSING = 3
-    SLIP = 4
-    POINT = 5
-    VECTOR = 6
-    OMEGA = 7
-    ALPHA = 8
-    JOINT_FORCE = 9
-    JOINT_MOMENT = 10
-    JOINT_MOMENT_ORIGIN = 11
-    EFFORT = 12
-    SHAKING_FORCE = 13
-    SHAKING_MOMENT = 14
-    INERTIA_FORCE = 15
-    INERTIA_MOMENT = 16
-    HOLDING_MOMENT = 17
-    JERK = 18
-
-
-class Demand(IntFlag):
-    """What a run computes beyond positions."""
-
-    POSITION = 0
-    VELOCITY = 1
-    ACCELERATION = 2
-    FORCES = 4
-    CONDITION = 8
-    POWER = 16
-    JERK = 32
-    SINGULAR = 64
-
-
-class RowFlag(IntFlag):
-    """Why a row of a run is not good."""
-
-    GOOD = 0
-    NOT_CONVERGED = 1
-    SIDE_CONDITION = 2
+    Demand = _kernel.Demand
+    LoadCode = _kernel.LoadCode
+    OutputCode = _kernel.OutputCode
+    RowFlag = _kernel.RowFlag
+    TrackEnd = _kernel.TrackEnd
+    TreeCode = _kernel.TreeCode

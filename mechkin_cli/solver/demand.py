@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
+from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, reference_point
 from mechkin_cli.mechanism.frames import GROUND
 from mechkin_cli.mechanism.model import Attached, Damper, Load, Mechanism, varying
@@ -18,9 +19,10 @@ from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO, Vector
 from mechkin_cli.solver.codes import Demand, OutputCode
 from mechkin_cli.solver.layout import Layout, is_slide
+from mechkin_cli.solver.records import Output, hand_over_outputs
 
 if TYPE_CHECKING:
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.kernel._kernel import Outputs, Plan
 
 WRENCH_KINDS = {"force", "moment", "moment_about_origin"}
 _SHAKING_KINDS = {"shaking_force", "shaking_moment"}
@@ -70,13 +72,27 @@ class Slot(NamedTuple):
 
 
 class OutputPlan:
-    """Adds the quantities to a plan and remembers their slots."""
+    """Collects the quantities that runs of a plan write, and their slots.
+
+    `plan` serves them; `outputs` are what a run takes. Another `OutputPlan` on the same plan reads
+    other quantities.
+    """
 
     def __init__(self, layout: Layout, plan: Plan, inputs: list[tuple[str, str]]) -> None:
         self.layout = layout
         self.plan = plan
         self.inputs = inputs
         self.slots: dict[str, Slot] = {}
+        self.records: list[Output] = []
+        self._width = 0
+        self._outputs: Outputs | None = None
+
+    @property
+    def outputs(self) -> Outputs:
+        """What was collected, checked against the plan."""
+        if self._outputs is None:
+            self._outputs = hand_over_outputs(self.plan, self.records)
+        return self._outputs
 
     def add(self, wanted: Wanted) -> None:
         """Plans one quantity; those of the row itself and derived ones need no slot."""
@@ -97,7 +113,11 @@ class OutputPlan:
         data: Vector = ZERO,
         freedom: int = 0,
     ) -> int:
-        return self.plan.add_output(int(code), index, freedom, order, data, factor)
+        first = self._width
+        self.records.append(Output(code, index, freedom, order, data, factor))
+        self._width += _kernel.output_width(code)
+        self._outputs = None
+        return first
 
     def _add_coordinate(self, wanted: Wanted) -> int:
         layout = self.layout

@@ -5,26 +5,17 @@ The kernel does the work in one call (kernel/src/polyline.cpp), linear in the ro
 
 from __future__ import annotations
 
-from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.solver.codes import TrackEnd as TrackEnd
 from mechkin_cli.solver.stepping import step_limits
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
-
-
-class TrackEnd(IntEnum):
-    """How a run ended."""
-
-    FINISHED = 0
-    STALLED = 1
-    EXHAUSTED = 2
-    START_NOT_CLOSED = 3
 
 
 class Followed(NamedTuple):

@@ -1,11 +1,11 @@
-"""From the layout to the kernel's plan: joints, closures, places, blocks, inputs and inertias."""
+"""From the layout to the records of the kernel's plan: joints, closures, places, blocks, inputs,
+inertias, loads and the points that tell the size."""
 
 from __future__ import annotations
 
 from math import pi
 from typing import TYPE_CHECKING
 
-from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.frames import turned_tensor
 from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.mechanism.legs import frame_on
@@ -13,9 +13,27 @@ from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint
 from mechkin_cli.mechanism.vectors import norm, scale
 from mechkin_cli.solver.axes import coordinate_axis
 from mechkin_cli.solver.graph import Closing
-from mechkin_cli.solver.plan_loads import add_load
+from mechkin_cli.solver.plan_loads import load_record
+from mechkin_cli.solver.records import (
+    Axis,
+    Block,
+    ClosingJoint,
+    Gravity,
+    Inertia,
+    Input,
+    Leg,
+    Place,
+    PlanRecord,
+    Rest,
+    SizePoint,
+    TreeJoint,
+    Units,
+    hand_over,
+)
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.solver.layout import Layout
 
@@ -26,44 +44,51 @@ looked for."""
 
 def build_plan(layout: Layout, size: float | None = None) -> Plan:
     """As `Layout.build`."""
-    size = layout.mechanism.box_diagonal() if size is None else size
-    plan = _kernel.Plan(layout.length, layout.origin, size)
-    describe(layout, plan)
-    plan.finish()
-    return plan
+    return hand_over(plan_records(layout, size))
 
 
-def describe(layout: Layout, plan: Plan) -> None:
-    """Adds all of a layout to a plan that is new."""
+def _drawn_size(layout: Layout) -> float:
+    return layout.mechanism.box_diagonal()
+
+
+def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
+    """The records of a plan in the order in which its constants are numbered."""
+    return [
+        Units(layout.length, layout.origin, _drawn_size(layout) if size is None else size),
+        *_tree_joints(layout),
+        *(_closing(layout, closing) for closing in layout.graph.closings),
+        *_places(layout),
+        *_axes(layout),
+        *_blocks(layout),
+        *_inputs(layout),
+        Gravity(scale(1.0 / layout.length, layout.mechanism.gravity)),
+        *_inertias(layout),
+        *(load_record(layout, load) for load in layout.mechanism.loads),
+        *_size_points(layout),
+    ]
+
+
+def _tree_joints(layout: Layout) -> Iterator[TreeJoint]:
     for carrier in layout.carriers:
         lead = layout.graph.edges[carrier.edge].joint.lead
-        plan.add_tree_joint(
+        yield TreeJoint(
             tree_types()[carrier.part.letter].code,
             carrier.parent,
             lead / (2.0 * pi) / layout.length,
             layout.frame_on(carrier.parent, carrier.part.before),
         )
-    for closing in layout.graph.closings:
-        _add_closing(layout, plan, closing)
-    _add_places(layout, plan)
-    _add_blocks(layout, plan)
-    _add_inputs(layout, plan)
-    _add_inertias(layout, plan)
-    for load in layout.mechanism.loads:
-        add_load(layout, plan, load)
 
 
-def _add_closing(layout: Layout, plan: Plan, closing: Closing) -> None:
+def _closing(layout: Layout, closing: Closing) -> ClosingJoint | Leg:
     joint, leg = closing.joint, closing.leg
-    loop = [(k, s) for e, s in closing.loop for k in _parts_of(layout, e)]
+    loop = [(k, float(s)) for e, s in closing.loop for k in _parts_of(layout, e)]
     if leg is None:
         first, second = layout.link_number[joint.first], layout.link_number[joint.second]
         frames = layout.frame_on(first, joint.on_first), layout.frame_on(second, joint.on_second)
-        plan.add_closing_joint(joint.type.code, first, second, *frames, joint.parameter, loop)
-        return
+        return ClosingJoint(joint.type.code, first, second, *frames, joint.parameter, loop)
     first, second = layout.link_number[leg.first], layout.link_number[leg.second]
     ends = frame_on(leg.start, leg.first), frame_on(leg.end, leg.second)
-    plan.add_leg(
+    return Leg(
         layout.link_number[leg.body],
         layout.link_number[leg.rod] if leg.rod else -1,
         first,
@@ -81,7 +106,7 @@ def _parts_of(layout: Layout, edge: int) -> list[int]:
     return [k for k, carrier in enumerate(layout.carriers) if carrier.edge == edge]
 
 
-def _add_places(layout: Layout, plan: Plan) -> None:
+def _places(layout: Layout) -> Iterator[Place]:
     backward = {e.joint.name for e in layout.graph.edges if not e.forward}
     # a leg pushes the link at its end, whether that is the sphere's first or second
     backward |= {
@@ -90,7 +115,7 @@ def _add_places(layout: Layout, plan: Plan) -> None:
         if c.leg is not None and c.leg.second == c.joint.first
     }
     for name, joint in layout.mechanism.joints.items():
-        plan.add_place(
+        yield Place(
             layout.joint_reference[name],
             layout.link_number[joint.first],
             layout.link_number[joint.second],
@@ -98,10 +123,13 @@ def _add_places(layout: Layout, plan: Plan) -> None:
             layout.point(joint.point),
             -1.0 if name in backward else 1.0,
         )
+
+
+def _axes(layout: Layout) -> Iterator[Axis]:
     for name, coordinate in layout.axis_number:
         axis = coordinate_axis(layout.mechanism.joints[name], coordinate)
         (one, two) = axis.terms
-        plan.add_axis(
+        yield Axis(
             layout.place_number[name],
             axis.slide,
             layout.link_number[one.link],
@@ -111,15 +139,15 @@ def _add_places(layout: Layout, plan: Plan) -> None:
         )
 
 
-def _add_blocks(layout: Layout, plan: Plan) -> None:
+def _blocks(layout: Layout) -> Iterator[Block | Rest]:
     placed: set[int] = set()
     for block in layout.graph.blocks:
         joints = [layout.graph.closings[c].joint for c in block.closings]
         needed = {k for joint in joints for k in _ways(layout, joint)}
         unknown = [layout.column(k, f) for k, f in block.unknowns]
-        plan.add_block(len(block.closings), sorted(needed - placed), unknown)
+        yield Block(len(block.closings), sorted(needed - placed), unknown)
         placed |= needed
-    plan.set_rest([k for k in range(len(layout.carriers)) if k not in placed])
+    yield Rest([k for k in range(len(layout.carriers)) if k not in placed])
 
 
 def _ways(layout: Layout, joint: Joint) -> set[int]:
@@ -133,18 +161,17 @@ def _ways(layout: Layout, joint: Joint) -> set[int]:
     return found
 
 
-def _add_inputs(layout: Layout, plan: Plan) -> None:
+def _inputs(layout: Layout) -> Iterator[Input]:
     graph = layout.graph
     for (edge, freedom), (name, coordinate) in zip(graph.inputs, graph.driven, strict=True):
         joint = graph.edges[edge].joint
         along_thread = joint.letter == "H" and coordinate == "s"
         force_per_torque = 2.0 * pi * layout.length / joint.lead if along_thread else 1.0
         axis = layout.axis_number.get((name, coordinate), NO_AXIS)
-        plan.add_input(layout.column(edge, freedom), axis, force_per_torque)
+        yield Input(layout.column(edge, freedom), axis, force_per_torque)
 
 
-def _add_inertias(layout: Layout, plan: Plan) -> None:
-    plan.set_gravity(scale(1.0 / layout.length, layout.mechanism.gravity))
+def _inertias(layout: Layout) -> Iterator[Inertia]:
     for name, link in layout.mechanism.links.items():
         if name == GROUND_NAME or not link.has_mass:
             continue
@@ -153,4 +180,10 @@ def _add_inertias(layout: Layout, plan: Plan) -> None:
             i / (layout.length * layout.length)
             for i in turned_tensor(link.inertia, layout.link_frame[name])
         ]
-        plan.set_inertia(layout.link_number[name], link.mass, centre, tensor)
+        yield Inertia(layout.link_number[name], link.mass, centre, tensor)
+
+
+def _size_points(layout: Layout) -> Iterator[SizePoint]:
+    for _, at in layout.mechanism.joint_points():
+        ground = at.link == GROUND_NAME
+        yield SizePoint(layout.link_number[at.link], at.vector if ground else layout.point(at))

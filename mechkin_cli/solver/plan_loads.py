@@ -1,4 +1,4 @@
-"""The loads of a mechanism in the kernel's plan: codes, bodies or coordinates, values in its units.
+"""The loads of a mechanism as records of the kernel's plan: codes, links or coordinates, values.
 
 A force goes with 1 / length, a moment with 1 / length squared (length: the kernel's unit in m). The
 values of loads that vary are given row by row (`varying_loads`).
@@ -20,25 +20,25 @@ from mechkin_cli.mechanism.model import (
 from mechkin_cli.mechanism.vectors import ZERO, scale
 from mechkin_cli.solver.codes import LoadCode
 from mechkin_cli.solver.layout import is_slide
+from mechkin_cli.solver.records import AppliedLoad
 
 if TYPE_CHECKING:
-    from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.solver.layout import Layout
 
 
-def add_load(layout: Layout, plan: Plan, load: LinkLoad | JointLoad | Spring | Damper) -> None:
-    """Adds one load; a varying one without its value."""
+def load_record(layout: Layout, load: LinkLoad | JointLoad | Spring | Damper) -> AppliedLoad:
+    """The record of one load; of a varying one without its value."""
     unit = layout.length
     if isinstance(load, LinkLoad):
-        _add_link_load(layout, plan, load)
-    elif isinstance(load, JointLoad):
+        return _link_load(layout, load)
+    if isinstance(load, JointLoad):
         axis, reference, freedom, slide = _coordinate(layout, load.joint, load.coordinate)
         varies = isinstance(load.value, Varying)
         constant = 0.0 if isinstance(load.value, Varying) else load.value
         value = (constant / (unit if slide else (unit * unit)), 0.0, 0.0)
         code = LoadCode.COORDINATE
-        plan.add_load(code, axis, reference, freedom, ZERO, ZERO, value, varies)
-    elif load.between:
+        return AppliedLoad(code, axis, reference, freedom, ZERO, ZERO, value, varies)
+    if load.between:
         p, q = load.between
         if isinstance(load, Spring):
             data = (load.stiffness, load.free / unit, load.preload / unit)
@@ -46,12 +46,11 @@ def add_load(layout: Layout, plan: Plan, load: LinkLoad | JointLoad | Spring | D
         else:
             data, code = (load.damping, 0.0, 0.0), LoadCode.DAMPER
         links = layout.link_number[p.link], layout.link_number[q.link]
-        plan.add_load(code, *links, 0, layout.point(p), layout.point(q), data)
-    else:
-        _add_joint_spring(layout, plan, load)
+        return AppliedLoad(code, *links, 0, layout.point(p), layout.point(q), data)
+    return _joint_spring(layout, load)
 
 
-def _add_link_load(layout: Layout, plan: Plan, load: LinkLoad) -> None:
+def _link_load(layout: Layout, load: LinkLoad) -> AppliedLoad:
     own_axes = load.axes == "link"
     x, y, z = (0.0 if isinstance(amount, Varying) else amount for amount in load.value)
     value = layout.vector(Attached(load.link, (x, y, z))) if own_axes else (x, y, z)
@@ -65,7 +64,7 @@ def _add_link_load(layout: Layout, plan: Plan, load: LinkLoad) -> None:
         code = LoadCode.TORQUE_LINK if own_axes else LoadCode.TORQUE_GROUND
         value, point = scale(1.0 / (layout.length * layout.length), value), ZERO
     link, varies = layout.link_number[load.link], bool(varying(load))
-    plan.add_load(code, link, -1, 0, point, ZERO, value, varies)
+    return AppliedLoad(code, link, -1, 0, point, ZERO, value, varies)
 
 
 def _coordinate(layout: Layout, name: str, coordinate: str) -> tuple[int, int, int, bool]:
@@ -81,7 +80,7 @@ def _coordinate(layout: Layout, name: str, coordinate: str) -> tuple[int, int, i
     return axis, layout.joint_reference[name], freedom, slide
 
 
-def _add_joint_spring(layout: Layout, plan: Plan, load: Spring | Damper) -> None:
+def _joint_spring(layout: Layout, load: Spring | Damper) -> AppliedLoad:
     axis, reference, freedom, slide = _coordinate(layout, load.joint or "", load.coordinate or "")
     per = 1.0 if slide else (layout.length * layout.length)
     if isinstance(load, Spring):
@@ -92,4 +91,4 @@ def _add_joint_spring(layout: Layout, plan: Plan, load: Spring | Damper) -> None
     else:
         code = LoadCode.COORDINATE_DAMPER
         data = (load.damping / per, 0.0, 0.0)
-    plan.add_load(code, axis, reference, freedom, ZERO, ZERO, data)
+    return AppliedLoad(code, axis, reference, freedom, ZERO, ZERO, data)

@@ -100,8 +100,16 @@ def _search_block(
         states = np.repeat(base, size, axis=1)
         _randomise(layout, number, states, generator, turns)
         residual, flags = np.empty(size), np.empty(size, dtype=np.uint8)
-        limits = (tolerances.SEARCH_ITERATIONS, tolerances.SEARCH_RESIDUAL)
-        plan.search(number, values, states, residual, flags, *limits, width())
+        plan.search(
+            block=number,
+            inputs=values,
+            states=states,
+            residual=residual,
+            flags=flags,
+            iterations=tolerances.SEARCH_ITERATIONS,
+            tests=(tolerances.SEARCH_RESIDUAL,),
+            lanes=width(),
+        )
         clusters.closest = min(clusters.closest, float(np.min(residual)))
         within = np.all(np.abs(states[threads]) <= _most_turn(turns), axis=0)
         states, free = _isolated(layout, plan, values, states[:, (flags == 0) & within])

@@ -121,7 +121,7 @@ def search(text: str, closed_at: list[str] | None = None) -> tuple[Found, np.nda
     if found.number == 0:
         return found, np.empty((0, len(slots), 3))
     values = np.repeat(inputs[:, None], found.number, axis=1)
-    places = run(plan, values, found.states, outputs=True).outputs
+    places = run(plan, values, found.states, outputs=outputs.outputs).outputs
     assert places is not None
     return found, np.stack([places[s : s + 3] for s in slots]).transpose(2, 0, 1)
 

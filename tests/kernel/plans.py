@@ -6,7 +6,7 @@ or shift shows. Poses are 4 x 4; those that go into a plan are rounded to double
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from kernel.pairs import ELEMENTARY, PITCH, O, Z, exponential, mp, vector
 
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.solver.codes import Demand, OutputCode
+from mechkin_cli.solver.records import Output, hand_over_outputs
 
 TABLE = {entry["letter"]: entry for entry in _kernel.joint_table()}
 TREE_LETTERS = "RPHCSW"
@@ -64,19 +65,22 @@ class Chain:
     column that is no turn of a sphere has an axis there.
     """
 
-    plan: Any
+    builder: Any
     joints: list[TreeJoint]
     axes: dict[int, int]
+    records: list[Output] = field(default_factory=list)
+    slots: int = 0
+    plan: Any = None
 
     @staticmethod
     def of(joints: list[TreeJoint]) -> Chain:
-        chain = Chain(_kernel.Plan(LENGTH, ORIGIN, LENGTH), joints, {})
+        chain = Chain(_kernel.PlanBuilder(LENGTH, ORIGIN, LENGTH), joints, {})
         for joint in joints:
             pitch = PITCH if joint.letter == "H" else 0.0
             code = TREE_LETTERS.index(joint.letter)
-            chain.plan.add_tree_joint(code, joint.parent, pitch, frame(joint.at))
+            chain.builder.add_tree_joint(code, joint.parent, pitch, frame(joint.at))
         for number, joint in enumerate(joints):
-            chain.plan.add_place(number, joint.parent, number, number, floats(O), 1.0)
+            chain.builder.add_place(number, joint.parent, number, number, floats(O), 1.0)
             for column, (angular, _) in zip(
                 chain.columns_of(number), ELEMENTARY[joint.letter].screws, strict=True
             ):
@@ -87,11 +91,13 @@ class Chain:
 
     def axis(self, place: int, link: int, direction: Any, *, along_axis: bool) -> int:
         """Adds an axis of a place, carried by a link: a force along it or a couple about it."""
-        return int(self.plan.add_axis(place, along_axis, link, floats(direction), link, floats(O)))
+        return int(
+            self.builder.add_axis(place, along_axis, link, floats(direction), link, floats(O))
+        )
 
     def drive(self, column: int) -> None:
         """Makes a column an input."""
-        self.plan.add_input(column, self.axes[column], 1.0)
+        self.builder.add_input(column, self.axes[column], 1.0)
 
     def columns_of(self, number: int) -> range:
         """Columns of a tree joint."""
@@ -127,8 +133,14 @@ class Chain:
         self, code: OutputCode, index: int, order: int = 0, data: Any = O, freedom: int = 0
     ) -> slice:
         """Plans an output without scaling; returns its slots."""
-        begin = self.plan.add_output(int(code), index, freedom, order, floats(data), 1.0)
-        return slice(begin, self.plan.slots)
+        begin = self.slots
+        self.records.append(Output(code, index, freedom, order, floats(data), 1.0))
+        self.slots += _kernel.output_width(code)
+        return slice(begin, self.slots)
+
+    def finish(self) -> None:
+        """Freezes the plan; outputs may still come."""
+        self.plan = self.builder.finish()
 
 
 @dataclass(frozen=True)
@@ -159,9 +171,12 @@ def run(
 ) -> Run:
     """Runs a plan over the rows of `inputs` (inputs, rows) and `guess` (states, rows)."""
     plan, rows = chain.plan, inputs.shape[1]
+    outputs = hand_over_outputs(plan, chain.records)
+    served = outputs.demand & demand == outputs.demand
+    moving, with_condition = demand & Demand.VELOCITY, demand & Demand.CONDITION
     result = Run(
         np.full((plan.states, rows), np.nan),
-        np.full((plan.slots, rows), np.nan),
+        np.full((outputs.slots, rows), np.nan),
         np.zeros((plan.columns, rows)),
         np.zeros((plan.columns, rows)),
         np.full(rows, np.nan),
@@ -174,14 +189,13 @@ def run(
         accelerations=accelerations,
         guess=guess,
         states=result.states,
-        outputs=result.outputs,
-        first=result.first,
-        second=result.second,
+        outputs=outputs if served else None,
+        values=result.outputs if served else None,
+        first=result.first if moving else None,
+        second=result.second if demand & Demand.ACCELERATION else None,
         residual=result.residual,
         correction=np.empty(rows),
-        orientation=None,
-        condition=result.condition,
-        power_error=np.empty(rows),
+        condition=result.condition if with_condition else None,
         flags=result.flags,
         demand=int(demand),
         shift=shift,

@@ -52,13 +52,13 @@ class Probe:
         loop = [(k, 1.0) for k in range(1, 7)] + [(0, -1.0)]
         ends = frame(self.on_first), frame(self.on_second)
         code, parameter = TABLE[letter]["code"], self.pair.parameter
-        chain.plan.add_closing_joint(code, 0, MOVED, *ends, parameter, loop)
+        chain.builder.add_closing_joint(code, 0, MOVED, *ends, parameter, loop)
         first = self.pair.point_on_first
         point = floats(vector(self.on_first if first else self.on_second, 3))
-        self.place = chain.plan.add_place(-1, 0, MOVED, 0 if first else MOVED, point, 1.0)
+        self.place = chain.builder.add_place(-1, 0, MOVED, 0 if first else MOVED, point, 1.0)
         self.driven = [0, *held(letter)]
         unknown = [c for c in range(7) if c not in self.driven]
-        chain.plan.add_block(1, list(range(7)), unknown)
+        chain.builder.add_block(1, list(range(7)), unknown)
         for column in self.driven:
             chain.drive(column)
         self.carrier_angle = generator.uniform(-1.5, 1.5)
@@ -66,7 +66,7 @@ class Probe:
         self.generator = generator
 
     def finish(self) -> Probe:
-        self.chain.plan.finish()
+        self.chain.finish()
         return self
 
     def states(self, displacement: Any) -> np.ndarray:

@@ -78,19 +78,19 @@ def rcsr(closed_at: str) -> tuple[Any, Rows]:
         if carrier.part.letter != "S":
             guess[carrier.state] += 10.0 ** generator.uniform(-14, -2, ROWS)
     rates, accelerations, jerks = generator.uniform(-1, 1, (3, 1, ROWS))
-    return plan, Rows(inputs, rates, accelerations, jerks, guess)
+    return outputs, Rows(inputs, rates, accelerations, jerks, guess)
 
 
-def compute(plan: Any, rows: Rows, lanes: int = 0) -> Batch:
+def compute(own: Any, rows: Rows, lanes: int = 0) -> Batch:
     return run(
-        plan,
+        own.plan,
         rows.inputs,
         rows.guess,
         rates=rows.rates,
         accelerations=rows.accelerations,
         jerks=rows.jerks,
         demand=EVERYTHING,
-        outputs=True,
+        outputs=own.outputs,
         derivatives=True,
         lanes=lanes,
     )
@@ -104,50 +104,49 @@ def assert_same_bits(found: Batch, expected: Batch, rows: Any = slice(None)) -> 
 
 def test_rows_take_different_numbers_of_steps(closed_at: str) -> None:
     """Otherwise frozen lanes would go untested."""
-    plan, rows = rcsr(closed_at)
+    own, rows = rcsr(closed_at)
     steps = set()
     for row in range(ROWS):
         one = rows.take([row])
         tests = (1e-16, 1e-9, 1e-14)
-        good = [
-            run(plan, one.inputs, one.guess, iterations=k, tests=tests).good[0] for k in range(7)
-        ]
+        closed = [run(own.plan, one.inputs, one.guess, iterations=k, tests=tests) for k in range(7)]
+        good = [batch.good[0] for batch in closed]
         steps.add(good.index(True))
     assert len(steps) >= 3
 
 
 @pytest.mark.parametrize("lanes", [width(2), width(4), width(8)])
 def test_widths(closed_at: str, lanes: int) -> None:
-    plan, rows = rcsr(closed_at)
-    assert_same_bits(compute(plan, rows, lanes), compute(plan, rows, 2))
+    own, rows = rcsr(closed_at)
+    assert_same_bits(compute(own, rows, lanes), compute(own, rows, 2))
 
 
 @pytest.mark.parametrize("lanes", [width(2), width(4), width(8)])
 @pytest.mark.parametrize("size", [1, 2, 3, 5, 7, 8, 13, ROWS])
 def test_pieces_of_a_batch(closed_at: str, lanes: int, size: int) -> None:
-    plan, rows = rcsr(closed_at)
-    whole = compute(plan, rows)
+    own, rows = rcsr(closed_at)
+    whole = compute(own, rows)
     for begin in range(0, ROWS, size):
         piece = slice(begin, begin + size)
-        assert_same_bits(compute(plan, rows.take(piece), lanes), whole, piece)
+        assert_same_bits(compute(own, rows.take(piece), lanes), whole, piece)
 
 
 @pytest.mark.parametrize("lanes", [width(2), width(4), width(8)])
 def test_order_of_the_rows(closed_at: str, lanes: int) -> None:
-    plan, rows = rcsr(closed_at)
+    own, rows = rcsr(closed_at)
     order = np.random.default_rng(5).permutation(ROWS)
-    assert_same_bits(compute(plan, rows.take(order), lanes), compute(plan, rows), order)
+    assert_same_bits(compute(own, rows.take(order), lanes), compute(own, rows), order)
 
 
 @pytest.mark.parametrize("lanes", [width(2), width(4), width(8)])
 def test_nonsense_in_the_neighbouring_rows(closed_at: str, lanes: int) -> None:
     """Rows that never converge, or are not even numbers, leave the others alone."""
-    plan, rows = rcsr(closed_at)
+    own, rows = rcsr(closed_at)
     spoilt = rows.take(slice(None))
     spoilt.guess[:, 1::3] = np.nan
     spoilt.inputs[:, 2::3] = 1e300
-    found = compute(plan, spoilt, lanes)
-    whole = compute(plan, rows)
+    found = compute(own, spoilt, lanes)
+    whole = compute(own, rows)
     good = np.arange(0, ROWS, 3)
     for name, array in whole._asdict().items():
         assert getattr(found, name)[..., good].tobytes() == array[..., good].tobytes(), name
@@ -155,10 +154,10 @@ def test_nonsense_in_the_neighbouring_rows(closed_at: str, lanes: int) -> None:
 
 
 def test_repeated_calls(closed_at: str) -> None:
-    plan, rows = rcsr(closed_at)
-    first = compute(plan, rows)
+    own, rows = rcsr(closed_at)
+    first = compute(own, rows)
     for _ in range(3):
-        assert_same_bits(compute(plan, rows), first)
+        assert_same_bits(compute(own, rows), first)
 
 
 @contextmanager
@@ -192,12 +191,12 @@ X86_LINUX = platform.machine() == "x86_64" and sys.platform == "linux"
 @pytest.mark.skipif(not X86_LINUX, reason="the layout of fenv_t is that of Linux on x86-64")
 @pytest.mark.parametrize("control", STATES.values(), ids=list(STATES))
 def test_floating_point_state_of_the_caller(closed_at: str, control: int) -> None:
-    plan, rows = rcsr(closed_at)
-    expected = compute(plan, rows)
+    own, rows = rcsr(closed_at)
+    expected = compute(own, rows)
     angles = np.array([5e-324, 1e-310, 0.3, 2.5, 1e300])
     sines = functions.sin(angles)
     with floating_point_state(control):
-        found = compute(plan, rows)
+        found = compute(own, rows)
         found_sines = functions.sin(angles)
     assert_same_bits(found, expected)
     assert found_sines.tobytes() == sines.tobytes()

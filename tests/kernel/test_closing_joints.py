@@ -133,9 +133,9 @@ def load(probe: Probe) -> None:
     """Masses on the way and a force and a torque on the moved link, which has no mass."""
     for link in range(MOVED):
         tensor = (1.5, 1.2, 0.9, 0.1, -0.2, 0.05)
-        probe.chain.plan.set_inertia(link, 1.0 + link, (0.2, 0.1, -0.3), tensor)
-    probe.chain.plan.set_gravity((1.0, -2.0, 3.0))
-    add, zero = probe.chain.plan.add_load, (0.0, 0.0, 0.0)
+        probe.chain.builder.set_inertia(link, 1.0 + link, (0.2, 0.1, -0.3), tensor)
+    probe.chain.builder.set_gravity((1.0, -2.0, 3.0))
+    add, zero = probe.chain.builder.add_load, (0.0, 0.0, 0.0)
     add(int(LoadCode.FORCE_GROUND), MOVED, -1, 0, LOAD_POINT, zero, (4.0, -3.0, 2.0))
     add(int(LoadCode.TORQUE_GROUND), MOVED, -1, 0, zero, zero, (1.0, 2.0, -5.0))
 

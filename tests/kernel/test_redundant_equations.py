@@ -42,7 +42,7 @@ class FourBar:
         frames = [self.base, shifted(CRANK, 0, 0.125), shifted(COUPLER, 0, -0.25)]
         joints = [TreeJoint("R", k - 1, at) for k, at in enumerate(frames)]
         self.chain = Chain.of(joints)
-        plan = self.chain.plan
+        plan = self.chain.builder
         on_ground = doubles(self.base * shifted(GROUND, 0, 0.375))
         ends = frame(on_ground), frame(shifted(ROCKER, 0, 0.5))
         loop = [(k, 1.0) for k in range(3)]
@@ -52,7 +52,7 @@ class FourBar:
         self.chain.drive(0)
         zero = (0.0, 0.0, 0.0)
         plan.add_load(int(LoadCode.FORCE_GROUND), 1, -1, 0, LOAD_POINT, zero, LOAD)
-        plan.finish()
+        self.chain.finish()
         output = self.chain.output
         self.effort = output(OutputCode.EFFORT, 0)
         self.force = output(OutputCode.JOINT_FORCE, closing)

@@ -70,7 +70,7 @@ class Subject:
         self.last = len(joints) - 1
         self.chain = Chain.of(joints)
         point_on_first = self.pair.point_on_first
-        self.place = self.chain.plan.add_place(
+        self.place = self.chain.builder.add_place(
             self.last,
             self.carrier,
             self.last,
@@ -91,7 +91,7 @@ class Subject:
         for freedom, (slide, one, two) in enumerate(DRIVES[letter]):
             on_first = vector(self.on_carrier * mp.matrix([*one, 0]), 0)
             on_second = vector(self.on_last * mp.matrix([*two, 0]), 0)
-            axis = self.chain.plan.add_axis(
+            axis = self.chain.builder.add_axis(
                 self.place,
                 slide or along_thread,
                 self.carrier,
@@ -100,7 +100,7 @@ class Subject:
                 floats(on_second),
             )
             scale = 1 / PITCH if along_thread else 1.0
-            self.chain.plan.add_input(self.carrier + 1 + freedom, axis, scale)
+            self.chain.builder.add_input(self.carrier + 1 + freedom, axis, scale)
 
     def close(self, states: np.ndarray, generator: np.random.Generator) -> None:
         """Closes the chain by an R to ground where it stands."""
@@ -108,7 +108,7 @@ class Subject:
         on_ground = doubles(self.chain.poses(states)[self.last] * on_link)
         loop = [(k, 1.0) for k in range(self.last + 1)]
         ends = frame(on_ground), frame(on_link)
-        plan = self.chain.plan
+        plan = self.chain.builder
         plan.add_closing_joint(TABLE["R"]["code"], -1, self.last, *ends, 0.0, loop)
         plan.add_block(1, list(range(self.last + 1)), list(range(1, plan.columns)))
 
@@ -123,17 +123,17 @@ class Moved:
         states = tested.random_states(generator)
         centre, tensor = (0.2, 0.1, -0.3), (1.5, 1.2, 0.9, 0.1, -0.2, 0.05)
         for link in [*range(tested.carrier + 1), tested.last]:  # none between a pair's parts
-            self.chain.plan.set_inertia(link, 1.0 + link, centre, tensor)
-        self.chain.plan.set_gravity((1.0, -2.0, 3.0))
+            self.chain.builder.set_inertia(link, 1.0 + link, centre, tensor)
+        self.chain.builder.set_gravity((1.0, -2.0, 3.0))
         force = int(LoadCode.FORCE_LINK)
-        self.chain.plan.add_load(force, self.number, -1, 0, POINT, floats(O), (4.0, -3.0, 2.0))
+        self.chain.builder.add_load(force, self.number, -1, 0, POINT, floats(O), (4.0, -3.0, 2.0))
         self.chain.drive(0)
         if tested.open:
             tested.drive(letter, along_thread=along_thread)
-            self.chain.plan.set_rest(list(range(len(self.chain.joints))))
+            self.chain.builder.set_rest(list(range(len(self.chain.joints))))
         else:
             tested.close(states, generator)
-        self.chain.plan.finish()
+        self.chain.finish()
         output, number = self.chain.output, self.number
         self.points = [output(OutputCode.POINT, number, order, POINT) for order in range(3)]
         self.vector = output(OutputCode.VECTOR, number, 0, DIRECTION)

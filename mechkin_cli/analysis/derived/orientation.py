@@ -60,7 +60,7 @@ def _followed_signs(run: FinishedRun, joint: str, q: Quaternion, inputs: Floats)
     links = run.layout.mechanism.joints[joint]
     wanted = (*directions(links.first), *directions(links.second))
     own = run.setup.reading(wanted, Demand.POSITION).outputs
-    values, places = outputs_between(own.plan, inputs, run.start.state)
+    values, places = outputs_between(own, inputs, run.start.state)
     ends = (rotation_at(values, own.slots, link) for link in (links.first, links.second))
     path = quaternion(relative(*ends))
     back = inner(_part(path, slice(1, None)), _part(path, slice(None, -1))) < 0.0

@@ -36,7 +36,7 @@ def first_row(problem: Problem, body: Body) -> Configuration | None:
         [outputs.add_point(Attached(link, tuple(mark.tolist())), 0) for mark in marks]
         for link in body.links
     ]
-    values = run(plan, inputs[:, None], start.state[:, None], outputs=True).outputs
+    values = run(plan, inputs[:, None], start.state[:, None], outputs=outputs.outputs).outputs
     assert values is not None
     turns, places = [], []
     for link in slots:

@@ -139,6 +139,7 @@ enum OutputCode : int {
   OUT_JERK = 18             // index: column
 };
 
+// One quantity that a run writes; outputs are no part of the plan (OutputsView).
 struct Output {
   int type;
   int index;
@@ -149,15 +150,23 @@ struct Output {
   double factor;   // to SI
 };
 
+// What a run writes, in the order of its slots.
+struct OutputsView {
+  int count, slots;
+  const Output* output;
+};
+
 // What a run has to do beyond positions (the demand plan).
 enum Demand : unsigned {
+  DEMAND_POSITION = 0,
   DEMAND_VELOCITY = 1,
   DEMAND_ACCELERATION = 2,
   DEMAND_FORCES = 4,  // closing wrenches, wrenches of tree joints, efforts
   DEMAND_CONDITION = 8,
   DEMAND_POWER = 16,
   DEMAND_JERK = 32,
-  DEMAND_SINGULAR = 64  // with DEMAND_CONDITION: to rounding instead of to 1 %
+  DEMAND_SINGULAR = 64,  // with DEMAND_CONDITION: to rounding instead of to 1 %
+  DEMAND_EVERYTHING = 127
 };
 
 // A joint as its user knows it: where its wrench is read off, and where its point rides.
@@ -187,7 +196,8 @@ struct Drive {
 };
 
 struct Plan {
-  int links, states, columns, closings, legs, blocks, inputs, loads, load_values, outputs, slots;
+  int links, states, columns, closings, legs, blocks, inputs, loads, load_values;
+  int places, axes, drives, loop_entries, order_count, unknowns, size_points;
   int largest_block;  // rows
   const TreeJoint* joints;
   const ClosingJoint* closing;
@@ -209,10 +219,11 @@ struct Plan {
   const double* column_weight;  // scaled-block weight of a column: size / length unit for slides, 1 for angles
   const LinkInertia* inertia;
   const Load* load;
-  const Output* output;
+  const Output* size_point;  // joint points, whose box at the first assembly tells the size; of ground: in m
   double gravity[3];         // in length units
   double length;             // the length unit in m, a power of two
   double origin[3];          // the kernel's origin in m
+  double size;               // of the mechanism in m: what residual and condition are measured by
   double row_weight;         // length unit / size: closure lengths to parts of the size
 };
 
@@ -232,6 +243,7 @@ struct Request {
   const double* jerks;          // inputs x rows, with DEMAND_JERK
   const double* guess;          // states x rows
   const double* loads;          // load_values x rows: values of varying loads, may be null without DEMAND_FORCES
+  OutputsView wanted;           // what `outputs` receives
   double* states;               // states x rows
   double* outputs;              // slots x rows, may be null
   double* velocities;           // columns x rows, may be null
@@ -259,6 +271,7 @@ struct Request {
 };
 
 enum RowFlag : unsigned char {
+  ROW_GOOD = 0,
   ROW_NOT_CONVERGED = 1,
   ROW_SIDE_CONDITION = 2
 };

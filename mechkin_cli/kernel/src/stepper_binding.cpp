@@ -11,7 +11,7 @@
 #include <functional>
 #include <memory>
 
-#include "plan_store.hpp"
+#include "frozen_plan.hpp"
 #include "tracker.hpp"
 #include "units.hpp"
 
@@ -33,10 +33,6 @@ void need_length(const Numbers& a, long length, const char* name) {
 double* table(const Table& a, long columns, long rows, const char* name) {
   need((long)a.shape(0) == columns && (long)a.shape(1) == rows, std::string(name) + ": wrong shape");
   return a.data();
-}
-const Plan& finished(const PlanStore& store) {
-  need(store.finished(), "the plan is not finished");
-  return store.view();
 }
 // Single positions run on the narrowest unit, whose latency is the least.
 const KernelUnit& narrow_unit() { return *kernel_unit(2); }
@@ -62,9 +58,9 @@ class GivenPath : public Path {
     need_length(point->second, n, "the path's second derivatives");
   }
   const Plan& plan(double sigma) const override {
-    if (!varies_) return finished(nb::cast<const PlanStore&>(plan_));
+    if (!varies_) return nb::cast<const FrozenPlan&>(plan_).view();
     current_ = plan_(sigma);
-    const Plan& p = finished(nb::cast<const PlanStore&>(current_));
+    const Plan& p = nb::cast<const FrozenPlan&>(current_).view();
     if (states_ < 0) states_ = p.states, blocks_ = p.blocks, columns_ = p.columns, closings_ = p.closings;
     need(p.states == states_ && p.blocks == blocks_ && p.columns == columns_ && p.closings == closings_,
          "the plans of a path must have one structure");
@@ -88,8 +84,8 @@ struct OwnedStepper {
   std::unique_ptr<Stepper> stepper;
 };
 
-std::unique_ptr<OwnedStepper> straight(const PlanStore& store, Numbers inputs, Numbers direction, StepLimits limits) {
-  const Plan& plan = finished(store);
+std::unique_ptr<OwnedStepper> straight(const FrozenPlan& store, Numbers inputs, Numbers direction, StepLimits limits) {
+  const Plan& plan = store.view();
   need_length(inputs, plan.inputs, "inputs");
   need_length(direction, plan.inputs, "direction");
   auto s = std::make_unique<OwnedStepper>(OwnedStepper{std::move(inputs), std::move(direction), {}, limits, {}});
@@ -128,9 +124,9 @@ std::optional<Node> step_from(OwnedStepper& s, const Node& node, double h) {
   return next;
 }
 
-nb::tuple follow_table(const PlanStore& store, Table inputs, const Numbers& start, const Numbers& turn, bool every_row,
+nb::tuple follow_table(const FrozenPlan& store, Table inputs, const Numbers& start, const Numbers& turn, bool every_row,
                        const StepLimits& limits, Table guess, Column limit, std::optional<Table> turns) {
-  const Plan& plan = finished(store);
+  const Plan& plan = store.view();
   const long rows = (long)inputs.shape(1);
   need(rows > 0, "inputs: no rows");
   table(inputs, plan.inputs, rows, "inputs");
@@ -151,9 +147,9 @@ nb::tuple follow_table(const PlanStore& store, Table inputs, const Numbers& star
                         copied(found.state), copied(found.turn), copied(found.direction));
 }
 
-nb::list turn_table(const PlanStore& store) {
+nb::list turn_table(const FrozenPlan& store) {
   nb::list list;
-  for (const ClosingTurn& t : closing_turns(finished(store), narrow_unit()))
+  for (const ClosingTurn& t : closing_turns(store.view(), narrow_unit()))
     list.append(nb::make_tuple(t.closing, t.freedom, t.slot, t.width));
   return list;
 }

@@ -117,7 +117,7 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
 
   const auto outputs = [&](const Balance* balance) {
     const Writer out = writer(r.outputs);
-    for (int o = 0; o < p.outputs; ++o) write_output(p, w, balance, p.output[o], out);
+    for (int o = 0; o < r.wanted.count; ++o) write_output(p, w, balance, r.wanted.output[o], out);
   };
   if (r.demand & DEMAND_FORCES) {
     const auto load_value = [&](int column) { return in.get(r.loads, column); };
@@ -145,18 +145,20 @@ Workspace workspace_at(const Plan& p, char* memory) {
   return w;
 }
 
-void run(const Plan& p, const Request& r, char* memory) {
+void run_rows(const Plan& p, const Request& r, long begin, long end, char* memory) {
   Workspace w = workspace_at(p, memory);
-  for (long row = 0; row < r.rows; row += LANES) {
-    const int count = r.rows - row < LANES ? (int)(r.rows - row) : LANES;
+  for (long row = begin; row < end; row += LANES) {
+    const int count = end - row < LANES ? (int)(end - row) : LANES;
     run_pack(p, r, w, {r.rows, row, count});
   }
 }
 
-void search(const Plan& p, const SearchRequest& r, char* memory) {
+void run(const Plan& p, const Request& r, char* memory) { run_rows(p, r, 0, r.rows, memory); }
+
+void search_rows(const Plan& p, const SearchRequest& r, long begin, long end, char* memory) {
   Workspace w = workspace_at(p, memory);
-  for (long row = 0; row < r.rows; row += LANES) {
-    const int count = r.rows - row < LANES ? (int)(r.rows - row) : LANES;
+  for (long row = begin; row < end; row += LANES) {
+    const int count = end - row < LANES ? (int)(end - row) : LANES;
     const Reader in = {r.rows, row, count};
     for (int s = 0; s < p.states; ++s) w.q[s] = in.get(r.states, s);
     for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
@@ -188,7 +190,7 @@ constexpr PairType pair_types[PAIR_CODES] = {
     pair_type<Universal>(),     pair_type<Planar>(),         pair_type<Weld>(),      pair_type<SlottedSphere>(),
     pair_type<SphereInSlottedCylinder>(), pair_type<CylinderOnPlane>()};
 
-const KernelUnit unit = {LANES, tree_types, pair_types, workspace_size, run, search, elementwise,
+const KernelUnit unit = {LANES, tree_types, pair_types, workspace_size, run, run_rows, search_rows, elementwise,
                          replay_size, replay};
 
 }  // namespace

@@ -20,7 +20,9 @@ struct KernelUnit {
   const PairType* pair_types;  // PAIR_CODES
   long (*workspace_size)(const Plan&);
   void (*run)(const Plan&, const Request&, char* workspace);
-  void (*search)(const Plan&, const SearchRequest&, char* workspace);
+  // Rows [begin, end) alone; what a row gets does not depend on the cut.
+  void (*run_rows)(const Plan&, const Request&, long begin, long end, char* workspace);
+  void (*search_rows)(const Plan&, const SearchRequest&, long begin, long end, char* workspace);
   void (*elementwise)(int operation, const double* x, const double* y, double* out, long n);
   long (*replay_size)(const Tape&);
   void (*replay)(const Tape&, const TapeRequest&, char* workspace);

@@ -53,6 +53,7 @@ class Worker {
                                    ? VariantEnd::other_way
                                    : one(&parameters_[v * given], &replayed_[v * tape_.outputs], begin + v, out);
       out.end[begin + v] = (int)ended;
+      if (ended != VariantEnd::complete) clear(begin + v, out);
     }
   }
 
@@ -70,6 +71,15 @@ class Worker {
   const double* first_inputs() {
     for (int i = 0; i < plan_.view().inputs; ++i) start_inputs_.push_back(base_.inputs[i * base_.rows + base_.start_row]);
     return start_inputs_.data();
+  }
+
+  // Nothing of what a variant left behind that did not end well.
+  void clear(long number, const VariantArrays& out) const {
+    const long rows = base_.rows, cells = rows * outputs_.view().slots;
+    const double nothing = __builtin_nan("");
+    std::fill_n(out.outputs + number * cells, cells, nothing);
+    std::fill_n(out.residual + number * rows, rows, nothing);
+    std::fill_n(out.condition + number * rows, rows, nothing);
   }
 
   VariantEnd one(const double* parameters, const double* replayed, long number, const VariantArrays& out) {

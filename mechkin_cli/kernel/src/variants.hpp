@@ -12,6 +12,10 @@
 #include "tape_store.hpp"
 #include "tracker.hpp"
 
+namespace nanobind {
+class module_;
+}
+
 // How a variant ended.
 enum class VariantEnd : int {
   complete = 0,    // every row is closed, on the branch of the first
@@ -46,7 +50,7 @@ struct VariantStart {
   std::vector<double> state;
 };
 
-// Arrays over variants, one after the other.
+// Arrays over variants, one after the other; nan for those that are not complete.
 struct VariantArrays {
   double* outputs;    // slots x rows each
   double* residual;   // rows each
@@ -59,7 +63,7 @@ class Variants {
   // std::invalid_argument where sizes do not fit together.
   Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputList& outputs, VariantBase base);
 
-  // parameters: tape inputs x count. Rows of variants that are not complete are left as they are.
+  // parameters: tape inputs x count. Variants that are not complete get nan.
   void run(long count, const double* parameters, const KernelUnit& unit, int threads, const VariantArrays& out) const;
   // The first assembly of one variant.
   VariantStart start(const double* parameters) const;
@@ -75,3 +79,5 @@ class Variants {
   const OutputList& outputs_;
   VariantBase base_;
 };
+
+void bind_variants(nanobind::module_& m);

@@ -1,29 +1,37 @@
-// Owns the arrays of a plan while it is built and hands out the plain view that the units read.
+// Collects the records of a plan, checks each, and freezes them.
+//
+// Wrong indices, codes, sizes and numbers that are not finite raise std::invalid_argument, as does every call after
+// finish(). The order of the calls numbers the plan's constants (frozen_plan.hpp).
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
-#include "plan.hpp"
+#include "frozen_plan.hpp"
 
 using Triple = std::array<double, 3>;
 using FrameData = std::array<double, 12>;  // x, y, z axes, origin
+using Loop = std::vector<std::pair<int, double>>;  // tree joint and sign
 
-class PlanStore {
+class PlanBuilder {
  public:
-  PlanStore(double length, Triple origin, double size);
+  // The length unit (m), the kernel's origin (m) and the mechanism's size (m).
+  PlanBuilder(double length, const Triple& origin, double size);
 
   void add_tree_joint(int type, int parent, double pitch, const FrameData& at);
   void add_closing_joint(int type, int first, int second, const FrameData& on_first, const FrameData& on_second,
-                         double parameter, const std::vector<std::pair<int, double>>& loop);
+                         double parameter, const Loop& loop);
   // The next closing equation: a leg of the tree's bodies `body` and `rod` (-1: none) from `first` to `second`.
   void add_leg(int body, int rod, int first, int second, const FrameData& on_first, const FrameData& on_second,
-               double length, const Triple& line, double slide_sign, const std::vector<std::pair<int, double>>& loop);
+               double length, const Triple& line, double slide_sign, const Loop& loop);
   // The next joint as its user knows it, see JointPlace; returns its number.
   int add_place(int reference, int first, int second, int point_on, const Triple& point, double sign);
   // An axis of a joint's coordinate, see CoordinateAxis; returns its number.
   int add_axis(int place, bool slide, int link, const Triple& vector, int other, const Triple& other_vector);
+  // The next closing joints, the tree joints that they place, parents first, and the columns that they solve for.
   void add_block(int closing_joints, const std::vector<int>& joints, const std::vector<int>& unknown);
+  // The tree joints that no block places, parents first.
   void set_rest(const std::vector<int>& joints);
   // `axis` -1: a coordinate that no user knows; `scale`: effort along the axis per generalised force of the column.
   void add_input(int column, int axis, double scale);
@@ -32,24 +40,33 @@ class PlanStore {
   // A varying load takes its value from the next columns of Request::loads: one along a coordinate, else three.
   void add_load(int type, int link, int other, int freedom, const Triple& point, const Triple& other_point,
                 const Triple& vector, bool varying);
-  int add_output(int type, int index, int freedom, int order, const Triple& data, double factor);
-  // Checks that the parts fit together (std::invalid_argument otherwise); no changes but outputs after it.
-  void finish();
+  // A joint's point, see Plan::size_point: in the link's frame and length units, of ground in m.
+  void add_size_point(int link, const Triple& point);
+  // Checks that the parts fit together; the builder is spent after it.
+  FrozenPlan finish();
 
-  const Plan& view() const { return plan_; }
-  bool finished() const { return finished_; }
-  // What a run that fills the outputs must demand.
-  unsigned demand() const { return demand_; }
+  int states() const { return plan_.states; }
+  int columns() const { return plan_.columns; }
 
  private:
-  void point_view_at_arrays();
+  static constexpr int NOT_PLACED = -1, REST = -2;
+
+  void open() const;
   void check_link(int link) const;
-  std::pair<int, int> add_loop(const std::vector<std::pair<int, double>>& loop);
+  void check_joint(int joint, const char* message) const;
+  void check_load(int type, int link, int other, int freedom, bool varying) const;
+  std::pair<int, int> add_loop(const Loop& loop);
+  // The next `count` constants stand in a row from here on.
+  void number(int array, std::size_t offset, int count);
+  void place_joints(int block, const std::vector<int>& joints);
+  void check_order() const;
+  void sort_drives();
+  Plan arrays() const;
 
   Plan plan_{};
-  bool finished_ = false;
-  unsigned demand_ = 0;
-  double size_;
+  bool spent_ = false, gravity_ = false, rest_set_ = false;
+  std::vector<ConstantPlace> constants_;
+  std::vector<std::pair<int, ConstantPlace>> repeated_;
   std::vector<TreeJoint> joints_;
   std::vector<JointPlace> place_;
   std::vector<CoordinateAxis> axis_;
@@ -60,8 +77,9 @@ class PlanStore {
   std::vector<Block> block_;
   std::vector<int> order_, unknown_, rest_, input_column_;
   std::vector<int> column_state_, column_joint_, column_block_, column_place_;
+  std::vector<int> placed_by_;  // tree joint -> block, NOT_PLACED, or REST
   std::vector<double> column_weight_;
   std::vector<LinkInertia> inertia_;
   std::vector<Load> load_;
-  std::vector<Output> output_;
+  std::vector<Output> size_point_;
 };

@@ -1,0 +1,15 @@
+// The parts of the Python module, each bound in a file of its own.
+#pragma once
+
+namespace nanobind {
+class module_;
+}
+struct KernelUnit;
+
+// TreeCode, LoadCode, OutputCode, Demand, RowFlag, TrackEnd, Operation.
+void bind_codes(nanobind::module_& m);
+// PlanBuilder, Plan, Outputs.
+void bind_plan(nanobind::module_& m);
+
+// The unit of some width; ValueError if this machine does not have it.
+const KernelUnit& unit_or_throw(int lanes);

@@ -1,0 +1,245 @@
+// Python's view of plans: a builder that collects records, the immutable plan, the outputs of its runs.
+//
+// Batched arrays are (columns, rows), C-contiguous, so that a column is contiguous; the GIL is released while the
+// kernel works, and a finished plan may run in several threads at once.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+
+#include "arguments.hpp"
+#include "bindings.hpp"
+#include "output_list.hpp"
+#include "plan_builder.hpp"
+#include "threads.hpp"
+#include "units.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace {
+
+constexpr long MOST_ITERATIONS = 10000;
+constexpr long MOST_THREADS = 1024;
+
+using Constants = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using NewConstants = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
+
+template <class Owner>
+NewConstants constants_of(const Owner& owner) {
+  const std::size_t n = owner.constants();
+  double* const out = new double[n ? n : 1];
+  nb::capsule capsule(out, [](void* data) noexcept { delete[] static_cast<double*>(data); });
+  owner.read_constants(out);
+  return NewConstants(out, {n}, capsule);
+}
+
+template <class Owner>
+Owner with_constants(const Owner& owner, const Constants& constants) {
+  if (constants.shape(0) != owner.constants())
+    throw nb::value_error(("constants: " + std::to_string(constants.shape(0)) + " instead of " +
+                           std::to_string(owner.constants())).c_str());
+  Owner other(owner);
+  if (!other.assign(constants.data()))
+    throw nb::value_error("constants must be finite, length unit and size positive");
+  return other;
+}
+
+FrozenPlan with_size(const FrozenPlan& plan, double size) {
+  FrozenPlan other(plan);
+  if (!other.assign_size(size)) throw nb::value_error("the size must be finite and positive");
+  return other;
+}
+
+// What is demanded goes with what is given.
+void check_demand(const Request& r, const OutputList* outputs, int load_values) {
+  const auto refuse = [](bool condition, const char* message) {
+    if (condition) throw nb::value_error(message);
+  };
+  const bool velocity = r.demand & DEMAND_VELOCITY, acceleration = r.demand & DEMAND_ACCELERATION;
+  refuse(!outputs != !r.outputs, "outputs and values are given together");
+  refuse(outputs && (outputs->demand() & ~r.demand), "the outputs need more than is demanded");
+  refuse(velocity && !r.rates, "velocities need rates of the inputs");
+  refuse(acceleration && (!velocity || !r.accelerations),
+         "accelerations need rates and accelerations of the inputs");
+  refuse(r.demand & DEMAND_JERK && (!acceleration || !r.jerks), "jerks need accelerations, and jerks of the inputs");
+  refuse(r.demand & DEMAND_FORCES && load_values && !r.loads, "forces need the values of varying loads");
+  refuse(r.demand & DEMAND_POWER && !(r.demand & DEMAND_FORCES), "the power error needs forces");
+  refuse(!(r.demand & DEMAND_CONDITION) != !r.condition, "an array for the condition goes with its demand");
+  refuse(!(r.demand & DEMAND_POWER) != !r.power_error, "an array for the power error goes with its demand");
+  refuse(r.velocities && !velocity, "first derivatives are not demanded");
+  refuse(r.second && !acceleration, "second derivatives are not demanded");
+}
+
+// One workspace a thread, all of them there before the first row is begun.
+class Workspaces {
+ public:
+  Workspaces(const KernelUnit& unit, const Plan& plan, int threads)
+      : size_(unit.workspace_size(plan)), memory_((std::size_t)size_ * threads) {}
+  char* of(int thread) { return memory_.data() + thread * size_; }
+
+ private:
+  long size_;
+  std::vector<char> memory_;
+};
+
+// Rows that a thread takes at a time: several chunks a thread, since threads are not equally fast; whole packs of
+// every width.
+long chunk_of(long rows, int threads) {
+  const long share = rows / (8L * threads);
+  const long chunk = share < 64 ? 64 : share > 4096 ? 4096 : share;
+  return (chunk + 63) / 64 * 64;
+}
+
+int threads_for(long rows, long threads) {
+  const long chunks = (rows + 63) / 64;
+  return (int)(chunks < 1 ? 1 : threads < chunks ? threads : chunks);
+}
+
+void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
+  const Plan& p = plan.view();
+  Arguments given(keywords);
+  Request r = {};
+  r.inputs = given.read_required("inputs", p.inputs);
+  r.guess = given.read_required("guess", p.states);
+  r.rates = given.read("rates", p.inputs);
+  r.accelerations = given.read("accelerations", p.inputs);
+  r.jerks = given.read("jerks", p.inputs);
+  r.loads = given.read("loads", p.load_values);
+  const OutputList* outputs = nullptr;
+  nb::object list = given.other("outputs");
+  if (!list.is_none()) {
+    if (!nb::try_cast(list, outputs, false)) throw nb::type_error("outputs: not Outputs of a plan");
+    if (!outputs->fits(plan)) throw nb::value_error("outputs: of a plan with another structure");
+    r.wanted = outputs->view();
+  }
+  r.states = given.write_required("states", p.states);
+  r.outputs = given.write("values", r.wanted.slots);
+  r.velocities = given.write("first", p.columns);
+  r.second = given.write("second", p.columns);
+  r.residual = given.write_required("residual", Arguments::ONE_PER_ROW);
+  r.correction = given.write_required("correction", Arguments::ONE_PER_ROW);
+  r.orientation = given.write("orientation", Arguments::ONE_PER_ROW);
+  r.condition = given.write("condition", Arguments::ONE_PER_ROW);
+  r.power_error = given.write("power_error", Arguments::ONE_PER_ROW);
+  r.flags = given.write_flags("flags");
+  r.rows = given.rows();
+  r.demand = (unsigned)given.integer("demand", 0, DEMAND_EVERYTHING, 0);
+  r.shift = (int)given.integer("shift", 0, 2, 0);
+  r.iterations = (int)given.integer("iterations", 0, MOST_ITERATIONS, 0);
+  const std::vector<double> tests = given.limits("tests", 3);
+  r.tight = tests[0], r.coarse = tests[1], r.accept = tests[2];
+  const KernelUnit& unit = unit_or_throw((int)given.integer("lanes", 0, 8, 0));
+  const int threads = threads_for(r.rows, given.integer("threads", 1, MOST_THREADS, 1));
+  given.finish();
+  if (r.rows == 0) return;
+  check_demand(r, outputs, p.load_values);
+  Workspaces memory(unit, p, threads);
+  nb::gil_scoped_release released;
+  FloatingPointState state;
+  over_rows(r.rows, chunk_of(r.rows, threads), threads, [&](long begin, long end, int thread) {
+    unit.run_rows(p, r, begin, end, memory.of(thread));
+  });
+}
+
+void search(const FrozenPlan& plan, const nb::kwargs& keywords) {
+  const Plan& p = plan.view();
+  Arguments given(keywords);
+  SearchRequest r = {};
+  r.inputs = given.read_required("inputs", p.inputs);
+  r.states = given.write_required("states", p.states);
+  r.residual = given.write_required("residual", Arguments::ONE_PER_ROW);
+  r.flags = given.write_flags("flags");
+  r.rows = given.rows();
+  r.block = (int)given.integer("block", 0, p.blocks - 1, -1);
+  if (r.block < 0) throw nb::type_error("block: missing");
+  r.iterations = (int)given.integer("iterations", 0, MOST_ITERATIONS, 0);
+  r.accept = given.limits("tests", 1)[0];
+  const KernelUnit& unit = unit_or_throw((int)given.integer("lanes", 0, 8, 0));
+  const int threads = threads_for(r.rows, given.integer("threads", 1, MOST_THREADS, 1));
+  given.finish();
+  if (r.rows == 0) return;
+  Workspaces memory(unit, p, threads);
+  nb::gil_scoped_release released;
+  FloatingPointState state;
+  over_rows(r.rows, 64, threads, [&](long begin, long end, int thread) {
+    unit.search_rows(p, r, begin, end, memory.of(thread));
+  });
+}
+
+// name, type, parent: as PlanBuilder names them
+void bind_builder(nb::module_& m) {
+  nb::class_<PlanBuilder>(m, "PlanBuilder", "Collects the records of a plan; spent by finish().")
+      .def(nb::init<double, const Triple&, double>(), "length"_a, "origin"_a, "size"_a)
+      .def("add_tree_joint", &PlanBuilder::add_tree_joint, "type"_a, "parent"_a, "pitch"_a, "at"_a)
+      .def("add_closing_joint", &PlanBuilder::add_closing_joint, "type"_a, "first"_a, "second"_a, "on_first"_a,
+           "on_second"_a, "parameter"_a, "loop"_a)
+      .def("add_leg", &PlanBuilder::add_leg, "body"_a, "rod"_a, "first"_a, "second"_a, "on_first"_a, "on_second"_a,
+           "length"_a, "line"_a, "slide_sign"_a, "loop"_a)
+      .def("add_place", &PlanBuilder::add_place, "reference"_a, "first"_a, "second"_a, "point_on"_a, "point"_a,
+           "sign"_a)
+      .def("add_axis", &PlanBuilder::add_axis, "place"_a, "slide"_a, "link"_a, "vector"_a, "other"_a,
+           "other_vector"_a)
+      .def("add_block", &PlanBuilder::add_block, "closing_joints"_a, "joints"_a, "unknown"_a)
+      .def("set_rest", &PlanBuilder::set_rest, "joints"_a)
+      .def("add_input", &PlanBuilder::add_input, "column"_a, "axis"_a, "scale"_a)
+      .def("set_inertia", &PlanBuilder::set_inertia, "link"_a, "mass"_a, "centre"_a, "tensor"_a)
+      .def("set_gravity", &PlanBuilder::set_gravity, "g"_a)
+      .def("add_load", &PlanBuilder::add_load, "type"_a, "link"_a, "other"_a, "freedom"_a, "point"_a,
+           "other_point"_a, "vector"_a, "varying"_a = false)
+      .def("add_size_point", &PlanBuilder::add_size_point, "link"_a, "point"_a)
+      .def("finish", &PlanBuilder::finish)
+      .def_prop_ro("states", &PlanBuilder::states)
+      .def_prop_ro("columns", &PlanBuilder::columns);
+}
+
+using OutputTuple = std::tuple<int, int, int, int, Triple, double>;
+
+void bind_outputs(nb::module_& m) {
+  nb::class_<OutputList>(m, "Outputs", "Quantities that runs of a plan write, checked against it.")
+      .def("__init__", [](OutputList* self, const FrozenPlan& plan, const std::vector<OutputTuple>& records) {
+        std::vector<OutputRecord> list;
+        for (const auto& [type, index, freedom, order, data, factor] : records)
+          list.push_back({type, index, freedom, order, data, factor});
+        new (self) OutputList(plan, list);
+      }, "plan"_a, "records"_a)
+      .def_prop_ro("slots", [](const OutputList& o) { return o.view().slots; })
+      .def_prop_ro("demand", [](const OutputList& o) { return (Demand)o.demand(); })
+      .def_prop_ro("constants", &constants_of<OutputList>, nb::rv_policy::automatic)
+      .def("with_constants", &with_constants<OutputList>, "constants"_a);
+  const auto check = [](int type, int order) {
+    if (!is_output(type) || order < 0 || order > 3) throw nb::value_error("unknown kind or order of output");
+  };
+  m.def("output_width", [check](int type) {
+    check(type, 0);
+    return output_width(type);
+  }, "type"_a);
+  m.def("output_demand", [check](int type, int order) {
+    check(type, order);
+    return (Demand)output_demand(type, order);
+  }, "type"_a, "order"_a = 0);
+}
+
+}  // namespace
+
+void bind_plan(nb::module_& m) {
+  bind_builder(m);
+  nb::class_<FrozenPlan>(m, "Plan", "An immutable plan; PlanBuilder.finish() makes it.")
+      .def_prop_ro("states", [](const FrozenPlan& p) { return p.view().states; })
+      .def_prop_ro("columns", [](const FrozenPlan& p) { return p.view().columns; })
+      .def_prop_ro("inputs", [](const FrozenPlan& p) { return p.view().inputs; })
+      .def_prop_ro("load_values", [](const FrozenPlan& p) { return p.view().load_values; })
+      .def_prop_ro("blocks", [](const FrozenPlan& p) { return p.view().blocks; })
+      .def_prop_ro("size", [](const FrozenPlan& p) { return p.view().size; })
+      .def_prop_ro("constants", &constants_of<FrozenPlan>, nb::rv_policy::automatic)
+      .def("with_constants", &with_constants<FrozenPlan>, "constants"_a)
+      .def("with_size", &with_size, "size"_a)
+      .def("run", &run, "arguments"_a)
+      .def("search", &search, "arguments"_a);
+  bind_outputs(m);
+  m.def("available_processors", &available_processors);
+}

@@ -1,0 +1,249 @@
+"""The records of a kernel plan as plain data, and the one place that hands them over.
+
+A record is a call of the kernel's `PlanBuilder` with its arguments in their order. Its *constants*
+are the numbers that parameters may vary; the others (codes, indices, signs) are structure. The
+kernel numbers constants in the order of the records and, within a record, of its fields, and
+`flatten` gives them in that order, whatever kind of number they are: floats for a plan, or the
+results of other arithmetic that is recorded or repeated elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from mechkin_cli.kernel import _kernel
+
+if TYPE_CHECKING:
+    from mechkin_cli.kernel._kernel import Outputs, Plan
+
+Number = Any
+"""A float, or what stands for one where plans are recorded."""
+
+Triple = Sequence[Number]
+FrameNumbers = Sequence[Number]
+"""Axes x, y, z and origin of a frame: 12 numbers."""
+
+Loop = Sequence[tuple[int, float]]
+"""Tree joints of a loop with their signs."""
+
+
+class Units(NamedTuple):
+    """Length unit, origin and size of the mechanism, in m: the first record of a plan."""
+
+    length: Number
+    origin: Triple
+    size: Number
+
+
+class TreeJoint(NamedTuple):
+    """A displacement of the tree: `at` in the parent; `pitch` of a screw, length units per rad."""
+
+    type: int
+    parent: int
+    pitch: Number
+    at: FrameNumbers
+
+
+class ClosingJoint(NamedTuple):
+    """A joint that closes a loop, by its frames on both links."""
+
+    type: int
+    first: int
+    second: int
+    on_first: FrameNumbers
+    on_second: FrameNumbers
+    parameter: Number
+    loop: Loop
+
+
+class Leg(NamedTuple):
+    """A leg between two points: `line` in its body, its length at zero slide."""
+
+    body: int
+    rod: int
+    first: int
+    second: int
+    on_first: FrameNumbers
+    on_second: FrameNumbers
+    length: Number
+    line: Triple
+    slide_sign: float
+    loop: Loop
+
+
+class Place(NamedTuple):
+    """A joint as its user knows it: where its wrench is read off and its point rides."""
+
+    reference: int
+    first: int
+    second: int
+    point_on: int
+    point: Triple
+    sign: float
+
+
+class Axis(NamedTuple):
+    """The axis of a joint's coordinate: the sum of two vectors carried by two links."""
+
+    place: int
+    slide: bool
+    link: int
+    vector: Triple
+    other: int
+    other_vector: Triple
+
+
+class Block(NamedTuple):
+    """The next closing joints, the tree joints that they place and the columns that they solve
+    for."""
+
+    closing_joints: int
+    joints: Sequence[int]
+    unknown: Sequence[int]
+
+
+class Rest(NamedTuple):
+    """The tree joints that no block places."""
+
+    joints: Sequence[int]
+
+
+class Input(NamedTuple):
+    """A driven column; `scale` is the effort along the axis per generalised force."""
+
+    column: int
+    axis: int
+    scale: Number
+
+
+class Inertia(NamedTuple):
+    """Mass (kg), mass centre and tensor of a link, in its frame and length units."""
+
+    link: int
+    mass: Number
+    centre: Triple
+    tensor: Sequence[Number]
+
+
+class Gravity(NamedTuple):
+    """In length units."""
+
+    g: Triple
+
+
+class AppliedLoad(NamedTuple):
+    """A load by its code; see the kernel's `Load`."""
+
+    type: int
+    link: int
+    other: int
+    freedom: int
+    point: Triple
+    other_point: Triple
+    vector: Triple
+    varying: bool = False
+
+
+class SizePoint(NamedTuple):
+    """A joint's point whose place in the first assembly tells the mechanism's size; of ground in
+    m."""
+
+    link: int
+    point: Triple
+
+
+class Output(NamedTuple):
+    """A quantity that a run writes, see the kernel's `OutputCode`; `factor` carries it to SI."""
+
+    type: int
+    number: int
+    freedom: int
+    order: int
+    data: Triple
+    factor: Number
+
+
+PlanRecord = (
+    Units
+    | TreeJoint
+    | ClosingJoint
+    | Leg
+    | Place
+    | Axis
+    | Block
+    | Rest
+    | Input
+    | Inertia
+    | Gravity
+    | AppliedLoad
+    | SizePoint
+)
+
+
+_VERBS: dict[type, str] = {
+    TreeJoint: "add_tree_joint",
+    ClosingJoint: "add_closing_joint",
+    Leg: "add_leg",
+    Place: "add_place",
+    Axis: "add_axis",
+    Block: "add_block",
+    Rest: "set_rest",
+    Input: "add_input",
+    Inertia: "set_inertia",
+    Gravity: "set_gravity",
+    AppliedLoad: "add_load",
+    SizePoint: "add_size_point",
+}
+"""The builder's call for each record."""
+
+_CONSTANTS: dict[type, tuple[str, ...]] = {
+    Units: ("length", "origin", "size"),
+    TreeJoint: ("pitch", "at"),
+    ClosingJoint: ("on_first", "on_second", "parameter"),
+    Leg: ("on_first", "on_second", "length", "line"),
+    Place: ("point",),
+    Axis: ("vector", "other_vector"),
+    Input: ("scale",),
+    Inertia: ("mass", "centre", "tensor"),
+    Gravity: ("g",),
+    AppliedLoad: ("point", "other_point", "vector"),
+    SizePoint: ("point",),
+    Output: ("data", "factor"),
+}
+"""The fields of each record that are constants; the others are structure."""
+
+
+def flatten(records: Iterable[PlanRecord | Output]) -> list[Number]:
+    """The constants of some records in the order in which the kernel numbers them."""
+    found: list[Number] = []
+    for record in records:
+        for name in _CONSTANTS.get(type(record), ()):
+            value = getattr(record, name)
+            if isinstance(value, tuple | list):
+                found.extend(value)
+            else:
+                found.append(value)
+    return found
+
+
+def hand_over(records: Sequence[PlanRecord]) -> Plan:
+    """The kernel's plan of some records, `Units` first.
+
+    Raises:
+        ValueError: records that do not fit together; numbers that are not finite.
+    """
+    units, *others = records
+    builder = _kernel.PlanBuilder(*units)
+    for record in others:
+        getattr(builder, _VERBS[type(record)])(*record)
+    return builder.finish()
+
+
+def hand_over_outputs(plan: Plan, records: Sequence[Output]) -> Outputs:
+    """The kernel's outputs of some records, for plans of one structure.
+
+    Raises:
+        ValueError: a record that the plan cannot serve.
+    """
+    return _kernel.Outputs(plan, list(records))

@@ -1,0 +1,96 @@
+"""Constants of a plan: numbered as its records are flattened, exchanged without a new plan."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from references import MECHANISMS, RCSR
+
+import mechkin_cli as mk
+from mechkin_cli.solver.batch import Batch, run
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import OutputPlan
+from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.plan import plan_records
+from mechkin_cli.solver.records import flatten, hand_over
+
+EVERYTHING = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES | Demand.CONDITION | Demand.POWER
+FILES = sorted(path for path in MECHANISMS.glob("*.yaml"))
+
+
+def layout_of(path: Any, parameters: dict[str, str] | None = None) -> Layout:
+    model = mk.load(path, parameters or {})
+    return Layout(model.problem.mechanism, model.graph)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_a_plan_numbers_its_constants_as_its_records_are_flattened(path: Any) -> None:
+    records = plan_records(layout_of(path), 3.25)
+    plan = hand_over(records)
+    assert plan.constants.tolist() == [float(number) for number in flatten(records)]
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_each_number_lands_on_its_own_constant(path: Any) -> None:
+    """Numbers that are all different, so that no two can have been exchanged."""
+    plan = layout_of(path).build()
+    numbers = 1.0 + np.arange(plan.constants.size)
+    other = plan.with_constants(numbers)
+    assert other.constants.tolist() == numbers.tolist()
+    assert other.with_constants(plan.constants).constants.tolist() == plan.constants.tolist()
+
+
+def case(parameters: dict[str, str]) -> tuple[Any, OutputPlan]:
+    model = mk.load(RCSR, parameters)
+    layout = Layout(model.problem.mechanism, model.graph)
+    own = OutputPlan(layout, layout.build(), model.problem.motion.driven)
+    for wanted in model.problem.quantities().values():
+        own.add(wanted)
+    return model, own
+
+
+def computed(plan: Any, outputs: Any, rows: int = 9) -> Batch:
+    inputs = np.linspace(2.7, 2.8, rows)[None, :]
+    guess = np.zeros((plan.states, rows))
+    ones = np.ones_like(inputs)
+    return run(
+        plan,
+        inputs,
+        guess,
+        rates=ones,
+        accelerations=0.5 * ones,
+        jerks=ones,
+        demand=EVERYTHING | Demand.JERK,
+        outputs=outputs,
+        derivatives=True,
+    )
+
+
+def assert_same(found: Batch, expected: Batch) -> None:
+    for name, array in expected._asdict().items():
+        assert getattr(found, name).tobytes() == array.tobytes(), name
+
+
+def test_a_plan_with_other_constants_is_the_plan_built_with_them() -> None:
+    """Parameters change lengths, frames, unit and size; the bytes are those of a new plan."""
+    _, base = case({})
+    _, changed = case({"P1": "0.83 in", "alpha1": "17 deg"})
+    plan = base.plan.with_constants(changed.plan.constants)
+    outputs = base.outputs.with_constants(changed.outputs.constants)
+    assert not np.array_equal(base.plan.constants, changed.plan.constants)
+    assert_same(computed(plan, outputs), computed(changed.plan, changed.outputs))
+    untouched = case({})[1]
+    assert_same(computed(base.plan, base.outputs), computed(untouched.plan, untouched.outputs))
+
+
+def test_a_size_given_later_is_the_size_built_with() -> None:
+    layout = layout_of(RCSR)
+    later, before = layout.build().with_size(0.7), layout.build(0.7)
+    assert later.size == 0.7
+    assert later.constants.tolist() == before.constants.tolist()
+    own = OutputPlan(layout, later, [])
+    assert_same(
+        computed(later, own.outputs), computed(before, OutputPlan(layout, before, []).outputs)
+    )
