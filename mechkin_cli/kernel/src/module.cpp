@@ -11,6 +11,7 @@
 #include "frozen_plan.hpp"
 #include "stepper_binding.hpp"
 #include "tape_store.hpp"
+#include "positions.hpp"
 #include "variants.hpp"
 #include "units.hpp"
 
@@ -87,4 +88,5 @@ NB_MODULE(_kernel, m) {
   bind_tape(m);
   bind_stepper(m);
   bind_variants(m);
+  bind_positions(m);
 }

@@ -110,6 +110,7 @@ class Worker {
       if (flags_[row] || orientation_[row] != orientation_[0] || !(correction_[row] <= limit_[row]))
         return VariantEnd::incomplete;
     unwrap_angles(r.outputs);
+    if (!(r.demand & DEMAND_CONDITION)) std::fill_n(r.condition, rows, __builtin_nan(""));
     return VariantEnd::complete;
   }
 
