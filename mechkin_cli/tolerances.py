@@ -114,9 +114,32 @@ SAME_LINE: Final = 1e-12
 """Distance from a straight line, in parts of the inputs, up to which rows count as one run of the
 path: written numbers round at 1e-16 of their size."""
 
+PATH_KNOT: Final = 0.01
+"""Distance (rad, length units) of the rows from which a curved path's derivatives are read:
+rounding of written numbers over its square stays below 1e-8, and a third derivative of 1 shifts
+them by 1e-5. A straight run of more than two rows counts as one from this length on."""
+
+PATH_CORNER_COSINE: Final = 0.9887710779360422
+"""Cosine of 8.6 degrees: a path that turns more from row to row has a corner there, or its rows are
+too far apart to tell its curve."""
+
+PATH_STRAY: Final = 1e-3
+"""Distance of a row's inputs from the curve between two nodes in parts of the step: a twentieth of
+what a row filled in may be off."""
+
 CLOSING_ANGLE_STEP: Final = 0.1
-"""Step of the inputs (rad, length units) on the path on which turns of closing joints are counted:
-angles turn less than half a turn in it unless they run thirty times as fast as the input."""
+"""A step (rad, length units) that is longer is halved where the angle of a closing joint is not
+where its derivatives say. Shorter ones are taken: an angle may jump by half a turn where the two
+axes of a joint come into line, though the branch is regular there."""
+
+CLOSING_ANGLE_MISS: Final = 1.0
+"""Change of a closing joint's angle (rad) against its prediction above which whole turns are not
+sure."""
+
+PLAN_STEP: Final = 1e-3
+"""Part of a path of changing dimensions over which its derivatives are read: differences are wrong
+by its square, 1e-6, and rounding leaves 1e-10 in the second ones; both matter to predictions
+only."""
 
 MOST_STEPS: Final = 20000
 """Steps of one path. Measured: R-Sg-C takes 32 for 315 degrees; a path that needs thousands is no

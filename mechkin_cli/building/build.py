@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import NamedTuple
 
 from mechkin_cli.building.assembly import build_assembly, build_follow
@@ -16,6 +17,7 @@ from mechkin_cli.building.motion import build_motion
 from mechkin_cli.building.sizes import check_loops, check_memory
 from mechkin_cli.building.source import Source
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
+from mechkin_cli.expressions import Quantity
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.model import Attached, Link, Mechanism
 from mechkin_cli.mechanism.motion import Motion
@@ -28,29 +30,30 @@ from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
 from mechkin_cli.tables.layout import TableLayout, default_table
 from mechkin_cli.units import LENGTH
 
+_NOTHING: Mapping[str, Quantity] = MappingProxyType({})
+
 
 class Built(NamedTuple):
     """The problem of a file, its solver graph (or why it cannot be solved as it is driven), its
-    tables, and the source it names."""
+    tables, the source it names, and what was read."""
 
     problem: Problem
     graph: SolverGraph | Diagnostic
     tables: tuple[TableLayout, ...]
     own_tables: bool
-    source: str = ""
+    source: str
+    read: Source
 
 
-def build(source: Source) -> Built:
-    """Builds everything that a file describes.
+def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
+    """Builds everything that a file describes; `given` are values instead of some parameters'.
 
     Raises:
         InvalidFile: with every independent error, each at its line.
     """
-    file, document = source.file, source.document
-    units, wrong_units = read_units(document, _unit_texts(file.units))
-    fields = Fields(document, units, diagnostics=wrong_units)
-    read_parameters(fields, file.parameters)
-    problem = _problem(fields, file)
+    file = source.file
+    fields = read_fields(source, given)
+    problem = build_problem(fields, file)
     tables = build_tables(fields, file.tables, problem.quantities())
     if not file.tables:
         timed = problem.motion.time is not None
@@ -61,15 +64,23 @@ def build(source: Source) -> Built:
     problem = replace(problem, hold_idle=file.idle == "hold", follow=follow)
     graph = _graph(fields, file, problem.mechanism, problem.motion)
     if isinstance(graph, SolverGraph):
-        _check_spins(fields, problem, tables)
+        check_spins(fields, problem, tables)
     errors = [d for d in fields.diagnostics if d.severity == "error"]
     if errors or graph is None:
         raise InvalidFile(in_order(fields.diagnostics))
     problem = replace(problem, diagnostics=tuple(in_order(fields.diagnostics)))
-    return Built(problem, graph, tables, bool(file.tables), file.source or "")
+    return Built(problem, graph, tables, bool(file.tables), file.source or "", source)
 
 
-def _problem(fields: Fields, file: MechanismFile) -> Problem:
+def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fields:
+    """Units and parameters of a file, `given` as in `build`; what is wrong is noted."""
+    units, wrong_units = read_units(source.document, _unit_texts(source.file.units))
+    fields = Fields(source.document, units, diagnostics=wrong_units)
+    read_parameters(fields, source.file.parameters, given)
+    return fields
+
+
+def build_problem(fields: Fields, file: MechanismFile) -> Problem:
     """The mechanism with its loads, its motion and assembly."""
     links, joints = build_linkage(fields, file)
     points, directions = _points(fields, file, links), _directions(fields, file, links)
@@ -102,7 +113,7 @@ def _directions(
     }
 
 
-def _check_spins(fields: Fields, problem: Problem, tables: Sequence[TableLayout]) -> None:
+def check_spins(fields: Fields, problem: Problem, tables: Sequence[TableLayout]) -> None:
     """Where forces are wanted, what spins freely must have no cause to spin."""
     if not (find_legs(problem.mechanism) and needs_forces(problem, tables)):
         return

@@ -22,6 +22,7 @@ from mechkin_cli.mechanism.frames import GROUND, Frame, frame_about
 from mechkin_cli.mechanism.joint_table import joint_type
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint
 from mechkin_cli.mechanism.vectors import Vector, add, scale, subtract, unit
+from mechkin_cli.tape.scalars import cos, sin
 from mechkin_cli.units import ANGLE, LENGTH
 
 
@@ -108,7 +109,5 @@ def _along_x(frame: Frame, angle: float, distance: float) -> Frame:
 
 def _turned(p: Vector, q: Vector, angle: float) -> tuple[Vector, Vector]:
     """Two square unit vectors turned from p towards q."""
-    from mechkin_cli.kernel.functions import cos, sin
-
     c, s = cos(angle), sin(angle)
     return add(scale(c, p), scale(s, q)), subtract(scale(c, q), scale(s, p))

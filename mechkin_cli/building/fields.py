@@ -21,6 +21,7 @@ from mechkin_cli.mechanism.vectors import ZERO, Vector
 from mechkin_cli.reading.document import Document
 from mechkin_cli.reading.limits import MOST_DIAGNOSTICS
 from mechkin_cli.reading.parser import CORRECT_FIRST, in_order
+from mechkin_cli.tape.scalars import is_number
 from mechkin_cli.tolerances import LARGEST_NUMBER
 from mechkin_cli.units import Dimension, UnitError, UnitSystem
 
@@ -153,7 +154,7 @@ class Fields:
         for i, text in enumerate(texts):
             value, dimension = self._component((*path, i), text)
             values.append(value)
-            if value != 0.0 or literal(text) is None:
+            if literal(text) is None or value != 0.0:
                 dimensions.append(dimension)
         if any(d != dimensions[0] for d in dimensions):
             words = " and ".join(dict.fromkeys(d.phrase for d in dimensions))
@@ -178,7 +179,7 @@ class Fields:
         except ExpressionError as error:
             self.expression_error(path, error)
             return 1.0, DIMENSIONLESS
-        if isinstance(quantity.value, Components) or not isinstance(quantity.value, float):
+        if isinstance(quantity.value, Components) or not is_number(quantity.value):
             self.error("expression", path, "expected one number")
             return 1.0, quantity.dimension
         return quantity.value, quantity.dimension
@@ -194,10 +195,12 @@ def read_units(document: Document, texts: Mapping[str, str]) -> tuple[UnitSystem
         return UnitSystem(), [Diagnostic("unit", "error", error.message, place, hint=error.hint)]
 
 
-def read_parameters(fields: Fields, texts: Mapping[str, str]) -> None:
-    """Evaluates the parameters into `fields`."""
+def read_parameters(
+    fields: Fields, texts: Mapping[str, str], given: Mapping[str, Quantity]
+) -> None:
+    """Evaluates the parameters into `fields`; `given` are values instead of some texts."""
     errors: list[ExpressionError] = []
-    fields.parameters.update(evaluate_parameters(texts, fields.units, errors))
+    fields.parameters.update(evaluate_parameters(texts, fields.units, errors, given))
     for error in errors:
         fields.expression_error(("parameters", error.name or ""), error)
     _check_overrides(fields, texts)

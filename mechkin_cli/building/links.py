@@ -11,6 +11,8 @@ from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism.model import Link, Tensor
 from mechkin_cli.mechanism.vectors import ZERO, Vector, cross, dot
+from mechkin_cli.tape.scalars import advice, largest
+from mechkin_cli.tape.traced import Traced, TraceLost
 from mechkin_cli.units import INERTIA, LENGTH, MASS
 
 NO_INERTIA: Tensor = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -71,8 +73,28 @@ def _in_ground_axes(entries: tuple[float, ...], axes: tuple[Vector, Vector, Vect
     return (entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2))
 
 
+def _is_surely_physical(tensor: tuple[float, ...]) -> bool:
+    """Whether the second moments of mass tr(I)/2 - I are those of a body, judged by the pivots of
+    their elimination: as `_check_physical` with half its slack, and no eigenvalues."""
+    xx, yy, zz, xy, xz, yz = tensor
+    slack = 0.5 * tolerances.UNPHYSICAL_INERTIA * largest(abs(xx), abs(yy), abs(zz))
+    a, b, c = (
+        (yy + zz - xx) / 2.0 + slack,
+        (xx + zz - yy) / 2.0 + slack,
+        (xx + yy - zz) / 2.0 + slack,
+    )
+    if not advice(a > 0.0):
+        return False
+    b, yz, c = b - xy * xy / a, -yz - xy * xz / a, c - xz * xz / a
+    return advice(b > 0.0) and advice(c - yz * yz / b > 0.0)
+
+
 def _check_physical(fields: Fields, path: Path, name: str, tensor: tuple[float, ...]) -> None:
     """Principal moments of a real body are not negative and none exceeds the sum of the others."""
+    if any(isinstance(entry, Traced) for entry in tensor):
+        if not _is_surely_physical(tensor):
+            raise TraceLost(f"the inertia of {name} belongs to no real body")
+        return
     import numpy as np
 
     xx, yy, zz, xy, xz, yz = tensor

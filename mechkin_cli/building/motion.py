@@ -13,6 +13,7 @@ from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.spacing import spaced
 from mechkin_cli.mechanism.model import Joint
 from mechkin_cli.mechanism.motion import DrivenInput, Moments, Motion
+from mechkin_cli.tape.rows import of_numbers, with_rates, within
 from mechkin_cli.tolerances import LARGEST_NUMBER
 from mechkin_cli.units import TIME
 
@@ -93,16 +94,15 @@ def _constant_rates(
 ) -> Floats:
     """Values of a sweep, with the same rates in every row."""
     values = _values(fields, path, item, coordinate)
-    orders = np.empty((4, values.size))
-    orders[0] = values
+    rates = []
     for order, key in enumerate(_RATES, start=1):
         text = getattr(item, key)
-        orders[order] = fields.written((*path, key), text, dimension_of(coordinate, order))
-        if time is not None and orders[order, 0] != 0.0:
+        rates.append(fields.written((*path, key), text, dimension_of(coordinate, order)))
+        if time is not None and rates[-1] != 0.0:
             text = "an input that is held while time runs has no rate"
             hint = "write law: constant-rate, or another law"
             fields.key_error("held-rate", (*path, key), text, hint)
-    return orders
+    return with_rates(values, rates)
 
 
 def _driven_twice(fields: Fields, name: str, joints: Mapping[str, Joint]) -> bool:
@@ -124,10 +124,10 @@ def _values(fields: Fields, path: Path, item: Any, coordinate: str) -> Floats:
     """Values in the file's units."""
     dimension = dimension_of(coordinate)
     if hasattr(item, "at"):
-        return np.array([fields.written((*path, "at"), item.at, dimension)])
+        return of_numbers([fields.written((*path, "at"), item.at, dimension)])
     if hasattr(item, "values"):
         texts = enumerate(item.values)
-        return np.array([fields.written((*path, "values", i), t, dimension) for i, t in texts])
+        return of_numbers(fields.written((*path, "values", i), t, dimension) for i, t in texts)
     return spaced(fields, path, item, dimension)
 
 
@@ -151,12 +151,12 @@ def _driven(fields: Fields, name: str, orders: Floats, rows: int) -> DrivenInput
     joint, _, coordinate = name.partition(".")
     written = np.broadcast_to(orders, (4, rows)).copy()
     in_si = [
-        np.asarray(fields.units.to_si(written[k].copy(), dimension_of(coordinate, k)), dtype=float)
+        np.asarray(fields.units.to_si(written[k].copy(), dimension_of(coordinate, k)))
         for k in range(4)
     ]
     for word, values in zip(_ORDERS, in_si, strict=True):
-        largest = float(np.abs(values).max())
-        if not largest <= LARGEST_NUMBER:
+        if not within(values, LARGEST_NUMBER):
+            largest = float(np.abs(values).max())
             fields.error(
                 "too-large",
                 ("motion", "inputs", name),

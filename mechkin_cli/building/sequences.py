@@ -43,7 +43,7 @@ def by_count(first: float, last: float, count: int) -> Floats:
 
 def _whole_numbers(*values: float) -> tuple[tuple[int, ...], int]:
     """Whole numbers and the power of ten over which they are the values' shortest decimals."""
-    decimals = [Decimal(repr(value)) for value in values]
+    decimals = [Decimal(repr(float(value))) for value in values]
     exponents = [int(number.as_tuple().exponent) for number in decimals]
     power = 10 ** max(0, *(-exponent for exponent in exponents))
     return tuple(int(number * power) for number in decimals), power

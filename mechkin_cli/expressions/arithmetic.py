@@ -13,6 +13,7 @@ from mechkin_cli.expressions.nodes import Number
 from mechkin_cli.expressions.operand import Operand, Site
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Value, Vector
 from mechkin_cli.expressions.scalar_functions import power
+from mechkin_cli.tape.scalars import is_number
 from mechkin_cli.units import Dimension
 
 _SUM_WORDS = {
@@ -63,8 +64,8 @@ def multiply(site: Site, left: Operand, right: Operand) -> Quantity:
 def divide(site: Site, left: Operand, right: Operand) -> Quantity:
     """Quotient of a scalar or vector and a scalar."""
     divisor = site.scalar(right)
-    constant = any(isinstance(item, float) for item in _components(left.value))
-    if constant and isinstance(divisor, float) and divisor == 0.0:
+    constant = any(is_number(item) for item in _components(left.value))
+    if constant and is_number(divisor) and divisor == 0.0:
         raise site.error("division by zero", "check the values of the parameters", right)
     quotient = _elementwise(operator.truediv, left.value, divisor)
     return Quantity(quotient, left.dimension / right.dimension)

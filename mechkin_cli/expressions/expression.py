@@ -24,6 +24,7 @@ from mechkin_cli.expressions.nodes import Name, Node, Number, Operation
 from mechkin_cli.expressions.operand import Operand, Resolve, Site
 from mechkin_cli.expressions.parser import parse_nodes
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Value, Vector
+from mechkin_cli.tape.scalars import is_finite, is_number, plain
 from mechkin_cli.units import UNITS, UnitError, UnitSystem, conversion
 
 _OPERATIONS: dict[str, Callable[..., Quantity]] = {
@@ -139,7 +140,7 @@ def _operate(node: Operation, operands: list[Operand], units: UnitSystem) -> Ope
         )
     value = quantity.value
     for item in value.components if isinstance(value, Vector) else (value,):
-        if isinstance(item, float) and not math.isfinite(item):
+        if is_number(item) and not is_finite(item):
             raise _not_finite(site, operands)
     return Operand(quantity, min(node.offset, *(operand.offset for operand in operands)))
 
@@ -196,7 +197,7 @@ def _resolved(name: str, resolve: Resolve) -> Quantity:
 
 
 def _plain(value: Scalar) -> Scalar:
-    return value if isinstance(value, np.ndarray) else float(value)
+    return value if isinstance(value, np.ndarray) else plain(value)
 
 
 def _exists(name: str, resolve: Resolve) -> bool:

@@ -13,6 +13,7 @@ from mechkin_cli.expressions.expression import Expression, parse
 from mechkin_cli.expressions.nodes import Number
 from mechkin_cli.expressions.operand import Operand, Resolve, Site
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Vector
+from mechkin_cli.tape.scalars import is_number
 from mechkin_cli.units import Dimension, UnitError, UnitSystem, conversion
 
 _LITERAL = re.compile(
@@ -93,7 +94,7 @@ def _evaluated(
     expression: Expression, dimension: Dimension, units: UnitSystem, resolve: Resolve
 ) -> float:
     value = scalar(expression, dimension, units, resolve)
-    if not isinstance(value, float):
+    if not is_number(value):
         raise ExpressionError(
             "expected a constant, found a value per row", _start(expression), "use parameters only"
         )

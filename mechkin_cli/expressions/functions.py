@@ -16,7 +16,8 @@ from mechkin_cli.expressions import scalar_functions
 from mechkin_cli.expressions.arithmetic import common_dimension, raise_to_power
 from mechkin_cli.expressions.operand import Operand, Site
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Vector
-from mechkin_cli.kernel import functions as kernel
+from mechkin_cli.tape.operations import Operation
+from mechkin_cli.tape.scalars import of_one
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, Dimension
 
 
@@ -53,13 +54,13 @@ def cross_product(a: Vector, b: Vector) -> Vector:
     )
 
 
-def _of_one(
-    function: Callable[..., Scalar], takes: Dimension, gives: Dimension
+def _elementary(
+    operation: Operation, takes: Dimension, gives: Dimension
 ) -> Callable[[Site, Operand], Quantity]:
     def apply(site: Site, operand: Operand) -> Quantity:
         value = site.scalar(operand)
         site.require(operand, takes)
-        return Quantity(function(value), gives)
+        return Quantity(of_one(operation, value), gives)
 
     return apply
 
@@ -130,16 +131,16 @@ def _norm(site: Site, operand: Operand) -> Quantity:
 
 
 FUNCTIONS: dict[str, Function] = {
-    "sin": Function("sin(angle)", 1, _of_one(kernel.sin, ANGLE, DIMENSIONLESS)),
-    "cos": Function("cos(angle)", 1, _of_one(kernel.cos, ANGLE, DIMENSIONLESS)),
-    "tan": Function("tan(angle)", 1, _of_one(kernel.tan, ANGLE, DIMENSIONLESS)),
-    "asin": Function("asin(x)", 1, _of_one(kernel.asin, DIMENSIONLESS, ANGLE)),
-    "acos": Function("acos(x)", 1, _of_one(kernel.acos, DIMENSIONLESS, ANGLE)),
-    "atan": Function("atan(x)", 1, _of_one(kernel.atan, DIMENSIONLESS, ANGLE)),
+    "sin": Function("sin(angle)", 1, _elementary(Operation.SIN, ANGLE, DIMENSIONLESS)),
+    "cos": Function("cos(angle)", 1, _elementary(Operation.COS, ANGLE, DIMENSIONLESS)),
+    "tan": Function("tan(angle)", 1, _elementary(Operation.TAN, ANGLE, DIMENSIONLESS)),
+    "asin": Function("asin(x)", 1, _elementary(Operation.ASIN, DIMENSIONLESS, ANGLE)),
+    "acos": Function("acos(x)", 1, _elementary(Operation.ACOS, DIMENSIONLESS, ANGLE)),
+    "atan": Function("atan(x)", 1, _elementary(Operation.ATAN, DIMENSIONLESS, ANGLE)),
     "atan2": Function("atan2(y, x)", 2, _arctangent),
     "sqrt": Function("sqrt(x)", 1, _square_root),
-    "exp": Function("exp(x)", 1, _of_one(kernel.exp, DIMENSIONLESS, DIMENSIONLESS)),
-    "log": Function("log(x)", 1, _of_one(kernel.log, DIMENSIONLESS, DIMENSIONLESS)),
+    "exp": Function("exp(x)", 1, _elementary(Operation.EXP, DIMENSIONLESS, DIMENSIONLESS)),
+    "log": Function("log(x)", 1, _elementary(Operation.LOG, DIMENSIONLESS, DIMENSIONLESS)),
     "pow": Function("pow(x, n)", 2, raise_to_power),
     "abs": Function("abs(x)", 1, _absolute),
     "min": Function("min(a, b)", 2, _extreme(scalar_functions.smaller), variadic=True),

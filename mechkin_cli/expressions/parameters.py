@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from types import MappingProxyType
 
 from mechkin_cli.expressions.errors import ExpressionError, UnknownName
 from mechkin_cli.expressions.expression import Expression, parse
@@ -12,6 +13,7 @@ from mechkin_cli.expressions.quantity import Quantity, Vector
 from mechkin_cli.units import UnitSystem
 
 Names = dict[str, list[str]]
+_NOTHING: Mapping[str, Quantity] = MappingProxyType({})
 
 
 def lookup(quantities: Mapping[str, Quantity]) -> Resolve:
@@ -27,13 +29,16 @@ def lookup(quantities: Mapping[str, Quantity]) -> Resolve:
 
 
 def evaluate_parameters(
-    texts: Mapping[str, str], units: UnitSystem, errors: list[ExpressionError] | None = None
+    texts: Mapping[str, str],
+    units: UnitSystem,
+    errors: list[ExpressionError] | None = None,
+    given: Mapping[str, Quantity] = _NOTHING,
 ) -> dict[str, Quantity]:
     """The values of all parameters in SI, in the order of `texts`.
 
     A number without unit is dimensionless. With a list `errors`, every independent error (up to
     a little over `MAX_ERRORS`) is appended to it and the parameters that cannot be evaluated are
-    left out; without one the first is raised.
+    left out; without one the first is raised. `given` are values instead of some texts.
 
     Raises:
         ExpressionError: a text that is no constant, or parameters that depend on themselves; `name`
@@ -41,12 +46,12 @@ def evaluate_parameters(
     """
     found: list[ExpressionError] = [] if errors is None else errors
     before = len(found)
-    expressions = _parsed(texts, found)
+    expressions = _parsed({n: t for n, t in texts.items() if n not in given}, found)
     needs = {
         name: _unique(used.partition(".")[0] for used in expression.names)
         for name, expression in expressions.items()
     }
-    values: dict[str, Quantity] = {}
+    values: dict[str, Quantity] = dict(given)
     for name in _in_order(expressions, needs, found):
         if len(found) - before > MAX_ERRORS:
             break

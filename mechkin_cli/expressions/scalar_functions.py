@@ -7,13 +7,14 @@ zero and nan rules of numpy's own minimum and maximum depend on the processor.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.expressions.quantity import Scalar
-from mechkin_cli.kernel import functions as kernel
+from mechkin_cli.tape import scalars
+from mechkin_cli.tape.operations import Operation
+from mechkin_cli.tape.traced import Traced
 
 Condition = NDArray[np.bool_] | np.bool_
 
@@ -25,7 +26,7 @@ _TURN_LOW = 1.2556659146019252e-06
 
 def square_root(value: Scalar) -> Scalar:
     """The square root; nan in rows where the value is negative."""
-    return np.sqrt(value) if isinstance(value, np.ndarray) else math.sqrt(value)
+    return np.sqrt(value) if isinstance(value, np.ndarray) else scalars.square_root(value)
 
 
 def magnitude(value: Scalar) -> Scalar:
@@ -35,26 +36,32 @@ def magnitude(value: Scalar) -> Scalar:
 
 def power(base: Scalar, exponent: Scalar) -> Scalar:
     """The base to the exponent."""
-    return _paired(kernel.power, base, exponent)
+    return _paired(Operation.POWER, base, exponent)
 
 
 def angle_of(y: Scalar, x: Scalar) -> Scalar:
     """The angle of the point (x, y) from the x axis, in [-pi, pi]."""
-    return _paired(kernel.atan2, y, x)
+    return _paired(Operation.ATAN2, y, x)
 
 
 def smaller(left: Scalar, right: Scalar) -> Scalar:
     """The smaller of two; nan if one is nan."""
+    if not isinstance(left, np.ndarray) and not isinstance(right, np.ndarray):
+        return scalars.smallest(left, right)
     return _select(np.less(right, left) | np.isnan(right), right, left)
 
 
 def larger(left: Scalar, right: Scalar) -> Scalar:
     """The larger of two; nan if one is nan."""
+    if not isinstance(left, np.ndarray) and not isinstance(right, np.ndarray):
+        return scalars.largest(left, right)
     return _select(np.greater(right, left) | np.isnan(right), right, left)
 
 
 def wrap(angle: Scalar) -> Scalar:
     """The angle in (-pi, pi] that differs by whole turns; an angle already there is unchanged."""
+    if isinstance(angle, Traced):
+        return _wrapped(angle)
     turns = np.rint(np.divide(angle, math.tau))
     turned = (angle - turns * _TURN_HIGH) - turns * _TURN_LOW
     turned = np.where(turned > math.pi, turned - math.tau, turned)
@@ -63,15 +70,24 @@ def wrap(angle: Scalar) -> Scalar:
     return _select(inside, angle, turned)
 
 
+def _wrapped(angle: Traced) -> Traced:
+    """As `wrap`, for a recorded number."""
+    turns = scalars.whole(angle / math.tau)
+    turned = (angle - turns * _TURN_HIGH) - turns * _TURN_LOW
+    turned = (turned > math.pi).choose(turned - math.tau, turned)
+    turned = (turned <= -math.pi).choose(turned + math.tau, turned)
+    return (angle > -math.pi).choose((angle <= math.pi).choose(angle, turned), turned)
+
+
 def _select(condition: Condition, chosen: Scalar, other: Scalar) -> Scalar:
     selected = np.where(condition, chosen, other)
     return selected if selected.ndim else float(selected)
 
 
-def _paired(function: Callable[..., Scalar], left: Scalar, right: Scalar) -> Scalar:
+def _paired(operation: Operation, left: Scalar, right: Scalar) -> Scalar:
     """A kernel function of two arguments, which takes two floats or two arrays of one length."""
     if isinstance(left, np.ndarray) and not isinstance(right, np.ndarray):
         right = np.full(left.shape, right)
     elif isinstance(right, np.ndarray) and not isinstance(left, np.ndarray):
         left = np.full(right.shape, left)
-    return function(left, right)
+    return scalars.of_two(operation, left, right)  # type: ignore[no-any-return]

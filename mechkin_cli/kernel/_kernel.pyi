@@ -1,7 +1,7 @@
 """The compiled core; see src/module.cpp. Batched arrays are (columns, rows), C-contiguous
 float64."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from enum import IntEnum, IntFlag
 from typing import Final, TypedDict
 
@@ -74,6 +74,7 @@ class Demand(IntFlag):
     CONDITION = 8
     POWER = 16
     JERK = 32
+    SINGULAR = 64
 
 class RowFlag(IntFlag):
     GOOD = 0
@@ -112,6 +113,20 @@ def csv_text(
 def available_processors() -> int: ...
 def output_width(type: int) -> int: ...
 def output_demand(type: int, order: int = 0) -> Demand: ...
+
+class Tape:
+    def __init__(
+        self,
+        inputs: int,
+        constants: Floats,
+        operations: NDArray[np.uint8],
+        operands: NDArray[np.int32],
+        outputs: NDArray[np.int32],
+        guards: NDArray[np.int32],
+        expected: NDArray[np.uint8],
+        advice: NDArray[np.uint8],
+    ) -> None: ...
+    def replay(self, inputs: Floats, lanes: int = 0) -> tuple[Floats, NDArray[np.uint8]]: ...
 
 class PlanBuilder:
     def __init__(self, length: float, origin: Triple, size: float) -> None: ...
@@ -249,14 +264,107 @@ class Plan:
         lanes: int = 0,
         threads: int = 1,
     ) -> None: ...
-    def track(
+
+class StepLimits:
+    """What a step along a path may do; see StepLimits in src/stepper.hpp."""
+
+    def __init__(
         self,
-        x0: Sequence[float],
-        u: Sequence[float],
-        sigma: Floats,
-        start: Floats,
-        guess: Floats,
-        limit: Floats,
-        last: Floats,
-        limits: Sequence[float],
-    ) -> tuple[int, int, int, int, float, float]: ...
+        *,
+        turn_cosine: float,
+        turn: float,
+        bend: float,
+        jump: float,
+        infill: float,
+        longest_step: float,
+        least_step: float,
+        most_steps: int,
+        tight: float,
+        coarse: float,
+        accept: float,
+        pivot: float,
+        iterations: int,
+        same_line: float,
+        knot: float,
+        corner_cosine: float,
+        stray: float,
+        angle_step: float,
+        angle_miss: float,
+        plan_step: float,
+    ) -> None: ...
+
+class Node:
+    """A closed place on a branch with its derivatives by sigma.
+
+    `first` and `second` are of the columns; per block `side` (sign of a square block's determinant)
+    and `pivot` (the least one); `jacobian` has the blocks' matrices one after the other.
+    """
+
+    @property
+    def sigma(self) -> float: ...
+    @property
+    def correction(self) -> float: ...
+    @property
+    def inputs(self) -> Floats: ...
+    @property
+    def state(self) -> Floats: ...
+    @property
+    def first(self) -> Floats: ...
+    @property
+    def second(self) -> Floats: ...
+    @property
+    def side(self) -> Floats: ...
+    @property
+    def pivot(self) -> Floats: ...
+    @property
+    def jacobian(self) -> Floats: ...
+    @property
+    def turn(self) -> Floats: ...
+
+class Stepper:
+    """One step along a path: predict, close, judge; see src/stepper.hpp."""
+
+    @staticmethod
+    def straight(
+        plan: Plan, inputs: Sequence[float], direction: Sequence[float], limits: StepLimits
+    ) -> Stepper:
+        """Along inputs + sigma * direction."""
+    @staticmethod
+    def along(
+        plan: Plan | Callable[[float], Plan],
+        at: Callable[[float], tuple[Sequence[float], Sequence[float], Sequence[float]]],
+        varies: bool,
+        limits: StepLimits,
+    ) -> Stepper:
+        """Along any path: `at(sigma)` are the inputs and their two derivatives.
+
+        With `varies` the plan is a function of sigma in [0, 1], too.
+        """
+    def close(self, sigma: float, guess: Sequence[float]) -> Node | None: ...
+    def predict(self, node: Node, h: float) -> Floats: ...
+    def judge(self, a: Node, b: Node) -> bool: ...
+    def step(self, node: Node, h: float) -> Node | None: ...
+    def wanted_step(self, node: Node) -> float: ...
+
+def closing_turns(plan: Plan) -> list[tuple[int, int, int, int]]:
+    """(closing joint, freedom, first slot, slots) of the turns that following carries along.
+
+    Freedom -1 is an orientation, four slots.
+    """
+
+def follow_rows(
+    plan: Plan,
+    inputs: Floats,
+    start: Sequence[float],
+    turn: Sequence[float],
+    every_row: bool,
+    limits: StepLimits,
+    guess: Floats,
+    limit: Floats,
+    turns: Floats | None,
+) -> tuple[int, int, int, int, Floats, Floats, Floats, Floats]:
+    """Fills guess, limit and turns.
+
+    Returns how it ended (`TrackEnd`), rows reached, steps taken and rejected, and inputs, state,
+    turn and direction at the last place.
+    """

@@ -48,9 +48,12 @@ def upright(point: Vector) -> Frame:
 
 def perpendicular(z: Vector) -> Vector:
     """A unit vector square to the unit vector z: from the ground axis that is farthest from z."""
-    sizes = [abs(c) for c in z]
-    axis = (GROUND.x, GROUND.y, GROUND.z)[sizes.index(min(sizes))]
-    return unit(cross(axis, z))
+    axis = min(((abs(c), k) for k, c in enumerate(z)), key=_size)[1]
+    return unit(cross((GROUND.x, GROUND.y, GROUND.z)[axis], z))
+
+
+def _size(component: tuple[float, int]) -> float:
+    return component[0]
 
 
 def frame_about(z: Vector, x: Vector, o: Vector) -> Frame:

@@ -24,6 +24,7 @@ from mechkin_cli.mechanism.model import Attached, Damper, Link, LinkLoad, Mechan
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale, subtract
+from mechkin_cli.tape.scalars import largest
 from mechkin_cli.units import LENGTH, MOMENT
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ def _spin_cause(problem: Problem, leg: Leg, link: str) -> tuple[str, str] | None
             return None
         return f"{float(problem.units.from_si(off, LENGTH)):.4g} {problem.units.label(LENGTH)}"
 
-    if body.mass and (off := off_line(body.center_of_mass)):
+    if body.mass != 0.0 and (off := off_line(body.center_of_mass)):
         return f"the mass centre of {link} lies off that line", off
     asymmetry = _asymmetry(body, line)
     if asymmetry > tolerances.ON_LINE:
@@ -145,8 +146,8 @@ def _asymmetry(body: Link, line: Vector) -> float:
     """How far a tensor is from k e e + m (1 - e e), in parts of its largest entry."""
     xx, yy, zz, xy, xz, yz = body.inertia
     rows: tuple[Vector, ...] = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
-    largest = max(abs(entry) for row in rows for entry in row)
-    if largest == 0.0:
+    greatest = largest(*(abs(entry) for row in rows for entry in row))
+    if greatest == 0.0:
         return 0.0
     along = dot(line, (dot(rows[0], line), dot(rows[1], line), dot(rows[2], line)))
     across = (xx + yy + zz - along) / 2.0
@@ -154,8 +155,8 @@ def _asymmetry(body: Link, line: Vector) -> float:
     for i, row in enumerate(rows):
         for k, entry in enumerate(row):
             symmetric = (along - across) * line[i] * line[k] + (across if i == k else 0.0)
-            worst = max(worst, abs(entry - symmetric))
-    return worst / largest
+            worst = largest(worst, abs(entry - symmetric))
+    return worst / greatest
 
 
 def _is_conventional(mechanism: Mechanism, leg: Leg, quantity: Wanted) -> bool:

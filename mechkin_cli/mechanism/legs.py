@@ -15,6 +15,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.mechanism.frames import Frame
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
 from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale, subtract
+from mechkin_cli.tape.scalars import largest
 
 
 class Leg(NamedTuple):
@@ -141,7 +142,7 @@ def _far(joint: Joint, link: str) -> str:
 
 def _spread(span: Vector, joints_of: Mapping[str, list[Joint]]) -> bool:
     """Whether the spheres of a link are apart."""
-    size = max(norm(joint.on_first.o) for joints in joints_of.values() for joint in joints)
+    size = largest(*(norm(joint.on_first.o) for joints in joints_of.values() for joint in joints))
     return norm(span) > tolerances.PARALLEL * size
 
 
@@ -149,4 +150,4 @@ def _is_straight(leg: Leg) -> bool:
     """Whether the slide runs along the line of the spheres."""
     assert leg.slide is not None
     off_line = cross(leg.span, frame_on(leg.slide, leg.body).z)
-    return norm(off_line) <= tolerances.PARALLEL * max(norm(leg.span), 1e-300)
+    return norm(off_line) <= tolerances.PARALLEL * largest(norm(leg.span), 1e-300)

@@ -15,6 +15,7 @@ from mechkin_cli.mechanism.elementary import Part, Screw
 from mechkin_cli.mechanism.frames import Frame
 from mechkin_cli.mechanism.joint_table import FIRST, SECOND, Drawn, JointType, joint_type
 from mechkin_cli.mechanism.vectors import ZERO, Vector, dot, scale
+from mechkin_cli.tape.scalars import largest, nonzero, smallest
 
 GROUND_NAME = "ground"
 
@@ -33,7 +34,7 @@ class Link(NamedTuple):
     @property
     def has_mass(self) -> bool:
         """Whether the link has inertia of any kind."""
-        return self.mass != 0.0 or any(self.inertia)
+        return any(moment != 0.0 for moment in (self.mass, *self.inertia))
 
 
 class Joint(NamedTuple):
@@ -238,6 +239,6 @@ def diagonal(points: list[Vector]) -> float:
 
     if not points:
         return 1.0
-    low = tuple(min(p[i] for p in points) for i in range(3))
-    high = tuple(max(p[i] for p in points) for i in range(3))
-    return norm(subtract(high, low)) or 1.0  # type: ignore[arg-type]
+    low = tuple(smallest(*(p[i] for p in points)) for i in range(3))
+    high = tuple(largest(*(p[i] for p in points)) for i in range(3))
+    return nonzero(norm(subtract(high, low)))  # type: ignore[arg-type]

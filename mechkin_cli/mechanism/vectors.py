@@ -3,7 +3,7 @@ everywhere."""
 
 from __future__ import annotations
 
-from math import sqrt
+from mechkin_cli.tape.scalars import either, largest, nonzero, square_root
 
 Vector = tuple[float, float, float]
 
@@ -37,11 +37,9 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 def norm(a: Vector) -> float:
     """Length of a; scaled first, so that neither tiny nor huge vectors lose it."""
-    largest = max(abs(a[0]), abs(a[1]), abs(a[2]))
-    if largest == 0.0:
-        return 0.0
-    b = scale(1.0 / largest, a)
-    return largest * sqrt(dot(b, b))
+    longest = largest(abs(a[0]), abs(a[1]), abs(a[2]))
+    b = scale(1.0 / nonzero(longest), a)
+    return longest * square_root(dot(b, b))
 
 
 def unit(a: Vector) -> Vector:
@@ -51,9 +49,11 @@ def unit(a: Vector) -> Vector:
         ZeroDivisionError: a is zero.
     """
     square = dot(a, a)
-    if abs(square - 1.0) <= 4e-16:
-        return a
-    largest = max(abs(a[0]), abs(a[1]), abs(a[2]))
-    b = (a[0] / largest, a[1] / largest, a[2] / largest)
-    length = sqrt(dot(b, b))
+    return either(abs(square - 1.0) <= 4e-16, lambda: a, lambda: _shortened(a))
+
+
+def _shortened(a: Vector) -> Vector:
+    longest = largest(abs(a[0]), abs(a[1]), abs(a[2]))
+    b = (a[0] / longest, a[1] / longest, a[2] / longest)
+    length = square_root(dot(b, b))
     return (b[0] / length, b[1] / length, b[2] / length)

@@ -65,7 +65,7 @@ def approach(
         path[:, 1:],
         way.guess[:, 1:],
         rates=np.repeat(followed.direction[:, None], NODES, axis=1),
-        demand=Demand.VELOCITY | Demand.CONDITION,
+        demand=Demand.VELOCITY | Demand.CONDITION | Demand.SINGULAR,
     )
     return Approach(before, batch) if batch.good.all() else None
 

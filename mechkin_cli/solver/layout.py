@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import frexp, ldexp
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli import tolerances
@@ -22,6 +21,7 @@ from mechkin_cli.mechanism.model import (
 )
 from mechkin_cli.mechanism.vectors import ZERO, Vector, norm, scale, subtract
 from mechkin_cli.solver.graph import SolverGraph, TreeEdge
+from mechkin_cli.tape.scalars import next_power_of_two
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
@@ -52,8 +52,7 @@ class Layout:
     @cached_property
     def length(self) -> float:
         """The length unit in m: the power of two next to the size of the home drawing."""
-        mantissa, exponent = frexp(self.mechanism.box_diagonal())
-        return ldexp(1.0, exponent if mantissa > 0.7 else exponent - 1)
+        return next_power_of_two(self.mechanism.box_diagonal())
 
     @cached_property
     def origin(self) -> Vector:

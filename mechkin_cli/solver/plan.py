@@ -45,10 +45,14 @@ def build_plan(layout: Layout, size: float | None = None) -> Plan:
     return hand_over(plan_records(layout, size))
 
 
+def _drawn_size(layout: Layout) -> float:
+    return layout.mechanism.box_diagonal()
+
+
 def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
     """The records of a plan in the order in which its constants are numbered."""
     return [
-        Units(layout.length, layout.origin, size or layout.mechanism.box_diagonal()),
+        Units(layout.length, layout.origin, _drawn_size(layout) if size is None else size),
         *_tree_joints(layout),
         *(_closing(layout, closing) for closing in layout.graph.closings),
         *_places(layout),

@@ -13,7 +13,17 @@ from pathlib import Path
 import pytest
 from architecture.package import FILES, ROOT, room, tree
 
-ROOMS = {"mechanism", "solver", "analysis", "expressions", "tables", "units", "building", "kernel"}
+ROOMS = {
+    "tape",
+    "mechanism",
+    "solver",
+    "analysis",
+    "expressions",
+    "tables",
+    "units",
+    "building",
+    "kernel",
+}
 EXACT_MATH = {"sqrt", "pi", "tau", "inf", "nan", "isnan", "isfinite", "isinf", "floor", "ceil"}
 EXACT_MATH |= {
     "trunc",

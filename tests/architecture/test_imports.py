@@ -10,7 +10,8 @@ from architecture.package import FILES, NAMES, imports, room
 BASE = {"arrays", "diagnostics", "nearest", "status", "tolerances"}
 KERNEL = BASE | {"kernel"}
 UNITS = BASE | {"units"}
-EXPRESSIONS = KERNEL | UNITS | {"expressions"}
+TAPE = KERNEL | {"tape"}
+EXPRESSIONS = TAPE | UNITS | {"expressions"}
 MECHANISM = EXPRESSIONS | {"mechanism"}
 SOLVER = MECHANISM | {"solver"}
 ANALYSIS = SOLVER | {"analysis"}
@@ -21,6 +22,7 @@ ALLOWED = {
     **dict.fromkeys(BASE, BASE),
     "kernel": KERNEL,
     "units": UNITS,
+    "tape": TAPE,
     "expressions": EXPRESSIONS,
     "reading": BASE | {"reading"},
     "schema": BASE | {"schema"},

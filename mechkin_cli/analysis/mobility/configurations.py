@@ -22,9 +22,9 @@ from mechkin_cli.mechanism.elementary import screws_at
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
 from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.solver.random_starts import RandomStarts
 from mechkin_cli.solver.session import Session
 from mechkin_cli.units import UnitSystem
-from mechkin_cli.solver.random_starts import RandomStarts
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats

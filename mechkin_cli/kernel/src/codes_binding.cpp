@@ -59,7 +59,8 @@ void bind_run_codes(nb::module_& m) {
       .value("FORCES", DEMAND_FORCES)
       .value("CONDITION", DEMAND_CONDITION)
       .value("POWER", DEMAND_POWER)
-      .value("JERK", DEMAND_JERK);
+      .value("JERK", DEMAND_JERK)
+      .value("SINGULAR", DEMAND_SINGULAR);
   nb::enum_<RowFlag>(m, "RowFlag", nb::is_arithmetic(), nb::is_flag(), "Why a row of a run is not good.")
       .value("GOOD", ROW_GOOD)
       .value("NOT_CONVERGED", ROW_NOT_CONVERGED)

@@ -74,6 +74,12 @@ struct Coordinates {
     ((mask |= has_name<All> << next++), ...);
     return mask;
   }
+  // bit f: freedom f is an angle with a name
+  static constexpr int turns() {
+    int mask = 0, next = 0;
+    ((mask |= is_turn<All> << next++), ...);
+    return mask;
+  }
 
   static MECHKIN_INLINE void coordinate(const Closure& k, const PairMotion& p, int freedom, Pack* out) {
     int next = 0;

@@ -10,6 +10,7 @@ struct Writer {
   double* base;
   long rows, row;
   int count;
+  MECHKIN_INLINE Writer to(double* other) const { return {other, rows, row, count}; }
   MECHKIN_INLINE void put(long slot, Pack x) const {
     double* at = base + slot * rows + row;
     if (count == LANES) return store(at, x);

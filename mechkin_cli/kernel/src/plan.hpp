@@ -149,7 +149,8 @@ enum Demand : unsigned {
   DEMAND_CONDITION = 8,
   DEMAND_POWER = 16,
   DEMAND_JERK = 32,
-  DEMAND_EVERYTHING = 63
+  DEMAND_SINGULAR = 64,  // with DEMAND_CONDITION: to rounding instead of to 1 %
+  DEMAND_EVERYTHING = 127
 };
 
 // A joint as its user knows it: where its wrench is read off, and where its point rides.
@@ -210,6 +211,13 @@ struct Plan {
   double row_weight;         // length unit / size: closure lengths to parts of the size
 };
 
+// An angle of a closing joint, which is known up to whole turns only, or with freedom < 0 its orientation, the second
+// link against the first, a quaternion that is known up to its sign.
+struct ClosingTurn {
+  int closing, freedom;
+  int slot, width;  // first of its values, and how many: 1 or 4
+};
+
 // One call: arrays are stored column after column ([k * rows + row]).
 struct Request {
   long rows;
@@ -228,8 +236,15 @@ struct Request {
   double* correction;           // rows: largest change of an unknown against its guess, lengths in units
   double* orientation;          // rows, may be null: product of the signs of the square blocks' determinants;
                                 // it changes where a fold lies between two places. Needs a demand.
+  double* side;                 // blocks x rows, may be null: sign of a square block's determinant, else 1. Needs a
+                                // demand.
+  double* pivot;                // blocks x rows, may be null: least pivot of each block's Jacobian. Needs a demand.
   double* jacobian;             // blocks' entries x rows, may be null: Jacobians of the blocks. Needs a demand.
-  double* pivot;                // rows, may be null: least pivot of the blocks' Jacobians. Needs a demand.
+  const ClosingTurn* turns;     // turn_count: what the next three hold, widths x rows; with DEMAND_ACCELERATION
+  int turn_count;
+  double* turn;                 // angles and quaternions as the kernel finds them, a quaternion scalar first
+  double* turn_first;           // derivatives; of a quaternion the angular velocity about the first link's axes
+  double* turn_second;          // (its fourth value is zero), and that one's derivative
   double* condition;            // rows, with DEMAND_CONDITION
   double* power_error;          // rows, with DEMAND_POWER
   unsigned char* flags;         // rows

@@ -28,11 +28,13 @@ struct Workspace {
   Pack* reflector;                // per block 2 x size: pivots and betas of a QR
   Pack* multiplier;               // closing rows
   Pack* right;                    // largest block
-  Pack* scratch;                  // largest block squared
+  Pack* scratch;                  // twice the largest block squared
   Pack* effort;                   // inputs
   Vec3* across;                   // legs: what its end needs across its line
   Pack* holding;                  // legs: couple about its line
   Pack* saved;                    // states before a trial step
+  Pack* kept;                     // largest block squared: factors of lanes that are done
+  Mask* kept_swap;
 };
 
 // Gives the arrays of a workspace their places from `at` on; returns the bytes used.
@@ -65,7 +67,9 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->reflector = (Pack*)take(2 * unknowns * pack);
   w->multiplier = (Pack*)take(rows * pack);
   w->right = (Pack*)take((largest + MAX_CLOSING_ROWS) * pack);
-  w->scratch = (Pack*)take(largest * largest * pack);
+  w->scratch = (Pack*)take(2 * largest * largest * pack);
+  w->kept = (Pack*)take(largest * largest * pack);
+  w->kept_swap = (Mask*)take(largest * largest * sizeof(Mask));
   w->effort = (Pack*)take((p.inputs + 1) * pack);
   w->across = (Vec3*)take((p.legs + 1) * sizeof(Vec3));
   w->holding = (Pack*)take((p.legs + 1) * pack);
@@ -258,8 +262,19 @@ inline void advance_block(const Plan& p, Workspace& w, int index, const Pack* st
 
 struct Closed {
   Pack residual, correction;
+  Pack last_step;  // the step that the factors left behind belong to, infinite where there are none
   Mask converged, side;
 };
+
+inline void keep_factors(Workspace& w, const BlockMatrices& at) {
+  for (int e = 0; e < at.n * at.n; ++e) w.kept[e] = at.jacobian[e];
+  for (int s = 0; s < at.n * (at.n - 1) / 2; ++s) w.kept_swap[s] = at.swap[s];
+}
+inline void take_back_factors(const Workspace& w, const BlockMatrices& at, Mask done) {
+  for (int e = 0; e < at.n * at.n; ++e) at.jacobian[e] = select(done, w.kept[e], at.jacobian[e]);
+  for (int s = 0; s < at.n * (at.n - 1) / 2; ++s)
+    at.swap[s] = (done & w.kept_swap[s]) | (~done & at.swap[s]);
+}
 
 // Closes one block from the guess in w.q.
 inline Closed close_block(const Plan& p, Workspace& w, int index, const Request& r) {
@@ -267,28 +282,34 @@ inline Closed close_block(const Plan& p, Workspace& w, int index, const Request&
   const BlockMatrices at = matrices_of(p, w, index);
   Mask polished = all_lanes(false), done = all_lanes(false);
   Residual residual = {};
-  Pack correction = 0.0;
+  Pack correction = 0.0, last_step = __builtin_inf();
+  // a lane's factors must not depend on how long its neighbours go on
+  const bool keeps_factors = at.m == at.n && r.demand == DEMAND_CONDITION;
   for (int iteration = 0;; ++iteration) {
     place_block(p, w, b);
     residual = block_residual(p, w, b);
     done = done | polished | (residual.test <= Pack(r.tight));
     if (all(done) || iteration == r.iterations) break;
     block_screws(p, w, b);
+    const bool keep = keeps_factors && any(done);
+    if (keep) keep_factors(w, at);
     block_jacobian(p, w, index, at.jacobian);
     at.factor_jacobian();
     at.solve_equations(w.right);
+    if (keep) take_back_factors(w, at, done);
     Pack length = 0.0;
     for (int u = 0; u < b.size; ++u) {
       w.right[u] = -w.right[u];
       length = select(abs(w.right[u]) <= length, length, abs(w.right[u]));  // a NaN wins
     }
+    last_step = select(done, last_step, length);
     polished = length <= Pack(r.coarse);
     // where the Jacobian is singular there is no step: the lane stays where it is
     done = done | ~(length < Pack(1e100));
     correction += select(done, Pack(0.0), length);
     advance_block(p, w, index, w.right, ~done);
   }
-  return {residual.size, correction, residual.test <= Pack(r.accept), block_side_conditions(p, w, b)};
+  return {residual.size, correction, last_step, residual.test <= Pack(r.accept), block_side_conditions(p, w, b)};
 }
 
 }  // namespace

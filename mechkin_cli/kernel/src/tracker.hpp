@@ -1,35 +1,20 @@
-// Following a branch along a straight path of the inputs: skeleton and infill.
+// Following a branch along rows: skeleton and infill.
 //
-// x(sigma) = x0 + sigma u. Few careful steps (second-order predictor, Newton, jump and turning tests)
-// give nodes with first and second derivatives; the guesses for all rows come from quintic Hermite
-// interpolation between them and are left for one batched run to finish.
+// Few careful steps (stepper.hpp) give nodes with first and second derivatives; the guesses for all rows come from
+// quintic Hermite interpolation between them and are left for one batched run to finish. The angles and orientations
+// of closing joints are carried along in the same way, so that whole turns and signs are never lost between rows.
 #pragma once
 
-#include <vector>
-
-#include "unit.hpp"
-
-struct TrackLimits {
-  double turn_cosine;   // least cosine of the tangent's turn in a step
-  double turn;          // wanted turn of the tangent in a step, rad
-  double bend;          // wanted ratio of the quadratic to twice the linear part of a step
-  double jump;          // largest Newton correction in parts of the step's length
-  double infill;        // largest correction of an infilled row in parts of the nodes' distance
-  double longest_step;  // largest step, rad or length units of the path
-  double least_step;    // smallest step in parts of max(1, |sigma|)
-  int most_steps;
-  double tight, coarse, accept;
-  double pivot;         // least pivot of a node: the tangent next to a singular place is rounding
-  int iterations;
-};
+#include "stepper.hpp"
 
 enum class TrackEnd : int { finished = 0, stalled = 1, exhausted = 2, start_not_closed = 3 };
 
-struct Node {
-  double sigma, orientation, pivot;
-  std::vector<double> state, first, second;              // states, columns, columns
-  std::vector<double> jacobian;                          // blocks, one after the other
-  std::vector<double> state_first, state_second;         // derivatives of the raw states
+// Guesses of a run of rows, stored column after column.
+struct RowGuesses {
+  long rows;
+  double* guess;  // states x rows
+  double* limit;  // rows: largest correction that infill may make
+  double* turn;   // turn slots x rows: closing joints' turns, continuous from the start; may be null
 };
 
 struct Track {
@@ -40,7 +25,36 @@ struct Track {
   double refused_step;  // the step that could not be taken, if stalled
 };
 
-// sigma must increase; guess: states x rows, limit: rows (largest correction that infill may make).
-Track follow(const Plan& plan, const KernelUnit& unit, const double* x0, const double* u, long rows,
-             const double* sigma, const double* start, const TrackLimits& limits, double* guess,
-             double* limit);
+// Rows on a straight path: sigma (rows) must not fall; row 0 of them is number `first` of the guesses.
+// `turn` (turn slots) are the closing joints' continuous turns at the start, empty: as the kernel finds them.
+Track follow_line(const Plan& plan, const KernelUnit& unit, const double* x0, const double* u, long rows,
+                  const double* sigma, const double* start, const std::vector<double>& turn, const StepLimits& limits,
+                  const RowGuesses& out, long first);
+
+// How far rows were followed: the last place on the branch, and the way the inputs went there (largest part 1).
+struct Followed {
+  TrackEnd end;
+  long reached, steps, rejected;
+  std::vector<double> inputs, state, turn, direction;
+};
+
+// Follows the branch through `start` along all rows; `inputs` (inputs x rows, column after column). Straight runs of
+// rows are followed as lines, other stretches as smooth curves through the rows, corners between distant rows chord by
+// chord (polyline.cpp). `every_row` makes each row a node.
+Followed follow_rows(const Plan& plan, const KernelUnit& unit, const double* inputs, const double* start,
+                     const std::vector<double>& turn, bool every_row, const StepLimits& limits, const RowGuesses& out);
+
+// --- shared by both -------------------------------------------------------------------------------
+
+// Gives a node the turns that it has by another way: whole turns and signs are taken over.
+void adopt_turns(const Stepper& stepper, const std::vector<double>& turn, Node* node);
+// Makes the turns of a node continuous with those of the node before; false where one turned too fast to tell.
+bool continue_turns(const Stepper& stepper, const Node& a, Node* b);
+// Guesses for rows [begin, end) at sigma[0 ... end - begin) between two nodes.
+void infill(const Stepper& stepper, const Node& a, const Node& b, const double* sigma, long begin, long end,
+            const RowGuesses& out);
+// How far the inputs of `count` rows (column after column, `stride` apart) lie from the curve between two nodes.
+double stray(const Stepper& stepper, const Node& a, const Node& b, const double* sigma, long count,
+             const double* inputs, long stride);
+// A node as the guess of a row.
+void put_row(const Node& node, double limit, long row, const RowGuesses& out);

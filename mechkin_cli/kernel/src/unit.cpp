@@ -2,9 +2,11 @@
 // MECHKIN_UNIT set by the build.
 #include "unit.hpp"
 
+#include "condition.hpp"
 #include "elementwise.hpp"
 #include "outputs.hpp"
 #include "search.hpp"
+#include "tape_replay.hpp"
 
 namespace {
 
@@ -30,23 +32,28 @@ void write_flags(unsigned char* flags, const Reader& in, Mask converged, Mask si
   }
 }
 
-// Smallest singular value of the block's Jacobian with lengths in parts of the size, as 1 / sigma.
-Pack block_condition(const Plan& p, Workspace& w, int index) {
-  const Block& b = p.block[index];
-  const int m = b.rows, n = b.size;
-  block_jacobian(p, w, index, w.scratch);
-  for (int c = b.closing_begin; c < b.closing_end; ++c) {
-    const ClosingJoint& j = p.closing[c];
-    with_closing_joint(j.type, [&](auto entry) {
-      for (int i = 0; i < entry.lengths; ++i)
-        for (int u = 0; u < n; ++u) w.scratch[(j.row + i) * n + u] *= Pack(p.row_weight);
-    });
+// Angles and orientations of closing joints with their first and second derivatives.
+void write_turns(const Plan& p, const Workspace& w, const Request& r, const Reader& in) {
+  const Writer value = {r.turn, in.rows, in.row, in.count}, first = {r.turn_first, in.rows, in.row, in.count},
+               second = {r.turn_second, in.rows, in.row, in.count};
+  for (int t = 0; t < r.turn_count; ++t) {
+    const ClosingTurn& turn = r.turns[t];
+    if (turn.freedom >= 0) {
+      Pack k[4];
+      closing_coordinate(p, w, turn.closing, turn.freedom, 2, k);
+      value.put(turn.slot, k[0]), first.put(turn.slot, k[1]), second.put(turn.slot, k[2]);
+      continue;
+    }
+    const ClosingJoint& j = p.closing[turn.closing];
+    const Pose &A = w.closure[turn.closing].A, &B = w.closure[turn.closing].B;
+    const Quaternion q = quaternion_of(A.components(B.X), A.components(B.Y), A.components(B.Z));
+    const Motion a = motion_of(w, j.first), b = motion_of(w, j.second);
+    const Vec3 omega = b.velocity.angular - a.velocity.angular;
+    const Vec3 alpha = b.acceleration.angular - a.acceleration.angular - cross(a.velocity.angular, omega);
+    value.put(turn.slot, q.w), value.put(turn.slot + 1, Vec3{q.x, q.y, q.z});
+    first.put(turn.slot, A.components(omega)), first.put(turn.slot + 3, Pack(0.0));
+    second.put(turn.slot, A.components(alpha)), second.put(turn.slot + 3, Pack(0.0));
   }
-  for (int u = 0; u < n; ++u) {
-    const Pack weight = p.column_weight[p.unknown[b.column_begin + u]];
-    for (int i = 0; i < m; ++i) w.scratch[i * n + u] *= weight;
-  }
-  return Pack(1.0) / smallest_singular_value(w.scratch, m, n, w.right);
 }
 
 void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
@@ -54,7 +61,7 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
   for (int s = 0; s < p.states; ++s) w.q[s] = in.get(r.guess, s);
   for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
 
-  Pack residual = 0.0, correction = 0.0, condition = 0.0, orientation = 1.0, pivot = __builtin_inf();
+  Pack residual = 0.0, correction = 0.0, condition = 0.0, orientation = 1.0;
   Mask converged = all_lanes(true), side = all_lanes(true);
   for (int b = 0; b < p.blocks; ++b) {
     const Closed closed = close_block(p, w, b, r);
@@ -64,16 +71,15 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     converged = converged & closed.converged;
     side = side & closed.side;
     if (!r.demand) continue;
-    const BlockMatrices at = matrices_of(p, w, b);
-    block_screws(p, w, p.block[b]);
-    if (r.demand & DEMAND_CONDITION) condition = max(block_condition(p, w, b), condition);
-    block_jacobian(p, w, b, at.jacobian);
-    if (r.jacobian)
-      for (long e = 0; e < at.m * at.n; ++e)
-        Writer{r.jacobian, in.rows, in.row, in.count}.put(at.jacobian - w.jacobian + e, at.jacobian[e]);
-    at.factor_jacobian();
-    if (at.m == at.n) orientation *= determinant_sign(at.lu());
-    if (r.pivot) pivot = min(pivot, at.least());
+    const Writer out = {nullptr, in.rows, in.row, in.count};
+    const BlockVerdict verdict = judge_block(p, w, b, r, closed, [&](const BlockMatrices& at) {
+      if (!r.jacobian) return;
+      for (long e = 0; e < at.m * at.n; ++e) out.to(r.jacobian).put(at.jacobian - w.jacobian + e, at.jacobian[e]);
+    });
+    orientation *= verdict.side;
+    condition = max(verdict.condition, condition);
+    if (r.side) out.to(r.side).put(b, verdict.side);
+    if (r.pivot) out.to(r.pivot).put(b, matrices_of(p, w, b).least());
   }
   for (int k = 0; k < p.rest_count; ++k) {
     place_joint(p, w, p.rest[k]);
@@ -106,7 +112,7 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
   writer(r.residual).put(0, residual);
   writer(r.correction).put(0, correction);
   if (r.orientation) writer(r.orientation).put(0, orientation);
-  if (r.pivot) writer(r.pivot).put(0, pivot);
+  if (r.turn_count) write_turns(p, w, r, in);
   if (r.demand & DEMAND_CONDITION) writer(r.condition).put(0, condition);
 
   const auto outputs = [&](const Balance* balance) {
@@ -178,11 +184,11 @@ template <class... All>
 struct PairTypes;
 template <class... All>
 struct PairTypes<Entries<All...>> {
-  static constexpr PairType table[] = {{All::letter, All::equations, All::lengths, All::coordinates()}...};
+  static constexpr PairType table[] = {{All::letter, All::equations, All::lengths, All::coordinates(), All::turns()}...};
 };
 
 const KernelUnit unit = {LANES, tree_types, PairTypes<Pairs>::table, Pairs::count, workspace_size, run, run_rows, search_rows,
-                         elementwise};
+                         elementwise, replay_size, replay};
 
 }  // namespace
 

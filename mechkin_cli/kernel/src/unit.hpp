@@ -2,6 +2,7 @@
 #pragma once
 
 #include "plan.hpp"
+#include "tape.hpp"
 
 // The constants of a tree displacement and of a pair, read off their entries.
 struct TreeType {
@@ -11,7 +12,7 @@ struct TreeType {
 struct PairType {
   const char* letter;
   int equations, lengths;  // how many close it, and how many of them, the first ones, are lengths
-  int coordinates;         // bit f: freedom f is one
+  int coordinates, turns;  // bit f: freedom f is a coordinate; is one and an angle
 };
 
 struct KernelUnit {
@@ -25,6 +26,8 @@ struct KernelUnit {
   void (*run_rows)(const Plan&, const Request&, long begin, long end, char* workspace);
   void (*search_rows)(const Plan&, const SearchRequest&, long begin, long end, char* workspace);
   void (*elementwise)(int operation, const double* x, const double* y, double* out, long n);
+  long (*replay_size)(const Tape&);
+  void (*replay)(const Tape&, const TapeRequest&, char* workspace);
 };
 
 extern "C" {

@@ -1,0 +1,49 @@
+"""A problem built of recorded numbers: how everything in it depends on some parameters.
+
+The file is built once more, with the parameters' values as they are but on a recorder; whatever the
+building decides on one of them becomes a guard. What no tape can hold (a number of rows, a table, a
+warning in question) raises `TraceLost`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from mechkin_cli.building.build import Built, build_problem, check_spins, read_fields
+from mechkin_cli.expressions import Quantity
+from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.tape.recorder import Recorder
+from mechkin_cli.tape.traced import Traced, TraceLost
+
+
+class Recording(NamedTuple):
+    """A problem whose numbers are `Traced` where they depend on a parameter that is an input."""
+
+    recorder: Recorder
+    problem: Problem
+
+
+def record(built: Built, names: Sequence[str]) -> Recording:
+    """The problem of a file as it depends on some of its parameters.
+
+    Raises:
+        TraceLost: it depends on one of them in a way that no tape holds.
+    """
+    base = built.problem
+    quantities = [base.parameters[name] for name in names]
+    recorder = Recorder(names, [quantity.value for quantity in quantities])  # type: ignore[misc]
+    given = {
+        name: Quantity(Traced(recorder, number), quantity.dimension)  # type: ignore[arg-type]
+        for number, (name, quantity) in enumerate(zip(names, quantities, strict=True))
+    }
+    fields = read_fields(built.read, given)
+    problem = build_problem(fields, built.read.file)
+    problem = replace(
+        problem, hold_idle=base.hold_idle, follow=base.follow, diagnostics=base.diagnostics
+    )
+    check_spins(fields, problem, built.tables)
+    if fields.error_count:
+        raise TraceLost("the recording came to an error that the file does not have")
+    return Recording(recorder, problem)

@@ -1,0 +1,168 @@
+"""A model under other parameters, without reading or building anew.
+
+The base model records once, for each set of parameters, how its plan depends on them; variants are
+replays of that. Where a recording does not hold, the variant is built anew: the same answers and
+the same errors, only slower.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.analysis.sweep import first_assembly
+from mechkin_cli.building.build import build
+from mechkin_cli.building.recording import record
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile
+from mechkin_cli.expressions import Quantity
+from mechkin_cli.interface.given import parameter_values
+from mechkin_cli.interface.model import Model
+from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.solver.graph import SolverGraph
+from mechkin_cli.solver.session import Session
+from mechkin_cli.solver.variation import FirstAssembly, Variation
+from mechkin_cli.solver.varied_session import VariedSession
+from mechkin_cli.tape.tape import Verdict
+from mechkin_cli.tape.traced import TraceLost
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.building.build import Built
+
+
+class Base:
+    """What the variants of a model share: its first assembly, and its recordings by parameters."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self._variations: dict[tuple[str, ...], Variation | None] = {}
+
+    @cached_property
+    def _assembled(self) -> tuple[Session, FirstAssembly] | None:
+        if self.model.problem.follow is not None:
+            return None  # which loops are followed depends on what is asked
+        session, start = first_assembly(self.model.session)
+        if start.state is None or session.size is None:
+            return None
+        return session, FirstAssembly(start.state, start.row, session.size)
+
+    @property
+    def start(self) -> FirstAssembly:
+        """The first assembly of a model that has a variation."""
+        assert self._assembled is not None
+        return self._assembled[1]
+
+    def variation(self, names: Sequence[str]) -> Variation | None:
+        """How the model depends on some parameters; None where every variant is built anew."""
+        key = tuple(names)
+        if key not in self._variations:
+            self._variations[key] = self._recorded(key)
+        return self._variations[key]
+
+    def _recorded(self, names: tuple[str, ...]) -> Variation | None:
+        if self._assembled is None:
+            return None
+        try:
+            recording = record(self.model.built, names)
+            return Variation(self._assembled[0], recording.recorder, recording.problem)
+        except TraceLost:
+            return None
+
+    def built(self, values: Mapping[str, float]) -> Built:
+        """The model with other parameters (SI), by the ordinary path.
+
+        Raises:
+            InvalidFile: with every independent error.
+        """
+        known = self.model.problem.parameters
+        given = {name: Quantity(v, known[name].dimension) for name, v in values.items()}
+        return build(self.model.built.read, given)
+
+
+class VariedModel(Model):
+    """A model with other values of some parameters.
+
+    Args:
+        base: the model as its file has it.
+        values: by name, in SI.
+    """
+
+    def __init__(self, base: Base, values: Mapping[str, float]) -> None:
+        self._base, self._values = base, dict(values)
+        names = tuple(values)
+        variation = base.variation(names)
+        self._variation = variation
+        row = np.array(list(values.values()))
+        self._row = row
+        verdict = Verdict.OTHER_WAY if variation is None else variation.verdicts(row[:, None])[0]
+        if variation is None or verdict == Verdict.OTHER_WAY:
+            self._variation = None
+            super().__init__(base.built(values), base.model.stem)
+            return
+        super().__init__(base.model.built, base.model.stem)
+        self._advised = verdict == Verdict.OTHER_ADVICE
+
+    @cached_property
+    def problem(self) -> Problem:  # type: ignore[override]
+        """The mechanism, its motion and assembly in SI."""
+        if self._variation is None:
+            return self.built.problem
+        problem = self._variation.problem(self._row)
+        if self._advised:
+            fresh = self._base.built(self._values).problem
+            problem = replace(problem, diagnostics=fresh.diagnostics)
+        return problem
+
+    @cached_property
+    def session(self) -> Session:  # type: ignore[override]
+        """The mechanism in the kernel."""
+        if self._variation is None:
+            return Session(self.problem, self.graph)
+        varied = VariedSession(self._variation, self._row, self.problem, self._base.start)
+        if varied.continued is not None and varied.continued.state is None:
+            # the branch ends on the way: the same structure, or another problem?
+            fresh = self._base.built(self._values)
+            if isinstance(fresh.graph, Diagnostic):
+                raise InvalidFile([*fresh.problem.diagnostics, fresh.graph])
+            if structure_of(fresh.graph) != structure_of(varied.graph):
+                return Session(fresh.problem, fresh.graph)
+        return varied
+
+    @property
+    def graph(self) -> SolverGraph:
+        """Tree, closing joints and blocks."""
+        return super().graph if self._variation is None else self.session.graph
+
+    def with_parameters(self, parameters: Mapping[str, Any]) -> Model:
+        """As `Model.with_parameters`; values of before stay unless they are given anew."""
+        root = self._base.model
+        values = {**self._values, **parameter_values(root.problem, parameters)}
+        return VariedModel(
+            self._base, {n: values[n] for n in root.problem.parameters if n in values}
+        )
+
+
+def structure_of(graph: SolverGraph) -> object:
+    """What two graphs of the same structure have in common."""
+    edges = tuple((edge.joint.name, edge.parent, edge.child) for edge in graph.edges)
+    closings = tuple((closing.joint.name, closing.loop) for closing in graph.closings)
+    return edges, closings, graph.blocks, graph.inputs
+
+
+def with_parameters(base: Base, parameters: Mapping[str, Any]) -> Model:
+    """`Model.with_parameters` of a model as its file has it."""
+    values = parameter_values(base.model.problem, parameters)
+    return VariedModel(base, values) if values else base.model
+
+
+def file_values(values: Floats, problem: Problem, names: Sequence[str]) -> dict[str, Floats]:
+    """Parameters (parameters, variants) in the file's units, by name."""
+    known = problem.parameters
+    return {
+        name: np.asarray(problem.units.from_si(row, known[name].dimension), dtype=np.float64)
+        for name, row in zip(names, values, strict=True)
+    }

@@ -1,0 +1,71 @@
+#include "dimension_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "unit.hpp"
+
+DimensionPath::DimensionPath(const Tape& tape, const KernelUnit& unit, const double* base, FrozenPlan* plan,
+                             const double* inputs, long moving, long stride)
+    : tape_(tape), unit_(unit), base_(base), plan_(plan), inputs_(inputs), moving_(moving), stride_(stride),
+      memory_(unit.replay_size(tape)) {}
+
+void DimensionPath::aim(const double* target, const std::vector<double>& near) {
+  target_ = target;
+  places_.clear(), outputs_.clear();
+  replay(near);
+}
+
+void DimensionPath::replay(const std::vector<double>& places) const {
+  const std::size_t count = places.size(), before = places_.size();
+  values_.resize(tape_.inputs * count), verdict_.resize(count);
+  for (int k = 0; k < tape_.inputs; ++k)
+    for (std::size_t i = 0; i < count; ++i)
+      values_[k * count + i] =
+          places[i] == 1.0 ? target_[k] : base_[k] + places[i] * (target_[k] - base_[k]);
+  places_.insert(places_.end(), places.begin(), places.end());
+  outputs_.resize(places_.size() * tape_.outputs);
+  const TapeRequest request = {(long)count, values_.data(), outputs_.data() + before * tape_.outputs, verdict_.data()};
+  unit_.replay(tape_, request, memory_.data());
+}
+
+const double* DimensionPath::outputs(double sigma) const {
+  std::size_t k = 0;
+  while (k < places_.size() && places_[k] != sigma) ++k;
+  if (k == places_.size()) replay({sigma});
+  return outputs_.data() + k * tape_.outputs;
+}
+
+void DimensionPath::at(double sigma, PathPoint* point) const {
+  const int n = plan_->view().inputs;
+  point->inputs.resize(n), point->first.assign(n, 0.0), point->second.assign(n, 0.0);
+  const double* const from = inputs_ ? inputs_ : outputs(sigma) + moving_;
+  const long stride = inputs_ ? 1 : stride_;
+  for (int i = 0; i < n; ++i) point->inputs[i] = from[i * stride];
+}
+
+// Constants that are no plan's leave the plan as it was, so that what is closed there is judged by its neighbours.
+const Plan& DimensionPath::plan(double sigma) const {
+  plan_->assign(outputs(sigma));
+  return plan_->view();
+}
+
+bool follow_to_target(Stepper& stepper, const double* start, Node* node) {
+  const StepLimits& limits = stepper.limits();
+  Node next;
+  if (!stepper.close(0.0, start, node)) return false;
+  double h = stepper.wanted_step(*node);
+  for (int steps = 0; node->sigma < 1.0; ++steps) {
+    if (steps >= limits.most_steps) return false;
+    const bool last = node->sigma + 1.000001 * h >= 1.0;
+    const double step = last ? 1.0 - node->sigma : h;
+    if (stepper.step(*node, step, last ? 1.0 : node->sigma + step, &next)) {
+      h = std::fmin(stepper.wanted_step(next), 4.0 * step);
+      std::swap(*node, next);
+      continue;
+    }
+    h = 0.5 * step;
+    if (h < limits.least_step) return false;
+  }
+  return true;
+}

@@ -1,0 +1,231 @@
+// Following rows whose inputs move along any path.
+//
+// Rows in one line make a run, which is followed as a line with nodes anywhere on it. Between such runs the rows are
+// taken for points of a smooth curve as long as the path turns little from row to row: nodes stand at rows, as far
+// apart as the branch's bend allows, and the rows between are filled in where they lie on the curve between two nodes.
+// Where the path has a corner or the branch bends too much between two rows, the chord is followed as a line. The work
+// is linear in the rows: each row is looked at a bounded number of times.
+#include <algorithm>
+#include <cmath>
+
+#include "row_curve.hpp"
+#include "tracker.hpp"
+
+namespace {
+
+enum class Way { rest, line, curve };
+
+// Rows (first, last] that are reached one way from row `first`.
+struct Piece {
+  Way way;
+  long first, last;
+};
+
+class RowFollower {
+ public:
+  RowFollower(const Plan& plan, const KernelUnit& unit, const InputRows& rows, const StepLimits& limits,
+              const RowGuesses& out)
+      : plan_(plan), unit_(unit), rows_(rows), limits_(limits), out_(out), scale_(rows.inputs, 0.0),
+        result_{TrackEnd::finished, 1, 0, 0, {}, {}, {}, std::vector<double>(rows.inputs, 0.0)} {
+    for (int i = 0; i < rows.inputs; ++i)
+      for (long r = 0; r < rows.rows; ++r) scale_[i] = std::fmax(scale_[i], std::fabs(rows.at(i, r)));
+  }
+
+  Followed follow(const double* start, const std::vector<double>& turn, bool every_row) {
+    result_.state.assign(start, start + plan_.states), result_.turn = turn;
+    for (int s = 0; s < plan_.states; ++s) out_.guess[s * out_.rows] = start[s];
+    out_.limit[0] = limits_.jump;
+    if (!place_start()) return result_;
+    for (const Piece& piece : pieces(every_row)) {
+      if (piece.way == Way::rest) rest(piece);
+      if (piece.way == Way::line && !line(piece.first, piece.last)) return result_;
+      if (piece.way == Way::curve && !curve(piece)) return result_;
+    }
+    place_inputs(rows_.rows - 1);
+    return result_;
+  }
+
+ private:
+  // The closing joints' turns at the first row, where they are asked for.
+  bool place_start() {
+    if (!out_.turn) return true;
+    place_inputs(0);
+    const Line standing(plan_, result_.inputs.data(), result_.direction.data());
+    Stepper stepper(standing, unit_, limits_);
+    Node node;
+    if (!stepper.close(0.0, result_.state.data(), &node)) {
+      result_.end = TrackEnd::start_not_closed;
+      return false;
+    }
+    if (!result_.turn.empty()) adopt_turns(stepper, result_.turn, &node);
+    result_.turn = node.turn;
+    for (int s = 0; s < stepper.turn_slots(); ++s) out_.turn[s * out_.rows] = node.turn[s];
+    return true;
+  }
+  void place_inputs(long row) {
+    result_.inputs.resize(rows_.inputs);
+    for (int i = 0; i < rows_.inputs; ++i) result_.inputs[i] = rows_.at(i, row);
+  }
+
+  // Direction from a row to the next, its largest part 1 (or -1), and which part that is; false where they coincide.
+  bool direction_from(long row, std::vector<double>* u, int* leading) const {
+    u->assign(rows_.inputs, 0.0), *leading = 0;
+    double size = 0.0;
+    for (int i = 0; i < rows_.inputs; ++i) {
+      (*u)[i] = rows_.at(i, row + 1) - rows_.at(i, row);
+      if (std::fabs((*u)[i]) > size) size = std::fabs((*u)[i]), *leading = i;
+    }
+    if (size == 0.0) return false;
+    for (double& part : *u) part /= size;
+    return true;
+  }
+
+  // The last row that lies on the straight way from `first` through the row after it.
+  long end_of_line(long first, const std::vector<double>& u, int leading) const {
+    double before = 0.0;
+    long row = first + 1;
+    for (; row < rows_.rows; ++row) {
+      const double along = (rows_.at(leading, row) - rows_.at(leading, first)) * u[leading];
+      bool onward = along > before;
+      for (int i = 0; onward && rows_.inputs > 1 && i < rows_.inputs; ++i) {
+        const double off = rows_.at(i, row) - (rows_.at(i, first) + u[i] * along);
+        onward = std::fabs(off) <= limits_.same_line * (1.0 + scale_[i]);
+      }
+      if (!onward) break;
+      before = along;
+    }
+    return std::max(row - 1, first + 1);
+  }
+
+  std::vector<Piece> pieces(bool every_row) const {
+    std::vector<Piece> found;
+    std::vector<double> u;
+    int leading = 0;
+    for (long first = 0, last = 0; first + 1 < rows_.rows; first = last) {
+      last = first + 1;
+      Way way = Way::rest;
+      if (direction_from(first, &u, &leading)) {
+        if (!every_row) last = end_of_line(first, u, leading);
+        const bool whole = first == 0 && last == rows_.rows - 1;
+        const bool far = last > first + 1 && rows_.distance(first, last) >= limits_.knot;
+        way = every_row || whole || far || rows_.inputs == 1 ? Way::line : Way::curve;
+      }
+      if (way == Way::curve && !found.empty() && found.back().way == Way::curve)
+        found.back().last = last;
+      else
+        found.push_back({way, first, last});
+    }
+    return found;
+  }
+
+  void rest(const Piece& piece) {
+    for (long row = piece.first + 1; row <= piece.last; ++row) {
+      for (int s = 0; s < plan_.states; ++s) out_.guess[s * out_.rows + row] = result_.state[s];
+      out_.limit[row] = limits_.jump;
+      for (std::size_t s = 0; out_.turn && s < result_.turn.size(); ++s)
+        out_.turn[s * out_.rows + row] = result_.turn[s];
+    }
+    std::fill(result_.direction.begin(), result_.direction.end(), 0.0);
+    result_.reached = piece.last + 1;
+  }
+
+  bool line(long first, long last) {
+    int leading = 0;
+    direction_from(first, &result_.direction, &leading);
+    std::vector<double> origin(rows_.inputs), sigma(last - first);
+    for (int i = 0; i < rows_.inputs; ++i) origin[i] = rows_.at(i, first);
+    for (long row = first + 1; row <= last; ++row)
+      sigma[row - first - 1] = std::fabs(rows_.at(leading, row) - origin[leading]);
+    const Track track = follow_line(plan_, unit_, origin.data(), result_.direction.data(), last - first, sigma.data(),
+                                    result_.state.data(), result_.turn, limits_, out_, first + 1);
+    result_.end = track.end, result_.steps += track.steps, result_.rejected += track.rejected;
+    result_.reached = first + 1 + track.reached;
+    if (track.end == TrackEnd::start_not_closed)
+      result_.inputs = origin;
+    else
+      take(track.last);
+    return track.end == TrackEnd::finished;
+  }
+  void take(const Node& node) {
+    result_.inputs = node.inputs, result_.state = node.state, result_.turn = node.turn;
+  }
+
+  bool curve(const Piece& piece) {
+    for (long first = piece.first, last = first; first < piece.last; first = last) {
+      for (last = first + 1; last < piece.last && rows_.turn_cosine(last) >= limits_.corner_cosine;) ++last;
+      if (!(last == first + 1 ? line(first, last) : stretch(first, last))) return false;
+    }
+    return true;
+  }
+
+  // Rows (first, last] without a corner between them.
+  bool stretch(long first, long last) {
+    RowCurve path(plan_, rows_, first, last, limits_.knot);
+    Stepper stepper(path, unit_, limits_);
+    Node node, next;
+    long row = first;
+    bool placed = false;  // whether `node` stands at `row`
+    double h = limits_.longest_step;
+    while (row < last) {
+      if (!placed) {
+        placed = stepper.close(path.length(row), result_.state.data(), &node);
+        if (placed && !result_.turn.empty()) adopt_turns(stepper, result_.turn, &node);
+        const double wanted = placed ? stepper.wanted_step(node) : h;
+        if (wanted < 0.5 * h) {
+          // the derivatives were read over too long a way
+          h = wanted, placed = false;
+          path.read_for_step(h);
+          continue;
+        }
+        h = std::fmin(h, wanted);
+      }
+      const long target = placed ? std::min(last, path.row_before(node.sigma + h)) : row;
+      const bool good = target > row && step(stepper, path, node, target, &next);
+      if (good) {
+        const double taken = next.sigma - node.sigma;
+        infill(stepper, node, next, path.lengths(row + 1), row + 1, target + 1, out_);
+        std::swap(node, next);
+        take(node);
+        row = target, result_.reached = row + 1, ++result_.steps;
+        h = std::fmin(stepper.wanted_step(node), 4.0 * taken);
+        path.read_for_step(h);
+      } else if (target > row + 1) {
+        h = 0.5 * (path.length(target) - node.sigma);
+        h = std::fmax(h, path.length(row + 1) - node.sigma), ++result_.rejected;
+        path.read_for_step(h), placed = false;
+      } else {
+        if (!line(row, row + 1)) return false;
+        ++row, placed = false, h = 4.0 * (path.length(row) - path.length(row - 1));
+      }
+    }
+    int leading = 0;
+    direction_from(last - 1, &result_.direction, &leading);
+    return true;
+  }
+
+  bool step(Stepper& stepper, const RowCurve& path, const Node& node, long target, Node* next) const {
+    if (!stepper.step(node, path.length(target) - node.sigma, path.length(target), next)) return false;
+    const double h = next->sigma - node.sigma;
+    if (!continue_turns(stepper, node, next) && h > limits_.angle_step) return false;
+    const long begin = path.row_before(node.sigma) + 1;
+    return stray(stepper, node, *next, path.lengths(begin), target - begin, rows_.values + begin, rows_.rows) <=
+           limits_.stray * h;
+  }
+
+  const Plan& plan_;
+  const KernelUnit& unit_;
+  const InputRows& rows_;
+  const StepLimits& limits_;
+  const RowGuesses& out_;
+  std::vector<double> scale_;
+  Followed result_;
+};
+
+}  // namespace
+
+Followed follow_rows(const Plan& plan, const KernelUnit& unit, const double* inputs, const double* start,
+                     const std::vector<double>& turn, bool every_row, const StepLimits& limits,
+                     const RowGuesses& out) {
+  const InputRows rows = {inputs, plan.inputs, out.rows};
+  return RowFollower(plan, unit, rows, limits, out).follow(start, turn, every_row);
+}

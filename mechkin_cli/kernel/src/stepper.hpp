@@ -1,0 +1,119 @@
+// One step along a path of the inputs, or of the plan itself: predict, close, judge.
+//
+// A path maps a parameter sigma to the inputs and their first and second derivatives by sigma. A node is a place on
+// the branch over the path, closed to rounding, with the branch's own derivatives by sigma. Following, dead centres,
+// branch points and continuation in a mechanism's dimensions are made of these steps.
+#pragma once
+
+#include <vector>
+
+#include "unit.hpp"
+
+struct StepLimits {
+  double turn_cosine;   // least cosine of the tangent's turn in a step
+  double turn;          // wanted turn of the tangent in a step, rad
+  double bend;          // wanted ratio of the quadratic to twice the linear part of a step
+  double jump;          // largest Newton correction in parts of the step's length
+  double infill;        // largest correction of an infilled row in parts of the nodes' distance
+  double longest_step;  // largest step, rad or length units of the path
+  double least_step;    // smallest step in parts of max(1, |sigma|)
+  int most_steps;
+  double tight, coarse, accept;  // Newton's tests, see Request
+  double pivot;         // least pivot of a node: the tangent next to a singular place is rounding
+  int iterations;
+  double same_line;     // distance from a straight line, in parts of the inputs, up to which rows lie on it
+  double knot;          // distance (rad, length units) of the rows from which the path's derivatives are read
+  double corner_cosine; // cosine of the turn between neighbouring rows from which on the path has a corner
+  double stray;         // distance of a row's inputs from the smooth path, in parts of the step
+  double angle_step;    // a step longer than this is halved where a closing joint turns too fast to be counted
+  double angle_miss;    // rad: largest change of a closing joint's angle against its prediction
+  double plan_step;     // sigma: distance of the places from which the derivatives by the plan's change are read
+};
+
+// What a path says at one sigma; arrays over the inputs.
+struct PathPoint {
+  std::vector<double> inputs, first, second;
+};
+
+class Path {
+ public:
+  virtual ~Path() = default;
+  virtual void at(double sigma, PathPoint* point) const = 0;
+  // The plan at sigma, valid until the next call. Its structure (joints, blocks, unknowns) is the same everywhere.
+  virtual const Plan& plan(double sigma) const = 0;
+  // Whether the plan's constants change along the path: its derivatives are then read from places nearby,
+  // in 0 <= sigma <= 1.
+  virtual bool varies() const { return false; }
+};
+
+// x0 + sigma u on one plan.
+class Line : public Path {
+ public:
+  Line(const Plan& plan, const double* x0, const double* u) : plan_(plan), x0_(x0), u_(u) {}
+  void at(double sigma, PathPoint* point) const override;
+  const Plan& plan(double) const override { return plan_; }
+
+ private:
+  const Plan& plan_;
+  const double *x0_, *u_;
+};
+
+struct Node {
+  double sigma;
+  double correction;                              // largest change of an unknown against the guess
+  double own;                                     // sigma's part in the tangent: 1 where the plan varies, else 0
+  std::vector<double> inputs;
+  std::vector<double> state, first, second;       // states, columns, columns
+  std::vector<double> state_first, state_second;  // derivatives of the raw states
+  std::vector<double> side, pivot;                // blocks: sign of a square block's determinant; least pivot
+  std::vector<double> jacobian;                   // blocks, one after the other, rows x size
+  std::vector<double> turn, turn_first, turn_second;  // of closing joints, see ClosingTurn; as the kernel has them
+};
+
+class Stepper {
+ public:
+  // Path, unit and limits must outlive the stepper.
+  Stepper(const Path& path, const KernelUnit& unit, const StepLimits& limits);
+
+  // Closes the loops at sigma from a guess (states); false if they do not close or a derivative is not finite.
+  bool close(double sigma, const double* guess, Node* node);
+  // Second-order prediction of the states a step h away; quaternions have unit length.
+  void predict(const Node& node, double h, std::vector<double>* guess) const;
+  // Whether b lies on a's branch, so far as the two nodes tell (judge.cpp).
+  bool judge(const Node& a, const Node& b) const;
+  // Predict, close and judge a node a step h on. `sigma` is where it ends: a.sigma + h, unless a step shall end exactly
+  // on a given place.
+  bool step(const Node& a, double h, double sigma, Node* b);
+  bool step(const Node& a, double h, Node* b) { return step(a, h, a.sigma + h, b); }
+  // The step that keeps prediction and turn of the tangent within what is wanted.
+  double wanted_step(const Node& node) const;
+
+  const Plan& plan() const { return plan_; }
+  const StepLimits& limits() const { return limits_; }
+  const std::vector<ClosingTurn>& turns() const { return turns_; }
+  int turn_slots() const { return turn_slots_; }
+  void normalise_quaternions(double* state, long stride) const;
+
+ private:
+  bool solve(double sigma, const double* guess, bool moving, Node* node);
+  bool differentiate_by_plan(Node* node);
+  void differentiate_states(Node* node) const;
+  void differentiate_turns(Node* node) const;
+  void columns_of_states(Node* node) const;
+
+  const Path& path_;
+  const Plan& plan_;
+  const KernelUnit& unit_;
+  const StepLimits& limits_;
+  std::vector<char> memory_;
+  std::vector<ClosingTurn> turns_;
+  int turn_slots_ = 0;
+  long entries_ = 0;
+  PathPoint point_;
+  std::vector<double> guess_;
+};
+
+double tangent_product(const Node& a, const Node& b);
+
+// The closing joints' angles and orientations of a plan, in the order of the joints.
+std::vector<ClosingTurn> closing_turns(const Plan& plan, const KernelUnit& unit);

@@ -1,0 +1,214 @@
+#include "stepper_binding.hpp"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/function.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include "frozen_plan.hpp"
+#include "tracker.hpp"
+#include "units.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace {
+
+using Table = nb::ndarray<nb::numpy, double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Column = nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Numbers = std::vector<double>;
+
+void need(bool good, const std::string& message) {
+  if (!good) throw nb::value_error(message.c_str());
+}
+void need_length(const Numbers& a, long length, const char* name) {
+  need((long)a.size() == length, std::string(name) + ": wrong length");
+}
+double* table(const Table& a, long columns, long rows, const char* name) {
+  need((long)a.shape(0) == columns && (long)a.shape(1) == rows, std::string(name) + ": wrong shape");
+  return a.data();
+}
+// Single positions run on the narrowest unit, whose latency is the least.
+const KernelUnit& narrow_unit() { return *kernel_unit(2); }
+
+nb::object copied(const Numbers& values) {
+  double* data = new double[values.empty() ? 1 : values.size()];
+  std::copy(values.begin(), values.end(), data);
+  nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
+  return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(data, {values.size()}, owner));
+}
+
+// A path whose points, and whose plan where that changes, come from Python functions.
+class GivenPath : public Path {
+ public:
+  using Point = std::tuple<Numbers, Numbers, Numbers>;
+  GivenPath(std::function<Point(double)> at, nb::object plan, bool varies)
+      : at_(std::move(at)), plan_(std::move(plan)), varies_(varies) {}
+  void at(double sigma, PathPoint* point) const override {
+    std::tie(point->inputs, point->first, point->second) = at_(sigma);
+    const long n = plan(sigma).inputs;
+    need_length(point->inputs, n, "the path's inputs");
+    need_length(point->first, n, "the path's first derivatives");
+    need_length(point->second, n, "the path's second derivatives");
+  }
+  const Plan& plan(double sigma) const override {
+    if (!varies_) return nb::cast<const FrozenPlan&>(plan_).view();
+    current_ = plan_(sigma);
+    const Plan& p = nb::cast<const FrozenPlan&>(current_).view();
+    if (states_ < 0) states_ = p.states, blocks_ = p.blocks, columns_ = p.columns, closings_ = p.closings;
+    need(p.states == states_ && p.blocks == blocks_ && p.columns == columns_ && p.closings == closings_,
+         "the plans of a path must have one structure");
+    return p;
+  }
+  bool varies() const override { return varies_; }
+
+ private:
+  std::function<Point(double)> at_;
+  nb::object plan_;
+  bool varies_;
+  mutable nb::object current_;
+  mutable int states_ = -1, blocks_ = 0, columns_ = 0, closings_ = 0;
+};
+
+// A stepper that owns its path and limits. A straight path keeps its numbers here.
+struct OwnedStepper {
+  Numbers x0, u;
+  std::unique_ptr<Path> path;
+  StepLimits limits;
+  std::unique_ptr<Stepper> stepper;
+};
+
+std::unique_ptr<OwnedStepper> straight(const FrozenPlan& store, Numbers inputs, Numbers direction, StepLimits limits) {
+  const Plan& plan = store.view();
+  need_length(inputs, plan.inputs, "inputs");
+  need_length(direction, plan.inputs, "direction");
+  auto s = std::make_unique<OwnedStepper>(OwnedStepper{std::move(inputs), std::move(direction), {}, limits, {}});
+  s->path = std::make_unique<Line>(plan, s->x0.data(), s->u.data());
+  s->stepper = std::make_unique<Stepper>(*s->path, narrow_unit(), s->limits);
+  return s;
+}
+
+std::unique_ptr<OwnedStepper> along(nb::object plan, std::function<GivenPath::Point(double)> at, bool varies,
+                                    StepLimits limits) {
+  auto s = std::make_unique<OwnedStepper>(OwnedStepper{{}, {}, {}, limits, {}});
+  s->path = std::make_unique<GivenPath>(std::move(at), std::move(plan), varies);
+  s->stepper = std::make_unique<Stepper>(*s->path, narrow_unit(), s->limits);
+  return s;
+}
+
+std::optional<Node> close_at(OwnedStepper& s, double sigma, const Numbers& guess) {
+  need_length(guess, s.stepper->plan().states, "guess");
+  FloatingPointState state;
+  Node node;
+  if (!s.stepper->close(sigma, guess.data(), &node)) return std::nullopt;
+  return node;
+}
+
+void need_node(const OwnedStepper& s, const Node& node) {
+  need((int)node.state.size() == s.stepper->plan().states && (int)node.side.size() == s.stepper->plan().blocks,
+       "the node is of another plan");
+}
+
+std::optional<Node> step_from(OwnedStepper& s, const Node& node, double h) {
+  need_node(s, node);
+  FloatingPointState state;
+  Node next;
+  if (!s.stepper->step(node, h, &next)) return std::nullopt;
+  continue_turns(*s.stepper, node, &next);
+  return next;
+}
+
+nb::tuple follow_table(const FrozenPlan& store, Table inputs, const Numbers& start, const Numbers& turn, bool every_row,
+                       const StepLimits& limits, Table guess, Column limit, std::optional<Table> turns) {
+  const Plan& plan = store.view();
+  const long rows = (long)inputs.shape(1);
+  need(rows > 0, "inputs: no rows");
+  table(inputs, plan.inputs, rows, "inputs");
+  need_length(start, plan.states, "start");
+  need((long)limit.shape(0) == rows, "limit: wrong length");
+  long slots = 0;
+  for (const ClosingTurn& t : closing_turns(plan, narrow_unit())) slots += t.width;
+  if (!turn.empty()) need_length(turn, slots, "turn");
+  const RowGuesses out = {rows, table(guess, plan.states, rows, "guess"), limit.data(),
+                          turns ? table(*turns, slots, rows, "turns") : nullptr};
+  Followed found;
+  {
+    nb::gil_scoped_release released;
+    FloatingPointState state;
+    found = follow_rows(plan, narrow_unit(), inputs.data(), start.data(), turn, every_row, limits, out);
+  }
+  return nb::make_tuple((int)found.end, found.reached, found.steps, found.rejected, copied(found.inputs),
+                        copied(found.state), copied(found.turn), copied(found.direction));
+}
+
+nb::list turn_table(const FrozenPlan& store) {
+  nb::list list;
+  for (const ClosingTurn& t : closing_turns(store.view(), narrow_unit()))
+    list.append(nb::make_tuple(t.closing, t.freedom, t.slot, t.width));
+  return list;
+}
+
+template <std::vector<double> Node::*Member>
+nb::object member(const Node& node) {
+  return copied(node.*Member);
+}
+
+}  // namespace
+
+void bind_stepper(nb::module_& m) {
+  nb::class_<StepLimits>(m, "StepLimits")
+      .def("__init__",
+           [](StepLimits* at, double turn_cosine, double turn, double bend, double jump, double infill,
+              double longest_step, double least_step, int most_steps, double tight, double coarse, double accept,
+              double pivot, int iterations, double same_line, double knot, double corner_cosine, double stray,
+              double angle_step, double angle_miss, double plan_step) {
+             new (at) StepLimits{turn_cosine, turn,   bend,   jump,  infill,     longest_step, least_step,
+                                 most_steps,  tight,  coarse, accept, pivot,     iterations,   same_line,
+                                 knot,        corner_cosine,  stray,  angle_step, angle_miss,  plan_step};
+           },
+           nb::kw_only(), "turn_cosine"_a, "turn"_a, "bend"_a, "jump"_a, "infill"_a, "longest_step"_a, "least_step"_a,
+           "most_steps"_a, "tight"_a, "coarse"_a, "accept"_a, "pivot"_a, "iterations"_a, "same_line"_a, "knot"_a,
+           "corner_cosine"_a, "stray"_a, "angle_step"_a, "angle_miss"_a, "plan_step"_a);
+
+  nb::class_<Node>(m, "Node")
+      .def_ro("sigma", &Node::sigma)
+      .def_ro("correction", &Node::correction)
+      .def_prop_ro("inputs", &member<&Node::inputs>)
+      .def_prop_ro("state", &member<&Node::state>)
+      .def_prop_ro("first", &member<&Node::first>)
+      .def_prop_ro("second", &member<&Node::second>)
+      .def_prop_ro("side", &member<&Node::side>)
+      .def_prop_ro("pivot", &member<&Node::pivot>)
+      .def_prop_ro("jacobian", &member<&Node::jacobian>)
+      .def_prop_ro("turn", &member<&Node::turn>);
+
+  nb::class_<OwnedStepper>(m, "Stepper")
+      .def_static("straight", &straight, "plan"_a, "inputs"_a, "direction"_a, "limits"_a, nb::keep_alive<0, 1>())
+      .def_static("along", &along, "plan"_a, "at"_a, "varies"_a, "limits"_a)
+      .def("close", &close_at, "sigma"_a, "guess"_a)
+      .def("predict", [](const OwnedStepper& s, const Node& node, double h) {
+             need_node(s, node);
+             Numbers guess;
+             s.stepper->predict(node, h, &guess);
+             return copied(guess);
+           }, "node"_a, "h"_a)
+      .def("judge", [](const OwnedStepper& s, const Node& a, const Node& b) {
+             need_node(s, a), need_node(s, b);
+             return s.stepper->judge(a, b);
+           }, "a"_a, "b"_a)
+      .def("step", &step_from, "node"_a, "h"_a)
+      .def("wanted_step", [](const OwnedStepper& s, const Node& node) {
+             need_node(s, node);
+             return s.stepper->wanted_step(node);
+           }, "node"_a);
+
+  m.def("closing_turns", &turn_table, "plan"_a);
+  m.def("follow_rows", &follow_table, "plan"_a, "inputs"_a, "start"_a, "turn"_a, "every_row"_a, "limits"_a, "guess"_a,
+        "limit"_a, "turns"_a.none());
+}

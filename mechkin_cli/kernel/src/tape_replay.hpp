@@ -1,0 +1,93 @@
+// The replay of a tape in lanes: one set of inputs per lane, every operation the IEEE one or the kernel's own.
+#pragma once
+
+#include "elementary.hpp"
+#include "tape.hpp"
+
+namespace {
+
+MECHKIN_INLINE Pack as_number(Mask m) { return select(m, Pack(1.0), Pack(0.0)); }
+
+// 2^n with a / 2^n in (0.7, 1.4]; nan where a is not a positive number.
+MECHKIN_INLINE Pack next_power_of_two(Pack a) {
+  // numbers below the normal range are scaled into it first
+  const Mask tiny = a < Pack(0x1p-1000);
+  const Pack x = select(tiny, a * Pack(0x1p600), a);
+  const Words exponent = bits(x) & (Words{} + 0x7ff0000000000000);
+  const Pack below = from_bits(exponent);  // 2^(e-1) for x = m 2^e
+  const Pack mantissa = from_bits((bits(x) & (Words{} + 0x000fffffffffffff)) | (Words{} + 0x3fe0000000000000));
+  const Pack power = select(mantissa > Pack(0.7), below + below, below);
+  const Mask proper = (a > Pack(0.0)) & (a < Pack(__builtin_inf()));
+  return select(proper, select(tiny, power * Pack(0x1p-600), power), Pack(__builtin_nan("")));
+}
+
+MECHKIN_INLINE Mask tape_condition(int operation, Pack a, Pack b) {
+  return operation == TAPE_LESS ? a < b : operation == TAPE_NOT_MORE ? a <= b : a == b;
+}
+
+void replay_pack(const Tape& t, Pack* r) {
+  Pack* result = r + t.inputs + t.constants;
+  const std::int32_t* o = t.operand;
+  for (int i = 0; i < t.instructions; ++i, o += 3) {
+    const Pack a = r[o[0]], b = r[o[1]];
+    switch (t.operation[i]) {
+      case TAPE_ADD: result[i] = a + b; break;
+      case TAPE_SUBTRACT: result[i] = a - b; break;
+      case TAPE_MULTIPLY: result[i] = a * b; break;
+      case TAPE_DIVIDE: result[i] = a / b; break;
+      case TAPE_NEGATE: result[i] = -a; break;
+      case TAPE_MAGNITUDE: result[i] = abs(a); break;
+      case TAPE_SQUARE_ROOT: result[i] = sqrt(a); break;
+      case TAPE_LARGER: result[i] = select(b > a, b, a); break;
+      case TAPE_SMALLER: result[i] = select(b < a, b, a); break;
+      case TAPE_CHOOSE: result[i] = select(a == Pack(0.0), r[o[2]], b); break;
+      case TAPE_LESS: result[i] = as_number(a < b); break;
+      case TAPE_NOT_MORE: result[i] = as_number(a <= b); break;
+      case TAPE_EQUAL: result[i] = as_number(a == b); break;
+      case TAPE_POWER_OF_TWO: result[i] = next_power_of_two(a); break;
+      case TAPE_WHOLE: result[i] = nearest_integer(a); break;
+      case TAPE_SIN: result[i] = sin(a); break;
+      case TAPE_COS: result[i] = cos(a); break;
+      case TAPE_TAN: result[i] = tan(a); break;
+      case TAPE_ASIN: result[i] = asin(a); break;
+      case TAPE_ACOS: result[i] = acos(a); break;
+      case TAPE_ATAN: result[i] = atan(a); break;
+      case TAPE_ATAN2: result[i] = atan2(a, b); break;
+      case TAPE_EXP: result[i] = exp(a); break;
+      case TAPE_LOG: result[i] = log(a); break;
+      case TAPE_POWER: result[i] = pow(a, b); break;
+      default: result[i] = Pack(__builtin_nan("")); break;
+    }
+  }
+}
+
+long replay_size(const Tape& t) { return (long)sizeof(Pack) * t.registers() + 64; }
+
+// Lanes beyond the last set of inputs repeat it.
+void replay(const Tape& t, const TapeRequest& request, char* memory) {
+  Pack* const r = (Pack*)(memory + (64 - (std::uintptr_t)memory % 64) % 64);
+  for (int c = 0; c < t.constants; ++c) r[t.inputs + c] = t.constant[c];
+  for (long first = 0; first < request.count; first += LANES) {
+    const int count = request.count - first < LANES ? (int)(request.count - first) : LANES;
+    for (int k = 0; k < t.inputs; ++k) {
+      double values[LANES];
+      for (int i = 0; i < LANES; ++i) values[i] = request.inputs[k * request.count + first + (i < count ? i : count - 1)];
+      r[k] = load(values);
+    }
+    replay_pack(t, r);
+    Mask same = all_lanes(true), advised = all_lanes(true);
+    for (int g = 0; g < t.guards; ++g) {
+      const std::int32_t* const guard = t.guard + 3 * g;
+      const Mask found = tape_condition(guard[0], r[guard[1]], r[guard[2]]);
+      Mask& holds = t.advice[g] ? advised : same;
+      holds = holds & (t.expected[g] ? found : ~found);
+    }
+    for (int i = 0; i < count; ++i) {
+      double* const out = request.outputs + (first + i) * t.outputs;
+      for (int k = 0; k < t.outputs; ++k) out[k] = ((const double*)(r + t.output[k]))[i];
+      request.verdict[first + i] = !lane(same, i) ? TAPE_OTHER_WAY : lane(advised, i) ? TAPE_SAME : TAPE_OTHER_ADVICE;
+    }
+  }
+}
+
+}  // namespace

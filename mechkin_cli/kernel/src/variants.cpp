@@ -1,0 +1,268 @@
+#include "variants.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "dimension_path.hpp"
+#include "threads.hpp"
+#include "units.hpp"
+
+namespace {
+
+constexpr double FULL_TURN = 2.0 * 3.14159265358979323846;
+constexpr long VARIANTS_AT_A_TIME = 16;
+
+void require(bool condition, const char* message) {
+  if (!condition) throw std::invalid_argument(message);
+}
+
+// What one thread works with; allocated once a call.
+class Worker {
+ public:
+  Worker(const Tape& tape, const FrozenPlan& plan, const OutputList& outputs, const VariantBase& base,
+         const KernelUnit& wide)
+      : tape_(tape), base_(base), wide_(wide), narrow_(*kernel_unit(2)), plan_(plan), outputs_(outputs),
+        constants_((long)plan.constants()), moving_(constants_ + (long)outputs.constants()),
+        moves_(tape.outputs > moving_),
+        path_(tape, wide, base.parameters.data(), &plan_, moves_ ? nullptr : first_inputs(), moving_ + base.start_row,
+              base.rows),
+        memory_(std::max(wide.workspace_size(plan.view()), narrow_.workspace_size(plan.view()))),
+        replay_memory_(wide.replay_size(tape)), guess_(plan.view().states * base.rows), way_(guess_.size()),
+        limit_(base.rows), way_limit_(base.rows), correction_(base.rows), orientation_(base.rows), flags_(base.rows),
+        way_inputs_(plan.view().inputs * base.rows) {
+    for (const ClosingTurn& t : closing_turns(plan.view(), narrow_)) turn_slots_ += t.width;
+    if (!base.angles.empty()) turn_.resize(turn_slots_ * base.rows), way_turn_.resize(turn_.size());
+  }
+
+  // Variants [begin, end) of `count`.
+  void run(long begin, long end, long count, const double* parameters, const VariantArrays& out) {
+    const int given = tape_.inputs;
+    const long number = end - begin;
+    parameters_.resize(number * given), by_tape_.resize(number * given);
+    for (long v = 0; v < number; ++v)
+      for (int k = 0; k < given; ++k)
+        by_tape_[k * number + v] = parameters_[v * given + k] = parameters[k * count + begin + v];
+    replayed_.resize(number * tape_.outputs), verdict_.resize(number);
+    wide_.replay(tape_, {number, by_tape_.data(), replayed_.data(), verdict_.data()}, replay_memory_.data());
+    for (long v = 0; v < number; ++v) {
+      const VariantEnd ended = verdict_[v] == TAPE_OTHER_WAY
+                                   ? VariantEnd::other_way
+                                   : one(&parameters_[v * given], &replayed_[v * tape_.outputs], begin + v, out);
+      out.end[begin + v] = (int)ended;
+      if (ended != VariantEnd::complete) clear(begin + v, out);
+    }
+  }
+
+  VariantStart start(const double* parameters) {
+    VariantStart found = {VariantEnd::other_way, 0.0, {}};
+    replayed_.resize(tape_.outputs), verdict_.resize(1);
+    wide_.replay(tape_, {1, parameters, replayed_.data(), verdict_.data()}, replay_memory_.data());
+    if (verdict_[0] == TAPE_OTHER_WAY) return found;
+    found.end = assemble(parameters, replayed_.data()) ? VariantEnd::complete : VariantEnd::lost;
+    found.size = plan_.view().size, found.state = state_;
+    return found;
+  }
+
+ private:
+  const double* first_inputs() {
+    for (int i = 0; i < plan_.view().inputs; ++i) start_inputs_.push_back(base_.inputs[i * base_.rows + base_.start_row]);
+    return start_inputs_.data();
+  }
+
+  // Nothing of what a variant left behind that did not end well.
+  void clear(long number, const VariantArrays& out) const {
+    const long rows = base_.rows, cells = rows * outputs_.view().slots;
+    const double nothing = __builtin_nan("");
+    std::fill_n(out.outputs + number * cells, cells, nothing);
+    std::fill_n(out.residual + number * rows, rows, nothing);
+    std::fill_n(out.condition + number * rows, rows, nothing);
+  }
+
+  VariantEnd one(const double* parameters, const double* replayed, long number, const VariantArrays& out) {
+    if (!assemble(parameters, replayed)) return VariantEnd::lost;
+    if (!outputs_.assign(replayed + constants_)) return VariantEnd::other_way;
+    const long rows = base_.rows, table = (long)plan_.view().inputs * rows;
+    const double* const moved = replayed + moving_;
+    const double* const inputs = moves_ ? moved : base_.inputs.data();
+    if (!follow_all(inputs)) return VariantEnd::incomplete;
+    wrap_from_first();
+    Request r = {};
+    r.rows = rows;
+    r.inputs = inputs;
+    r.rates = moves_ ? moved + table : base_.rates.data();
+    r.accelerations = moves_ ? moved + 2 * table : base_.accelerations.data();
+    r.jerks = moves_ ? moved + 3 * table : base_.jerks.data();
+    r.guess = guess_.data();
+    r.wanted = outputs_.view();
+    r.outputs = out.outputs + number * (long)r.wanted.slots * rows;
+    r.residual = out.residual + number * rows, r.condition = out.condition + number * rows;
+    r.correction = correction_.data(), r.orientation = orientation_.data(), r.flags = flags_.data();
+    r.demand = base_.demand;
+    r.iterations = base_.iterations;
+    r.tight = base_.following.tight, r.coarse = base_.following.coarse, r.accept = base_.following.accept;
+    std::fill(orientation_.begin(), orientation_.end(), 1.0);
+    wide_.run(plan_.view(), r, memory_.data());
+    for (long row = 0; row < rows; ++row)
+      if (flags_[row] || orientation_[row] != orientation_[0] || !(correction_[row] <= limit_[row]))
+        return VariantEnd::incomplete;
+    unwrap_angles(r.outputs);
+    if (!(r.demand & DEMAND_CONDITION)) std::fill_n(r.condition, rows, __builtin_nan(""));
+    return VariantEnd::complete;
+  }
+
+  // The plan with the variant's constants and size, and its first assembly in `state_`.
+  bool assemble(const double* parameters, const double* replayed) {
+    if (std::memcmp(parameters, base_.parameters.data(), sizeof(double) * tape_.inputs) == 0) {
+      state_ = base_.state;
+      return plan_.assign(replayed) && plan_.assign_size(base_.size);
+    }
+    const double d = base_.continuation.plan_step;
+    path_.aim(parameters, {0.0, d, 2.0 * d, 1.0, 1.0 - d, 1.0 - 2.0 * d});
+    Stepper stepper(path_, narrow_, base_.continuation);
+    Node node;
+    if (!follow_to_target(stepper, base_.state.data(), &node)) return false;
+    state_ = node.state;
+    return plan_.assign(replayed) && plan_.assign_size(size_at_start(replayed));
+  }
+
+  // Diagonal of the box of all joint points, in m; 1 if they coincide.
+  double size_at_start(const double* replayed) {
+    const Plan& p = plan_.view();
+    std::vector<double> points(3 * p.size_points), inputs(p.inputs);
+    for (int i = 0; i < p.inputs; ++i)
+      inputs[i] = moves_ ? replayed[moving_ + i * base_.rows + base_.start_row] : start_inputs_[i];
+    double residual, correction;
+    unsigned char flags;
+    Request r = {};
+    r.rows = 1;
+    r.inputs = inputs.data(), r.guess = state_.data();
+    r.wanted = {p.size_points, 3 * p.size_points, p.size_point};
+    r.outputs = points.data();
+    r.residual = &residual, r.correction = &correction, r.flags = &flags;
+    r.iterations = base_.iterations;
+    r.tight = base_.following.tight, r.coarse = base_.following.coarse, r.accept = base_.following.accept;
+    narrow_.run(p, r, memory_.data());
+    double square = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      double low = HUGE_VAL, high = -HUGE_VAL;
+      for (int k = 0; k < p.size_points; ++k) {
+        // a point of ground is given in m
+        const double x = p.size_point[k].index < 0 ? p.size_point[k].data[axis] : points[3 * k + axis];
+        low = std::fmin(low, x), high = std::fmax(high, x);
+      }
+      if (p.size_points) square += (high - low) * (high - low);
+    }
+    const double size = std::sqrt(square);
+    return size > 0.0 ? size : 1.0;
+  }
+
+  // Guesses of all rows, both ways from the start's.
+  bool follow_all(const double* inputs) {
+    const long rows = base_.rows, start = base_.start_row;
+    if (start && !follow_way(inputs, start, -1, start + 1)) return false;
+    return follow_way(inputs, start, 1, rows - start);
+  }
+
+  bool follow_way(const double* inputs, long first, long direction, long count) {
+    const Plan& p = plan_.view();
+    const long rows = base_.rows;
+    for (int i = 0; i < p.inputs; ++i)
+      for (long k = 0; k < count; ++k) way_inputs_[i * count + k] = inputs[i * rows + first + direction * k];
+    const RowGuesses guesses = {count, way_.data(), way_limit_.data(), way_turn_.empty() ? nullptr : way_turn_.data()};
+    const Followed found = follow_rows(p, narrow_, way_inputs_.data(), state_.data(), {}, false, base_.following, guesses);
+    if (found.end != TrackEnd::finished) return false;
+    const auto put = [&](const std::vector<double>& from, long columns, std::vector<double>* to) {
+      for (long c = 0; c < columns; ++c)
+        for (long k = 0; k < count; ++k) (*to)[c * rows + first + direction * k] = from[c * count + k];
+    };
+    put(way_, p.states, &guess_), put(way_limit_, 1, &limit_);
+    if (!way_turn_.empty()) put(way_turn_, turn_slots_, &turn_);
+    return true;
+  }
+
+  // Unknown turns are continuous from the first row, which lies in (-pi, pi]; threads keep theirs.
+  void wrap_from_first() {
+    const Plan& p = plan_.view();
+    for (int k = 0; k < p.links; ++k) {
+      const TreeJoint& j = p.joints[k];
+      if ((j.type != TREE_R && j.type != TREE_C) || p.column_block[j.column] < 0) continue;
+      double* const row = guess_.data() + j.state * base_.rows;
+      const double turns = std::ceil((row[0] - 0.5 * FULL_TURN) / FULL_TURN);
+      const double shift = (row[0] - turns * FULL_TURN) - row[0];
+      if (shift == 0.0) continue;
+      for (long r = 0; r < base_.rows; ++r) row[r] += shift;
+    }
+  }
+
+  // Angles of closing joints without jumps by whole turns, as given in the first row.
+  void unwrap_angles(double* outputs) const {
+    for (const ClosingAngle& a : base_.angles) {
+      double* const value = outputs + a.slot * base_.rows;
+      const double* const followed = turn_.data() + a.turn * base_.rows;
+      const double first = std::rint((value[0] - followed[0]) / FULL_TURN);
+      for (long r = 0; r < base_.rows; ++r)
+        value[r] -= (std::rint((value[r] - followed[r]) / FULL_TURN) - first) * FULL_TURN;
+    }
+  }
+
+  const Tape& tape_;
+  const VariantBase& base_;
+  const KernelUnit &wide_, &narrow_;
+  FrozenPlan plan_;
+  OutputList outputs_;
+  std::vector<double> start_inputs_;
+  const long constants_, moving_;
+  const bool moves_;
+  DimensionPath path_;
+  std::vector<char> memory_, replay_memory_;
+  std::vector<double> guess_, way_, limit_, way_limit_, correction_, orientation_;
+  std::vector<unsigned char> flags_;
+  std::vector<double> way_inputs_, turn_, way_turn_, state_;
+  std::vector<double> parameters_, by_tape_, replayed_;
+  std::vector<std::uint8_t> verdict_;
+  long turn_slots_ = 0;
+};
+
+}  // namespace
+
+Variants::Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputList& outputs, VariantBase base)
+    : tape_(tape), plan_(plan), outputs_(outputs), base_(std::move(base)) {
+  const Tape& t = tape.view();
+  const Plan& p = plan.view();
+  const std::size_t table = (std::size_t)p.inputs * base_.rows;
+  const std::size_t constants = plan.constants() + outputs.constants();
+  require(outputs.fits(plan), "outputs: of a plan with another structure");
+  require((int)base_.parameters.size() == t.inputs, "parameters: one for each input of the tape");
+  require((std::size_t)t.outputs == constants || (std::size_t)t.outputs == constants + 4 * table,
+          "the tape does not give the constants of plan and outputs");
+  require(base_.rows > 0 && base_.start_row >= 0 && base_.start_row < base_.rows, "rows: none, or no start among them");
+  for (const auto* values : {&base_.inputs, &base_.rates, &base_.accelerations, &base_.jerks})
+    require(values->size() == table, "inputs: wrong shape");
+  require((int)base_.state.size() == p.states, "state: wrong length");
+  require(base_.size > 0.0 && std::isfinite(base_.size), "size: not positive");
+  require(!(outputs.demand() & ~base_.demand), "the outputs need more than is demanded");
+  require(!(base_.demand & DEMAND_FORCES) || p.load_values == 0, "loads that vary by row have no place here");
+  require(!(base_.demand & DEMAND_POWER), "no place for the power error");
+  int turns = 0;
+  for (const ClosingTurn& turn : closing_turns(p, *kernel_unit(2))) turns += turn.width;
+  for (const ClosingAngle& a : base_.angles)
+    require(a.slot >= 0 && a.slot < outputs.view().slots && a.turn >= 0 && a.turn < turns, "angles: unknown slot");
+}
+
+void Variants::run(long count, const double* parameters, const KernelUnit& unit, int threads,
+                   const VariantArrays& out) const {
+  std::vector<std::unique_ptr<Worker>> workers;
+  for (int k = 0; k < threads; ++k)
+    workers.push_back(std::make_unique<Worker>(tape_.view(), plan_, outputs_, base_, unit));
+  over_rows(count, VARIANTS_AT_A_TIME, threads, [&](long begin, long end, int thread) {
+    workers[thread]->run(begin, end, count, parameters, out);
+  });
+}
+
+VariantStart Variants::start(const double* parameters) const {
+  return Worker(tape_.view(), plan_, outputs_, base_, *kernel_unit(2)).start(parameters);
+}

@@ -1,0 +1,252 @@
+"""A session under varied parameters: its plan, outputs and inputs as tapes.
+
+Constants of plan and outputs, and the inputs where they depend on a parameter, are replayed; graph,
+structure and length unit stay the base's. A variant starts from the base's first assembly, along
+the straight line in the parameters (kernel/src/variants.hpp).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.expressions import Quantity
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.kernel.width import width
+from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import OutputPlan, Slot
+from mechkin_cli.solver.inputs import KernelInputs, kernel_inputs
+from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.plan import plan_records
+from mechkin_cli.solver.records import flatten
+from mechkin_cli.solver.same_structure import graph_of
+from mechkin_cli.solver.stepping import step_limits
+from mechkin_cli.tape.native import compiled, replay
+from mechkin_cli.tape.nested import filled, traced_in
+from mechkin_cli.tape.rows import is_traced
+from mechkin_cli.tape.scalars import next_power_of_two
+from mechkin_cli.tape.tape import Verdict
+from mechkin_cli.tape.traced import TraceLost, register
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.solver.session import Session
+    from mechkin_cli.tape.recorder import Recorder
+
+
+class FirstAssembly(NamedTuple):
+    """Where the base stands: states at a row, and the mechanism's size there in m."""
+
+    state: Floats
+    row: int
+    size: float
+
+
+class Runs(NamedTuple):
+    """Variants by the kernel: outputs (variants, slots, rows) in SI, residual and condition
+    (variants, rows), and how each ended, codes of the kernel's `VariantEnd`; nan where not
+    complete."""
+
+    outputs: Floats
+    residual: Floats
+    condition: Floats
+    end: NDArray[np.int32]
+
+
+class Reading:
+    """Some quantities of all variants: where they stand, and the kernel's runs of them."""
+
+    def __init__(self, variation: Variation, wanted: tuple[Wanted, ...]) -> None:
+        base, layout = variation.base, variation.layout
+        self.variation = variation
+        self.readout = base.readout(wanted)
+        plan = OutputPlan(layout, base.plan, base.driven)
+        for quantity in wanted:
+            plan.add(quantity)
+        constants = [*variation.constants, *flatten(plan.records)]
+        self.tape = variation.tape([*constants, *variation.moving_inputs])
+        self.first = len(variation.constants)
+        self.last = len(constants)
+
+    @property
+    def slots(self) -> Mapping[str, Slot]:
+        """Where each quantity stands among the outputs."""
+        return self.readout.slots
+
+    def outputs(self, values: Floats) -> _kernel.Outputs:
+        """What a run of one variant writes."""
+        constants = replay(self.tape, values[:, None])[0][0]
+        return self.readout.outputs.with_constants(constants[self.first : self.last])
+
+    def runs(self, demand: Demand, start: FirstAssembly) -> _kernel.Variants:
+        """The kernel's variants of this reading."""
+        variation = self.variation
+        base = variation.base
+        turns = {(c, f): slot for c, f, slot, _ in _kernel.closing_turns(base.plan)}
+        return _kernel.Variants(
+            tape=self.tape,
+            plan=base.plan,
+            outputs=self.readout.outputs,
+            parameters=variation.values,
+            inputs=base.inputs.values,
+            rates=base.inputs.rates,
+            accelerations=base.inputs.accelerations,
+            jerks=base.inputs.jerks,
+            state=np.ascontiguousarray(start.state),
+            size=start.size,
+            start_row=start.row,
+            demand=int(demand),
+            iterations=tolerances.NEWTON_ITERATIONS,
+            continuation=step_limits(longest_step=tolerances.LONGEST_DIMENSION_STEP),
+            following=step_limits(),
+            angles=variation.closing_angles(self.slots, turns),
+        )
+
+
+class Variation:
+    """How a session depends on some parameters.
+
+    Args:
+        base: the session with the file's own parameters.
+        recorder: that holds the parameters as inputs.
+        problem: the session's problem with recorded numbers.
+
+    Raises:
+        TraceLost: the plan depends on a parameter in a way that no tape holds.
+    """
+
+    def __init__(self, base: Session, recorder: Recorder, problem: Problem) -> None:
+        self.base = base
+        self.recorder = recorder
+        self.recorded = problem
+        self.values = np.array(recorder.values[: len(recorder.inputs)])
+        self.layout = Layout(
+            problem.mechanism, graph_of(problem.mechanism, base.graph), base.layout.length
+        )
+        self._refuse_other_scale(problem)
+        self.constants = flatten(plan_records(self.layout))
+        inputs = kernel_inputs(problem, self.layout)
+        self.moving_inputs = _flat(inputs) if any(map(is_traced, inputs)) else []
+        self._readings: dict[tuple[str, ...], Reading] = {}
+
+    def _refuse_other_scale(self, problem: Problem) -> None:
+        """The length unit stays the base's as long as it is not far from the variant's own."""
+        unit = self.base.layout.length
+        own = next_power_of_two(problem.mechanism.box_diagonal())
+        if not (0.5 * unit <= own and own <= 2.0 * unit):
+            raise TraceLost("the length unit is another")
+
+    def tape(self, numbers: Iterable[Any]) -> _kernel.Tape:
+        """The tape from the parameters to some numbers of the recording."""
+        return compiled(self.recorder.tape(register(self.recorder, n) for n in numbers))
+
+    def reading(self, wanted: Iterable[Wanted]) -> Reading:
+        """The reading of some quantities; kept."""
+        wanted = tuple(wanted)
+        key = tuple(quantity.name for quantity in wanted)
+        if key not in self._readings:
+            self._readings[key] = Reading(self, wanted)
+        return self._readings[key]
+
+    def verdicts(self, values: Floats) -> NDArray[np.uint8]:
+        """What the guards say of parameters (parameters, variants), in SI."""
+        return replay(self._plan_tape, values)[1]
+
+    @cached_property
+    def _plan_tape(self) -> _kernel.Tape:
+        return self.tape([*self.constants, *self.moving_inputs])
+
+    @cached_property
+    def _parameter_tape(self) -> _kernel.Tape:
+        return self.tape(q.value for q in self.recorded.parameters.values())
+
+    @cached_property
+    def _mechanism_tape(self) -> _kernel.Tape:
+        return self.tape(traced_in(self._mechanism))
+
+    @property
+    def _mechanism(self) -> tuple[Any, ...]:
+        return (self.recorded.mechanism, self.recorded.assembly, self.recorded.motion)
+
+    def parameters(self, values: Floats) -> Floats:
+        """All parameters of the file (parameters, variants) in SI, in the file's order."""
+        found: Floats = replay(self._parameter_tape, values)[0].T
+        return found
+
+    def problem(self, values: Floats) -> Problem:
+        """The problem of one variant, as building it would give it."""
+        numbers = self.parameters(values[:, None])[:, 0].tolist()
+        parameters = {
+            name: Quantity(number, quantity.dimension)
+            for (name, quantity), number in zip(
+                self.recorded.parameters.items(), numbers, strict=True
+            )
+        }
+        leaves = iter(replay(self._mechanism_tape, values[:, None])[0][0].tolist())
+        mechanism, assembly, motion = filled(self._mechanism, leaves)
+        problem = replace(
+            self.base.problem,
+            mechanism=mechanism,
+            assembly=assembly,
+            motion=motion,
+            parameters=parameters,
+        )
+        known = self.base.problem.quantities()
+        problem.__dict__["_quantities"] = known
+        return problem
+
+    def plan(self, values: Floats, size: float) -> _kernel.Plan:
+        """The plan of one variant; residual and condition in parts of `size` (m)."""
+        constants = replay(self._plan_tape, values[:, None])[0][0]
+        count = len(self.constants)
+        return self.base.plan.with_constants(constants[:count]).with_size(size)
+
+    def inputs(self, values: Floats) -> KernelInputs:
+        """The inputs of one variant."""
+        base = self.base.inputs
+        if not self.moving_inputs:
+            return base
+        numbers = replay(self._plan_tape, values[:, None])[0][0][len(self.constants) :]
+        return KernelInputs(*numbers.reshape((4, *base.values.shape)))
+
+    def closing_angles(
+        self, slots: Mapping[str, Slot], turns: Mapping[tuple[int, int], int]
+    ) -> list[tuple[int, int]]:
+        """(slot, turn) of the outputs that are angles of closing joints."""
+        found = []
+        known = self.base.problem.quantities()
+        for name, slot in slots.items():
+            quantity = known[name]
+            if quantity.kind != "coordinate" or quantity.order:
+                continue
+            joint = self.layout.mechanism.joints[quantity.owner]
+            place = self.layout.joint_reference[quantity.owner]
+            freedom = joint.type.freedom_of[quantity.coordinate]
+            if place < 0 and (-1 - place, freedom) in turns:
+                found.append((slot.first, turns[-1 - place, freedom]))
+        return found
+
+
+def run_variants(
+    variants: _kernel.Variants, values: Floats, lanes: int = 0, threads: int = 1
+) -> Runs:
+    """Runs parameters (parameters, variants) in SI."""
+    values = np.ascontiguousarray(values, dtype=np.float64)
+    return Runs(*variants.run(values, width(lanes), threads))
+
+
+def _flat(tables: Sequence[Any]) -> list[Any]:
+    return [number for table in tables for number in table.flat]
+
+
+Started = Callable[[Floats], tuple[int, float, "Floats"]]
+SAME, OTHER_ADVICE, OTHER_WAY = Verdict

@@ -1,0 +1,168 @@
+"""A scalar that writes down what is computed with it.
+
+It is no float and does not become one: code that would lose the trace (float(), a format, a truth
+value, an array of floats) raises `TraceLost`, so that nothing passes for a constant that is none.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NoReturn
+
+from mechkin_cli.tape.operations import Operation
+
+if TYPE_CHECKING:
+    from mechkin_cli.tape.recorder import Recorder
+
+
+class TraceLost(TypeError):
+    """A number depends on a recorded one in a way that no tape holds; the message says which."""
+
+
+class Condition:
+    """A comparison of which no code has taken note yet.
+
+    As a truth value it becomes a guard; `choose` keeps both ways on the tape.
+    """
+
+    __slots__ = ("left", "negated", "operation", "recorder", "right")
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(
+        self, recorder: Recorder, operation: Operation, left: int, right: int, negated: bool = False
+    ) -> None:
+        self.recorder, self.operation = recorder, operation
+        self.left, self.right, self.negated = left, right, negated
+
+    def __bool__(self) -> bool:
+        return self.recorder.guard(self.operation, self.left, self.right) is not self.negated
+
+    def choose(self, chosen: float | Traced, other: float | Traced) -> Traced:
+        """`chosen` where the condition holds, else `other`."""
+        if self.negated:
+            chosen, other = other, chosen
+        recorder = self.recorder
+        holds = recorder.compute(self.operation, self.left, self.right)
+        registers = (register(recorder, chosen), register(recorder, other))
+        return Traced(recorder, recorder.compute(Operation.CHOOSE, holds, *registers))
+
+
+class Traced:
+    """A register of a recorder."""
+
+    __slots__ = ("recorder", "register")
+    __hash__ = None  # type: ignore[assignment]
+    __array_ufunc__ = None
+
+    def __init__(self, recorder: Recorder, register: int) -> None:
+        self.recorder, self.register = recorder, register
+
+    @property
+    def recorded(self) -> float:
+        """The value when it was recorded."""
+        return self.recorder.values[self.register]
+
+    def __add__(self, other: float | Traced) -> Traced:
+        return self._with(Operation.ADD, other)
+
+    def __radd__(self, other: float) -> Traced:
+        return self._after(Operation.ADD, other)
+
+    def __sub__(self, other: float | Traced) -> Traced:
+        return self._with(Operation.SUBTRACT, other)
+
+    def __rsub__(self, other: float) -> Traced:
+        return self._after(Operation.SUBTRACT, other)
+
+    def __mul__(self, other: float | Traced) -> Traced:
+        return self._with(Operation.MULTIPLY, other)
+
+    def __rmul__(self, other: float) -> Traced:
+        return self._after(Operation.MULTIPLY, other)
+
+    def __truediv__(self, other: float | Traced) -> Traced:
+        if isinstance(other, Traced):
+            other._refuse_zero()
+        elif other == 0.0:
+            raise ZeroDivisionError("float division by zero")
+        return self._with(Operation.DIVIDE, other)
+
+    def __rtruediv__(self, other: float) -> Traced:
+        self._refuse_zero()
+        return self._after(Operation.DIVIDE, other)
+
+    def __neg__(self) -> Traced:
+        return self.apply(Operation.NEGATE)
+
+    def __abs__(self) -> Traced:
+        return self.apply(Operation.MAGNITUDE)
+
+    def __lt__(self, other: float | Traced) -> Condition:
+        return self._compared(Operation.LESS, other)
+
+    def __le__(self, other: float | Traced) -> Condition:
+        return self._compared(Operation.NOT_MORE, other)
+
+    def __gt__(self, other: float | Traced) -> Condition:
+        return self._compared(Operation.LESS, other, turned=True)
+
+    def __ge__(self, other: float | Traced) -> Condition:
+        return self._compared(Operation.NOT_MORE, other, turned=True)
+
+    def __eq__(self, other: object) -> Condition:  # type: ignore[override]
+        return self._compared(Operation.EQUAL, other)
+
+    def __ne__(self, other: object) -> Condition:  # type: ignore[override]
+        return self._compared(Operation.EQUAL, other, negated=True)
+
+    def apply(self, operation: Operation, *others: float | Traced) -> Traced:
+        """The operation on this number first, then on others."""
+        registers = (register(self.recorder, other) for other in others)
+        result = self.recorder.compute(operation, self.register, *registers)
+        return Traced(self.recorder, result)
+
+    def _with(self, operation: Operation, other: float | Traced) -> Traced:
+        return self.apply(operation, other)
+
+    def _after(self, operation: Operation, other: float) -> Traced:
+        first = register(self.recorder, other)
+        return Traced(self.recorder, self.recorder.compute(operation, first, self.register))
+
+    def _compared(
+        self, operation: Operation, other: object, *, turned: bool = False, negated: bool = False
+    ) -> Condition:
+        left, right = self.register, register(self.recorder, other)
+        if turned:
+            left, right = right, left
+        return Condition(self.recorder, operation, left, right, negated)
+
+    def _refuse_zero(self) -> None:
+        """A division by zero ends the code with an error."""
+        if self == 0.0:
+            raise ZeroDivisionError("float division by zero")
+
+    def _lost(self, *_: object) -> NoReturn:
+        raise TraceLost("a number that depends on a varied parameter is used as a plain number")
+
+    __float__ = __int__ = __index__ = __bool__ = __complex__ = _lost
+    __round__ = __trunc__ = __floor__ = __ceil__ = _lost
+    __format__ = __str__ = __array__ = _lost
+    __pow__ = __rpow__ = __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = _lost
+    __copy__ = __deepcopy__ = __reduce__ = _lost
+
+    def __repr__(self) -> str:
+        return f"Traced({self.recorded!r})"
+
+
+def register(recorder: Recorder, value: object) -> int:
+    """The register of a traced number or of a constant.
+
+    Raises:
+        TraceLost: something else, or a number of another recording.
+    """
+    if isinstance(value, Traced):
+        if value.recorder is not recorder:
+            raise TraceLost("numbers of two recordings meet")
+        return value.register
+    if isinstance(value, float | int):
+        return recorder.constant(float(value))
+    raise TraceLost(f"a varied number meets {type(value).__name__}")

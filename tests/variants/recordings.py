@@ -1,0 +1,102 @@
+"""Recordings of mechanism files, and every number of what is built from them in one list."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mechkin_cli.building.build import Built, build
+from mechkin_cli.building.recording import record
+from mechkin_cli.building.source import open_file
+from mechkin_cli.expressions import Quantity
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.solver.graph import SolverGraph
+from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.plan import describe
+from mechkin_cli.solver.plan_image import PlanImage
+from mechkin_cli.solver.same_structure import graph_of
+from mechkin_cli.tape.native import compiled
+from mechkin_cli.tape.tape import Tape
+from mechkin_cli.tape.traced import Traced, register
+
+MECHANISMS = Path(__file__).parents[2] / "mechanisms"
+WITH_PARAMETERS = [
+    path.stem
+    for path in sorted(MECHANISMS.glob("*.yaml"))
+    if "\nparameters:" in path.read_text(encoding="utf-8")
+]
+
+
+def base_of(stem: str) -> Built:
+    return build(open_file(MECHANISMS / f"{stem}.yaml"))
+
+
+def parameters_of(built: Built) -> dict[str, float]:
+    return {name: quantity.value for name, quantity in built.problem.parameters.items()}
+
+
+def built_anew(base: Built, values: Mapping[str, float]) -> Built:
+    """By the ordinary path."""
+    known = base.problem.parameters
+    return build(base.read, {n: Quantity(float(v), known[n].dimension) for n, v in values.items()})
+
+
+def numbers_in(value: Any) -> Iterator[Any]:
+    """Every number of some nested data, in a fixed order; whole numbers are structure."""
+    if isinstance(value, float | Traced):
+        yield value
+    elif isinstance(value, np.ndarray):
+        if value.dtype in (np.float64, object):
+            yield from value.flat
+    elif isinstance(value, Mapping):
+        for key in value:
+            yield from numbers_in(value[key])
+    elif isinstance(value, tuple | list):
+        for item in value:
+            yield from numbers_in(item)
+    elif is_dataclass(value):
+        for field in fields(value):
+            if field.name not in ("units", "diagnostics", "load_laws", "dimension"):
+                yield from numbers_in(getattr(value, field.name))
+
+
+def image_of(problem: Problem, graph: SolverGraph) -> PlanImage:
+    layout = Layout(problem.mechanism, graph)
+    image = PlanImage(layout.length, layout.origin, problem.mechanism.box_diagonal())
+    describe(layout, image)  # type: ignore[arg-type]
+    return image
+
+
+def everything(problem: Problem, graph: SolverGraph) -> list[Any]:
+    """All numbers of the problem, then all constants of its plan."""
+    return [*numbers_in(problem), *image_of(problem, graph).constants]
+
+
+@cache
+def tape_of(stem: str) -> tuple[Built, Tape, Any]:
+    """A file, the tape from all its parameters to `everything`, and the same for the kernel."""
+    base = base_of(stem)
+    recording = record(base, list(base.problem.parameters))
+    problem = recording.problem
+    assert isinstance(base.graph, SolverGraph)
+    numbers = everything(problem, graph_of(problem.mechanism, base.graph))
+    tape = recording.recorder.tape(register(recording.recorder, number) for number in numbers)
+    return base, tape, compiled(tape)
+
+
+def near(base: Built, count: int, seed: int, spread: float = 0.05) -> np.ndarray:
+    """Values (parameters, count) about the file's own, which stand in the first column."""
+    own = np.array(list(parameters_of(base).values()))
+    generator = np.random.default_rng(seed)
+    values = own[:, None] * (1.0 + spread * generator.standard_normal((own.size, count)))
+    values[:, 0] = own
+    return values
+
+
+Native = _kernel.Tape

@@ -1,0 +1,154 @@
+"""A replay gives what building the file anew gives, bit for bit, or says that it does not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from variants.recordings import (
+    WITH_PARAMETERS,
+    built_anew,
+    everything,
+    image_of,
+    near,
+    parameters_of,
+    tape_of,
+)
+
+from mechkin_cli.building.build import Built, build
+from mechkin_cli.building.recording import record
+from mechkin_cli.building.source import open_text
+from mechkin_cli.diagnostics import InvalidFile
+from mechkin_cli.solver.graph import SolverGraph
+from mechkin_cli.tape.native import compiled, replay
+from mechkin_cli.tape.tape import Verdict
+from mechkin_cli.tape.traced import TraceLost
+
+COUNT = 25
+
+
+@pytest.mark.parametrize("stem", WITH_PARAMETERS)
+def test_replay_is_a_fresh_build(stem: str) -> None:
+    base, tape, native = tape_of(stem)
+    values = near(base, COUNT, seed=len(stem))
+    outputs, verdicts = replay(native, values)
+    assert verdicts[0] == Verdict.SAME
+    for k in range(COUNT):
+        named = dict(zip(tape.inputs, values[:, k], strict=True))
+        if verdicts[k] == Verdict.OTHER_WAY:
+            continue
+        fresh = built_anew(base, named)
+        assert isinstance(fresh.graph, SolverGraph)
+        expected = np.array(everything(fresh.problem, fresh.graph))
+        assert outputs[k].tobytes() == expected.tobytes()
+        warned = fresh.problem.diagnostics != base.problem.diagnostics
+        assert verdicts[k] == Verdict.OTHER_ADVICE or not warned
+
+
+@pytest.mark.parametrize("stem", WITH_PARAMETERS)
+def test_most_variants_are_replayed(stem: str) -> None:
+    """A guard that fails for no reason would cost a fresh build each time."""
+    base, _, native = tape_of(stem)
+    _, verdicts = replay(native, near(base, 400, seed=2))
+    assert np.count_nonzero(verdicts == Verdict.OTHER_WAY) <= 0.02 * verdicts.size
+
+
+def test_the_structure_of_the_plan_is_the_same() -> None:
+    base, tape, _ = tape_of("rcsr")
+    named = dict(zip(tape.inputs, near(base, 2, seed=9)[:, 1], strict=True))
+    fresh = built_anew(base, named)
+    assert isinstance(base.graph, SolverGraph)
+    assert isinstance(fresh.graph, SolverGraph)
+    one, other = image_of(base.problem, base.graph), image_of(fresh.problem, fresh.graph)
+    assert one.structure == other.structure
+    assert one.constants != other.constants
+
+
+def test_the_length_unit_follows_the_size() -> None:
+    """Dimensions three times as large: another power of two, found on the tape."""
+    base, tape, native = tape_of("rcsr")
+    lengths = [name for name in tape.inputs if not name.startswith("alpha")]
+    values = parameters_of(base)
+    tripled = values | {name: 3.0 * values[name] for name in lengths}
+    outputs, verdicts = replay(native, np.array(list(tripled.values()))[:, None])
+    fresh = built_anew(base, tripled)
+    assert isinstance(fresh.graph, SolverGraph)
+    assert verdicts[0] == Verdict.SAME
+    expected = np.array(everything(fresh.problem, fresh.graph))
+    assert outputs[0].tobytes() == expected.tobytes()
+
+
+def replayed(text: str, name: str, value: float) -> tuple[int, Built | None]:
+    """The verdict of a replay with another value, and the fresh build (None where it fails)."""
+    base = build(open_text(text, "text"))
+    recording = record(base, [name])
+    tape = recording.recorder.tape([0])
+    _, verdicts = replay(compiled(tape), np.array([[value]]))
+    try:
+        return int(verdicts[0]), built_anew(base, {name: value})
+    except InvalidFile:
+        return int(verdicts[0]), None
+
+
+CRANK = """
+format: 1
+units: {{length: m, angle: rad}}
+parameters: {{p: {value}}}
+links: {{crank: {{mass: {mass}, center_of_mass: [0, 0, 0]}}}}
+joints:
+  A: {{type: {type}, links: [ground, crank], point: [0, 0, 0], axis: [0, {axis}, 1]{more}}}
+motion: {{inputs: {{A.theta: {{{motion}}}}}}}
+"""
+
+
+def crank(**fields: str) -> str:
+    given = {"value": "1", "mass": "1", "type": "R", "axis": "0", "motion": "at: 1", "more": ""}
+    return CRANK.format(**(given | fields))
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        (crank(mass="p * 1 kg"), -1.0),
+        (crank(mass="1 kg/p"), 0.0),
+        (crank(mass="sqrt(p) * 1 kg"), -1.0),
+        (crank(mass="exp(p) * 1 kg"), 800.0),
+        (crank(mass="(log(p)+1) * 1 kg"), 0.0),
+        (crank(mass="p*1e50*1e40 * 1 kg"), 1e30),
+        (crank(type="H", more=", lead: p * 1 m"), 0.0),
+        (crank(more=", zero: {ground: [1, 0, 0], crank: [2 - p, 0, p - 1]}"), 2.0),
+    ],
+)
+def test_what_is_refused_is_no_replay(text: str, value: float) -> None:
+    """The ordinary path refuses it, so the guards must send it there."""
+    verdict, fresh = replayed(text, "p", value)
+    assert fresh is None
+    assert verdict == Verdict.OTHER_WAY
+
+
+def test_a_dropped_guard_is_noticed() -> None:
+    """Without its guards the tape of a negative mass would pass for a replay."""
+    base = build(open_text(crank(mass="p * 1 kg"), "text"))
+    recorder = record(base, ["p"]).recorder
+    tape = recorder.tape([0])
+    none = replace(tape, guards=tape.guards[:0], expected=tape.expected[:0], advice=tape.advice[:0])
+    for each, verdict in ((tape, Verdict.OTHER_WAY), (none, Verdict.SAME)):
+        assert replay(compiled(each), np.array([[-1.0]]))[1].tolist() == [verdict]
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"motion": "from: 0, to: p * 1 rad, step: 0.1"},
+        {"motion": "from: p * 1 rad, to: 2, count: 3"},
+        {"motion": "at: 1, rate: 0", "mass": "2^p * 1 kg"},
+    ],
+)
+def test_rows_that_depend_on_a_parameter(fields: dict[str, str]) -> None:
+    base = build(open_text(crank(**fields), "text"))
+    if "mass" in fields:
+        record(base, ["p"])
+        return
+    with pytest.raises(TraceLost):
+        record(base, ["p"])
