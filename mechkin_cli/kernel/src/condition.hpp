@@ -14,32 +14,32 @@ namespace {
 constexpr double ESTIMATED_CONDITION = 1e6;  // largest condition that the estimate stands for
 constexpr double FACTORS_OFF = 5e-4;  // largest product of the condition and the way from the factored to the closed place
 
-// Weights of a block's equations: lengths in parts of the size.
-inline void row_weights(const Plan& p, const Block& b, Pack* weight) {
+// A number for each equation of a block, `length` for those that are lengths, else 1.
+inline void per_row(const Plan& p, const Block& b, double length, Pack* weight) {
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
     with_closing_joint(j.type, [&](auto entry) {
-      for (int i = 0; i < entry.equations; ++i) weight[j.row + i] = i < entry.lengths ? p.row_weight : 1.0;
+      for (int i = 0; i < entry.equations; ++i) weight[j.row + i] = i < entry.lengths ? length : 1.0;
     });
   }
 }
 
-// C = U^-1 L^-1 D for the factors P A = L U, D the weights (per equation) in the order of the pivots, inverted; row i
+// C = U^-1 L^-1 D^-1 for the factors P A = L U, D the equations' weights in the order of the pivots; row i
 // of C over the weight of unknown i. Its singular values are those of the inverse of the weighted matrix.
 template <int N>
-MECHKIN_INLINE void weighted_inverse(Factors f, int runtime, Pack* weight, const double* column_weight,
+MECHKIN_INLINE void weighted_inverse(Factors f, int runtime, Pack* inverse_weight, const double* column_weight,
                                      const int* unknown, Pack* c) {
   const int n = N ? N : runtime;
   int s = 0;
   for (int k = 0; k < n; ++k)
     for (int i = k + 1; i < n; ++i) {
       const Mask swapped = f.swap[s++];
-      const Pack x = weight[k], y = weight[i];
-      weight[k] = select(swapped, y, x);
-      weight[i] = select(swapped, x, y);
+      const Pack x = inverse_weight[k], y = inverse_weight[i];
+      inverse_weight[k] = select(swapped, y, x);
+      inverse_weight[i] = select(swapped, x, y);
     }
   for (int j = 0; j < n; ++j) {
-    c[j * n + j] = Pack(1.0) / weight[j];
+    c[j * n + j] = inverse_weight[j];
     for (int i = 0; i < j; ++i) c[i * n + j] = 0.0;
     for (int i = j + 1; i < n; ++i) {
       Pack sum = 0.0;
@@ -59,14 +59,27 @@ MECHKIN_INLINE void weighted_inverse(Factors f, int runtime, Pack* weight, const
   }
 }
 
+// Half as wide numbers: seven digits are plenty for 1 %, and the powers below take half the time.
+typedef float Singles __attribute__((vector_size(4 * LANES)));
+MECHKIN_INLINE Singles root(Singles a) {
+  Singles r;
+  for (int i = 0; i < LANES; ++i) r[i] = __builtin_sqrtf(a[i]);
+  return r;
+}
+MECHKIN_INLINE Doubles root(Doubles a) { return sqrt(Pack(a)).v; }
+MECHKIN_INLINE Doubles doubles(Singles a) { return __builtin_convertvector(a, Doubles); }
+MECHKIN_INLINE Doubles doubles(Doubles a) { return a; }
+MECHKIN_INLINE Singles larger(Singles a, Singles b) { return a < b ? b : a; }
+MECHKIN_INLINE Doubles larger(Doubles a, Doubles b) { return a < b ? b : a; }
+
 // out = a^T a, symmetric (n x n); returns its trace.
-template <int N>
-MECHKIN_INLINE Pack gram(const Pack* a, int runtime, Pack* out) {
+template <int N, class Numbers>
+MECHKIN_INLINE Numbers gram(const Numbers* a, int runtime, Numbers* out) {
   const int n = N ? N : runtime;
-  Pack trace = 0.0;
+  Numbers trace = {};
   for (int i = 0; i < n; ++i)
     for (int j = i; j < n; ++j) {
-      Pack sum = a[i] * a[j];
+      Numbers sum = a[i] * a[j];
       for (int k = 1; k < n; ++k) sum += a[k * n + i] * a[k * n + j];
       out[i * n + j] = sum, out[j * n + i] = sum;
       if (i == j) trace += sum;
@@ -74,34 +87,35 @@ MECHKIN_INLINE Pack gram(const Pack* a, int runtime, Pack* out) {
   return trace;
 }
 
-// The largest eigenvalue over the trace of a symmetric matrix, from the traces T1 and T2 of its powers p and 2 p
-// (eigenvalues over the trace): T2 = l^2p t with 1 <= t, and r = T1^2 / T2 counts the eigenvalues that matter. For a
-// given r the factor t lies between r, r equal eigenvalues, and 1 + (n - 1) y^2, one above n - 1 equal ones; the
-// middle is off by at most a factor of 1.7 for n = 6, whose root of order 2 p is the error.
-MECHKIN_INLINE Pack multiplicity(Pack t1, Pack t2, int n) {
-  const Pack others = n - 1.0, r = max(Pack(1.0), min(Pack(double(n)), t1 * t1 / t2));
-  if (n == 1) return 1.0;
-  const Pack root = sqrt(max(Pack(0.0), others * others + (r - Pack(1.0)) * others * (others - r)));
-  const Pack y = (r - Pack(1.0)) / (others + root);
-  return sqrt(r * (Pack(1.0) + others * y * y));
+// The factor t of T2 = l^2p t, l the largest eigenvalue, from the traces T1 and T2 of the powers p and 2 p of a
+// symmetric matrix. r = T1^2 / T2 counts the eigenvalues that matter; for a given r, t lies between r (r equal
+// eigenvalues) and 1 + (n - 1) y^2 (one above n - 1 equal ones). The middle is off by at most a factor of 1.72 for
+// n = 6, and the error of the singular value is the 4 p-th root of that: 0.9 % for p = 16.
+template <class Numbers>
+MECHKIN_INLINE Numbers multiplicity(Numbers t1, Numbers t2, int n) {
+  const Numbers none = {}, one = none + 1, others = none + (float)(n - 1);
+  const Numbers r = larger(one, t1 * t1 / t2);
+  const Numbers y = (r - one) / (others + root(larger(none, others * others + (r - one) * others * (others - r))));
+  return n == 1 ? one : root(r * (one + others * y * y));
 }
 
-template <int N>
-MECHKIN_INLINE Pack largest_singular_value(Pack* c, int runtime, Pack* g) {
-  const int n = N ? N : runtime;
-  const int squarings = n > 6 ? 5 : 4;
-  const Pack trace = gram<N>(c, runtime, g), inverse = Pack(1.0) / trace;
-  for (int e = 0; e < n * n; ++e) g[e] *= inverse;
-  Pack *from = g, *to = c, t1 = 0.0, t2 = 0.0;
+// Of the n x n matrix c, to 1 %; `power` and `other` are room for n x n numbers each.
+template <int N, class Numbers>
+MECHKIN_INLINE Pack largest_singular_value(const Pack* c, int runtime, Pack* g, Numbers* power, Numbers* other) {
+  const int n = N ? N : runtime, squarings = n > 6 ? 5 : 4;
+  const Pack trace = gram<N>(&c->v, runtime, &g->v), inverse = Pack(1.0) / trace;
+  // the largest eigenvalue is now between 1 / n and 1
+  for (int e = 0; e < n * n; ++e) power[e] = __builtin_convertvector((g[e] * inverse).v, Numbers);
+  Numbers t1 = {}, t2 = {};
   for (int s = 0; s < squarings; ++s) {
-    t1 = gram<N>(from, runtime, to);
-    Pack* const other = from;
-    from = to, to = other;
+    t1 = gram<N>(power, runtime, other);
+    Numbers* const before = power;
+    power = other, other = before;
   }
-  for (int e = 0; e < n * n; ++e) t2 += from[e] * from[e];
-  Pack value = t2 / multiplicity(t1, t2, n);
-  for (int s = 0; s <= squarings; ++s) value = sqrt(value);
-  return sqrt(value * trace);
+  for (int e = 0; e < n * n; ++e) t2 += power[e] * power[e];
+  Numbers value = t2 / multiplicity(t1, t2, n);
+  for (int s = 0; s <= squarings; ++s) value = root(value);
+  return sqrt(Pack(doubles(value)) * trace);
 }
 
 template <int N>
@@ -109,7 +123,13 @@ MECHKIN_INLINE void estimate_condition(Factors f, int runtime, Pack* weight, con
                                        const int* unknown, Pack* scratch, Pack* result) {
   const int n = N ? N : runtime;
   weighted_inverse<N>(f, runtime, weight, column_weight, unknown, scratch);
-  *result = largest_singular_value<N>(scratch, runtime, scratch + n * n);
+  Pack* const g = scratch + n * n;
+  if constexpr (N > 0) {
+    Singles power[2][N * N];
+    *result = largest_singular_value<N>(scratch, runtime, g, power[0], power[1]);
+  } else {
+    *result = largest_singular_value<N>(scratch, runtime, g, &scratch[2 * n * n].v, &scratch->v);
+  }
 }
 
 // To 1 % from the block's factors.
@@ -118,7 +138,7 @@ inline Pack estimated_condition(const Plan& p, Workspace& w, int index) {
   const Factors f = matrices_of(p, w, index).lu();
   const int* unknown = p.unknown + b.column_begin;
   Pack result;
-  row_weights(p, b, w.right);
+  per_row(p, b, 1.0 / p.row_weight, w.right);
   switch (f.n) {
     case 1: estimate_condition<1>(f, 1, w.right, p.column_weight, unknown, w.scratch, &result); break;
     case 2: estimate_condition<2>(f, 2, w.right, p.column_weight, unknown, w.scratch, &result); break;
@@ -136,7 +156,7 @@ inline Pack exact_condition(const Plan& p, Workspace& w, int index) {
   const Block& b = p.block[index];
   const int m = b.rows, n = b.size;
   block_jacobian(p, w, index, w.scratch);
-  row_weights(p, b, w.right);
+  per_row(p, b, p.row_weight, w.right);
   for (int u = 0; u < n; ++u) {
     const Pack weight = p.column_weight[p.unknown[b.column_begin + u]];
     for (int i = 0; i < m; ++i) w.scratch[i * n + u] = w.scratch[i * n + u] * w.right[i] * weight;

@@ -28,7 +28,7 @@ struct Workspace {
   Pack* reflector;                // per block 2 x size: pivots and betas of a QR
   Pack* multiplier;               // closing rows
   Pack* right;                    // largest block
-  Pack* scratch;                  // twice the largest block squared
+  Pack* scratch;                  // three times the largest block squared
   Pack* effort;                   // inputs
   Vec3* across;                   // legs: what its end needs across its line
   Pack* holding;                  // legs: couple about its line
@@ -67,7 +67,7 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->reflector = (Pack*)take(2 * unknowns * pack);
   w->multiplier = (Pack*)take(rows * pack);
   w->right = (Pack*)take((largest + MAX_CLOSING_ROWS) * pack);
-  w->scratch = (Pack*)take(2 * largest * largest * pack);
+  w->scratch = (Pack*)take(3 * largest * largest * pack);
   w->kept = (Pack*)take(largest * largest * pack);
   w->kept_swap = (Mask*)take(largest * largest * sizeof(Mask));
   w->effort = (Pack*)take((p.inputs + 1) * pack);
@@ -289,9 +289,9 @@ inline Closed close_block(const Plan& p, Workspace& w, int index, const Request&
     place_block(p, w, b);
     residual = block_residual(p, w, b);
     done = done | polished | (residual.test <= Pack(r.tight));
-    if (all(done) || iteration == r.iterations) break;
+    if ((all(done) && !(keeps_factors && iteration == 0)) || iteration == r.iterations) break;
     block_screws(p, w, b);
-    const bool keep = keeps_factors && any(done);
+    const bool keep = keeps_factors && iteration > 0 && any(done);
     if (keep) keep_factors(w, at);
     block_jacobian(p, w, index, at.jacobian);
     at.factor_jacobian();
@@ -302,7 +302,7 @@ inline Closed close_block(const Plan& p, Workspace& w, int index, const Request&
       w.right[u] = -w.right[u];
       length = select(abs(w.right[u]) <= length, length, abs(w.right[u]));  // a NaN wins
     }
-    last_step = select(done, last_step, length);
+    last_step = select(done, iteration ? last_step : Pack(0.0), length);
     polished = length <= Pack(r.coarse);
     // where the Jacobian is singular there is no step: the lane stays where it is
     done = done | ~(length < Pack(1e100));
