@@ -1,4 +1,4 @@
-"""The estimate of 1 / smallest singular value against LAPACK's singular values, for every spectrum."""
+"""The estimate of 1 / smallest singular value against LAPACK's, for every spectrum."""
 
 from __future__ import annotations
 
@@ -53,7 +53,9 @@ def test_clusters_at_the_worst_distance(linear: Linear, n: int) -> None:
     worst = 0.0
     for gap in np.linspace(0.0, 0.15, 31):
         for near in range(1, n):
-            values = np.concatenate([[1e-3], np.full(near, 1e-3 * (1 + gap)), np.ones(n - 1 - near)])
+            values = np.concatenate(
+                [[1e-3], np.full(near, 1e-3 * (1 + gap)), np.ones(n - 1 - near)]
+            )
             matrices = np.stack([turned(generator, values) for _ in range(LANES)])
             worst = max(worst, missed(linear, matrices, generator))
     assert worst <= PROMISED
