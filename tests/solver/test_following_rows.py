@@ -223,3 +223,13 @@ def test_rows_that_were_not_filled_in_take_their_neighbours_turn() -> None:
     followed = angle + 0.3
     followed[[0, 20, 21, 59]] = np.nan
     assert np.max(np.abs(continuous_angle(wrapped, followed, 0) - angle)) <= 1e-12
+
+
+@pytest.mark.parametrize("row", [1, 57, 99])
+@pytest.mark.parametrize("value", [np.nan, np.inf, 1e200])
+def test_a_row_that_is_no_place_ends_the_way(platform: Platform, row: int, value: float) -> None:
+    path = platform.path(100)
+    path[3, row] = value
+    followed = follow(platform.plan, path, platform.start)
+    assert followed.end != TrackEnd.FINISHED
+    assert followed.reached == row

@@ -1,8 +1,8 @@
 // The largest singular value of the inverse of a factored and weighted square matrix, to 1 %.
 //
-// With B the inverse and G = B^T B over its trace, the sixteenth power of G (by repeated squaring) is nearly the projector on
-// its dominant directions, and the largest eigenvalue follows from its traces, for every spectrum: there is no starting
-// vector that could miss a direction, and clusters of singular values do no harm.
+// With B the inverse and G = B^T B over its trace, the sixteenth power of G (by repeated squaring) is nearly the
+// projector on its dominant directions, and the largest eigenvalue follows from its traces, for every spectrum: there
+// is no starting vector that could miss a direction, and clusters of singular values do no harm.
 #pragma once
 
 #include "linear.hpp"
@@ -119,7 +119,8 @@ MECHKIN_INLINE void estimate_condition(Factors f, int runtime, Pack* weight, con
 
 // The largest singular value of the inverse of diag(1 / inverse_weight) A diag(column_weight), A as factored;
 // `inverse_weight` (n) is used up, `scratch` is room for 3 n x n packs.
-inline Pack inverse_norm(Factors f, Pack* inverse_weight, const double* column_weight, const int* unknown, Pack* scratch) {
+inline Pack inverse_norm(Factors f, Pack* inverse_weight, const double* column_weight, const int* unknown,
+                         Pack* scratch) {
   Pack r;
   switch (f.n) {
     case 1: estimate_condition<1>(f, 1, inverse_weight, column_weight, unknown, scratch, &r); break;

@@ -66,7 +66,10 @@ class GivenPath : public Path {
     if (!varies_) return finished(nb::cast<const PlanStore&>(plan_));
     current_ = plan_(sigma);
     const Plan& p = finished(nb::cast<const PlanStore&>(current_));
-    if (states_ < 0) first_ = current_, states_ = p.states, blocks_ = p.blocks, columns_ = p.columns, closings_ = p.closings;
+    if (states_ < 0) {
+      first_ = current_;
+      states_ = p.states, blocks_ = p.blocks, columns_ = p.columns, closings_ = p.closings;
+    }
     need(p.states == states_ && p.blocks == blocks_ && p.columns == columns_ && p.closings == closings_,
          "the plans of a path must have one structure");
     return p;
