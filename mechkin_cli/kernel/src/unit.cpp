@@ -142,6 +142,7 @@ long workspace_size(const Plan& p) {
 Workspace workspace_at(const Plan& p, char* memory) {
   Workspace w;
   lay_out(p, memory + (64 - (std::uintptr_t)memory % 64) % 64, &w);
+  find_moving(p, w);
   return w;
 }
 
