@@ -14,7 +14,8 @@ from mechkin_cli.building.joints import parts_of
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import elementary
 from mechkin_cli.mechanism.frames import Frame
-from mechkin_cli.mechanism.joint_table import FIRST, JOINT_TYPES, dimension_of
+from mechkin_cli.mechanism.joint_table import JOINT_TYPES, dimension_of
+from mechkin_cli.mechanism.joint_type import FIRST
 from mechkin_cli.mechanism.model import Joint
 
 LETTERS = list(JOINT_TYPES)
