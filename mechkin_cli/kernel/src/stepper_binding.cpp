@@ -53,7 +53,7 @@ class GivenPath : public Path {
       : at_(std::move(at)), plan_(std::move(plan)), varies_(varies) {}
   void at(double sigma, PathPoint* point) const override {
     std::tie(point->inputs, point->first, point->second) = at_(sigma);
-    const long n = finished(nb::cast<const PlanStore&>(varies_ ? first_ : plan_)).inputs;
+    const long n = nb::cast<const FrozenPlan&>(varies_ ? first_ : plan_).view().inputs;
     need_length(point->inputs, n, "the path's inputs");
     need_length(point->first, n, "the path's first derivatives");
     need_length(point->second, n, "the path's second derivatives");
