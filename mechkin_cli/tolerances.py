@@ -308,3 +308,12 @@ finite."""
 MOBILITY_CONFIGURATIONS: Final = 3
 """Configurations along the motion at which the rank is taken besides the first: at a special one
 it drops, at a general one it is the least freedom seen."""
+
+# --- text of tables ---------------------------------------------------------------------------
+
+CELLS_PER_THREAD: Final = 50_000
+"""Cells of a table that are worth a thread of their own: 2 ms of work against 0.05 ms to start
+one."""
+
+MOST_TEXT_THREADS: Final = 64
+"""Threads that write one table: beyond, the memory takes longer than the digits."""

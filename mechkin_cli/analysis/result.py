@@ -17,7 +17,7 @@ from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import Slot
 from mechkin_cli.solver.graph import SolverGraph
-from mechkin_cli.status import Status
+from mechkin_cli.status import has_solution
 from mechkin_cli.units import DIMENSIONLESS, UnitSystem
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ class Result:
 
     @cached_property
     def _solved(self) -> NDArray[np.bool_]:
-        return np.array([Status(int(code)).has_solution for code in self.status])
+        return has_solution(self.status)
 
     @cached_property
     def alternatives(self) -> tuple[Result, ...]:

@@ -64,7 +64,7 @@ class Analysis:
         """
         if text in ROW_TEXTS:
             words = mode_words if text == "row.mode" else status_words
-            return np.array(words(self.result).texts())
+            return words(self.result).array()
         for given in (self.result.inputs, self.result.input_rates):
             if text in given:
                 return given[text].copy()
