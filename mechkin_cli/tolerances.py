@@ -309,6 +309,11 @@ MOBILITY_CONFIGURATIONS: Final = 3
 """Configurations along the motion at which the rank is taken besides the first: at a special one
 it drops, at a general one it is the least freedom seen."""
 
+# --- the Python interface -----------------------------------------------------------------------
+
+MOST_NAMES: Final = 100_000
+"""Names in one list that a caller gives: more come from an iterable without an end."""
+
 # --- text of tables ---------------------------------------------------------------------------
 
 CELLS_PER_THREAD: Final = 50_000

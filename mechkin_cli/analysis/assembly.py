@@ -14,7 +14,7 @@ from mechkin_cli.analysis.home import follow_from_home, is_home_assembled, neare
 from mechkin_cli.analysis.named_modes import NamedModes, is_cyclic, name_modes, wrapped
 from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.rows import MAY_BE_RIGID, input_numbers, input_text
-from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import TrackEnd
@@ -160,7 +160,7 @@ def _by_name(modes: NamedModes, name: str) -> Start:
     diagnostic = Diagnostic(
         "no-such-mode",
         "error",
-        f"there is no mode {name} at the first row",
+        f"there is no mode {name[:LONGEST_NAME]} at the first row",
         measured=f"modes {', '.join(modes.letters.values())}",
         hint="take one of these",
     )

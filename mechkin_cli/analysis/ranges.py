@@ -15,7 +15,7 @@ from mechkin_cli.analysis.home import is_home_assembled, nearest_to_home
 from mechkin_cli.analysis.named_modes import NamedModes, name_modes
 from mechkin_cli.analysis.probe import Probe
 from mechkin_cli.analysis.rows import input_number, kernel_inputs
-from mechkin_cli.diagnostics import Diagnostic, UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.solver.batch import run
@@ -97,7 +97,7 @@ def find_ranges(
     for output in outputs:
         if output not in problem.mechanism.coordinates:
             raise UsageError(
-                f"there is no coordinate {output}; coordinates are "
+                f"there is no coordinate {output[:LONGEST_NAME]}; coordinates are "
                 f"{', '.join(problem.mechanism.coordinates)}"
             )
     layout = Layout(problem.mechanism, graph)
@@ -128,7 +128,7 @@ def _input_number(problem: Problem, name: str | None) -> int:
         swept = [k for k, item in enumerate(inputs) if item.values.min() < item.values.max()]
         return swept[0] if swept else 0
     if name not in names:
-        raise UsageError(f"there is no input {name}; inputs are {', '.join(names)}")
+        raise UsageError(f"there is no input {name[:LONGEST_NAME]}; inputs are {', '.join(names)}")
     return names.index(name)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 from mechkin_cli.benchmark.kernel_case import (
@@ -36,7 +37,7 @@ def table(specimen: Specimen, rounds: int = ROUNDS) -> Table:
     fine = KernelCase(specimen, sweep_rows(specimen))
     inputs, guesses = repeated(coarse.inputs), repeated(coarse.second_order_guesses())
     positions, _, everything = specimen.levels
-    calls = {
+    calls: dict[str, Callable[[], object]] = {
         "kernel, positions only": partial(PlannedRun(coarse, positions), inputs, guesses),
         EVERYTHING: partial(PlannedRun(coarse, everything), inputs, guesses),
         "sweep, follow and run": fine.sweep(PlannedRun(fine, everything)),
