@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from mechkin_cli.analysis.sweep import analyze as run_sweep
 from mechkin_cli.building.build import Built
 from mechkin_cli.building.columns import used_quantities
-from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError
 from mechkin_cli.interface.analysis import Analysis
-from mechkin_cli.interface.arguments import Setting, a_text, a_whole_number, shown, texts
+from mechkin_cli.interface.arguments import Setting, a_text, a_whole_number, texts
 from mechkin_cli.interface.settings import input_values
 from mechkin_cli.kernel.width import check_width
 from mechkin_cli.mechanism.derived_quantities import hint_of
@@ -115,7 +115,7 @@ class Model:
         for name in names:
             if name not in self.quantities:
                 hint = hint_of(name) or nearest_hint(name, self.quantities) or QUANTITIES
-                raise UsageError(f"there is no quantity {shown(name)}; {hint}")
+                raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
         self._refuse_loaded_spin(problem, names)
         closings = None if closed_at is None else self._closings(closed_at)
         sweep = partial(run_sweep, problem, closed_at=closings, lanes=lanes)
@@ -132,7 +132,9 @@ class Model:
         for name in closings:
             if name not in joints:
                 known = ", ".join(joints)
-                raise UsageError(f"closed_at: there is no joint {shown(name)}; joints are {known}")
+                raise UsageError(
+                    f"closed_at: there is no joint {name[:LONGEST_NAME]}; joints are {known}"
+                )
         try:
             build_graph(self.problem.mechanism, self.problem.motion.driven, closings)
         except UnsolvableGraph as error:
@@ -212,5 +214,7 @@ class Model:
         names = texts("tables", names, '["table_03"]')
         for name in names:
             if name not in known:
-                raise UsageError(f"there is no table {shown(name)}; tables are {', '.join(known)}")
+                raise UsageError(
+                    f"there is no table {name[:LONGEST_NAME]}; tables are {', '.join(known)}"
+                )
         return tuple(known[name] for name in dict.fromkeys(names))

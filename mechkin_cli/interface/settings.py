@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
 from mechkin_cli.interface.arguments import Setting, a_setting, settings, shown
 from mechkin_cli.mechanism.problem import Problem
@@ -40,7 +40,9 @@ def input_values(problem: Problem, at: Setting | Mapping[str, Setting]) -> dict[
     places = {}
     for name, value in settings("at", at, '{"O1.theta": 170}').items():
         if name not in inputs:
-            raise UsageError(f"{shown(name)} is no input; inputs are {', '.join(inputs) or 'none'}")
+            raise UsageError(
+                f"{name[:LONGEST_NAME]} is no input; inputs are {', '.join(inputs) or 'none'}"
+            )
         places[name] = _input_value(problem, name, value)
     return places
 
@@ -54,4 +56,4 @@ def _input_value(problem: Problem, name: str, value: Setting) -> float:
         return constant_in_file_units(text, dimension, problem.units, resolve)
     except ExpressionError as error:
         hint = f"; {error.hint}" if error.hint else ""
-        raise UsageError(f"{name} at {shown(value)}: {error.message}{hint}") from None
+        raise UsageError(f"{name} at {text[:LONGEST_NAME]}: {error.message}{hint}") from None
