@@ -253,6 +253,17 @@ LARGEST_NUMBER: Final = 1e100
 """SI value of a field above which it is a slip of the pen: products of three such values are the
 last that stay doubles (1.8e308); beyond, cells would be empty without a reason."""
 
+LARGEST_FACTOR: Final = 1e30
+"""Size in SI beyond which (or below whose inverse) a unit of a file is taken for a mistake."""
+
+LARGEST_CONVERSION: Final = 1e290
+"""Conversion factor beyond which (or below whose inverse) products with numbers of a file are no
+doubles any more."""
+
+UNIT_SQUARE: Final = 4e-16
+"""Distance of a vector's square from 1 up to which it counts as a unit vector and keeps its bits:
+its three products and two sums round to no more."""
+
 # --- mobility by rank (lengths in parts of the size) ------------------------------------------
 
 RANK_GAP: Final = 1e3

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from math import sqrt
 
+from mechkin_cli.tolerances import UNIT_SQUARE
+
 Vector = tuple[float, float, float]
 
 ZERO: Vector = (0.0, 0.0, 0.0)
@@ -51,7 +53,7 @@ def unit(a: Vector) -> Vector:
         ZeroDivisionError: a is zero.
     """
     square = dot(a, a)
-    if abs(square - 1.0) <= 4e-16:
+    if abs(square - 1.0) <= UNIT_SQUARE:
         return a
     largest = max(abs(a[0]), abs(a[1]), abs(a[2]))
     b = (a[0] / largest, a[1] / largest, a[2] / largest)
