@@ -104,7 +104,7 @@ def _parts(value: object, indent: str) -> Iterator[bytes]:
             yield f"{',' if number else '{'}\n{inner}{json.dumps(key)}: ".encode()
             yield from _parts(item, inner)
         yield f"\n{indent}}}".encode()
-    elif isinstance(value, list) and any(isinstance(item, dict | list) for item in value):
+    elif isinstance(value, list) and any(isinstance(item, dict | list | Cells) for item in value):
         for number, item in enumerate(value):
             yield f"{',' if number else '['}\n{inner}".encode()
             yield from _parts(item, inner)

@@ -41,16 +41,27 @@ char* put_cell(const TextColumn& column, std::size_t row, char* at) {
   return put(column.fields[(std::size_t)column.codes[row]], at);
 }
 
+// Memory of one thread.
+class Scratch {
+ public:
+  explicit Scratch(std::size_t size) : memory_(new char[size]) {}
+  char* get() const { return memory_.get(); }
+
+ private:
+  std::unique_ptr<char[]> memory_;
+};
+
 // Writes blocks of at most `capacity` characters a row between `before` and `after`.
 template <class Put>
 void write_blocks(const std::string& before, const std::string& after, std::size_t rows, std::size_t capacity,
                   int threads, const Room& room, const Put& put_row) {
   std::vector<std::string> blocks(block_count(rows));
-  for_each_block(rows, threads, [&](std::size_t block, std::size_t first, std::size_t end) {
-    const std::unique_ptr<char[]> scratch(new char[(end - first) * capacity]);
-    char* at = scratch.get();
-    for (std::size_t row = first; row < end; ++row) at = put_row(row, at);
-    blocks[block].assign(scratch.get(), at);
+  for_each_block(rows, threads, [&] {
+    return [&, scratch = Scratch(BLOCK_ROWS * capacity)](std::size_t block, std::size_t first, std::size_t end) {
+      char* at = scratch.get();
+      for (std::size_t row = first; row < end; ++row) at = put_row(row, at);
+      blocks[block].assign(scratch.get(), at);
+    };
   });
   std::size_t size = before.size() + after.size();
   for (const std::string& text : blocks) size += text.size();
@@ -220,12 +231,13 @@ void markdown_text(const std::vector<std::string>& headers, const std::vector<Te
   const std::size_t count = columns.size(), blocks = block_count(rows);
   std::vector<Measure> measures(blocks * count);
   std::vector<std::size_t> starts(blocks + 1, 0);
-  for_each_block(rows, threads, [&](std::size_t block, std::size_t first, std::size_t end) {
-    const std::unique_ptr<char[]> scratch(new char[longest + 1]);
-    for (std::size_t c = 0; c < count; ++c) {
-      measures[block * count + c] = measured(columns[c], first, end, scratch.get());
-      starts[block + 1] += extra_bytes(columns[c], first, end);
-    }
+  for_each_block(rows, threads, [&] {
+    return [&, scratch = Scratch(longest + 1)](std::size_t block, std::size_t first, std::size_t end) {
+      for (std::size_t c = 0; c < count; ++c) {
+        measures[block * count + c] = measured(columns[c], first, end, scratch.get());
+        starts[block + 1] += extra_bytes(columns[c], first, end);
+      }
+    };
   });
   settle(columns, headers, measures);
   std::size_t line = 2;  // the first bar and the line's end
@@ -236,19 +248,20 @@ void markdown_text(const std::vector<std::string>& headers, const std::vector<Te
     starts[block + 1] += starts[block] + line * (std::min(rows, (block + 1) * BLOCK_ROWS) - block * BLOCK_ROWS);
   char* const text = room(starts[blocks]);
   put(top, text);
-  for_each_block(rows, threads, [&](std::size_t block, std::size_t first, std::size_t end) {
-    const std::unique_ptr<char[]> scratch(new char[longest + 1]);
-    char* at = text + starts[block];
-    for (std::size_t row = first; row < end; ++row) {
-      *at++ = '|';
-      for (const Padded& column : columns) {
-        *at++ = ' ';
-        at = put_padded(column, row, scratch.get(), at);
-        *at++ = ' ';
+  for_each_block(rows, threads, [&] {
+    return [&, scratch = Scratch(longest + 1)](std::size_t block, std::size_t first, std::size_t end) {
+      char* at = text + starts[block];
+      for (std::size_t row = first; row < end; ++row) {
         *at++ = '|';
+        for (const Padded& column : columns) {
+          *at++ = ' ';
+          at = put_padded(column, row, scratch.get(), at);
+          *at++ = ' ';
+          *at++ = '|';
+        }
+        *at++ = '\n';
       }
-      *at++ = '\n';
-    }
+    };
   });
 }
 
