@@ -45,24 +45,25 @@ def analysis_record(
     tables: Iterable[Columns],
     source: Source,
     diagnostics: Iterable[Diagnostic] = (),
+    threads: int = 0,
 ) -> Plain:
     """The analysis as plain data and `Cells`; values are in file units, each column names its
     own."""
     return {
         "name": name,
         "row_count": source.rows,
-        "tables": [table_record(table) for table in tables],
-        "rows": _column_records(rows_table(source)),
+        "tables": [table_record(table, threads) for table in tables],
+        "rows": _column_records(rows_table(source), threads),
         "diagnostics": [diagnostic.record() for diagnostic in diagnostics],
     }
 
 
-def table_record(columns: Columns) -> Plain:
+def table_record(columns: Columns, threads: int = 0) -> Plain:
     """One table as plain data and `Cells`."""
     return {
         "name": columns.name,
         "title": columns.title,
-        "columns": _column_records(columns),
+        "columns": _column_records(columns, threads),
     }
 
 
@@ -80,12 +81,12 @@ def json_text(record: object) -> str:
     return json_bytes(record).decode()
 
 
-def _column_records(columns: Columns) -> list[Plain]:
+def _column_records(columns: Columns, threads: int) -> list[Plain]:
     return [
         {
             "label": column.label,
             "unit": column.unit,
-            "values": Cells(column.values, threads_for([column])),
+            "values": Cells(column.values, threads_for([column], threads)),
         }
         for column in columns.columns
     ]

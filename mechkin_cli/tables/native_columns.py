@@ -36,4 +36,11 @@ def threads_for(columns: Columns | Iterable[Column], threads: int = 0) -> int:
         return min(threads, MOST_TEXT_THREADS)
     listed = columns.columns if isinstance(columns, Columns) else tuple(columns)
     cells = sum(column.rows for column in listed)
-    return max(1, min(len(os.sched_getaffinity(0)), cells // CELLS_PER_THREAD, MOST_TEXT_THREADS))
+    return max(1, min(_processors(), cells // CELLS_PER_THREAD, MOST_TEXT_THREADS))
+
+
+def _processors() -> int:
+    """Processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -46,7 +46,7 @@ def _markdown(results: Results) -> Iterator[File]:
 def _json(results: Results) -> Iterator[File]:
     from mechkin_cli.tables.json_writer import analysis_record, json_bytes
 
-    record = analysis_record(results.name, results.tables, results.source, results.diagnostics)
+    record = analysis_record(*results)
     yield "analysis.json", json_bytes(record)
 
 
