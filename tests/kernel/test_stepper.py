@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mechkin_cli.analysis.setup import Setup, prepare
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.setup import Setup, prepare
 from mechkin_cli.kernel._kernel import Node, Stepper
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.stepping import step_limits

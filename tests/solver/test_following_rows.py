@@ -8,10 +8,10 @@ from time import process_time
 
 import numpy as np
 import pytest
-
-import mechkin_cli as mk
 from mechkin_cli.analysis.home import home_state
 from mechkin_cli.analysis.setup import Setup, prepare
+
+import mechkin_cli as mk
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.closing_turns import (
     ORIENTATION,
