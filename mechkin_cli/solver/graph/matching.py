@@ -1,0 +1,137 @@
+"""Matching of equations to freedoms, and what follows from it: the Dulmage-Mendelsohn parts.
+
+Nodes have a capacity (freedoms of a link), rows equations, each of which may be taken up
+by one freedom of any of its nodes. A largest matching (augmenting paths; Kuhn 1955) leaves
+
+- freedoms free: the nodes from which these can be reached are not determined;
+- the others, whose strong components (Tarjan 1972) are the smallest sets of nodes that their
+  equations determine together, each after those that it depends on (Dulmage, Mendelsohn 1958).
+
+Rows are taken in their order: where there are too many equations it says which are left over. The
+parts do not depend on anything else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+
+class Row(NamedTuple):
+    """`equations` between the freedoms of some nodes."""
+
+    equations: int
+    nodes: tuple[int, ...]
+
+
+class Matching:
+    """A largest matching: `taken[node][row]` equations of a row at a node, `free[node]` freedoms
+    left."""
+
+    def __init__(self, capacities: Sequence[int], rows: Sequence[Row]) -> None:
+        self.rows = rows
+        self.free = list(capacities)
+        self.taken: list[dict[int, int]] = [{} for _ in capacities]
+        self._closed = [False] * len(self.free)
+        for number, row in enumerate(rows):
+            left = row.equations
+            while left and (step := self._take(number, left)):
+                left -= step
+
+    def _take(self, number: int, most: int) -> int:
+        """Matches some equations of a row, at most so many; 0 where none can be."""
+        came: dict[int, tuple[int, int]] = {}
+        front = [node for node in self.rows[number].nodes if not self._closed[node]]
+        came.update((node, (-1, number)) for node in front)
+        for node in front:
+            if self.free[node]:
+                return self._shift(node, came, most)
+            for row in self.taken[node]:
+                for other in self.rows[row].nodes:
+                    if other not in came and not self._closed[other]:
+                        came[other] = (node, row)
+                        front.append(other)
+        # no way leads out of these nodes any more, whatever is matched later
+        for node in front:
+            self._closed[node] = True
+        return 0
+
+    def _shift(self, node: int, came: dict[int, tuple[int, int]], most: int) -> int:
+        """Moves equations along the way to a node with free freedoms."""
+        step, at = min(most, self.free[node]), node
+        while came[at][0] >= 0:
+            at, row = came[at]
+            step = min(step, self.taken[at][row])
+        self.free[node] -= step
+        while node >= 0:
+            before, row = came[node]
+            self.taken[node][row] = self.taken[node].get(row, 0) + step
+            if before >= 0:
+                self.taken[before][row] -= step
+                if not self.taken[before][row]:
+                    del self.taken[before][row]
+            node = before
+        return step
+
+    def undetermined(self) -> set[int]:
+        """Nodes with freedoms that no equation determines, or that depend on such."""
+        at: list[list[tuple[int, int]]] = [[] for _ in self.free]
+        for node, taken in enumerate(self.taken):
+            for row in taken:
+                for other in self.rows[row].nodes:
+                    if other != node:
+                        at[other].append((node, row))
+        front = [node for node, free in enumerate(self.free) if free]
+        found = set(front)
+        for node in front:
+            for other, _ in at[node]:
+                if other not in found:
+                    found.add(other)
+                    front.append(other)
+        return found
+
+    def parts(self, left_out: set[int]) -> list[list[int]]:
+        """The other nodes in smallest sets that are determined together, in order."""
+        ahead = [
+            sorted({other for row in taken for other in self.rows[row].nodes} - left_out)
+            for taken in self.taken
+        ]
+        return strong_components(ahead, [n for n in range(len(ahead)) if n not in left_out])
+
+
+def strong_components(ahead: Sequence[Sequence[int]], nodes: Sequence[int]) -> list[list[int]]:
+    """Strong components of a directed graph, each after all those that it leads to."""
+    number: dict[int, int] = {}
+    low: dict[int, int] = {}
+    stack: list[int] = []
+    waiting: set[int] = set()
+    found: list[list[int]] = []
+    for start in nodes:
+        if start in number:
+            continue
+        number[start] = low[start] = len(number)
+        stack.append(start)
+        waiting.add(start)
+        path = [(start, iter(ahead[start]))]
+        while path:
+            node, rest = path[-1]
+            for other in rest:
+                if other not in number:
+                    number[other] = low[other] = len(number)
+                    stack.append(other)
+                    waiting.add(other)
+                    path.append((other, iter(ahead[other])))
+                    break
+                if other in waiting:
+                    low[node] = min(low[node], number[other])
+            else:
+                path.pop()
+                if path:
+                    low[path[-1][0]] = min(low[path[-1][0]], low[node])
+                if low[node] == number[node]:
+                    members = [stack.pop()]
+                    while members[-1] != node:
+                        members.append(stack.pop())
+                    waiting.difference_update(members)
+                    found.append(sorted(members))
+    return found
