@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import pi
 from typing import TYPE_CHECKING
 
@@ -49,7 +50,7 @@ def build_plan(layout: Layout, size: float | None = None) -> Plan:
 
 def _add_closing(layout: Layout, plan: Plan, closing: Closing) -> None:
     joint, leg = closing.joint, closing.leg
-    loop = [(k, s) for e, s in closing.loop for k in _parts_of(layout, e)]
+    loop = [(k, s) for e, s in closing.loop for k in layout.parts_of[e]]
     if leg is None:
         first, second = layout.link_number[joint.first], layout.link_number[joint.second]
         frames = layout.frame_on(first, joint.on_first), layout.frame_on(second, joint.on_second)
@@ -69,10 +70,6 @@ def _add_closing(layout: Layout, plan: Plan, closing: Closing) -> None:
         leg.slide_sign,
         loop,
     )
-
-
-def _parts_of(layout: Layout, edge: int) -> list[int]:
-    return [k for k, carrier in enumerate(layout.carriers) if carrier.edge == edge]
 
 
 def _add_places(layout: Layout, plan: Plan) -> None:
@@ -109,19 +106,22 @@ def _add_blocks(layout: Layout, plan: Plan) -> None:
     placed: set[int] = set()
     for block in layout.graph.blocks:
         joints = [layout.graph.closings[c].joint for c in block.closings]
-        needed = {k for joint in joints for k in _ways(layout, joint)}
+        needed = _new_on_ways(layout, joints, placed)
         unknown = [layout.column(k, f) for k, f in block.unknowns]
-        plan.add_block(len(block.closings), sorted(needed - placed), unknown)
+        plan.add_block(len(block.closings), sorted(needed), unknown)
         placed |= needed
     plan.set_rest([k for k in range(len(layout.carriers)) if k not in placed])
 
 
-def _ways(layout: Layout, joint: Joint) -> set[int]:
-    """Kernel joints on the ways from ground to both links of a joint."""
-    found = set()
-    for link in (joint.first, joint.second):
+def _new_on_ways(layout: Layout, joints: Iterable[Joint], placed: set[int]) -> set[int]:
+    """Kernel joints on the ways from ground to both links of some joints that are not placed yet.
+
+    What carries a placed one is placed too.
+    """
+    found: set[int] = set()
+    for link in (link for joint in joints for link in (joint.first, joint.second)):
         k = layout.link_number[link]
-        while k >= 0:
+        while k >= 0 and k not in placed and k not in found:
             found.add(k)
             k = layout.carriers[k].parent
     return found
