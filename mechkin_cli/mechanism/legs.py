@@ -123,9 +123,8 @@ def _leg_at(
     first = _far(start, name)
     if other.letter == "S":
         leg = Leg(start, other, first, _far(other, name), name)
-        return (
-            leg if leg.first != leg.second and norm(leg.span) > tolerances.PARALLEL * size else None
-        )
+        apart = norm(leg.span) > tolerances.PARALLEL * size
+        return leg if leg.first != leg.second and apart else None
     rod = _far(other, name)
     if other.letter != "P" or rod == GROUND_NAME or len(joints_of[rod]) != 2 or rod in taken:
         return None

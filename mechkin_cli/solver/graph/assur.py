@@ -7,8 +7,8 @@ through them later (Assur 1914; for the matching Shai 2010). Regions of lower or
 have their own count: `d_r` freedoms a link beside the pose of the region's frame.
 
 What the screws as drawn leave undetermined is counted once more with six freedoms a link: a
-drawing can be special, and the dimensions of an overconstrained loop decide later. What is
-undetermined even then is not driven.
+drawing can be special, and the dimensions of an overconstrained loop decide later. If that is
+enough, all that hangs together is one group; what is undetermined even then is not driven.
 """
 
 from __future__ import annotations
@@ -54,15 +54,10 @@ def assur_groups(component: Component) -> tuple[list[Group], Undriven | None]:
     rest = _rest(component, placed)
     if rest is None:
         return groups, None
-    again = _System(rest, SPACE, [])
-    more = [
-        Group(component.entry, group.links, _own_names(component, group.connections))
-        for group in again.groups()
-    ]
-    loose = again.undriven()
+    loose = _System(rest, SPACE, []).undriven()
     if loose is not None:
-        loose = Undriven(_own_names(component, loose.connections), loose.missing)
-    return groups + more, loose
+        return groups, Undriven(_own_names(component, loose.connections), loose.missing)
+    return groups + _pieces(component, rest), None
 
 
 def _single(component: Component) -> tuple[list[Group], Undriven | None]:
@@ -84,6 +79,27 @@ def _rest(component: Component, placed: set[str]) -> Component | None:
 
     moved = [c._replace(first=of(c.first), second=of(c.second)) for c in component.connections]
     return Component(component.entry, tuple(c for c in moved if c.first != c.second))
+
+
+def _pieces(component: Component, rest: Component) -> list[Group]:
+    """What hangs together without the entry, each as one group."""
+    at = incidence(rest.connections)
+    found: list[Group] = []
+    seen = {rest.entry}
+    for start in rest.links:
+        if start in seen:
+            continue
+        front, members = [start], set[int]()
+        seen.add(start)
+        for link in front:
+            members.update(at[link])
+            ends = [rest.connections[k].other(link) for k in at[link]]
+            more = [other for other in dict.fromkeys(ends) if other not in seen]
+            seen.update(more)
+            front += more
+        own = _own_names(component, [rest.connections[k] for k in members])
+        found.append(Group(component.entry, tuple(front), own))
+    return found
 
 
 def _own_names(component: Component, connections: Sequence[Connection]) -> tuple[Connection, ...]:

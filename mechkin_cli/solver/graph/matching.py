@@ -7,13 +7,15 @@ by one freedom of any of its nodes. A largest matching (augmenting paths; Kuhn 1
 - the others, whose strong components (Tarjan 1972) are the smallest sets of nodes that their
   equations determine together, each after those that it depends on (Dulmage, Mendelsohn 1958).
 
-Rows are taken in their order: where there are too many equations it says which are left over. The
-parts do not depend on anything else.
+Where there are too many equations, the parts depend on which are left over, and on nothing else.
+Rows come first whose nodes have fewest free freedoms left, then in their order: so small sets are
+full before equations are spent on larger ones.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
 
@@ -33,19 +35,40 @@ class Matching:
         self.free = list(capacities)
         self.taken: list[dict[int, int]] = [{} for _ in capacities]
         self._closed = [False] * len(self.free)
-        for number, row in enumerate(rows):
-            left = row.equations
-            while left and (step := self._take(number, left)):
-                left -= step
+        self._match_all()
 
-    def _take(self, number: int, most: int) -> int:
-        """Matches some equations of a row, at most so many; 0 where none can be."""
+    def _match_all(self) -> None:
+        """Takes every row, first those whose nodes have fewest free freedoms."""
+        at: list[list[int]] = [[] for _ in self.free]
+        for number, row in enumerate(self.rows):
+            for node in row.nodes:
+                at[node].append(number)
+        open_at = [sum(self.free[node] for node in row.nodes) for row in self.rows]
+        ahead = [(count, number) for number, count in enumerate(open_at)]
+        heapify(ahead)
+        done = [False] * len(self.rows)
+        while ahead:
+            count, number = heappop(ahead)
+            if done[number] or count != open_at[number]:
+                continue
+            done[number] = True
+            left = self.rows[number].equations
+            while left and (step := self._take(number, left)):
+                left -= step[0]
+                for other in at[step[1]]:
+                    open_at[other] -= step[0]
+                    if not done[other]:
+                        heappush(ahead, (open_at[other], other))
+
+    def _take(self, number: int, most: int) -> tuple[int, int] | None:
+        """Matches some equations of a row, at most so many; how many, and the node that takes
+        them up in the end. None where none can be matched."""
         came: dict[int, tuple[int, int]] = {}
         front = [node for node in self.rows[number].nodes if not self._closed[node]]
         came.update((node, (-1, number)) for node in front)
         for node in front:
             if self.free[node]:
-                return self._shift(node, came, most)
+                return self._shift(node, came, most), node
             for row in self.taken[node]:
                 for other in self.rows[row].nodes:
                     if other not in came and not self._closed[other]:
@@ -54,7 +77,7 @@ class Matching:
         # no way leads out of these nodes any more, whatever is matched later
         for node in front:
             self._closed[node] = True
-        return 0
+        return None
 
     def _shift(self, node: int, came: dict[int, tuple[int, int]], most: int) -> int:
         """Moves equations along the way to a node with free freedoms."""
