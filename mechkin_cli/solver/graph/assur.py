@@ -21,8 +21,8 @@ from mechkin_cli.solver.graph.matching import Matching, Row
 from mechkin_cli.solver.graph.network import Connection, distances, incidence
 from mechkin_cli.solver.graph.regions import SPACE, Region, find_regions, order_of
 
-LEVELS = 3
-"""Rounds of telling links apart by their neighbours, to break ties between redundant equations."""
+MOST_ROUNDS = 12
+"""Rounds of telling links apart by their neighbours."""
 
 
 class Group(NamedTuple):
@@ -46,7 +46,7 @@ def assur_groups(component: Component) -> tuple[list[Group], Undriven | None]:
         return _single(component)
     order = order_of(component.connections)
     regions: list[Region] = []
-    if order > 3 or _System(component, order, []).matching_is_redundant():
+    if order > 3 or _System(component, order, []).matching.is_redundant:
         regions = find_regions(component, order)
     system = _System(component, order, regions)
     groups = system.groups()
@@ -121,19 +121,12 @@ class _System:
         self.frames: dict[int, tuple[int, ...]] = {}
         self.region_of: dict[int, int] = {}
         self._add_nodes()
-        self.rows: list[Row] = []
-        self.row_of: dict[int, int] = {}
-        for number in _outward(component):
-            self.row_of[number] = len(self.rows)
-            self.rows.append(self._row(number))
+        self.rows: list[Row] = [self._row(k) for k in range(len(component.connections))]
         for r in range(len(regions)):
             self._add_memberships(r)
         self.matching = Matching(self.capacities, self.rows)
-
-    def matching_is_redundant(self) -> bool:
-        """Whether there are equations that find no freedom."""
-        matched = sum(sum(taken.values()) for taken in self.matching.taken)
-        return matched < sum(row.equations for row in self.rows)
+        if self.matching.is_redundant:
+            self.matching = Matching(self.capacities, self.rows, self._turns())
 
     def _node(self, capacity: int) -> int:
         self.capacities.append(capacity)
@@ -202,6 +195,15 @@ class _System:
             nodes = self._pose(link) | {*self.frames[r]}
             self.rows.append(Row(self.order - region.order, tuple(sorted(nodes))))
 
+    def _turns(self) -> list[int]:
+        """Turns of the rows, by the place of the connections; memberships come last."""
+        kinds = [
+            (c.leg is not None, c.freedoms, c.driven, c.joint.letter, row.equations, len(row.nodes))
+            for c, row in zip(self.component.connections, self.rows, strict=False)
+        ]
+        place = {number: k for k, number in enumerate(_by_structure(self.component, kinds))}
+        return [place.get(number, number) for number in range(len(self.rows))]
+
     def groups(self) -> list[Group]:
         """The groups of what is determined, in order."""
         parts = self.matching.parts(self.matching.undetermined())
@@ -212,7 +214,7 @@ class _System:
                 links[rank[self.own[link][0]]].append(link)
         members: list[list[Connection]] = [[] for _ in parts]
         for number, c in enumerate(self.component.connections):
-            nodes = self.rows[self.row_of[number]].nodes
+            nodes = self.rows[number].nodes
             ends = [k for link in (c.first, c.second) for k in self._pose(link)]
             if all(node in rank for node in (*nodes, *ends)):
                 members[max(rank[node] for node in (*nodes, *ends))].append(c)
@@ -230,7 +232,7 @@ class _System:
         touched = [
             c
             for number, c in enumerate(self.component.connections)
-            if loose & {*self.rows[self.row_of[number]].nodes}
+            if loose & {*self.rows[number].nodes}
         ]
         return Undriven(tuple(touched), sum(self.matching.free))
 
@@ -276,38 +278,31 @@ def _hangs(group: Group, placed: set[str]) -> bool:
     return not waiting
 
 
-def _outward(component: Component) -> list[int]:
+def _by_structure(component: Component, kinds: Sequence[tuple[object, ...]]) -> list[int]:
     """Connections by their distance from the entry, then by type and surroundings.
 
-    The order in which they are written decides only between what nothing else tells apart.
+    The order in which they are written decides only between what nothing else tells apart
+    (colour refinement; Weisfeiler, Leman 1968).
     """
     connections = component.connections
     at = incidence(connections)
     away = distances(connections, at, component.entry)
-    color = dict(away)
-    for _ in range(LEVELS):
-        seen = {
-            link: (
-                color[link],
-                tuple(
-                    sorted(
-                        (_kind(connections[k]), color[connections[k].other(link)]) for k in at[link]
-                    )
-                ),
-            )
-            for link in color
-        }
+    color, count = dict(away), 0
+    for _ in range(MOST_ROUNDS):
+        seen = {}
+        for link, own in color.items():
+            ends = ((*kinds[k], color[connections[k].other(link)]) for k in at[link])
+            seen[link] = (own, *sorted(ends))
         ranks = {value: k for k, value in enumerate(sorted(set(seen.values())))}
         color = {link: ranks[value] for link, value in seen.items()}
+        if len(ranks) == count:
+            break
+        count = len(ranks)
 
     def key(number: int) -> tuple[object, ...]:
         c = connections[number]
         far = sorted((away[c.first], away[c.second]), reverse=True)
         ends = sorted((color[c.first], color[c.second]))
-        return (*far, _kind(c), *ends)
+        return (*far, *kinds[number], *ends)
 
     return sorted(range(len(connections)), key=key)
-
-
-def _kind(c: Connection) -> tuple[bool, int, int, str]:
-    return (c.leg is not None, c.freedoms, c.driven, c.joint.letter)

@@ -8,7 +8,7 @@ by one freedom of any of its nodes. A largest matching (augmenting paths; Kuhn 1
   equations determine together, each after those that it depends on (Dulmage, Mendelsohn 1958).
 
 Where there are too many equations, the parts depend on which are left over, and on nothing else.
-Rows come first whose nodes have fewest free freedoms left, then in their order: so small sets are
+Rows come first whose nodes have fewest free freedoms left, then by their turns: so small sets are
 full before equations are spent on larger ones.
 """
 
@@ -30,8 +30,11 @@ class Matching:
     """A largest matching: `taken[node][row]` equations of a row at a node, `free[node]` freedoms
     left."""
 
-    def __init__(self, capacities: Sequence[int], rows: Sequence[Row]) -> None:
+    def __init__(
+        self, capacities: Sequence[int], rows: Sequence[Row], turns: Sequence[int] | None = None
+    ) -> None:
         self.rows = rows
+        self.turns = range(len(rows)) if turns is None else turns
         self.free = list(capacities)
         self.taken: list[dict[int, int]] = [{} for _ in capacities]
         self._closed = [False] * len(self.free)
@@ -44,11 +47,12 @@ class Matching:
             for node in row.nodes:
                 at[node].append(number)
         open_at = [sum(self.free[node] for node in row.nodes) for row in self.rows]
-        ahead = [(count, number) for number, count in enumerate(open_at)]
+        turns = self.turns
+        ahead = [(count, turns[number], number) for number, count in enumerate(open_at)]
         heapify(ahead)
         done = [False] * len(self.rows)
         while ahead:
-            count, number = heappop(ahead)
+            count, _, number = heappop(ahead)
             if done[number] or count != open_at[number]:
                 continue
             done[number] = True
@@ -58,7 +62,7 @@ class Matching:
                 for other in at[step[1]]:
                     open_at[other] -= step[0]
                     if not done[other]:
-                        heappush(ahead, (open_at[other], other))
+                        heappush(ahead, (open_at[other], turns[other], other))
 
     def _take(self, number: int, most: int) -> tuple[int, int] | None:
         """Matches some equations of a row, at most so many; how many, and the node that takes
@@ -96,6 +100,12 @@ class Matching:
             node = before
         return step
 
+    @property
+    def is_redundant(self) -> bool:
+        """Whether some equations find no freedom."""
+        matched = sum(sum(taken.values()) for taken in self.taken)
+        return matched < sum(row.equations for row in self.rows)
+
     def undetermined(self) -> set[int]:
         """Nodes with freedoms that no equation determines, or that depend on such."""
         at: list[list[tuple[int, int]]] = [[] for _ in self.free]
@@ -114,12 +124,22 @@ class Matching:
         return found
 
     def parts(self, left_out: set[int]) -> list[list[int]]:
-        """The other nodes in smallest sets that are determined together, in order."""
+        """The other nodes in smallest sets that are determined together, in order: by their
+        distance from what depends on nothing, then by the turns of their rows."""
         ahead = [
             sorted({other for row in taken for other in self.rows[row].nodes} - left_out)
             for taken in self.taken
         ]
-        return strong_components(ahead, [n for n in range(len(ahead)) if n not in left_out])
+        found = strong_components(ahead, [n for n in range(len(ahead)) if n not in left_out])
+        level: dict[int, int] = {}
+        keys = []
+        for k, part in enumerate(found):
+            before = {other for node in part for other in ahead[node]}.difference(part)
+            own = 1 + max((level[node] for node in before), default=0)
+            level.update((node, own) for node in part)
+            turns = sorted(self.turns[row] for node in part for row in self.taken[node])
+            keys.append((own, turns, k))
+        return [found[k] for _, _, k in sorted(keys)]
 
 
 def strong_components(ahead: Sequence[Sequence[int]], nodes: Sequence[int]) -> list[list[int]]:

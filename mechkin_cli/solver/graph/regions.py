@@ -40,7 +40,9 @@ def find_regions(component: Component, order: int) -> list[Region]:
     connections = component.connections
     at = incidence(connections)
     cycles = {
-        cycle for number in range(len(connections)) if (cycle := _shortest(connections, at, number))
+        cycle
+        for one, other in _neighbours(connections, at)
+        if (cycle := _shortest(connections, at, one, other))
     }
     seeds = [
         (rank, sorted(cycle))
@@ -54,28 +56,41 @@ def find_regions(component: Component, order: int) -> list[Region]:
     return sorted(found, key=lambda region: (region.order, -len(region.connections)))
 
 
+def _neighbours(
+    connections: Sequence[Connection], at: dict[str, list[int]]
+) -> list[tuple[int, int]]:
+    """Pairs of joints on a link, of each joint's two links that with fewer joints."""
+    found: set[tuple[int, int]] = set()
+    for number, c in enumerate(connections):
+        fewest = min(len(at[c.first]), len(at[c.second]))
+        for link in (c.first, c.second):
+            if len(at[link]) == fewest:
+                found |= {(min(number, k), max(number, k)) for k in at[link] if k != number}
+    screws = [c.has_screws for c in connections]
+    return sorted(pair for pair in found if screws[pair[0]] and screws[pair[1]])
+
+
 def _shortest(
-    connections: Sequence[Connection], at: dict[str, list[int]], number: int
+    connections: Sequence[Connection], at: dict[str, list[int]], one: int, other: int
 ) -> frozenset[int] | None:
-    """A shortest loop of joints through a connection, None where there is none."""
-    own = connections[number]
-    if not own.has_screws:
-        return None
-    came = {own.first: (own.first, number)}
-    front = [own.first]
-    for link in front:
-        for k in at[link]:
-            other = connections[k].other(link)
-            if k == number or other in came or not connections[k].has_screws:
-                continue
-            came[other] = (link, k)
-            front.append(other)
-            if other == own.second:
-                cycle = [number]
-                while other != own.first:
-                    other, k = came[other]
-                    cycle.append(k)
-                return frozenset(cycle)
+    """A shortest loop of joints through two on one link, None where there is none."""
+    pair = (connections[one], connections[other])
+    link = next(end for end in (pair[0].first, pair[0].second) if end in pair[1][1:3])
+    start, goal = pair[0].other(link), pair[1].other(link)
+    came = {start: (start, one), link: (link, one)}
+    front = [start]
+    for near in front:
+        if near == goal:
+            cycle = [one, other]
+            while near != start:
+                near, k = came[near]
+                cycle.append(k)
+            return frozenset(cycle)
+        for k in at[near]:
+            far = connections[k].other(near)
+            if far not in came and connections[k].has_screws:
+                came[far] = (near, k)
+                front.append(far)
     return None
 
 
