@@ -126,7 +126,9 @@ class _System:
             self._add_memberships(r)
         self.matching = Matching(self.capacities, self.rows)
         if self.matching.is_redundant:
-            self.matching = Matching(self.capacities, self.rows, self._turns())
+            turns = self._turns()
+            self.rows = _sorted_nodes(self.rows, turns, len(self.capacities))
+            self.matching = Matching(self.capacities, self.rows, turns)
 
     def _node(self, capacity: int) -> int:
         self.capacities.append(capacity)
@@ -276,6 +278,16 @@ def _hangs(group: Group, placed: set[str]) -> bool:
                 waiting.discard(other)
                 front.append(other)
     return not waiting
+
+
+def _sorted_nodes(rows: Sequence[Row], turns: Sequence[int], nodes: int) -> list[Row]:
+    """The rows with their nodes by the turns of all rows at each."""
+    at: list[list[int]] = [[] for _ in range(nodes)]
+    for row, turn in zip(rows, turns, strict=True):
+        for node in row.nodes:
+            at[node].append(turn)
+    keys = [sorted(some) for some in at]
+    return [Row(row.equations, tuple(sorted(row.nodes, key=keys.__getitem__))) for row in rows]
 
 
 def _by_structure(component: Component, kinds: Sequence[tuple[object, ...]]) -> list[int]:
