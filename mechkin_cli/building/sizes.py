@@ -19,7 +19,8 @@ from mechkin_cli.tables.layout import TableLayout
 
 MOST_EQUATIONS: Final = 120
 """Closing equations of one block. A Stewart platform has 6, with universal joints 15. The work of a
-row grows with their cube; the number of blocks and of loops has no limit."""
+row grows with their cube (a ladder of four-bars driven at its far end, with a search of its
+assemblies: 50 equations 9 s, 120 equations 28 s); blocks and loops may be any number."""
 
 MOST_NUMBERS: Final = 40_000_000
 """Numbers of a run: per row the cells of all tables, the columns of rows.csv and the freedoms of

@@ -9,7 +9,7 @@ from mechkin_cli.solver.graph import errors
 from mechkin_cli.solver.graph.assur import Group, Undriven, assur_groups
 from mechkin_cli.solver.graph.blocks import in_order, lay_blocks
 from mechkin_cli.solver.graph.components import biconnected
-from mechkin_cli.solver.graph.network import Connection, connections_of, incidence
+from mechkin_cli.solver.graph.network import Connection, connections_of, distances, incidence
 from mechkin_cli.solver.graph.records import SolverGraph, TreeEdge, UnsolvableGraph
 from mechkin_cli.solver.graph.tree_edges import Ways, spanning_tree
 from mechkin_cli.solver.graph.trees import NothingCloses, closings_of, tree_depths
@@ -36,7 +36,7 @@ def build_graph(
         try:
             names = _closing_names(whole, groups) if closed_at is None else list(closed_at)
         except NothingCloses as loop:
-            whole = _cut(mechanism, whole, loop.connections)
+            whole = _cut(mechanism, whole, connections, loop.connections)
             continue
         return _laid(mechanism, whole, groups, names, inputs)
 
@@ -77,14 +77,21 @@ def _closing_names(whole: Reduction, groups: Sequence[Group]) -> list[str]:
     return sorted(written, key=chosen.__getitem__)
 
 
-def _cut(mechanism: Mechanism, whole: Reduction, loop: Sequence[Connection]) -> Reduction:
-    """With a link of the loop cut in two halves."""
-    names = [name for name in whole.joints if any(c.name == name for c in loop)]
+def _cut(
+    mechanism: Mechanism,
+    whole: Reduction,
+    connections: Sequence[Connection],
+    loop: Sequence[Connection],
+) -> Reduction:
+    """With the link of the loop that is farthest from ground cut in two halves."""
+    members = {c.name for c in loop}
+    names = [name for name in whole.joints if name in members]
     ends = [link for c in loop for link in (c.first, c.second)]
-    for link in whole.links:
-        if ends.count(link) == 2:
-            return cut_link(whole, link, names)
-    raise errors.no_closing_joint(mechanism.name, names)
+    inside = [link for link in whole.links if ends.count(link) == 2]
+    if not inside:
+        raise errors.no_closing_joint(mechanism.name, names)
+    away = distances(connections, incidence(connections), GROUND_NAME)
+    return cut_link(whole, max(inside, key=away.__getitem__), names)
 
 
 def _laid(
