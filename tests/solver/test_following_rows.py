@@ -8,10 +8,10 @@ from time import process_time
 
 import numpy as np
 import pytest
-from mechkin_cli.analysis.home import home_state
-from mechkin_cli.analysis.setup import Setup, prepare
+from prepared import Setup, prepared
 
 import mechkin_cli as mk
+from mechkin_cli.analysis.assembly.home import home_state
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.closing_turns import (
     ORIENTATION,
@@ -158,7 +158,7 @@ def test_the_inputs_in_another_order(platform: Platform) -> None:
 
 def closing_case(name: str) -> Setup:
     problem = mk.load(MECHANISMS / f"{name}.yaml").problem
-    return prepare(problem, [], verdicts=False, closed_at=None, lanes=0)
+    return prepared(problem)
 
 
 def dense(path: np.ndarray, parts: int) -> np.ndarray:
