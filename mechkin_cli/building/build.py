@@ -12,8 +12,9 @@ from mechkin_cli.building.columns import build_tables, used_quantities
 from mechkin_cli.building.fields import Fields, Path, read_parameters, read_units
 from mechkin_cli.building.linkage import build_linkage, is_link
 from mechkin_cli.building.loads import LoadBuilder
+from mechkin_cli.building.memory import row_limit
 from mechkin_cli.building.motion import build_motion
-from mechkin_cli.building.sizes import check_loops, check_memory
+from mechkin_cli.building.sizes import check_loops
 from mechkin_cli.building.source import Source
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.mechanism.legs import find_legs
@@ -56,7 +57,6 @@ def build(source: Source) -> Built:
         timed = problem.motion.time is not None
         names = [driven.name for driven in problem.motion.inputs]
         tables = (default_table(problem.mechanism.coordinates, names, timed=timed),)
-    check_memory(fields, problem.mechanism, problem.motion, tables)
     follow = build_follow(fields, file.follow, problem.mechanism.joints)
     problem = replace(problem, hold_idle=file.idle == "hold", follow=follow)
     graph = _graph(fields, file, problem.mechanism, problem.motion)
@@ -73,7 +73,7 @@ def _problem(fields: Fields, file: MechanismFile) -> Problem:
     """The mechanism with its loads, its motion and assembly."""
     links, joints = build_linkage(fields, file)
     points, directions = _points(fields, file, links), _directions(fields, file, links)
-    motion = build_motion(fields, file.motion, joints)
+    motion = build_motion(fields, file.motion, joints, row_limit(file, joints))
     assembly = build_assembly(fields, file.assembly, joints)
     name = file.name or fields.document.file
     mechanism = Mechanism(name, links, joints, points, directions)

@@ -32,7 +32,9 @@ from mechkin_cli.schema.scalars import (
 _STEP_OR_COUNT: dict[str, Any] = {"oneOf": [{"required": ["step"]}, {"required": ["count"]}]}
 
 
-class _WithRates(Section):
+class WithRates(Section):
+    """What inputs with rows of their own share."""
+
     rate: CoordinateRate = "0"
     """Rate of the input, the same in every row."""
     acceleration: CoordinateAcceleration = "0"
@@ -41,7 +43,7 @@ class _WithRates(Section):
     """Third rate of the input, the same in every row."""
 
 
-class SweptInput(_WithRates):
+class SweptInput(WithRates):
     """An input that runs from one value to another in equal steps."""
 
     editors: ClassVar[dict[str, Any]] = _STEP_OR_COUNT
@@ -64,14 +66,14 @@ class SweptInput(_WithRates):
             raise refuse("two-choices", text, "keep one of them", "count")
 
 
-class ListedInput(_WithRates):
+class ListedInput(WithRates):
     """An input that takes the listed values, one per row."""
 
     values: Annotated[tuple[AngleOrLength, ...], Limits(min_length=1)]
     """The value of each row."""
 
 
-class HeldInput(_WithRates):
+class HeldInput(WithRates):
     """An input that has the same value in every row."""
 
     at: AngleOrLength
@@ -114,6 +116,9 @@ _LAWS = {
     "cycloidal": Cycloidal,
     "table": TableLaw,
 }
+
+
+Law = ConstantRate | ConstantAcceleration | Polynomial | Harmonic | Cycloidal | TableLaw
 
 
 def _tag(mapping: dict[str, Any]) -> str | None:

@@ -28,7 +28,7 @@ FORMS: Final = {
 """What a text that fails a pattern should have been, and what to do."""
 
 _NOT_A_NUMBER = re.compile(r"[+-]?\.?(nan|inf|infinity)", re.IGNORECASE)
-_WHOLE_NUMBER = re.compile(r"[+-]?[0-9]{1,9}")
+_WHOLE_NUMBER = re.compile(r"[+-]?[0-9]{1,300}")
 
 
 def expression_text(value: Any) -> str:
@@ -50,8 +50,8 @@ def expression_text(value: Any) -> str:
 
 
 def whole_number(value: Any) -> int:
-    """The whole number in a text (at most nine digits) or a Python integer."""
-    if isinstance(value, Integral) and not isinstance(value, bool):
+    """The whole number in a text or a Python integer, of at most 300 digits."""
+    if isinstance(value, Integral) and not isinstance(value, bool) and abs(int(value)) < 10**300:
         return int(value)
     if isinstance(value, str) and _WHOLE_NUMBER.fullmatch(value.strip()):
         return int(value)
