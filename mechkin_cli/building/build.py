@@ -23,6 +23,7 @@ from mechkin_cli.mechanism.motion import Motion
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.reading.parser import in_order
 from mechkin_cli.schema.file import MechanismFile
+from mechkin_cli.schema.units_section import UnitsSection
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
@@ -120,7 +121,7 @@ def needs_forces(problem: Problem, tables: Sequence[TableLayout]) -> bool:
     return bool(demand_of(problem.mechanism, wanted) & Demand.FORCES)
 
 
-def _unit_texts(section: object) -> dict[str, str]:
+def _unit_texts(section: UnitsSection) -> dict[str, str]:
     names = ("length", "angle", "mass", "force", "time", "angular_rate")
     return {name: getattr(section, name) for name in names}
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
 
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.per_link import Frames, directions_of, place_of, points_of
@@ -17,12 +16,24 @@ from mechkin_cli.mechanism.frames import (
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Part
 from mechkin_cli.mechanism.vectors import Vector, cross, norm, scale
 from mechkin_cli.nearest import nearest_hint
+from mechkin_cli.schema.joints import (
+    AnyAxisJoint,
+    AnyJoint,
+    AxisJoint,
+    HelicalJoint,
+    PlanarJoint,
+    PointJoint,
+    SphereGrooveJoint,
+    SpherePlaneJoint,
+    TwoTurnJoint,
+    WeldJoint,
+)
 from mechkin_cli.tolerances import PARALLEL
 from mechkin_cli.units import LENGTH
 
 
 def build_joints(
-    fields: Fields, sections: Mapping[str, Any], links: Mapping[str, Any]
+    fields: Fields, sections: Mapping[str, AnyJoint], links: Mapping[str, object]
 ) -> dict[str, Joint]:
     """All joints that can be built; the rest is noted in `fields`."""
     joints = {}
@@ -36,7 +47,9 @@ def build_joints(
     return joints
 
 
-def _links_known(fields: Fields, path: Path, section: Any, links: Mapping[str, Any]) -> bool:
+def _links_known(
+    fields: Fields, path: Path, section: AnyJoint, links: Mapping[str, object]
+) -> bool:
     known = True
     for i, link in enumerate(section.links):
         if link != GROUND_NAME and link not in links:
@@ -46,11 +59,13 @@ def _links_known(fields: Fields, path: Path, section: Any, links: Mapping[str, A
     return known
 
 
-def _build(fields: Fields, name: str, section: Any) -> Joint:
+def _build(fields: Fields, name: str, section: AnyJoint) -> Joint:
     path: Path = ("joints", name)
     first, second = section.links
     on_first, on_second, parts = _FRAMES[section.type](fields, path, section)
-    lead = lead_of(fields, (*path, "lead"), section.lead) if section.type == "H" else 0.0
+    lead = (
+        lead_of(fields, (*path, "lead"), section.lead) if isinstance(section, HelicalJoint) else 0.0
+    )
     return Joint(name, section.type, first, second, on_first, on_second, parts, lead)
 
 
@@ -63,7 +78,7 @@ def lead_of(fields: Fields, path: Path, text: str) -> float:
     return lead
 
 
-def _axis_frames(fields: Fields, path: Path, section: Any) -> Frames:
+def _axis_frames(fields: Fields, path: Path, section: AnyAxisJoint) -> Frames:
     """R, P, C, H: z along the axis on either link."""
     points = points_of(fields, path, section)
     errors = fields.error_count
@@ -74,14 +89,14 @@ def _axis_frames(fields: Fields, path: Path, section: Any) -> Frames:
     return on_first, on_second, (Part(section.type, on_first, on_second),)
 
 
-def _spheric_frames(fields: Fields, path: Path, section: Any) -> Frames:
+def _spheric_frames(fields: Fields, path: Path, section: PointJoint) -> Frames:
     """S: ground axes at the sphere's centre."""
     first, second = points_of(fields, path, section)
     on_first, on_second = upright(first), upright(second)
     return on_first, on_second, (Part("S", on_first, on_second),)
 
 
-def _plane_frames(fields: Fields, path: Path, section: Any) -> Frames:
+def _plane_frames(fields: Fields, path: Path, section: SpherePlaneJoint) -> Frames:
     """Sp: turns about the sphere's centre, then slides in the plane of the second link."""
     first, second = points_of(fields, path, section)
     normal = directions_of(fields, path, section, "normal")[1]
@@ -92,7 +107,7 @@ def _plane_frames(fields: Fields, path: Path, section: Any) -> Frames:
     return upright(first), on_second, (turn, *(Part("P", f, f) for f in slides))
 
 
-def _groove_frames(fields: Fields, path: Path, section: Any) -> Frames:
+def _groove_frames(fields: Fields, path: Path, section: SphereGrooveJoint) -> Frames:
     """Sg: turns about the sphere's centre; where s grows the second link runs back along its
     groove."""
     first, second = points_of(fields, path, section)
@@ -103,7 +118,7 @@ def _groove_frames(fields: Fields, path: Path, section: Any) -> Frames:
     return upright(first), on_second, (turn, Part("P", back, back))
 
 
-def _planar_frames(fields: Fields, path: Path, section: Any) -> Frames:
+def _planar_frames(fields: Fields, path: Path, section: PlanarJoint) -> Frames:
     """E: slides along x and y of the first link, then turns about the normal."""
     points = points_of(fields, path, section)
     errors = fields.error_count
@@ -122,19 +137,19 @@ def _planar_frames(fields: Fields, path: Path, section: Any) -> Frames:
     return on_first, on_second, (*(Part("P", f, f) for f in slides), Part("R", on_first, on_second))
 
 
-def _turning_frames(fields: Fields, path: Path, section: Any) -> Frames:
+def _turning_frames(fields: Fields, path: Path, section: TwoTurnJoint) -> Frames:
     """U, Ss, Sc, Cp: two turns."""
     from mechkin_cli.building.two_turns import FRAMES
 
     return FRAMES[section.type](fields, path, section)
 
 
-def _weld_frames(fields: Fields, path: Path, section: Any) -> Frames:
+def _weld_frames(fields: Fields, path: Path, section: WeldJoint) -> Frames:
     """W: one body."""
     return GROUND, GROUND, (Part("W", GROUND, GROUND),)
 
 
-_FRAMES = {
+_FRAMES: dict[str, Callable[..., Frames]] = {
     "R": _axis_frames,
     "P": _axis_frames,
     "C": _axis_frames,
@@ -152,7 +167,7 @@ _FRAMES = {
 
 
 def _zero_directions(
-    fields: Fields, path: Path, section: Any, axes: tuple[Vector, Vector], errors: int
+    fields: Fields, path: Path, section: AxisJoint, axes: tuple[Vector, Vector], errors: int
 ) -> tuple[Vector, Vector]:
     """Directions on either link that are in line, seen along the axis, at coordinate zero.
 

@@ -13,10 +13,10 @@ from mechkin_cli.building.memory import RowLimit
 from mechkin_cli.building.spacing import spaced
 from mechkin_cli.mechanism.model import Joint
 from mechkin_cli.mechanism.motion import DrivenInput, Moments, Motion
+from mechkin_cli.schema.laws import Law
 from mechkin_cli.schema.motion import (
     FollowingInput,
     HeldInput,
-    Law,
     ListedInput,
     MotionSection,
     SweptInput,

@@ -6,20 +6,27 @@ their own; slides come before the turns (Sc) or after them (Cp).
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
 
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.per_link import Frames, directions_of, place_of, points_of
 from mechkin_cli.mechanism.frames import Frame, frame_about, perpendicular
 from mechkin_cli.mechanism.model import Part
 from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale, subtract, unit
+from mechkin_cli.schema.joints import (
+    CylinderPlaneJoint,
+    PointJoint,
+    SlottedSphereJoint,
+    SphereCylinderJoint,
+    UniversalJoint,
+)
 from mechkin_cli.tolerances import AXES_SQUARE, PARALLEL
 
 Turns = tuple[Frame, Frame, tuple[Part, Part]]
 """Frames on either link and the two turns between them."""
 
 
-def _universal_frames(fields: Fields, path: Path, section: Any) -> Frames:
+def _universal_frames(fields: Fields, path: Path, section: UniversalJoint) -> Frames:
     """U: about `axis`, then about `axis2`, at the angle drawn between them."""
     at = points_of(fields, path, section)
     errors = fields.error_count
@@ -37,7 +44,7 @@ def _universal_frames(fields: Fields, path: Path, section: Any) -> Frames:
     return _turns((one, one), (two, two), at)
 
 
-def _slotted_sphere_frames(fields: Fields, path: Path, section: Any) -> Frames:
+def _slotted_sphere_frames(fields: Fields, path: Path, section: SlottedSphereJoint) -> Frames:
     """Ss: about the slot's normal, then about the pin."""
     at = points_of(fields, path, section)
     cure = "the slot's plane holds the pin: give the normal of that plane"
@@ -45,7 +52,7 @@ def _slotted_sphere_frames(fields: Fields, path: Path, section: Any) -> Frames:
     return _turns(slots, pins, at)
 
 
-def _slotted_cylinder_frames(fields: Fields, path: Path, section: Any) -> Frames:
+def _slotted_cylinder_frames(fields: Fields, path: Path, section: SphereCylinderJoint) -> Frames:
     """Sc: along the cylinder, then about the slot's normal, then about the pin."""
     at = points_of(fields, path, section)
     errors = fields.error_count
@@ -70,7 +77,7 @@ def _slotted_cylinder_frames(fields: Fields, path: Path, section: Any) -> Frames
     return on_first, on_second, (Part("P", slide, slide), *turns)
 
 
-def _cylinder_plane_frames(fields: Fields, path: Path, section: Any) -> Frames:
+def _cylinder_plane_frames(fields: Fields, path: Path, section: CylinderPlaneJoint) -> Frames:
     """Cp: about the cylinder's axis, then about the plane's normal, then along the plane's x and
     y."""
     at = points_of(fields, path, section)
@@ -94,7 +101,7 @@ def _turns(
 
 
 def _square_pairs(
-    fields: Fields, path: Path, section: Any, keys: tuple[str, str], cure: str
+    fields: Fields, path: Path, section: PointJoint, keys: tuple[str, str], cure: str
 ) -> tuple[tuple[Vector, Vector], tuple[Vector, Vector]]:
     """Two directions on either link, the first made exactly square to the second; refused where
     they are not drawn square."""
@@ -119,7 +126,7 @@ def _square_pairs(
     return (squared[0], squared[1]), twos
 
 
-FRAMES = {
+FRAMES: dict[str, Callable[..., Frames]] = {
     "U": _universal_frames,
     "Ss": _slotted_sphere_frames,
     "Sc": _slotted_cylinder_frames,

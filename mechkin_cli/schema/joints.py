@@ -195,6 +195,19 @@ class WeldJoint(JointBase):
     type: Literal["W"]
 
 
+AnyAxisJoint = RevoluteJoint | PrismaticJoint | CylindricJoint | HelicalJoint
+TwoTurnJoint = UniversalJoint | SlottedSphereJoint | SphereCylinderJoint | CylinderPlaneJoint
+AnyJoint = (
+    AnyAxisJoint
+    | TwoTurnJoint
+    | SphericalJoint
+    | SpherePlaneJoint
+    | SphereGrooveJoint
+    | PlanarJoint
+    | WeldJoint
+)
+
+
 def _tag(mapping: dict[str, Any]) -> str | None:
     word = mapping.get("type")
     return f"({word})" if word in JOINT_TYPES else None

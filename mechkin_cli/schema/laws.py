@@ -77,3 +77,6 @@ class TableLaw(Section):
     law: Literal["table"]
     file: CsvPath
     """CSV file with a header and two columns: time, value; relative to the mechanism file."""
+
+
+Law = ConstantRate | ConstantAcceleration | Polynomial | Harmonic | Cycloidal | TableLaw

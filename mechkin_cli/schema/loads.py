@@ -154,6 +154,17 @@ class DamperAtJoint(Section):
     """Force per speed, or moment per angular rate (bare numbers: per rad/s)."""
 
 
+AnyLoad = (
+    Gravity
+    | ForceOnLink
+    | ForceOnJoint
+    | TorqueOnLink
+    | TorqueOnJoint
+    | SpringBetweenPoints
+    | SpringAtJoint
+    | DamperBetweenPoints
+    | DamperAtJoint
+)
 _WORDS = ("gravity", "force", "torque", "spring", "damper")
 
 

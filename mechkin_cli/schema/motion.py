@@ -118,9 +118,6 @@ _LAWS = {
 }
 
 
-Law = ConstantRate | ConstantAcceleration | Polynomial | Harmonic | Cycloidal | TableLaw
-
-
 def _tag(mapping: dict[str, Any]) -> str | None:
     if "law" in mapping:
         word = mapping["law"]
