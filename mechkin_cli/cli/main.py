@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 from typing import NoReturn
 
 from mechkin_cli.cli.exit_codes import ExitCode
@@ -40,9 +41,7 @@ def _run() -> int:
     try:
         given = plain_analysis(sys.argv[1:])
         if given is not None:
-            from mechkin_cli.cli.analyze import analyze_files
-
-            return int(analyze_files(**given))
+            return int(_analyze_files()(**given))
         from mechkin_cli.cli.app import run
 
         return run()
@@ -58,6 +57,23 @@ def _run() -> int:
         return ExitCode.INTERRUPTED
     except Exception as error:
         return _failed(error)
+
+
+def _analyze_files() -> Callable[..., int]:
+    """Loads what a plain analysis needs, and no more than that."""
+    import gc
+
+    # an analysis multiplies no large matrices: one thread of BLAS per core would only be started
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # modules live as long as the process: looking for garbage among them is a tenth of a short run
+    gc.disable()
+    try:
+        import mechkin_cli.interface  # noqa: F401
+        from mechkin_cli.cli.analyze import analyze_files
+    finally:
+        gc.freeze()
+        gc.enable()
+    return analyze_files
 
 
 def _failed(error: Exception) -> int:
