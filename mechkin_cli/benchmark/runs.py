@@ -38,13 +38,13 @@ def timing_tables(folder: Path | None, say: Callable[[str], None]) -> Iterator[T
 
 
 def _process_table(folder: Path, say: Callable[[str], None]) -> Iterator[Table]:
-    """The whole process, if the program that does nothing and the mechanism's file are there."""
-    do_nothing, project = folder.parent / "do_nothing.py", folder.parents[2]
-    if not (do_nothing.is_file() and (project / RCSR_FILE).is_file()):
-        say(f"left out: no whole processes, {do_nothing} or {project / RCSR_FILE} is not there")
+    """The whole process, if the mechanism's file is there."""
+    rcsr = folder.parents[2] / RCSR_FILE
+    if not rcsr.is_file():
+        say(f"left out: no whole processes, {rcsr} is not there")
         return
     try:
-        yield targets.process_table(project / RCSR_FILE, do_nothing)
+        yield targets.process_table(rcsr)
     except CalledProcessError as error:
         say(f"left out: no whole processes, {error}")
 

@@ -1,16 +1,14 @@
-"""`mechkin analyze`: runs mechanism files and writes their tables."""
+"""What `mechkin analyze` does: runs mechanism files and writes their tables."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import Progress, Record, put, refusal, say, say_diagnostics
-from mechkin_cli.cli.options import Files, Json, Quiet, Set, parameters
+from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
@@ -33,34 +31,25 @@ class _Request:
     quiet: bool
 
 
-def analyze(
-    files: Files,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Folder to write to (out/STEM).")
-    ] = None,
-    format: Annotated[
-        list[str] | None,
-        typer.Option("--format", metavar="FORMAT", help="csv, md or json; may be repeated."),
-    ] = None,
-    set_: Set = None,
-    mode: Annotated[
-        str | None, typer.Option("--mode", metavar="NAME", help="Assembly mode at the first row.")
-    ] = None,
-    table: Annotated[
-        list[str] | None,
-        typer.Option("--table", metavar="NAME", help="Only this table; may be repeated."),
-    ] = None,
-    lanes: Annotated[
-        int,
-        typer.Option("--lanes", metavar="N", help="Rows at a time: 2, 4 or 8; 0: the most."),
-    ] = 0,
-    explain: Annotated[
-        bool, typer.Option("--explain", help="Show the solver graph and what is skipped.")
-    ] = False,
-    json: Json = False,
-    quiet: Quiet = False,
-) -> None:
-    """Run the sweep of each file and write its tables."""
+def analyze_files(
+    files: list[Path],
+    out: Path | None = None,
+    format: list[str] | None = None,
+    set_: list[str] | None = None,
+    mode: str | None = None,
+    table: list[str] | None = None,
+    lanes: int = 0,
+    explain: bool = False,
+    json: bool = False,
+    quiet: bool = False,
+) -> ExitCode:
+    """Runs the sweep of each file and writes its tables.
+
+    The arguments are the options of the command, as `analyze_command` declares them.
+
+    Raises:
+        UsageError: an option that cannot be.
+    """
     from mechkin_cli.kernel.width import force_width
 
     force_width(lanes)
@@ -78,8 +67,7 @@ def analyze(
         from mechkin_cli.tables.json_writer import json_text
 
         put(json_text(records[0] if len(files) == 1 else {"files": records}))
-    if code:
-        raise typer.Exit(code)
+    return code
 
 
 def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]:
