@@ -11,8 +11,8 @@ import typer
 from references import RCSR, exact, published
 
 import mechkin_cli as mk
+from mechkin_cli.cli.app import app
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.main import app
 
 ROOT = RCSR.parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -13,8 +13,9 @@ from mechkin_cli.building.columns import build_tables, used_quantities
 from mechkin_cli.building.fields import Fields, Path, read_parameters, read_units
 from mechkin_cli.building.linkage import build_linkage, is_link
 from mechkin_cli.building.loads import LoadBuilder
+from mechkin_cli.building.memory import row_limit
 from mechkin_cli.building.motion import build_motion
-from mechkin_cli.building.sizes import check_blocks, check_memory
+from mechkin_cli.building.sizes import check_blocks
 from mechkin_cli.building.source import Source
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
@@ -24,6 +25,7 @@ from mechkin_cli.mechanism.motion import Motion
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.reading.parser import in_order
 from mechkin_cli.schema.file import MechanismFile
+from mechkin_cli.schema.units_section import UnitsSection
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
@@ -59,7 +61,6 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
         timed = problem.motion.time is not None
         names = [driven.name for driven in problem.motion.inputs]
         tables = (default_table(problem.mechanism.coordinates, names, timed=timed),)
-    check_memory(fields, problem.mechanism, problem.motion, tables)
     follow = build_follow(fields, file.follow, problem.mechanism.joints)
     problem = replace(problem, hold_idle=file.idle == "hold", follow=follow)
     graph = _graph(fields, file, problem.mechanism, problem.motion)
@@ -84,7 +85,7 @@ def build_problem(fields: Fields, file: MechanismFile) -> Problem:
     """The mechanism with its loads, its motion and assembly."""
     links, joints = build_linkage(fields, file)
     points, directions = _points(fields, file, links), _directions(fields, file, links)
-    motion = build_motion(fields, file.motion, joints)
+    motion = build_motion(fields, file.motion, joints, row_limit(file, joints))
     assembly = build_assembly(fields, file.assembly, joints)
     name = file.name or fields.document.file
     mechanism = Mechanism(name, links, joints, points, directions)
@@ -131,7 +132,7 @@ def needs_forces(problem: Problem, tables: Sequence[TableLayout]) -> bool:
     return bool(demand_of(problem.mechanism, wanted) & Demand.FORCES)
 
 
-def _unit_texts(section: object) -> dict[str, str]:
+def _unit_texts(section: UnitsSection) -> dict[str, str]:
     names = ("length", "angle", "mass", "force", "time", "angular_rate")
     return {name: getattr(section, name) for name in names}
 

@@ -12,16 +12,16 @@ Source: J. Denavit, R. S. Hartenberg, A kinematic notation for lower-pair mechan
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 from mechkin_cli.building.fields import Fields
 from mechkin_cli.building.joints import lead_of
 from mechkin_cli.mechanism.elementary import Part
 from mechkin_cli.mechanism.frames import GROUND, Frame, frame_about
-from mechkin_cli.mechanism.joint_table import joint_type
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint
 from mechkin_cli.mechanism.vectors import Vector, add, scale, subtract, unit
+from mechkin_cli.schema.chain import ChainRow
 from mechkin_cli.tape.scalars import cos, sin
 from mechkin_cli.units import ANGLE, LENGTH
 
@@ -36,7 +36,7 @@ class _Row(NamedTuple):
 
 
 def build_chain(
-    fields: Fields, rows: Sequence[Any], pairs: Sequence[tuple[str, str]]
+    fields: Fields, rows: Sequence[ChainRow], pairs: Sequence[tuple[str, str]]
 ) -> dict[str, Joint]:
     """The joints of a chain, `pairs` their two links; what is wrong is noted in `fields`."""
     if not _closes_at_ground(fields, rows):
@@ -52,16 +52,12 @@ def build_chain(
         if second == GROUND_NAME:
             behind = _along_x(GROUND, -numbers.alpha, -numbers.a)
         parts = (Part(row.type, at_joint, behind),)
-        lead = (
-            lead_of(fields, ("chain", i, "lead"), row.lead)
-            if joint_type(row.type).is_threaded
-            else 0.0
-        )
+        lead = lead_of(fields, ("chain", i, "lead"), row.lead) if row.lead is not None else 0.0
         joints[row.joint] = Joint(row.joint, row.type, first, second, at_joint, behind, parts, lead)
     return joints
 
 
-def _closes_at_ground(fields: Fields, rows: Sequence[Any]) -> bool:
+def _closes_at_ground(fields: Fields, rows: Sequence[ChainRow]) -> bool:
     """Whether the rows run from ground over differing links back to ground."""
     errors = fields.error_count
     last = len(rows) - 1
@@ -85,13 +81,12 @@ def _closes_at_ground(fields: Fields, rows: Sequence[Any]) -> bool:
     return fields.error_count == errors
 
 
-def _numbers(fields: Fields, i: int, row: Any) -> _Row:
-    dimensions: Mapping[str, Any] = {"theta": ANGLE, "s": LENGTH, "alpha": ANGLE, "a": LENGTH}
+def _numbers(fields: Fields, i: int, row: ChainRow) -> _Row:
     return _Row(
-        *(
-            fields.number(("chain", i, key), getattr(row, key), dimension)
-            for key, dimension in dimensions.items()
-        )
+        fields.number(("chain", i, "theta"), row.theta, ANGLE),
+        fields.number(("chain", i, "s"), row.s, LENGTH),
+        fields.number(("chain", i, "alpha"), row.alpha, ANGLE),
+        fields.number(("chain", i, "a"), row.a, LENGTH),
     )
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector, parse
 from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.mechanism.quantities import Wanted
+from mechkin_cli.schema import tables as written
 from mechkin_cli.tables.layout import (
     ROW_TEXTS,
     ColumnLayout,
@@ -21,7 +21,7 @@ from mechkin_cli.tables.layout import (
 
 
 def build_tables(
-    fields: Fields, sections: Sequence[Any], quantities: Mapping[str, Wanted]
+    fields: Fields, sections: Sequence[written.Table], quantities: Mapping[str, Wanted]
 ) -> tuple[TableLayout, ...]:
     """The tables' layouts; what is wrong with a column is noted in `fields`."""
     tables = []
@@ -40,7 +40,7 @@ def build_tables(
     return tuple(tables)
 
 
-def _published(section: Any) -> PublishedValues | None:
+def _published(section: written.PublishedValues | None) -> PublishedValues | None:
     if section is None:
         return None
     remarks = tuple(PrintedRemark(r.text, r.columns or ()) for r in section.remarks)
@@ -48,7 +48,7 @@ def _published(section: Any) -> PublishedValues | None:
 
 
 def _column(
-    fields: Fields, path: Path, column: Any, quantities: Mapping[str, Wanted]
+    fields: Fields, path: Path, column: written.Column, quantities: Mapping[str, Wanted]
 ) -> ColumnLayout | None:
     try:
         expression = parse(column.value)

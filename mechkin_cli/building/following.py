@@ -7,7 +7,6 @@ inputs may follow inputs that follow, in any order.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -26,6 +25,7 @@ from mechkin_cli.expressions.derivatives import derivatives
 from mechkin_cli.expressions.fields import scalar
 from mechkin_cli.expressions.jets import Jet, constant
 from mechkin_cli.mechanism.motion import Moments
+from mechkin_cli.schema.motion import FollowingInput
 from mechkin_cli.units import TIME
 
 
@@ -44,7 +44,7 @@ class Following:
         self.rows = rows
         self.time = time
 
-    def add_all(self, sections: Mapping[str, Any], coordinates: frozenset[str]) -> None:
+    def add_all(self, sections: Mapping[str, FollowingInput], coordinates: frozenset[str]) -> None:
         """Adds all inputs of some sections to `orders`; errors are noted in `fields`.
 
         `coordinates` are the names of all joint coordinates, for messages.
@@ -72,7 +72,11 @@ class Following:
         self.orders[name][0] = value
 
     def _parsed(
-        self, name: str, text: str, sections: Mapping[str, Any], coordinates: frozenset[str]
+        self,
+        name: str,
+        text: str,
+        sections: Mapping[str, FollowingInput],
+        coordinates: frozenset[str],
     ) -> Expression:
         expression = parse(text)
         for used in sorted(expression.names, key=expression.offset_of):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.halves import Halves
@@ -21,12 +20,24 @@ from mechkin_cli.mechanism.joint_type import Drawing, JointType
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint
 from mechkin_cli.mechanism.vectors import Vector, cross, norm
 from mechkin_cli.nearest import nearest_hint
+from mechkin_cli.schema.joints import (
+    AnyAxisJoint,
+    AnyJoint,
+    AxisJoint,
+    HelicalJoint,
+    PlanarJoint,
+    PointJoint,
+    SphereGrooveJoint,
+    SpherePlaneJoint,
+    TwoTurnJoint,
+    WeldJoint,
+)
 from mechkin_cli.tolerances import PARALLEL
 from mechkin_cli.units import LENGTH
 
 
 def build_joints(
-    fields: Fields, sections: Mapping[str, Any], links: Mapping[str, Any]
+    fields: Fields, sections: Mapping[str, AnyJoint], links: Mapping[str, object]
 ) -> dict[str, Joint]:
     """All joints that can be built; the rest is noted in `fields`."""
     joints = {}
@@ -40,7 +51,9 @@ def build_joints(
     return joints
 
 
-def _links_known(fields: Fields, path: Path, section: Any, links: Mapping[str, Any]) -> bool:
+def _links_known(
+    fields: Fields, path: Path, section: AnyJoint, links: Mapping[str, object]
+) -> bool:
     known = True
     for i, link in enumerate(section.links):
         if link != GROUND_NAME and link not in links:
@@ -50,12 +63,14 @@ def _links_known(fields: Fields, path: Path, section: Any, links: Mapping[str, A
     return known
 
 
-def _build(fields: Fields, name: str, section: Any) -> Joint:
+def _build(fields: Fields, name: str, section: AnyJoint) -> Joint:
     path: Path = ("joints", name)
     kind = joint_type(section.type)
     halves = _DRAWINGS[kind.drawing.kind](fields, path, section, kind.drawing)
-    lead = lead_of(fields, (*path, "lead"), section.lead) if kind.is_threaded else 0.0
     first, second = section.links
+    lead = 0.0
+    if isinstance(section, HelicalJoint):
+        lead = lead_of(fields, (*path, "lead"), section.lead)
     parts = parts_of(kind, halves)
     return Joint(name, kind.letter, first, second, halves.on_first, halves.on_second, parts, lead)
 
@@ -78,7 +93,7 @@ def lead_of(fields: Fields, path: Path, text: str) -> float:
     return lead
 
 
-def _axis(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halves:
+def _axis(fields: Fields, path: Path, section: AnyAxisJoint, drawing: Drawing) -> Halves:
     """z along the axis on either link."""
     points = points_of(fields, path, section)
     errors = fields.error_count
@@ -89,14 +104,16 @@ def _axis(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halves:
     return Halves(on_first, on_second, (on_first, on_second))
 
 
-def _ball(fields: Fields, path: Path, section: Any, _: Drawing) -> Halves:
+def _ball(fields: Fields, path: Path, section: PointJoint, _: Drawing) -> Halves:
     """Ground axes at the sphere's centre."""
     first, second = points_of(fields, path, section)
     meeting = upright(first), upright(second)
     return Halves(*meeting, meeting)
 
 
-def _ball_on(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halves:
+def _ball_on(
+    fields: Fields, path: Path, section: SpherePlaneJoint | SphereGrooveJoint, drawing: Drawing
+) -> Halves:
     """Ground axes at the sphere's centre; on the second link z along its normal or groove."""
     first, second = points_of(fields, path, section)
     z = directions_of(fields, path, section, *drawing.keys)[1]
@@ -104,7 +121,7 @@ def _ball_on(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halv
     return Halves(upright(first), on_second, (upright(first), upright(second)))
 
 
-def _plane(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halves:
+def _plane(fields: Fields, path: Path, section: PlanarJoint, drawing: Drawing) -> Halves:
     """z and x along the two directions given on either link."""
     along_z, along_x = drawing.keys
     points = points_of(fields, path, section)
@@ -123,18 +140,18 @@ def _plane(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halves
     return Halves(on_first, on_second, (on_first, on_second))
 
 
-def _two_turns(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halves:
+def _two_turns(fields: Fields, path: Path, section: TwoTurnJoint, drawing: Drawing) -> Halves:
     from mechkin_cli.building.two_turns import DRAWINGS
 
     return DRAWINGS[drawing.kind](fields, path, section, drawing)
 
 
-def _weld(*_: Any) -> Halves:
+def _weld(_: Fields, path: Path, section: WeldJoint, drawing: Drawing) -> Halves:
     """One body."""
     return Halves(GROUND, GROUND, (GROUND, GROUND))
 
 
-_DRAWINGS: dict[str, Callable[[Fields, Path, Any, Drawing], Halves]] = {
+_DRAWINGS: dict[str, Callable[..., Halves]] = {
     "axis": _axis,
     "ball": _ball,
     "ball on": _ball_on,
@@ -147,7 +164,7 @@ _DRAWINGS: dict[str, Callable[[Fields, Path, Any, Drawing], Halves]] = {
 
 
 def _zero_directions(
-    fields: Fields, path: Path, section: Any, axes: tuple[Vector, Vector], errors: int
+    fields: Fields, path: Path, section: AxisJoint, axes: tuple[Vector, Vector], errors: int
 ) -> tuple[Vector, Vector]:
     """Directions on either link that are in line, seen along the axis, at coordinate zero.
 

@@ -14,13 +14,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import pi, prod
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from mechkin_cli.arrays import Floats
 from mechkin_cli.building.coordinates import dimension_of
 from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.schema.laws import (
+    ConstantAcceleration,
+    ConstantRate,
+    Cycloidal,
+    Harmonic,
+    Law,
+    Polynomial,
+    TableLaw,
+)
 from mechkin_cli.units import TIME, Conversion, UnitSystem, conversion
 
 
@@ -32,7 +41,7 @@ class Clock(NamedTuple):
     last: float
 
 
-def law_values(fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock) -> Floats:
+def law_values(fields: Fields, path: Path, law: Law, coordinate: str, clock: Clock) -> Floats:
     """Value, rate, acceleration and jerk (4, rows) in the file's units.
 
     Errors are noted in `fields`; zeros stand in.
@@ -40,14 +49,16 @@ def law_values(fields: Fields, path: Path, law: Any, coordinate: str, clock: Clo
     return _LAWS[law.law](fields, path, law, coordinate, clock)
 
 
-def _constant_rate(fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock) -> Floats:
+def _constant_rate(
+    fields: Fields, path: Path, law: ConstantRate, coordinate: str, clock: Clock
+) -> Floats:
     at = fields.written((*path, "at"), law.at, dimension_of(coordinate))
     rate = fields.written((*path, "rate"), law.rate, dimension_of(coordinate, 1))
     return _power_series(fields.units, coordinate, [at, rate], clock)
 
 
 def _constant_acceleration(
-    fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock
+    fields: Fields, path: Path, law: ConstantAcceleration, coordinate: str, clock: Clock
 ) -> Floats:
     texts = (law.at, law.rate, law.acceleration)
     at, rate, acceleration = (
@@ -57,7 +68,9 @@ def _constant_acceleration(
     return _power_series(fields.units, coordinate, [at, rate, acceleration / 2.0], clock)
 
 
-def _polynomial(fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock) -> Floats:
+def _polynomial(
+    fields: Fields, path: Path, law: Polynomial, coordinate: str, clock: Clock
+) -> Floats:
     coefficients = [
         fields.written((*path, "coefficients", k), text, dimension_of(coordinate, k))
         for k, text in enumerate(law.coefficients)
@@ -79,7 +92,7 @@ def _power_series(
     return orders
 
 
-def _harmonic(fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock) -> Floats:
+def _harmonic(fields: Fields, path: Path, law: Harmonic, coordinate: str, clock: Clock) -> Floats:
     def shape(u: Floats) -> list[Floats]:
         sine, cosine = _half_turn(u)
         value = (1.0 - cosine) / 2.0
@@ -88,7 +101,7 @@ def _harmonic(fields: Fields, path: Path, law: Any, coordinate: str, clock: Cloc
     return _rise(fields, path, law, coordinate, clock, shape)
 
 
-def _cycloidal(fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock) -> Floats:
+def _cycloidal(fields: Fields, path: Path, law: Cycloidal, coordinate: str, clock: Clock) -> Floats:
     def shape(u: Floats) -> list[Floats]:
         sine, cosine = _half_turn(u)
         value = u - sine * cosine / pi
@@ -110,7 +123,7 @@ def _half_turn(u: Floats) -> tuple[Floats, Floats]:
 def _rise(
     fields: Fields,
     path: Path,
-    law: Any,
+    law: Harmonic | Cycloidal,
     coordinate: str,
     clock: Clock,
     shape: Callable[[Floats], list[Floats]],
@@ -131,7 +144,9 @@ def _rise(
     return orders
 
 
-def _span(fields: Fields, path: Path, law: Any, clock: Clock) -> tuple[float, float]:
+def _span(
+    fields: Fields, path: Path, law: Harmonic | Cycloidal, clock: Clock
+) -> tuple[float, float]:
     """Start and duration of a rise."""
     errors = fields.error_count
     start = clock.first
@@ -155,7 +170,7 @@ def _span(fields: Fields, path: Path, law: Any, clock: Clock) -> tuple[float, fl
     return start, 1.0
 
 
-def _table(fields: Fields, path: Path, law: Any, coordinate: str, clock: Clock) -> Floats:
+def _table(fields: Fields, path: Path, law: TableLaw, coordinate: str, clock: Clock) -> Floats:
     from mechkin_cli.building.curves import read_rows, smooth
 
     orders = np.zeros((4, clock.moments.size))
@@ -189,7 +204,7 @@ def _over_time(units: UnitSystem, coordinate: str, have: int, want: int) -> Conv
     return conversion(before.factor / units.unit(dimension_of(coordinate, want)).factor)
 
 
-_LAWS = {
+_LAWS: dict[str, Callable[..., Floats]] = {
     "constant-rate": _constant_rate,
     "constant-acceleration": _constant_acceleration,
     "polynomial": _polynomial,

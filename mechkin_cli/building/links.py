@@ -4,28 +4,29 @@ drawing."""
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism.model import Link, Tensor
 from mechkin_cli.mechanism.vectors import ZERO, Vector, cross, dot
+from mechkin_cli.schema import links as written
 from mechkin_cli.tape.scalars import advice, largest
 from mechkin_cli.tape.traced import Traced, TraceLost
 from mechkin_cli.units import INERTIA, LENGTH, MASS
 
 NO_INERTIA: Tensor = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-ENTRIES = ("xx", "yy", "zz", "xy", "xz", "yz")
 
 
-def build_links(fields: Fields, sections: Mapping[str, Any], accepted: bool) -> dict[str, Link]:
+def build_links(
+    fields: Fields, sections: Mapping[str, written.Link], accepted: bool
+) -> dict[str, Link]:
     """All links; unphysical inertias warn unless the file acknowledges them."""
     links = {}
     for name, section in sections.items():
         path: Path = ("links", name)
         mass, centre, tensor = 0.0, ZERO, NO_INERTIA
-        if section.mass is not None:
+        if section.mass is not None and section.center_of_mass is not None:
             mass = fields.number((*path, "mass"), section.mass, MASS)
             if mass < 0.0:
                 fields.error("negative-mass", (*path, "mass"), "a mass is not negative")
@@ -38,10 +39,20 @@ def build_links(fields: Fields, sections: Mapping[str, Any], accepted: bool) -> 
     return links
 
 
-def _tensor(fields: Fields, path: Path, section: Any) -> Tensor:
-    entries = tuple(fields.number((*path, e), getattr(section, e), INERTIA) for e in ENTRIES)
+def _tensor(fields: Fields, path: Path, section: written.LinkInertia) -> Tensor:
+    def entry(name: str, text: str) -> float:
+        return fields.number((*path, name), text, INERTIA)
+
+    entries = (
+        entry("xx", section.xx),
+        entry("yy", section.yy),
+        entry("zz", section.zz),
+        entry("xy", section.xy),
+        entry("xz", section.xz),
+        entry("yz", section.yz),
+    )
     if section.axes is None:
-        return entries  # type: ignore[return-value]
+        return entries
     x = fields.direction((*path, "axes", "x"), section.axes.x)
     y = fields.direction((*path, "axes", "y"), section.axes.y)
     cosine = dot(x, y)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Literal
 
 from mechkin_cli.building.coordinates import CODE, without
 from mechkin_cli.building.fields import Fields, Path
@@ -25,6 +25,19 @@ from mechkin_cli.mechanism.model import (
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO, Vector, add
 from mechkin_cli.nearest import nearest_hint
+from mechkin_cli.schema.loads import (
+    AnyLoad,
+    DamperAtJoint,
+    DamperBetweenPoints,
+    ForceOnJoint,
+    ForceOnLink,
+    Gravity,
+    SpringAtJoint,
+    SpringBetweenPoints,
+    TableValue,
+    TorqueOnJoint,
+    TorqueOnLink,
+)
 from mechkin_cli.units import (
     ACCELERATION,
     ANGLE,
@@ -73,41 +86,41 @@ class LoadBuilder:
         """The laws of the loads that vary."""
         return tuple(self._laws.laws) if "_laws" in self.__dict__ else ()
 
-    def add_all(self, sections: Sequence[Any]) -> None:
+    def add_all(self, sections: Sequence[AnyLoad]) -> None:
         """Reads every load of the file."""
         for i, section in enumerate(sections):
             self._add(("loads", i), section)
 
-    def _add(self, path: Path, section: Any) -> None:
-        if section.type == "gravity":
+    def _add(self, path: Path, section: AnyLoad) -> None:
+        if isinstance(section, Gravity):
             g = self.fields.vector((*path, "g"), section.g, ACCELERATION)
             self.gravity = add(self.gravity, g)
-        elif section.type in ("force", "torque"):
-            if hasattr(section, "joint"):
-                self._add_to_joint(path, section)
-            else:
-                self._add_to_link(path, section)
-        elif hasattr(section, "between"):
+        elif isinstance(section, (ForceOnJoint, TorqueOnJoint)):
+            self._add_to_joint(path, section)
+        elif isinstance(section, (ForceOnLink, TorqueOnLink)):
+            self._add_to_link(path, section)
+        elif isinstance(section, (SpringBetweenPoints, DamperBetweenPoints)):
             self._add_between(path, section)
         else:
             self._add_at_joint(path, section)
 
-    def _add_to_link(self, path: Path, section: Any) -> None:
+    def _add_to_link(self, path: Path, section: ForceOnLink | TorqueOnLink) -> None:
         if not self._known(path, "link", section.link, self.links):
             return
-        dimension = FORCE if section.type == "force" else MOMENT
-        texts = getattr(section, section.type)
+        point = ZERO
+        if isinstance(section, ForceOnLink):
+            texts, dimension = section.force, FORCE
+            point = self.fields.vector((*path, "point"), section.point, LENGTH)
+        else:
+            texts, dimension = section.torque, MOMENT
         x, y, z = (
             self._value((*path, section.type, i), text, dimension, "time")
             for i, text in enumerate(texts)
         )
-        point = ZERO
-        if section.type == "force":
-            point = self.fields.vector((*path, "point"), section.point, LENGTH)
         self.loads.append(LinkLoad(section.type, section.link, (x, y, z), section.axes, point))
 
-    def _add_to_joint(self, path: Path, section: Any) -> None:
-        coordinate = "theta" if section.type == "torque" else "s"
+    def _add_to_joint(self, path: Path, section: ForceOnJoint | TorqueOnJoint) -> None:
+        coordinate: Literal["theta", "s"] = "theta" if isinstance(section, TorqueOnJoint) else "s"
         if not self._has_coordinate(path, section.joint, coordinate):
             return
         dimension = MOMENT if is_angle(coordinate) else FORCE
@@ -115,7 +128,7 @@ class LoadBuilder:
         value = self._value((*path, "value"), section.value, dimension, name)
         self.loads.append(JointLoad(section.joint, coordinate, value))
 
-    def _add_between(self, path: Path, section: Any) -> None:
+    def _add_between(self, path: Path, section: SpringBetweenPoints | DamperBetweenPoints) -> None:
         first, second = section.between
         if first == second:
             self.fields.error(
@@ -131,7 +144,7 @@ class LoadBuilder:
                 return
             ends.append(self.points[name])
         number = self.fields.number
-        if section.type == "spring":
+        if isinstance(section, SpringBetweenPoints):
             stiffness = number((*path, "stiffness"), section.stiffness, STIFFNESS)
             free = number((*path, "free"), section.free, LENGTH)
             preload = number((*path, "preload"), section.preload, FORCE)
@@ -140,13 +153,13 @@ class LoadBuilder:
             damping = number((*path, "damping"), section.damping, DAMPING)
             self.loads.append(Damper((ends[0], ends[1]), None, None, damping))
 
-    def _add_at_joint(self, path: Path, section: Any) -> None:
+    def _add_at_joint(self, path: Path, section: SpringAtJoint | DamperAtJoint) -> None:
         joint, coordinate = section.joint, section.coordinate
         if not self._has_coordinate(path, joint, coordinate):
             return
         turning = is_angle(coordinate)
         number = self.fields.number
-        if section.type == "spring":
+        if isinstance(section, SpringAtJoint):
             stiffness_of = TORSIONAL_STIFFNESS if turning else STIFFNESS
             stiffness = number((*path, "stiffness"), section.stiffness, stiffness_of)
             free = number((*path, "free"), section.free, ANGLE if turning else LENGTH)
@@ -157,7 +170,7 @@ class LoadBuilder:
             damping = number((*path, "damping"), section.damping, damping_of)
             self.loads.append(Damper(None, joint, coordinate, damping))
 
-    def _value(self, path: Path, text: Any, dimension: Dimension, over: str) -> Amount:
+    def _value(self, path: Path, text: str | TableValue, dimension: Dimension, over: str) -> Amount:
         """A number, or a law where the value varies; a table runs over the quantity `over`."""
         if not isinstance(text, str):
             return self._laws.by_table((*path, "table"), text.table, over, dimension)

@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 from mechkin_cli.arrays import Floats
 from mechkin_cli.building.coordinates import dimension_of, is_coordinate
 from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.building.memory import RowLimit
 from mechkin_cli.building.spacing import spaced
 from mechkin_cli.mechanism.model import Joint
 from mechkin_cli.mechanism.motion import DrivenInput, Moments, Motion
+from mechkin_cli.schema.laws import Law
+from mechkin_cli.schema.motion import (
+    FollowingInput,
+    HeldInput,
+    ListedInput,
+    MotionSection,
+    SweptInput,
+    TimeSection,
+    WithRates,
+)
 from mechkin_cli.tape.rows import of_numbers, with_rates, within
 from mechkin_cli.tolerances import LARGEST_NUMBER
 from mechkin_cli.units import TIME
@@ -21,16 +31,20 @@ _RATES = ("rate", "acceleration", "jerk")
 _ORDERS = ("value", *_RATES)
 
 
-def build_motion(fields: Fields, section: Any, joints: Mapping[str, Joint]) -> Motion:
+def build_motion(
+    fields: Fields, section: MotionSection | None, joints: Mapping[str, Joint], limit: RowLimit
+) -> Motion:
     """Inputs with their values; without inputs the motion has one row, or those of `time`."""
     nothing = Motion((), 1)
     if section is None:
         return nothing
     errors = fields.error_count
-    time = _moments(fields, section.time)
+    time = _moments(fields, section.time, limit)
     with np.errstate(all="ignore"):
-        orders, following = _orders(fields, section, joints, time)
+        orders, following = _orders(fields, section, joints, time, limit)
     rows = time.written.size if time else _row_count(fields, orders)
+    if fields.error_count == errors:
+        limit.is_exceeded(fields, ("motion", "inputs"), rows)
     if fields.error_count == errors and following:
         from mechkin_cli.building.following import Following
 
@@ -47,56 +61,71 @@ def build_motion(fields: Fields, section: Any, joints: Mapping[str, Joint]) -> M
     return nothing
 
 
-def _moments(fields: Fields, section: Any) -> Moments | None:
+def _moments(fields: Fields, section: TimeSection | None, limit: RowLimit) -> Moments | None:
     if section is None:
         return None
     path: Path = ("motion", "time")
-    written = spaced(fields, path, section, TIME)
+    written = spaced(fields, path, section, TIME, limit)
     if written[-1] < written[0]:
         fields.error("time-backwards", path, "time runs backwards", "exchange from and to")
     return Moments(fields.units.to_si(written.copy(), TIME), written)
 
 
 def _orders(
-    fields: Fields, section: Any, joints: Mapping[str, Joint], time: Moments | None
-) -> tuple[dict[str, Floats], dict[str, Any]]:
+    fields: Fields,
+    section: MotionSection,
+    joints: Mapping[str, Joint],
+    time: Moments | None,
+    limit: RowLimit,
+) -> tuple[dict[str, Floats], dict[str, FollowingInput]]:
     """Value, rate, acceleration, jerk (4, rows) in the file's units of the inputs that follow none,
     and the sections of those that follow."""
     found: dict[str, Floats] = {}
-    following: dict[str, Any] = {}
+    following: dict[str, FollowingInput] = {}
     for name, item in section.inputs.items():
         path: Path = ("motion", "inputs", name)
         if not is_coordinate(fields, path, name, joints) or _driven_twice(fields, name, joints):
             continue
         coordinate = name.partition(".")[2]
-        if hasattr(item, "value"):
+        if isinstance(item, FollowingInput):
             following[name] = item
-        elif hasattr(item, "law"):
-            found[name] = _by_law(fields, path, item, coordinate, section.time, time)
+        elif isinstance(item, (SweptInput, ListedInput, HeldInput)):
+            values = _values(fields, path, item, coordinate, limit)
+            found[name] = _constant_rates(fields, path, item, values, coordinate, time)
         else:
-            found[name] = _constant_rates(fields, path, item, coordinate, time)
+            found[name] = _by_law(fields, path, item, coordinate, section.time, time)
     return found, following
 
 
 def _by_law(
-    fields: Fields, path: Path, law: Any, coordinate: str, section: Any, time: Moments | None
+    fields: Fields,
+    path: Path,
+    law: Law,
+    coordinate: str,
+    section: TimeSection | None,
+    time: Moments | None,
 ) -> Floats:
     from mechkin_cli.building.laws import Clock, law_values
 
-    assert time is not None  # the schema lets no law stand without time
+    assert section is not None  # the schema lets no law stand without time
+    assert time is not None
     last = fields.written(("motion", "time", "to"), section.last, TIME)
     clock = Clock(time.written, float(time.written[0]), last)
     return law_values(fields, path, law, coordinate, clock)
 
 
 def _constant_rates(
-    fields: Fields, path: Path, item: Any, coordinate: str, time: Moments | None
+    fields: Fields,
+    path: Path,
+    item: WithRates,
+    values: Floats,
+    coordinate: str,
+    time: Moments | None,
 ) -> Floats:
     """Values of a sweep, with the same rates in every row."""
-    values = _values(fields, path, item, coordinate)
     rates = []
-    for order, key in enumerate(_RATES, start=1):
-        text = getattr(item, key)
+    texts = (item.rate, item.acceleration, item.jerk)
+    for order, (key, text) in enumerate(zip(_RATES, texts, strict=True), start=1):
         rates.append(fields.written((*path, key), text, dimension_of(coordinate, order)))
         if time is not None and rates[-1] != 0.0:
             text = "an input that is held while time runs has no rate"
@@ -120,15 +149,21 @@ def _driven_twice(fields: Fields, name: str, joints: Mapping[str, Joint]) -> boo
     return twice
 
 
-def _values(fields: Fields, path: Path, item: Any, coordinate: str) -> Floats:
+def _values(
+    fields: Fields,
+    path: Path,
+    item: SweptInput | ListedInput | HeldInput,
+    coordinate: str,
+    limit: RowLimit,
+) -> Floats:
     """Values in the file's units."""
     dimension = dimension_of(coordinate)
-    if hasattr(item, "at"):
+    if isinstance(item, HeldInput):
         return of_numbers([fields.written((*path, "at"), item.at, dimension)])
-    if hasattr(item, "values"):
+    if isinstance(item, ListedInput):
         texts = enumerate(item.values)
         return of_numbers(fields.written((*path, "values", i), t, dimension) for i, t in texts)
-    return spaced(fields, path, item, dimension)
+    return spaced(fields, path, item, dimension, limit)
 
 
 def _row_count(fields: Fields, columns: Mapping[str, Floats]) -> int:

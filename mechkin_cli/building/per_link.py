@@ -2,35 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
 
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.mechanism.vectors import Vector
+from mechkin_cli.schema.joints import PointJoint
 from mechkin_cli.units import LENGTH
 
+Texts = tuple[str, ...]
+"""The three components of a vector, as written."""
 
-def points_of(fields: Fields, path: Path, section: Any) -> tuple[Vector, Vector]:
+
+def points_of(fields: Fields, path: Path, section: PointJoint) -> tuple[Vector, Vector]:
     """The joint's point on either link, in m."""
 
-    def read(where: Path, texts: Any) -> Vector:
+    def read(where: Path, texts: Texts) -> Vector:
         return fields.vector(where, texts, LENGTH)
 
     return _per_link(read, (*path, "point"), section.point, section.links)
 
 
-def directions_of(fields: Fields, path: Path, section: Any, key: str) -> tuple[Vector, Vector]:
+def directions_of(
+    fields: Fields, path: Path, section: PointJoint, key: str
+) -> tuple[Vector, Vector]:
     """The unit vector under `key` on either link."""
     return _per_link(fields.direction, (*path, key), getattr(section, key), section.links)
 
 
-def place_of(path: Path, section: Any, key: str, side: int) -> Path:
+def place_of(path: Path, section: PointJoint, key: str, side: int) -> Path:
     """Where the vector for the first (0) or second (1) link stands in the file."""
     given = getattr(section, key)
     return (*path, key, section.links[side]) if isinstance(given, Mapping) else (*path, key)
 
 
-def _per_link(read: Any, path: Path, value: Any, links: tuple[str, str]) -> tuple[Vector, Vector]:
+def _per_link(
+    read: Callable[[Path, Texts], Vector],
+    path: Path,
+    value: Texts | Mapping[str, Texts],
+    links: Sequence[str],
+) -> tuple[Vector, Vector]:
     if isinstance(value, Mapping):
         return read((*path, links[0]), value[links[0]]), read((*path, links[1]), value[links[1]])
     both = read(path, value)

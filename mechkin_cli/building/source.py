@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from mechkin_cli.diagnostics import InvalidFile
 from mechkin_cli.reading.document import Document, document_from_text, read_document
-from mechkin_cli.reading.explain import explain
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.schema.validate import InvalidDataError, validate
 
@@ -41,4 +40,6 @@ def _checked(document: Document) -> Source:
     try:
         return Source(validate(document.data), document)
     except InvalidDataError as invalid:
+        from mechkin_cli.reading.explain import explain  # only on the way to messages
+
         raise InvalidFile(explain(invalid.errors, document)) from None

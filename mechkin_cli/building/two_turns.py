@@ -6,7 +6,7 @@ their own; slides come before the turns or after them.
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
 
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.halves import Halves
@@ -14,10 +14,17 @@ from mechkin_cli.building.per_link import directions_of, place_of, points_of
 from mechkin_cli.mechanism.frames import frame_about, perpendicular
 from mechkin_cli.mechanism.joint_type import Drawing
 from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale, subtract, unit
+from mechkin_cli.schema.joints import (
+    CylinderPlaneJoint,
+    PointJoint,
+    SlottedSphereJoint,
+    SphereCylinderJoint,
+    UniversalJoint,
+)
 from mechkin_cli.tolerances import AXES_SQUARE, PARALLEL
 
 
-def _oblique(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halves:
+def _oblique(fields: Fields, path: Path, section: UniversalJoint, drawing: Drawing) -> Halves:
     """About one axis, then about another, at the angle drawn between them."""
     keys = drawing.keys
     at = points_of(fields, path, section)
@@ -35,13 +42,15 @@ def _oblique(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halv
     return _turns((one, one), (two, two), at)
 
 
-def _square(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halves:
+def _square(
+    fields: Fields, path: Path, section: SlottedSphereJoint | CylinderPlaneJoint, drawing: Drawing
+) -> Halves:
     """About the first of two square directions, then about the other."""
     at = points_of(fields, path, section)
     return _turns(*_square_pairs(fields, path, section, drawing), at)
 
 
-def _slotted(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halves:
+def _slotted(fields: Fields, path: Path, section: SphereCylinderJoint, drawing: Drawing) -> Halves:
     """Along the cylinder, then about the slot's normal, then about the pin."""
     axis_key, pin_key = drawing.keys
     at = points_of(fields, path, section)
@@ -79,7 +88,7 @@ def _turns(
 
 
 def _square_pairs(
-    fields: Fields, path: Path, section: Any, drawing: Drawing
+    fields: Fields, path: Path, section: PointJoint, drawing: Drawing
 ) -> tuple[tuple[Vector, Vector], tuple[Vector, Vector]]:
     """Two directions on either link, the first made exactly square to the second; refused where
     they are not drawn square."""
@@ -105,5 +114,9 @@ def _square_pairs(
     return (squared[0], squared[1]), twos
 
 
-DRAWINGS = {"two axes": _oblique, "square axes": _square, "slotted": _slotted}
+DRAWINGS: dict[str, Callable[..., Halves]] = {
+    "two axes": _oblique,
+    "square axes": _square,
+    "slotted": _slotted,
+}
 """Frames on both links, by the kind of drawing."""

@@ -1,16 +1,14 @@
-"""`mechkin analyze`: runs mechanism files and writes their tables."""
+"""What `mechkin analyze` does: runs mechanism files and writes their tables."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import Progress, Record, put, refusal, say, say_diagnostics
-from mechkin_cli.cli.options import Files, Json, Quiet, Set, parameters
+from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.tables.writers import USUAL_FORMATS, WRITERS, Results, written_files
 
@@ -28,43 +26,39 @@ class _Request:
     mode: str | None
     tables: list[str] | None
     formats: tuple[str, ...]
+    threads: int
     explain: bool
     json: bool
     quiet: bool
 
 
-def analyze(
-    files: Files,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Folder to write to (out/STEM).")
-    ] = None,
-    format: Annotated[
-        list[str] | None,
-        typer.Option("--format", metavar="FORMAT", help=f"{FORMATS}; may be repeated."),
-    ] = None,
-    set_: Set = None,
-    mode: Annotated[
-        str | None, typer.Option("--mode", metavar="NAME", help="Assembly mode at the first row.")
-    ] = None,
-    table: Annotated[
-        list[str] | None,
-        typer.Option("--table", metavar="NAME", help="Only this table; may be repeated."),
-    ] = None,
-    lanes: Annotated[
-        int,
-        typer.Option("--lanes", metavar="N", help="Rows at a time: 2, 4 or 8; 0: the most."),
-    ] = 0,
-    explain: Annotated[
-        bool, typer.Option("--explain", help="Show the solver graph and what is skipped.")
-    ] = False,
-    json: Json = False,
-    quiet: Quiet = False,
-) -> None:
-    """Run the sweep of each file and write its tables."""
-    from mechkin_cli.kernel.width import force_width
+def analyze_files(
+    files: list[Path],
+    out: Path | None = None,
+    format: list[str] | None = None,
+    set_: list[str] | None = None,
+    mode: str | None = None,
+    table: list[str] | None = None,
+    lanes: int = 0,
+    threads: int = 0,
+    explain: bool = False,
+    json: bool = False,
+    quiet: bool = False,
+) -> ExitCode:
+    """Runs the sweep of each file and writes its tables.
+
+    The arguments are the options of the command, as `analyze_command` declares them.
+
+    Raises:
+        UsageError: an option that cannot be.
+    """
+    from mechkin_cli.kernel.width import force_threads, force_width
 
     force_width(lanes)
-    request = _Request(parameters(set_), mode, table, _formats(format), explain, json, quiet)
+    force_threads(threads)
+    request = _Request(
+        parameters(set_), mode, table, _formats(format), threads, explain, json, quiet
+    )
     code = ExitCode.OK
     records: list[Record] = []
     progress = Progress(len(files), "files", quiet)
@@ -78,8 +72,7 @@ def analyze(
         from mechkin_cli.tables.json_writer import json_text
 
         put(json_text(records[0] if len(files) == 1 else {"files": records}))
-    if code:
-        raise typer.Exit(code)
+    return code
 
 
 def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]:
@@ -88,7 +81,7 @@ def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]
 
     try:
         analysis = load(path, request.settings).analyze(tables=request.tables, mode=request.mode)
-        written = _write(folder, analysis, request.formats)
+        written = _write(folder, analysis, request)
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
     say_diagnostics(analysis.diagnostics, str(path))
@@ -131,12 +124,13 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
     return folders
 
 
-def _write(folder: Path, analysis: Analysis, formats: tuple[str, ...]) -> list[Path]:
+def _write(folder: Path, analysis: Analysis, request: _Request) -> list[Path]:
     """Writes the tables and rows.csv, all or none."""
     from mechkin_cli.tables.files import write_files
 
-    results = Results(analysis.model.name, analysis.tables, analysis.result, analysis.diagnostics)
-    return write_files(folder, written_files(results, formats))
+    name, tables, result = analysis.model.name, analysis.tables, analysis.result
+    results = Results(name, tables, result, analysis.diagnostics, request.threads)
+    return write_files(folder, written_files(results, request.formats))
 
 
 def _record(analysis: Analysis) -> Record:

@@ -11,7 +11,7 @@ import typer
 
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import Record, put, refusal, say_diagnostics
-from mechkin_cli.cli.options import parameters
+from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ import typer
 
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import Record, put, refusal, say_diagnostics
-from mechkin_cli.cli.options import Files, Json, Quiet, Set, parameters
+from mechkin_cli.cli.options import Files, Json, Quiet, Set
+from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:

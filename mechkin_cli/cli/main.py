@@ -1,54 +1,20 @@
-"""The app: registers the commands and turns exceptions into messages and exit codes."""
+"""The way in: turns exceptions into messages and exit codes.
+
+A plain `mechkin analyze` is run without typer, whose import and checks take longer than an
+analysis; everything else, help and mistakes included, goes to `app`.
+"""
 
 from __future__ import annotations
 
-import contextlib
 import os
 import sys
-from typing import Any, NoReturn
+from collections.abc import Callable
+from typing import NoReturn
 
-import typer
-
-from mechkin_cli.cli.analyze import analyze
-from mechkin_cli.cli.bench import bench
-from mechkin_cli.cli.check import check
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import put, say, say_diagnostics, stdout_failed
-from mechkin_cli.cli.mobility import mobility
-from mechkin_cli.cli.modes import modes
-from mechkin_cli.cli.ranges import ranges
-from mechkin_cli.cli.schema import schema
-from mechkin_cli.cli.tables import tables
+from mechkin_cli.cli.messages import say, say_diagnostics, stdout_failed
+from mechkin_cli.cli.plain import plain_analysis
 from mechkin_cli.diagnostics import InvalidFile, MechkinError, UsageError
-
-app = typer.Typer(
-    name="mechkin",
-    help="Displacement, rates, reactions and tables of spatial mechanisms from YAML files.",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-)
-for command in (analyze, check, modes, ranges, mobility, tables, schema, bench):
-    app.command()(command)
-
-
-@app.callback(invoke_without_command=True)
-def _options(
-    version: bool = typer.Option(False, "--version", help="Print the version and exit."),
-) -> None:
-    if version:
-        put(f"mechkin {_version()}\n")
-        raise typer.Exit()
-
-
-def _version() -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version("mechkin")
-    except PackageNotFoundError:
-        return "(source folder, not installed)"
 
 
 def main() -> NoReturn:
@@ -73,7 +39,12 @@ def _end_like_ctrl_c() -> None:
 
 def _run() -> int:
     try:
-        code = app(standalone_mode=False, prog_name="mechkin")
+        given = plain_analysis(sys.argv[1:])
+        if given is not None:
+            return int(_analyze_files()(**given))
+        from mechkin_cli.cli.app import run
+
+        return run()
     except InvalidFile as error:
         say_diagnostics(error.diagnostics)
         return ExitCode.INVALID_FILE
@@ -82,23 +53,27 @@ def _run() -> int:
     except MechkinError as error:
         say(f"mechkin: {error}")
         return ExitCode.USAGE
-    except (KeyboardInterrupt, typer.Abort):
+    except KeyboardInterrupt:
         return ExitCode.INTERRUPTED
     except Exception as error:
-        if hasattr(error, "exit_code") and hasattr(error, "show"):
-            _show(error)
-            for file in filter(os.path.isfile, sys.argv[1:2]):
-                say(f"To run a mechanism file: mechkin analyze {file}")
-            return int(error.exit_code)
         return _failed(error)
-    return int(code or 0)
 
 
-def _show(error: Any) -> None:
-    """A usage error of the command line itself, as typer words it."""
-    with contextlib.suppress(OSError):
-        if sys.stderr is not None:
-            error.show()
+def _analyze_files() -> Callable[..., int]:
+    """Loads what a plain analysis needs, and no more than that."""
+    import gc
+
+    # an analysis multiplies no large matrices: one thread of BLAS per core would only be started
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # modules live as long as the process: looking for garbage among them is a tenth of a short run
+    gc.disable()
+    try:
+        import mechkin_cli.interface  # noqa: F401
+        from mechkin_cli.cli.analyze import analyze_files
+    finally:
+        gc.freeze()
+        gc.enable()
+    return analyze_files
 
 
 def _failed(error: Exception) -> int:

@@ -7,8 +7,6 @@ from typing import Annotated
 
 import typer
 
-from mechkin_cli.diagnostics import UsageError
-
 Files = Annotated[
     list[Path], typer.Argument(help="Mechanism files (YAML, format 1).", metavar="FILE")
 ]
@@ -21,18 +19,3 @@ Set = Annotated[
 ]
 Json = Annotated[bool, typer.Option("--json", help="One JSON object on stdout and nothing else.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Only warnings and errors.")]
-
-
-def parameters(settings: list[str] | None) -> dict[str, str]:
-    """NAME=VALUE texts as a mapping.
-
-    Raises:
-        UsageError: a text without `=`.
-    """
-    found = {}
-    for text in settings or ():
-        name, equals, value = text.partition("=")
-        if not equals or not name.strip() or not value.strip():
-            raise UsageError(f"--set {text}: expected NAME=VALUE, for example --set P1=0.6in")
-        found[name.strip()] = value.strip()
-    return found

@@ -24,7 +24,6 @@ from mechkin_cli.reading.nodes import (
     Style,
     plain_data,
 )
-from mechkin_cli.reading.offsets import source_mark
 from mechkin_cli.reading.parser import parse
 from mechkin_cli.reading.text import lines_of, read_text
 
@@ -80,6 +79,8 @@ class Document:
         node = self.node(path)
         if not isinstance(node, Scalar):
             return self.place(path)
+        from mechkin_cli.reading.offsets import source_mark  # only on the way to messages
+
         return Place(self.file, *source_mark(node, offset, self._lines))
 
     def with_parameters(self, parameters: collections.abc.Mapping[str, str]) -> Document:

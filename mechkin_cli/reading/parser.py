@@ -14,7 +14,6 @@ from yaml import events
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place
 from mechkin_cli.reading.limits import MOST_DIAGNOSTICS, MOST_EVENTS
 from mechkin_cli.reading.nodes import Mapping
-from mechkin_cli.reading.syntax import syntax_diagnostic
 from mechkin_cli.reading.text import check_characters, lines_of
 from mechkin_cli.reading.tree import TooDeepError, TreeBuilder, mark_of
 
@@ -83,6 +82,8 @@ def _walk(text: str, file: str, loader: Any, builder: TreeBuilder) -> None:
     except TooDeepError:
         return
     except yaml.YAMLError as error:
+        from mechkin_cli.reading.syntax import syntax_diagnostic  # only on the way to messages
+
         builder.diagnostics.append(builder.cut_off_value() or syntax_diagnostic(error, file))
 
 

@@ -4,9 +4,7 @@ Row by row the screw (theta, s) about z carries the next link's frame on, then (
 new x; the product over the rows is the identity. Row i holds joint i and the link behind it.
 """
 
-from typing import Literal, Self
-
-from pydantic import ConfigDict, model_validator
+from typing import Any, ClassVar, Literal
 
 from mechkin_cli.schema.base import Section, refuse
 from mechkin_cli.schema.scalars import Angle, Length, Name
@@ -15,13 +13,11 @@ from mechkin_cli.schema.scalars import Angle, Length, Name
 class ChainRow(Section):
     """One joint and the link behind it; the first row's joint moves against `ground`."""
 
-    model_config = ConfigDict(
-        json_schema_extra={
-            "if": {"properties": {"type": {"const": "H"}}},
-            "then": {"required": ["lead"]},
-            "else": {"properties": {"lead": False}},
-        }
-    )
+    editors: ClassVar[dict[str, Any]] = {
+        "if": {"properties": {"type": {"const": "H"}}},
+        "then": {"required": ["lead"]},
+        "else": {"properties": {"lead": False}},
+    }
 
     joint: Name
     """Name of the joint."""
@@ -40,12 +36,11 @@ class ChainRow(Section):
     lead: Length | None = None
     """For type H: length per turn, positive for a right-handed thread."""
 
-    @model_validator(mode="after")
-    def _lead_belongs_to_helical(self) -> Self:
+    def check(self) -> None:
+        """A lead belongs to type H alone."""
         if self.type == "H" and self.lead is None:
             raise refuse(
                 "missing-key", "a joint of type H needs its lead", "add lead: length per turn"
             )
         if self.type != "H" and self.lead is not None:
             raise refuse("unknown-key", "only a joint of type H has a lead", "remove it", "lead")
-        return self

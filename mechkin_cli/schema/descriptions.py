@@ -12,17 +12,17 @@ from textwrap import dedent
 from mechkin_cli.schema.base import Section
 
 
-@cache
 def field_descriptions(section: type[Section]) -> dict[str, str]:
     """Help texts by field name, those of base classes included."""
     descriptions: dict[str, str] = {}
     for model in reversed(section.__mro__):
-        if issubclass(model, Section) and model is not Section:
+        if model is not Section and Section in model.__mro__:
             descriptions |= _below_fields(model)
     return descriptions
 
 
-def _below_fields(model: type[Section]) -> dict[str, str]:
+@cache
+def _below_fields(model: type) -> dict[str, str]:
     definition = ast.parse(dedent(inspect.getsource(model))).body[0]
     body = definition.body if isinstance(definition, ast.ClassDef) else []
     found = {}

@@ -1,20 +1,19 @@
 """The whole file: format 1."""
 
-from typing import Annotated, Any, Literal, Self
-
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from typing import Annotated, Any, Literal
 
 from mechkin_cli.schema.assembly import AssemblySection
-from mechkin_cli.schema.base import Section, refuse
+from mechkin_cli.schema.base import NOTHING, Section, refuse
 from mechkin_cli.schema.chain import ChainRow
 from mechkin_cli.schema.joints import Joint
 from mechkin_cli.schema.links import Link
 from mechkin_cli.schema.loads import Load
 from mechkin_cli.schema.motion import MotionSection
 from mechkin_cli.schema.points import DirectionOfLink, PointOfLink
+from mechkin_cli.schema.rules import After, Before
 from mechkin_cli.schema.scalars import AnyDimension, Name, Text
 from mechkin_cli.schema.tables import Table, differing_names
-from mechkin_cli.schema.units_section import UnitsSection
+from mechkin_cli.schema.units_section import METRIC, UnitsSection
 
 
 def _format_number(value: Any) -> int:
@@ -31,25 +30,25 @@ class MechanismFile(Section):
     share one namespace.
     """
 
-    format: Annotated[Literal[1], BeforeValidator(_format_number)]
+    format: Annotated[Literal[1], Before(_format_number)]
     """Version of the file format."""
     name: Text | None = None
     """Name of the mechanism."""
     source: Text | None = None
     """Where the mechanism comes from: book, page, drawing."""
-    units: UnitsSection = UnitsSection.model_construct()
+    units: UnitsSection = METRIC
     """Units of bare numbers and of the tables."""
-    parameters: dict[Name, AnyDimension] = Field(default_factory=dict)
+    parameters: dict[Name, AnyDimension] = NOTHING
     """Named numbers, values with units, or expressions of one another."""
-    links: dict[Name, Link] = Field(default_factory=dict)
+    links: dict[Name, Link] = NOTHING
     """The moving bodies by name; `ground` always exists."""
-    joints: dict[Name, Joint] = Field(default_factory=dict)
+    joints: dict[Name, Joint] = NOTHING
     """The joints by name."""
     chain: tuple[ChainRow, ...] = ()
     """A loop as rows (theta, s, alpha, a), beside or instead of `joints`."""
-    points: dict[Name, PointOfLink] = Field(default_factory=dict)
+    points: dict[Name, PointOfLink] = NOTHING
     """Points that move with links, by name."""
-    directions: dict[Name, DirectionOfLink] = Field(default_factory=dict)
+    directions: dict[Name, DirectionOfLink] = NOTHING
     """Directions that turn with links, by name."""
     motion: MotionSection | None = None
     """The driven coordinates and their values."""
@@ -57,7 +56,7 @@ class MechanismFile(Section):
     """Which way of assembling the mechanism is meant."""
     loads: tuple[Load, ...] = ()
     """Gravity, forces, torques, springs and dampers."""
-    tables: Annotated[tuple[Table, ...], AfterValidator(differing_names)] = ()
+    tables: Annotated[tuple[Table, ...], After(differing_names)] = ()
     """The tables a run writes; left out, one table of all coordinates, their rates and efforts."""
     follow: tuple[Name, ...] | None = None
     """Joints whose loops are followed beside those the outputs need; left out, all loops are."""
@@ -66,8 +65,7 @@ class MechanismFile(Section):
     idle: Literal["hold"] | None = None
     """`hold`: idle freedoms that loads would move are held, and the holding moment is reported."""
 
-    @model_validator(mode="after")
-    def _has_a_joint(self) -> Self:
+    def check(self) -> None:
+        """There is a joint."""
         if not self.joints and not self.chain:
             raise refuse("no-joints", "the file has no joints", "add joints: (or chain:)")
-        return self

@@ -4,13 +4,11 @@ All places and directions stand in the home drawing, in ground axes. A joint who
 meet in the drawing gives a place or direction per link: `point: {crank: [...], rocker: [...]}`.
 """
 
-from typing import Annotated, Any, ClassVar, Final, Literal, Self, TypeVar
+from typing import Annotated, Any, ClassVar, Final, Literal, TypeVar
 
-from pydantic import Discriminator, Field, Tag, model_validator
-from typing_extensions import TypeAliasType
-
-from mechkin_cli.schema.alternatives import by_word
+from mechkin_cli.schema.alternatives import Choice, Tag, by_word
 from mechkin_cli.schema.base import Section, refuse
+from mechkin_cli.schema.rules import Limits, Named
 from mechkin_cli.schema.scalars import DirectionVector, Length, LengthVector, Name
 
 JOINT_TYPES: Final = ("R", "P", "C", "H", "S", "Sp", "Sg", "U", "E", "Ss", "Sc", "Cp", "W")
@@ -22,36 +20,31 @@ def _vector_or_per_link(value: Any) -> str:
 
 
 _Vector = TypeVar("_Vector")
-PerLink = Annotated[dict[Name, _Vector], Field(min_length=2, max_length=2)]
+PerLink = Annotated[dict[Name, _Vector], Limits(min_length=2, max_length=2)]
 """One vector for each of the joint's two links."""
 
-Point = TypeAliasType(
-    "Point",
-    Annotated[
-        Annotated[LengthVector, Tag("(vector)")]
-        | Annotated[PerLink[LengthVector], Tag("(per link)")],
-        Discriminator(_vector_or_per_link),
-    ],
-)
-Direction = TypeAliasType(
-    "Direction",
-    Annotated[
-        Annotated[DirectionVector, Tag("(vector)")]
-        | Annotated[PerLink[DirectionVector], Tag("(per link)")],
-        Discriminator(_vector_or_per_link),
-    ],
-)
-ZeroReference = TypeAliasType("ZeroReference", PerLink[DirectionVector])
+Point = Annotated[
+    Annotated[LengthVector, Tag("(vector)")] | Annotated[PerLink[LengthVector], Tag("(per link)")],
+    Choice(_vector_or_per_link),
+    Named("Point"),
+]
+Direction = Annotated[
+    Annotated[DirectionVector, Tag("(vector)")]
+    | Annotated[PerLink[DirectionVector], Tag("(per link)")],
+    Choice(_vector_or_per_link),
+    Named("Direction"),
+]
+ZeroReference = Annotated[PerLink[DirectionVector], Named("ZeroReference")]
 
 
 class JointBase(Section):
     """What all joints have. The coordinates are the motion of the second link against the first."""
 
-    links: Annotated[tuple[Name, ...], Field(min_length=2, max_length=2)]
+    links: Annotated[tuple[Name, ...], Limits(min_length=2, max_length=2)]
     """The two links, [first, second]; `ground` is a link."""
 
-    @model_validator(mode="after")
-    def _stays_with_its_links(self) -> Self:
+    def check(self) -> None:
+        """Two different links, and vectors per link name these."""
         first, second = self.links
         if first == second:
             raise refuse("same-link", f"{first} is joined to itself", "name two links", "links", 1)
@@ -62,7 +55,6 @@ class JointBase(Section):
                     text = f"{name} is not a link of this joint"
                     hint = f"write {key}: {{{first}: [...], {second}: [...]}}"
                     raise refuse("not-its-link", text, hint, key, name, "[key]")
-        return self
 
 
 class PointJoint(JointBase):
@@ -201,6 +193,19 @@ class WeldJoint(JointBase):
     """W: the two links are one body."""
 
     type: Literal["W"]
+
+
+AnyAxisJoint = RevoluteJoint | PrismaticJoint | CylindricJoint | HelicalJoint
+TwoTurnJoint = UniversalJoint | SlottedSphereJoint | SphereCylinderJoint | CylinderPlaneJoint
+AnyJoint = (
+    AnyAxisJoint
+    | TwoTurnJoint
+    | SphericalJoint
+    | SpherePlaneJoint
+    | SphereGrooveJoint
+    | PlanarJoint
+    | WeldJoint
+)
 
 
 def _tag(mapping: dict[str, Any]) -> str | None:

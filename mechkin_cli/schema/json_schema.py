@@ -1,44 +1,48 @@
 """The JSON Schema of format 1, for editors: completion, help texts and checks while writing.
 
-Derived from the models, then put into one form that doesn't depend on the version of pydantic: keys
-in a fixed order, help texts from the models' sources, names as patterns. Fixed-length lists are
-`items` with `minItems` and `maxItems`, which every editor understands.
+Read from the same annotations as the validator, in a fixed order of keys, with help texts from the
+sources of the sections and names as patterns. Fixed-length lists are `items` with `minItems` and
+`maxItems`, which every editor understands; null, which no file may hold, does not occur.
 """
 
-import json
-from typing import Any, Final
+from __future__ import annotations
 
-from mechkin_cli.schema.base import Section
+import inspect
+import json
+from types import NoneType, UnionType
+from typing import Annotated, Any, Final, Literal, Union, get_args, get_origin
+
+from mechkin_cli.schema.base import Section, fields_of
 from mechkin_cli.schema.descriptions import field_descriptions
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.schema.names import RESERVED
+from mechkin_cli.schema.rules import Barred, Dimension, Limits, Named, ShortForm, Shown
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
-_FIRST_KEYS = ("description", "$ref", "type", "const", "enum", "required")
+_FIRST_KEYS = ("$schema", "title", "description", "$ref", "type", "const", "enum", "required")
 _NAMED_SECTIONS = ("parameters", "links", "joints", "points", "directions")
-_RENAMED = {"ge": "minimum", "le": "maximum"}
 _BY_NAME = ("properties", "patternProperties", "$defs")
+_JSON_TYPES = {str: "string", int: "integer"}
+# JSON Schema has no flag for ignoring case
+_NOT_A_NUMBER = r"^[+-]?\.?([Nn][Aa][Nn]|[Ii][Nn][Ff]([Ii][Nn][Ii][Tt][Yy])?)$"
+
+Schema = dict[str, Any]
 
 
-def json_schema() -> dict[str, Any]:
+def json_schema() -> Schema:
     """The JSON Schema (draft 2020-12) of a mechanism file as plain data in a stable order.
 
     It cannot say what crosses sections: one namespace for all names, tables and labels that differ,
     places per link that name the joint's own links, laws that need `time`.
     """
-    raw = MechanismFile.model_json_schema(by_alias=True, mode="validation")
-    definitions = raw["$defs"]
-    for section in _subclasses(Section):
-        target = raw if section is MechanismFile else definitions.get(section.__name__)
-        if target is not None:
-            _describe(target, section)
-    definitions["ReservedName"] = {"enum": sorted(RESERVED)}
-    raw["$defs"] = dict(sorted(definitions.items()))
+    definitions: Schema = {"ReservedName": {"enum": sorted(RESERVED)}}
+    top: Schema = {"$schema": DIALECT, "title": "mechkin mechanism file, format 1"}
+    top |= _section(MechanismFile, definitions)
     for name in _NAMED_SECTIONS:
-        raw["properties"][name]["propertyNames"]["not"] = {"$ref": "#/$defs/ReservedName"}
-    raw["anyOf"] = [_non_empty("joints", "minProperties"), _non_empty("chain", "minItems")]
-    top = {"$schema": DIALECT, "title": "mechkin mechanism file, format 1"}
-    return top | dict(_normalised(raw, definitions))
+        reserved = {"not": {"$ref": "#/$defs/ReservedName"}}
+        top["properties"][name]["propertyNames"] = reserved
+    top["anyOf"] = [_non_empty("joints", "minProperties"), _non_empty("chain", "minItems")]
+    return dict(_ordered(top)) | {"$defs": _ordered(dict(sorted(definitions.items())), True)}
 
 
 def json_schema_text() -> str:
@@ -46,62 +50,121 @@ def json_schema_text() -> str:
     return json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n"
 
 
-def _non_empty(key: str, least: str) -> dict[str, Any]:
+def _non_empty(key: str, least: str) -> Schema:
     return {"required": [key], "properties": {key: {least: 1}}}
 
 
-def _subclasses(model: type[Section]) -> list[type[Section]]:
-    return [deeper for child in model.__subclasses__() for deeper in (child, *_subclasses(child))]
-
-
-def _describe(schema: dict[str, Any], section: type[Section]) -> None:
+def _section(section: type[Section], definitions: Schema) -> Schema:
+    """The mapping that a section is."""
     texts = field_descriptions(section)
-    for name, field in section.model_fields.items():
-        if name in texts:
-            schema["properties"][field.alias or name]["description"] = texts[name]
+    properties: Schema = {}
+    required = []
+    for key, field in fields_of(section).items():
+        schema = _value(field.annotation, definitions)
+        if field.name in texts:
+            schema["description"] = texts[field.name]
+        if field.required:
+            required.append(key)
+        elif isinstance(field.default, (str, int)):
+            schema["default"] = field.default
+        properties[key] = schema
+    paragraphs = inspect.cleandoc(section.__doc__ or "").split("\n\n")
+    words = "\n\n".join(text.replace("\n", " ") for text in paragraphs)
+    found = {"description": words, "type": "object", "additionalProperties": False}
+    found |= {"properties": properties} | ({"required": required} if required else {})
+    return found | section.editors
 
 
-def _normalised(schema: Any, definitions: dict[str, Any], by_name: bool = False) -> Any:
-    """The schema in the project's form; where `by_name`, keys are names and keep their order."""
+def _value(annotation: Any, definitions: Schema) -> Schema:
+    """What may stand at a place; what has a name goes to `definitions` and is referred to."""
+    if isinstance(annotation, type) and issubclass(annotation, Section):
+        name = annotation.__name__
+        if name not in definitions:
+            definitions[name] = {}  # a place for sections that hold one another
+            definitions[name] = _section(annotation, definitions)
+        return {"$ref": f"#/$defs/{name}"}
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return _with_rules(arguments[0], arguments[1:], definitions)
+    if origin in (Union, UnionType):
+        members = [_value(m, definitions) for m in arguments if m is not NoneType]
+        return members[0] if len(members) == 1 else {"oneOf": members}
+    if origin is Literal:
+        words = {"const": arguments[0]} if len(arguments) == 1 else {"enum": list(arguments)}
+        return {"type": _JSON_TYPES[type(arguments[0])]} | words
+    if origin is tuple:
+        return {"type": "array", "items": _value(arguments[0], definitions)}
+    if origin is dict:
+        key, value = (_value(argument, definitions) for argument in arguments)
+        pattern = definitions[key["$ref"].rpartition("/")[2]]["pattern"]
+        closed = {"additionalProperties": False, "patternProperties": {pattern: value}}
+        return {"type": "object"} | closed
+    return {"type": _JSON_TYPES[annotation]}
+
+
+def _with_rules(inner: Any, rules: tuple[Any, ...], definitions: Schema) -> Schema:
+    schema = _value(inner, definitions)
+    for rule in rules:
+        if isinstance(rule, Named):
+            definitions[rule.name] = schema
+            schema = {"$ref": f"#/$defs/{rule.name}"}
+        elif isinstance(rule, Limits):
+            schema |= _limits(rule, schema)
+        elif isinstance(rule, Shown):
+            schema |= _shown(rule)
+        elif isinstance(rule, Dimension):
+            schema |= _dimension(rule)
+        elif isinstance(rule, Barred):
+            schema |= {"not": {"pattern": rule.pattern}}
+        elif isinstance(rule, ShortForm):
+            schema = {"anyOf": [_short_form(rule), schema]}
+    return schema
+
+
+def _limits(limits: Limits, schema: Schema) -> Schema:
+    of = {"array": "Items", "object": "Properties"}.get(schema["type"], "Length")
+    words = {
+        f"min{of}": limits.min_length,
+        f"max{of}": limits.max_length,
+        "minimum": limits.ge,
+        "maximum": limits.le,
+        "pattern": limits.pattern,
+    }
+    return {word: value for word, value in words.items() if value is not None}
+
+
+def _shown(rule: Shown) -> Schema:
+    shown = {"type": _types(rule.types), "description": rule.description}
+    return shown | ({"examples": list(rule.examples)} if rule.examples else {})
+
+
+def _dimension(rule: Dimension) -> Schema:
+    text = (
+        f"{rule.name}: a number in the file's units, a number with its unit, "
+        "or an expression of parameters"
+    )
+    not_finite = {"type": "string", "pattern": _NOT_A_NUMBER}
+    shown = _shown(Shown(("number", "string"), text, rule.examples))
+    return shown | {"minLength": 1, "not": not_finite}
+
+
+def _short_form(rule: ShortForm) -> Schema:
+    form = {"type": _types(rule.types), "description": rule.description}
+    return form | ({"pattern": rule.pattern} if rule.pattern else {})
+
+
+def _types(names: tuple[str, ...]) -> str | list[str]:
+    return names[0] if len(names) == 1 else list(names)
+
+
+def _ordered(schema: Any, by_name: bool = False) -> Any:
+    """The schema with its keys in order; where `by_name`, keys are names and keep theirs."""
     if isinstance(schema, list):
-        return [_normalised(item, definitions) for item in schema]
+        return [_ordered(item) for item in schema]
     if not isinstance(schema, dict):
         return schema
     if by_name:
-        return {name: _normalised(value, definitions) for name, value in schema.items()}
-    schema = _cleaned(schema)
-    _names_as_patterns(schema, definitions)
+        return {name: _ordered(value) for name, value in schema.items()}
     first = [key for key in _FIRST_KEYS if key in schema]
-    rest = sorted(schema.keys() - set(first) - {"$defs"})
-    keys = [*first, *rest, *(["$defs"] if "$defs" in schema else [])]
-    return {key: _normalised(schema[key], definitions, key in _BY_NAME) for key in keys}
-
-
-def _cleaned(schema: dict[str, Any]) -> dict[str, Any]:
-    """Without what pydantic derives from Python names, and without null, which no file may hold."""
-    alternatives = [item for item in schema.get("anyOf", []) if item != {"type": "null"}]
-    if len(alternatives) == 1:
-        schema = alternatives[0] | schema
-    cleaned = {_RENAMED.get(key, key): value for key, value in schema.items() if key != "title"}
-    cleaned.pop("anyOf", None)
-    if len(alternatives) > 1:
-        cleaned["anyOf"] = alternatives
-    if not isinstance(cleaned.get("default"), (str, int)):
-        cleaned.pop("default", None)
-    if "description" in cleaned:
-        paragraphs = cleaned["description"].split("\n\n")
-        cleaned["description"] = "\n\n".join(text.replace("\n", " ") for text in paragraphs)
-    return cleaned
-
-
-def _names_as_patterns(schema: dict[str, Any], definitions: dict[str, Any]) -> None:
-    """Turn `propertyNames: {$ref: ...}` into the pattern it stands for."""
-    names = schema.get("propertyNames", {})
-    if "$ref" in names:
-        pattern = definitions[names["$ref"].rpartition("/")[2]]["pattern"]
-        schema["patternProperties"] = {pattern: schema.pop("additionalProperties")}
-        schema["additionalProperties"] = False
-        rest = {key: value for key, value in names.items() if key != "$ref"}
-        schema.pop("propertyNames")
-        if rest:
-            schema["propertyNames"] = rest
+    rest = sorted(schema.keys() - set(first))
+    return {key: _ordered(schema[key], key in _BY_NAME) for key in [*first, *rest]}

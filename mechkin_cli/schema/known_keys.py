@@ -9,9 +9,8 @@ from collections.abc import Iterator
 from types import UnionType
 from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
 
-from pydantic import Tag
-
-from mechkin_cli.schema.base import Section
+from mechkin_cli.schema.alternatives import Tag
+from mechkin_cli.schema.base import Section, fields_of
 from mechkin_cli.schema.descriptions import field_descriptions
 
 
@@ -36,9 +35,7 @@ def known_keys(top: type[Section], location: tuple[str | int, ...]) -> KnownKeys
     if section is None:
         return None
     texts = field_descriptions(section)
-    descriptions = {
-        field.alias or name: texts.get(name, "") for name, field in section.model_fields.items()
-    }
+    descriptions = {key: texts.get(field.name, "") for key, field in fields_of(section).items()}
     return KnownKeys(descriptions, section.advice)
 
 
@@ -47,8 +44,8 @@ def _step_into(annotation: Any, step: str | int) -> Any:
         return next((form for tag, form in _tagged(annotation) if tag == step), None)
     for item in _alternatives(annotation):
         if _is_section(item):
-            for name, field in item.model_fields.items():
-                if step in (field.alias, name):
+            for key, field in fields_of(item).items():
+                if step in (key, field.name):
                     return field.annotation
         elif get_origin(item) in (dict, tuple):
             arguments = get_args(item)

@@ -2,9 +2,8 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field
-
-from mechkin_cli.schema.base import Section
+from mechkin_cli.schema.base import Key, Section
+from mechkin_cli.schema.rules import Limits
 from mechkin_cli.schema.scalars import (
     AngleOrLength,
     AnyDimension,
@@ -41,7 +40,7 @@ class Polynomial(Section):
     """x = c0 + c1*t + c2*t^2 + ..., with t from the first moment of `time`."""
 
     law: Literal["polynomial"]
-    coefficients: Annotated[tuple[AnyDimension, ...], Field(min_length=1, max_length=20)]
+    coefficients: Annotated[tuple[AnyDimension, ...], Limits(min_length=1, max_length=20)]
     """c0, c1, c2, ...; the k-th has the coordinate's dimension per time^k."""
 
 
@@ -56,9 +55,9 @@ class Harmonic(_Rise):
     """x = from + (to - from) * (1 - cos(pi*u))/2, with u from 0 to 1 over the duration."""
 
     law: Literal["harmonic"]
-    first: AngleOrLength = Field(alias="from")
+    first: Annotated[AngleOrLength, Key("from")]
     """Value before the rise."""
-    last: AngleOrLength = Field(alias="to")
+    last: Annotated[AngleOrLength, Key("to")]
     """Value after the rise."""
 
 
@@ -66,9 +65,9 @@ class Cycloidal(_Rise):
     """x = from + (to - from) * (u - sin(2*pi*u)/(2*pi)), with u from 0 to 1 over the duration."""
 
     law: Literal["cycloidal"]
-    first: AngleOrLength = Field(alias="from")
+    first: Annotated[AngleOrLength, Key("from")]
     """Value before the rise."""
-    last: AngleOrLength = Field(alias="to")
+    last: Annotated[AngleOrLength, Key("to")]
     """Value after the rise."""
 
 
@@ -78,3 +77,6 @@ class TableLaw(Section):
     law: Literal["table"]
     file: CsvPath
     """CSV file with a header and two columns: time, value; relative to the mechanism file."""
+
+
+Law = ConstantRate | ConstantAcceleration | Polynomial | Harmonic | Cycloidal | TableLaw

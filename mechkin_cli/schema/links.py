@@ -1,8 +1,6 @@
 """`links:` - the rigid bodies: mass, mass centre and inertia in the home drawing."""
 
-from typing import ClassVar, Self
-
-from pydantic import ConfigDict, model_validator
+from typing import Any, ClassVar
 
 from mechkin_cli.schema.base import Section, refuse
 from mechkin_cli.schema.scalars import DirectionVector, Inertia, LengthVector, Mass
@@ -41,11 +39,9 @@ class LinkInertia(Section):
 class Link(Section):
     """A rigid body. All its keys may be left out: `{}` is a link without mass."""
 
-    model_config = ConfigDict(
-        json_schema_extra={
-            "dependentRequired": {"mass": ["center_of_mass"], "center_of_mass": ["mass"]}
-        }
-    )
+    editors: ClassVar[dict[str, Any]] = {
+        "dependentRequired": {"mass": ["center_of_mass"], "center_of_mass": ["mass"]}
+    }
     advice: ClassVar[dict[str, str]] = {
         "centre_of_mass": "the key is spelled center_of_mass",
         "com": "the key is spelled center_of_mass",
@@ -58,8 +54,8 @@ class Link(Section):
     inertia: LinkInertia | None = None
     """Inertia tensor about the mass centre."""
 
-    @model_validator(mode="after")
-    def _mass_has_a_centre(self) -> Self:
+    def check(self) -> None:
+        """Mass and centre come together."""
         if self.mass is not None and self.center_of_mass is None:
             raise refuse("mass-without-centre", "a mass needs a center_of_mass", "add it", "mass")
         if self.mass is None and self.center_of_mass is not None:
@@ -67,4 +63,3 @@ class Link(Section):
             raise refuse(
                 "centre-without-mass", "a center_of_mass needs a mass", hint, "center_of_mass"
             )
-        return self

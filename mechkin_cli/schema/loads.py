@@ -5,11 +5,9 @@ A value may be an expression of coordinates, their rates and `time`, or `{table:
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag
-from typing_extensions import TypeAliasType
-
-from mechkin_cli.schema.alternatives import by_word
+from mechkin_cli.schema.alternatives import Choice, Tag, by_word
 from mechkin_cli.schema.base import Section
+from mechkin_cli.schema.rules import Limits, Named
 from mechkin_cli.schema.scalars import (
     AccelerationVector,
     AngleOrLength,
@@ -36,22 +34,18 @@ def _expression_or_table(value: Any) -> str:
     return "(table)" if isinstance(value, (dict, TableValue)) else "(expression)"
 
 
-ForceValue = TypeAliasType(
-    "ForceValue",
-    Annotated[
-        Annotated[Force, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
-        Discriminator(_expression_or_table),
-    ],
-)
-TorqueValue = TypeAliasType(
-    "TorqueValue",
-    Annotated[
-        Annotated[Torque, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
-        Discriminator(_expression_or_table),
-    ],
-)
+ForceValue = Annotated[
+    Annotated[Force, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
+    Choice(_expression_or_table),
+    Named("ForceValue"),
+]
+TorqueValue = Annotated[
+    Annotated[Torque, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
+    Choice(_expression_or_table),
+    Named("TorqueValue"),
+]
 Axes = Literal["ground", "link"]
-Between = Annotated[tuple[Name, ...], Field(min_length=2, max_length=2)]
+Between = Annotated[tuple[Name, ...], Limits(min_length=2, max_length=2)]
 
 
 class Gravity(Section):
@@ -70,7 +64,7 @@ class ForceOnLink(Section):
     """The link it acts on."""
     point: LengthVector
     """Where it acts: a point of the link in the home drawing."""
-    force: Annotated[tuple[ForceValue, ...], Field(min_length=3, max_length=3)]
+    force: Annotated[tuple[ForceValue, ...], Limits(min_length=3, max_length=3)]
     """The force, [x, y, z]."""
     axes: Axes = "ground"
     """Whether the components are in ground axes or turn with the link (its axes in the drawing)."""
@@ -82,7 +76,7 @@ class TorqueOnLink(Section):
     type: Literal["torque"]
     link: Name
     """The link it acts on."""
-    torque: Annotated[tuple[TorqueValue, ...], Field(min_length=3, max_length=3)]
+    torque: Annotated[tuple[TorqueValue, ...], Limits(min_length=3, max_length=3)]
     """The couple, [x, y, z]."""
     axes: Axes = "ground"
     """Whether the components are in ground axes or turn with the link (its axes in the drawing)."""
@@ -160,6 +154,17 @@ class DamperAtJoint(Section):
     """Force per speed, or moment per angular rate (bare numbers: per rad/s)."""
 
 
+AnyLoad = (
+    Gravity
+    | ForceOnLink
+    | ForceOnJoint
+    | TorqueOnLink
+    | TorqueOnJoint
+    | SpringBetweenPoints
+    | SpringAtJoint
+    | DamperBetweenPoints
+    | DamperAtJoint
+)
 _WORDS = ("gravity", "force", "torque", "spring", "damper")
 
 

@@ -5,12 +5,10 @@ others are held (`at`), follow (`with`) or run in step through equally many valu
 moments of `time`, and inputs move by laws.
 """
 
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar
 
-from pydantic import ConfigDict, Field, Tag, model_validator
-
-from mechkin_cli.schema.alternatives import by_word
-from mechkin_cli.schema.base import Section, refuse
+from mechkin_cli.schema.alternatives import Tag, by_word
+from mechkin_cli.schema.base import NOTHING, Key, Section, refuse
 from mechkin_cli.schema.laws import (
     ConstantAcceleration,
     ConstantRate,
@@ -19,6 +17,7 @@ from mechkin_cli.schema.laws import (
     Polynomial,
     TableLaw,
 )
+from mechkin_cli.schema.rules import Limits
 from mechkin_cli.schema.scalars import (
     AngleOrLength,
     AnyDimension,
@@ -30,12 +29,12 @@ from mechkin_cli.schema.scalars import (
     WholeNumber,
 )
 
-_STEP_OR_COUNT = ConfigDict(
-    json_schema_extra={"oneOf": [{"required": ["step"]}, {"required": ["count"]}]}
-)
+_STEP_OR_COUNT: dict[str, Any] = {"oneOf": [{"required": ["step"]}, {"required": ["count"]}]}
 
 
-class _WithRates(Section):
+class WithRates(Section):
+    """What inputs with rows of their own share."""
+
     rate: CoordinateRate = "0"
     """Rate of the input, the same in every row."""
     acceleration: CoordinateAcceleration = "0"
@@ -44,38 +43,37 @@ class _WithRates(Section):
     """Third rate of the input, the same in every row."""
 
 
-class SweptInput(_WithRates):
+class SweptInput(WithRates):
     """An input that runs from one value to another in equal steps."""
 
-    model_config = _STEP_OR_COUNT
+    editors: ClassVar[dict[str, Any]] = _STEP_OR_COUNT
 
-    first: AngleOrLength = Field(alias="from")
+    first: Annotated[AngleOrLength, Key("from")]
     """Value of the first row."""
-    last: AngleOrLength = Field(alias="to")
+    last: Annotated[AngleOrLength, Key("to")]
     """Value that the last row reaches or stays below."""
     step: AngleOrLength | None = None
     """Distance between rows; its sign does not matter."""
-    count: Annotated[WholeNumber, Field(ge=1)] | None = None
+    count: Annotated[WholeNumber, Limits(ge=1)] | None = None
     """Number of rows, instead of `step`; the last row is exactly `to`."""
 
-    @model_validator(mode="after")
-    def _step_or_count(self) -> Self:
+    def check(self) -> None:
+        """Exactly one of step and count."""
         if self.step is None and self.count is None:
             raise refuse("missing-key", "from and to need a step or a count", "add one of them")
         if self.step is not None and self.count is not None:
             text = "step and count both say how many rows there are"
             raise refuse("two-choices", text, "keep one of them", "count")
-        return self
 
 
-class ListedInput(_WithRates):
+class ListedInput(WithRates):
     """An input that takes the listed values, one per row."""
 
-    values: Annotated[tuple[AngleOrLength, ...], Field(min_length=1)]
+    values: Annotated[tuple[AngleOrLength, ...], Limits(min_length=1)]
     """The value of each row."""
 
 
-class HeldInput(_WithRates):
+class HeldInput(WithRates):
     """An input that has the same value in every row."""
 
     at: AngleOrLength
@@ -85,30 +83,29 @@ class HeldInput(_WithRates):
 class FollowingInput(Section):
     """An input that follows others; its rates follow from the expression by the chain rule."""
 
-    value: AnyDimension = Field(alias="with")
+    value: Annotated[AnyDimension, Key("with")]
     """An expression of other inputs, and of `time` where there is one: `2*O1.theta`."""
 
 
 class TimeSection(Section):
     """The moments of the rows, where the inputs are given by laws."""
 
-    model_config = _STEP_OR_COUNT
+    editors: ClassVar[dict[str, Any]] = _STEP_OR_COUNT
 
-    first: Duration = Field(alias="from")
+    first: Annotated[Duration, Key("from")]
     """First moment."""
-    last: Duration = Field(alias="to")
+    last: Annotated[Duration, Key("to")]
     """Last moment."""
     step: Duration | None = None
     """Time between rows."""
-    count: Annotated[WholeNumber, Field(ge=1)] | None = None
+    count: Annotated[WholeNumber, Limits(ge=1)] | None = None
     """Number of rows, instead of `step`."""
 
-    @model_validator(mode="after")
-    def _step_or_count(self) -> Self:
+    def check(self) -> None:
+        """Exactly one of step and count."""
         if (self.step is None) == (self.count is None):
             text = "time needs either a step or a count"
             raise refuse("step-or-count", text, "give exactly one of them")
-        return self
 
 
 _LAWS = {
@@ -123,7 +120,8 @@ _LAWS = {
 
 def _tag(mapping: dict[str, Any]) -> str | None:
     if "law" in mapping:
-        return f"({mapping['law']})" if mapping["law"] in _LAWS else None
+        word = mapping["law"]
+        return f"({word})" if isinstance(word, str) and word in _LAWS else None
     if {"from", "to", "step", "count"} & mapping.keys():
         return "(swept)"
     for key, tag in (("values", "(listed)"), ("with", "(following)"), ("at", "(held)")):
@@ -150,13 +148,13 @@ InputMotion = Annotated[
 class MotionSection(Section):
     """The driven coordinates. Without inputs the mechanism has one row."""
 
-    inputs: dict[Coordinate, InputMotion] = Field(default_factory=dict)
+    inputs: dict[Coordinate, InputMotion] = NOTHING
     """Driven coordinates by name: {O1.theta: {from: 0, to: 360, step: 5}}."""
     time: TimeSection | None = None
     """The moments of the rows, for inputs that are given by laws."""
 
-    @model_validator(mode="after")
-    def _laws_go_with_time(self) -> Self:
+    def check(self) -> None:
+        """Laws go with `time`, rows of an input's own do not."""
         for name, motion in self.inputs.items():
             has_law = isinstance(motion, tuple(_LAWS.values()))
             if has_law and self.time is None:
@@ -166,4 +164,3 @@ class MotionSection(Section):
                 text = f"{name} lists rows of its own beside time:"
                 hint = "give it a law, or remove time"
                 raise refuse("rows-beside-time", text, hint, "inputs", name)
-        return self

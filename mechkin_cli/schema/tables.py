@@ -1,31 +1,25 @@
 """`tables:` - the layouts a run writes, one file each: columns are expressions over quantities."""
 
 import re
-from typing import Annotated, Any, Self
-
-from pydantic import BeforeValidator, Field, field_validator, model_validator
-from pydantic.annotated_handlers import GetJsonSchemaHandler
-from typing_extensions import TypeAliasType
+from typing import Annotated, Any
 
 from mechkin_cli.schema.base import Section, refuse
+from mechkin_cli.schema.rules import After, Barred, Before, Limits, Named, ShortForm, Shown
 from mechkin_cli.schema.scalars import (
     CSV_PATH_PATTERN,
     TABLE_NAME_PATTERN,
     AnyDimension,
     CsvPath,
-    Shown,
     Text,
     WholeNumber,
 )
 
-TableName = TypeAliasType(
-    "TableName",
-    Annotated[
-        str,
-        Field(pattern=TABLE_NAME_PATTERN),
-        Shown(("string",), "letters, digits, - and _; the name of the file written", ("table_03",)),
-    ],
-)
+TableName = Annotated[
+    str,
+    Limits(pattern=TABLE_NAME_PATTERN),
+    Shown(("string",), "letters, digits, - and _; the name of the file written", ("table_03",)),
+    Named("TableName"),
+]
 
 
 _DEVICE = re.compile("con|prn|aux|nul|com[0-9]|lpt[0-9]", re.IGNORECASE)
@@ -43,31 +37,23 @@ class Column(Section):
     """Heading of the column."""
     value: AnyDimension
     """An expression over quantities and parameters; with commas or brackets it stands in quotes."""
-    decimals: Annotated[WholeNumber, Field(ge=0, le=17)] | None = None
+    decimals: Annotated[WholeNumber, Limits(ge=0, le=17)] | None = None
     """Decimals in Markdown; CSV always has all digits."""
-
-
-class _ShortForm:
-    """Tells editors that a column may be a plain text."""
-
-    def __get_pydantic_json_schema__(
-        self, schema: Any, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        text = {"type": ["string", "number"], "description": "label and value in one: O1.theta"}
-        return {"anyOf": [text, handler(schema)]}
 
 
 def _in_full(value: Any) -> Any:
     return {"label": value, "value": value} if isinstance(value, (str, int, float)) else value
 
 
-ColumnOrText = Annotated[Column, BeforeValidator(_in_full), _ShortForm()]
+ColumnOrText = Annotated[
+    Column, Before(_in_full), ShortForm(("string", "number"), "label and value in one: O1.theta")
+]
 
 
 class PrintedRemark(Section):
     """Why printed values differ from computed ones, for the errata page."""
 
-    columns: Annotated[tuple[Text, ...], Field(min_length=1)] | None = None
+    columns: Annotated[tuple[Text, ...], Limits(min_length=1)] | None = None
     """Labels of the columns it holds for; left out, all."""
     text: Text
     """The reason in words."""
@@ -82,22 +68,14 @@ class PublishedValues(Section):
     """Why values differ, in words."""
 
 
-class _PathAlone:
-    """Tells editors that the printed values may be a plain path."""
-
-    def __get_pydantic_json_schema__(
-        self, schema: Any, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        text = "a CSV file with the printed values, relative to the mechanism file"
-        path = {"type": "string", "pattern": CSV_PATH_PATTERN, "description": text}
-        return {"anyOf": [path, handler(schema)]}
-
-
 def _with_file(value: Any) -> Any:
     return {"file": value} if isinstance(value, str) else value
 
 
-PathOrPublishedValues = Annotated[PublishedValues, BeforeValidator(_with_file), _PathAlone()]
+_PATH_ALONE = "a CSV file with the printed values, relative to the mechanism file"
+PathOrPublishedValues = Annotated[
+    PublishedValues, Before(_with_file), ShortForm(("string",), _PATH_ALONE, CSV_PATH_PATTERN)
+]
 
 _TAKEN = {
     "rows": "every run writes a table rows of its own",
@@ -105,29 +83,40 @@ _TAKEN = {
 }
 
 
+def _free_name(name: str) -> str:
+    if name.casefold() in _TAKEN:
+        raise refuse("reserved-name", _TAKEN[name.casefold()], "rename it")
+    if _DEVICE.fullmatch(name):
+        raise refuse("reserved-name", f"{name} is a device on Windows, no file", "rename it")
+    return name
+
+
+def _differing_labels(columns: tuple[Column, ...]) -> tuple[Column, ...]:
+    labels = [column.label for column in columns]
+    for index, label in enumerate(labels):
+        if label in labels[:index]:
+            hint = "give each column of a table its own label"
+            text = f"the label {label!r} is used twice"
+            raise refuse("label-clash", text, hint, index, "label")
+    return columns
+
+
 class Table(Section):
     """A table with one row per position."""
 
-    name: TableName = Field(json_schema_extra={"not": {"pattern": _TAKEN_FOR_EDITORS}})
+    name: Annotated[TableName, After(_free_name), Barred(_TAKEN_FOR_EDITORS)]
     """Name of the files written, without ending."""
     title: Text | None = None
     """Heading in Markdown; left out, the name."""
-    columns: Annotated[tuple[ColumnOrText, ...], Field(min_length=1, max_length=1000)]
+    columns: Annotated[
+        tuple[ColumnOrText, ...], Limits(min_length=1, max_length=1000), After(_differing_labels)
+    ]
     """The columns, from left to right."""
     published: PathOrPublishedValues | None = None
     """Values printed in the source, as a CSV file with the same labels."""
 
-    @field_validator("name", mode="after")
-    @classmethod
-    def _is_not_taken(cls, name: str) -> str:
-        if name.casefold() in _TAKEN:
-            raise refuse("reserved-name", _TAKEN[name.casefold()], "rename it")
-        if _DEVICE.fullmatch(name):
-            raise refuse("reserved-name", f"{name} is a device on Windows, no file", "rename it")
-        return name
-
-    @model_validator(mode="after")
-    def _remarks_name_columns(self) -> Self:
+    def check(self) -> None:
+        """Remarks name columns of the table."""
         labels = [column.label for column in self.columns]
         for index, remark in enumerate(self.published.remarks if self.published else ()):
             for place, label in enumerate(remark.columns or ()):
@@ -135,18 +124,6 @@ class Table(Section):
                     text = f"the table has no column {label!r}"
                     at = ("published", "remarks", index, "columns", place)
                     raise refuse("unknown-label", text, f"labels are {', '.join(labels)}", *at)
-        return self
-
-    @field_validator("columns", mode="after")
-    @classmethod
-    def _labels_differ(cls, columns: tuple[Column, ...]) -> tuple[Column, ...]:
-        labels = [column.label for column in columns]
-        for index, label in enumerate(labels):
-            if label in labels[:index]:
-                hint = "give each column of a table its own label"
-                text = f"the label {label!r} is used twice"
-                raise refuse("label-clash", text, hint, index, "label")
-        return columns
 
 
 def differing_names(tables: tuple[Table, ...]) -> tuple[Table, ...]:

@@ -2,20 +2,16 @@
 
 from typing import Annotated
 
-from pydantic import BeforeValidator
-from typing_extensions import TypeAliasType
-
 from mechkin_cli.schema.base import Section
-from mechkin_cli.schema.scalars import Shown, plain_text
+from mechkin_cli.schema.rules import Before, Named, Shown
+from mechkin_cli.schema.scalars import plain_text
 
-UnitText = TypeAliasType(
-    "UnitText",
-    Annotated[
-        str,
-        BeforeValidator(plain_text),
-        Shown(("string",), "a unit, or units joined by * / ^", ("in", "deg", "lbm*in/s^2")),
-    ],
-)
+UnitText = Annotated[
+    str,
+    Before(plain_text),
+    Shown(("string",), "a unit, or units joined by * / ^", ("in", "deg", "lbm*in/s^2")),
+    Named("UnitText"),
+]
 
 
 class UnitsSection(Section):
@@ -37,3 +33,7 @@ class UnitsSection(Section):
     """Unit of time, for example s, min."""
     angular_rate: UnitText = "rad/s"
     """Unit of angular rates, for example rad/s, rpm."""
+
+
+METRIC = UnitsSection()
+"""The units where a file names none."""

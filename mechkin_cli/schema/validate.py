@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic_core import ValidationError
 
+from mechkin_cli.schema.compiled import validated
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.schema.names import name_errors
 from mechkin_cli.schema.scalars import FORMS
@@ -28,7 +29,7 @@ def validate(data: object) -> MechanismFile:
     """The mechanism file that plain data describes; raises `InvalidDataError`."""
     errors = name_errors(data)
     try:
-        file = MechanismFile.model_validate(data)
+        file = validated(MechanismFile, data)
     except ValidationError as failure:
         found = failure.errors(include_url=False, include_input=False)
         errors = [_completed(dict(error)) for error in found] + errors

@@ -37,8 +37,8 @@ def filled(value: Any, numbers: Iterator[float]) -> Any:
     if isinstance(value, np.ndarray):
         if value.dtype != object:
             return value
-        items = [next(numbers) if isinstance(item, Traced) else item for item in value.flat]
-        return np.array(items, dtype=np.float64).reshape(value.shape)
+        entries = [next(numbers) if isinstance(item, Traced) else item for item in value.flat]
+        return np.array(entries, dtype=np.float64).reshape(value.shape)
     if isinstance(value, tuple):
         items = [filled(item, numbers) for item in value]
         if all(new is old for new, old in zip(items, value, strict=True)):

@@ -1,13 +1,15 @@
 """Files that ask for more than a machine has end in a message, and soon."""
 
 import time
+import tracemalloc
 
 import pytest
 from building.sound import SOUND
 
 import mechkin_cli as mk
-from mechkin_cli.building.sizes import MOST_EQUATIONS, MOST_NUMBERS
+from mechkin_cli.building.sizes import MOST_EQUATIONS
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.tolerances import MOST_NUMBERS
 
 SECONDS = 5.0
 """Far above what each takes, far below what an exponential search or a quadratic one would."""
@@ -69,9 +71,28 @@ def test_rows_times_columns_stay_within_memory() -> None:
     most = MOST_NUMBERS // PER_ROW
     mk.loads(SOUND.replace("step: 5}", f"count: {most}}}"))
     (error,) = errors(SOUND.replace("step: 5}", f"count: {most + 1}}}"))
-    assert str(error).startswith("f.yaml:15:18: error: the run has too many numbers")
+    assert str(error).startswith("f.yaml:15:55: error: the run has too many numbers")
     (number,) = error.numbers
     assert (number.value, number.limit) == ((most + 1) * PER_ROW, MOST_NUMBERS)
+
+
+@pytest.mark.parametrize("count", ["3000000", "10000000", "1000000000", "9" * 300])
+def test_rows_are_counted_before_they_are_made(count: str) -> None:
+    tracemalloc.start()
+    try:
+        (error,) = errors(SOUND.replace("step: 5}", f"count: {count}}}"))
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert error.code == "too-many-numbers"
+    assert peak < 10e6
+
+
+def test_the_limit_is_said_in_rows() -> None:
+    (error,) = errors(SOUND.replace("step: 5}", "step: 1e-5}"))
+    most = int(str(error.limit).rpartition(", ")[2].removesuffix(" rows"))
+    mk.loads(SOUND.replace("step: 5}", f"count: {most}}}"))
+    errors(SOUND.replace("step: 5}", f"count: {most + 1}}}"))
 
 
 def test_columns_of_all_tables_count() -> None:

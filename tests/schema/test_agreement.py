@@ -58,7 +58,6 @@ EDITORS_ACCEPT = {
     "too-many-numbers": CROSSING,
     "csv-table": "it is a property of another file",
     "too-large": VALUE,
-    "too-many-rows": VALUE,
     "negative-mass": VALUE,
     "zero-step": VALUE,
     "zero-lead": VALUE,

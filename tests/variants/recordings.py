@@ -18,8 +18,8 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.plan import describe
-from mechkin_cli.solver.plan_image import PlanImage
+from mechkin_cli.solver.plan import plan_records
+from mechkin_cli.solver.records import _CONSTANTS, flatten
 from mechkin_cli.solver.same_structure import graph_of
 from mechkin_cli.tape.native import compiled
 from mechkin_cli.tape.tape import Tape
@@ -66,16 +66,29 @@ def numbers_in(value: Any) -> Iterator[Any]:
                 yield from numbers_in(getattr(value, field.name))
 
 
-def image_of(problem: Problem, graph: SolverGraph) -> PlanImage:
-    layout = Layout(problem.mechanism, graph)
-    image = PlanImage(layout.length, layout.origin, problem.mechanism.box_diagonal())
-    describe(layout, image)  # type: ignore[arg-type]
-    return image
+def constants_of(problem: Problem, graph: SolverGraph) -> list[Any]:
+    """All constants of the plan, in the kernel's order."""
+    return flatten(plan_records(Layout(problem.mechanism, graph)))
+
+
+def structure_of(problem: Problem, graph: SolverGraph) -> list[Any]:
+    """What of the plan is no constant, record by record."""
+    return [
+        (
+            type(record),
+            {
+                k: v
+                for k, v in record._asdict().items()
+                if k not in _CONSTANTS.get(type(record), ())
+            },
+        )
+        for record in plan_records(Layout(problem.mechanism, graph))
+    ]
 
 
 def everything(problem: Problem, graph: SolverGraph) -> list[Any]:
     """All numbers of the problem, then all constants of its plan."""
-    return [*numbers_in(problem), *image_of(problem, graph).constants]
+    return [*numbers_in(problem), *constants_of(problem, graph)]
 
 
 @cache

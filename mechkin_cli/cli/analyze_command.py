@@ -1,0 +1,50 @@
+"""`mechkin analyze`: its options, for help and for command lines that are not plain."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mechkin_cli.cli.analyze import FORMATS, analyze_files
+from mechkin_cli.cli.options import Files, Json, Quiet, Set
+
+
+def analyze(
+    files: Files,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder to write to (out/STEM).")
+    ] = None,
+    format: Annotated[
+        list[str] | None,
+        typer.Option("--format", metavar="FORMAT", help=f"{FORMATS}; may be repeated."),
+    ] = None,
+    set_: Set = None,
+    mode: Annotated[
+        str | None, typer.Option("--mode", metavar="NAME", help="Assembly mode at the first row.")
+    ] = None,
+    table: Annotated[
+        list[str] | None,
+        typer.Option("--table", metavar="NAME", help="Only this table; may be repeated."),
+    ] = None,
+    lanes: Annotated[
+        int,
+        typer.Option("--lanes", metavar="N", help="Rows at a time: 2, 4 or 8; 0: the most."),
+    ] = 0,
+    threads: Annotated[
+        int,
+        typer.Option("--threads", metavar="N", help="Threads that split the rows; 0: all cores."),
+    ] = 0,
+    explain: Annotated[
+        bool, typer.Option("--explain", help="Show the solver graph and what is skipped.")
+    ] = False,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run the sweep of each file and write its tables."""
+    code = analyze_files(
+        files, out, format, set_, mode, table, lanes, threads, explain, json, quiet
+    )
+    if code:
+        raise typer.Exit(code)

@@ -1,0 +1,72 @@
+"""The typer app: all commands, their help, and what is wrong with a command line."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+from typing import Any
+
+import typer
+
+from mechkin_cli.cli.analyze_command import analyze
+from mechkin_cli.cli.bench import bench
+from mechkin_cli.cli.check import check
+from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import put, say
+from mechkin_cli.cli.mobility import mobility
+from mechkin_cli.cli.modes import modes
+from mechkin_cli.cli.ranges import ranges
+from mechkin_cli.cli.schema import schema
+from mechkin_cli.cli.tables import tables
+
+app = typer.Typer(
+    name="mechkin",
+    help="Displacement, rates, reactions and tables of spatial mechanisms from YAML files.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+for command in (analyze, check, modes, ranges, mobility, tables, schema, bench):
+    app.command()(command)
+
+
+@app.callback(invoke_without_command=True)
+def _options(
+    version: bool = typer.Option(False, "--version", help="Print the version and exit."),
+) -> None:
+    if version:
+        put(f"mechkin {_version()}\n")
+        raise typer.Exit()
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("mechkin")
+    except PackageNotFoundError:
+        return "(source folder, not installed)"
+
+
+def run() -> int:
+    """Runs the command of the process's command line; its exit code."""
+    try:
+        return int(app(standalone_mode=False, prog_name="mechkin") or 0)
+    except typer.Abort:
+        return ExitCode.INTERRUPTED
+    except Exception as error:
+        if not (hasattr(error, "exit_code") and hasattr(error, "show")):
+            raise
+        _show(error)
+        for file in filter(os.path.isfile, sys.argv[1:2]):
+            say(f"To run a mechanism file: mechkin analyze {file}")
+        return int(error.exit_code)
+
+
+def _show(error: Any) -> None:
+    """A usage error of the command line itself, as typer words it."""
+    with contextlib.suppress(OSError):
+        if sys.stderr is not None:
+            error.show()
