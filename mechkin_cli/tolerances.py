@@ -71,6 +71,10 @@ letters, so that rounding cannot change it."""
 NEAR_RUNNER_UP: Final = 1.2
 """Ratio of distances below which the nearest assembly is not clearly the one that was meant."""
 
+NEAR_BALL: Final = 1.0
+"""Radius (rad, parts of the size) of the ball about what `near` names up to which it is searched
+alone: a larger one holds most of the space."""
+
 HOME_ASSEMBLED: Final = 1e-9
 """Closing residual at which a drawing counts as assembled: written numbers with ten digits reach
 it."""
@@ -210,6 +214,10 @@ bounds; a search takes starts up to two sizes. Measured on RCCC: lost at 206."""
 
 CONDITION_NEAR_SINGULAR: Final = 1e7
 """1 / smallest singular value of the scaled block: above it a row keeps fewer than nine digits."""
+
+CONDITION_DIGITS: Final = 0.01
+"""Parts by which a row's condition may be wrong: it comes from a fixed number of inverse
+iterations."""
 
 CONDITION_RANK_UNCLEAR: Final = 1e12
 """Above it rates and reactions of a row have no digit that means anything; its position still

@@ -27,7 +27,7 @@ def arm(load: str = "0", parameters=()):
 def test_words_of_rows():
     analysis = mk.load(RCSR).analyze(tables=["table_03"])
     assert analysis["row.status"].tolist() == ["ok"] * 27
-    assert set(analysis["row.mode"]) == {analysis.result.mode}
+    assert set(analysis["row.mode"]) == {"B"}  # theta4 at 37 degrees is the larger of the two
 
 
 def test_a_parameter_may_be_a_number():

@@ -117,7 +117,7 @@ def check_spins(fields: Fields, problem: Problem, tables: Sequence[TableLayout])
     """Where forces are wanted, what spins freely must have no cause to spin."""
     if not (find_legs(problem.mechanism) and needs_forces(problem, tables)):
         return
-    from mechkin_cli.analysis.idle import spin_errors
+    from mechkin_cli.mechanism.idle import spin_errors
 
     for link, diagnostic in spin_errors(problem):
         place = fields.document.place(("links", link))

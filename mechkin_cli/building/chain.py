@@ -17,8 +17,10 @@ from typing import Any, NamedTuple
 
 from mechkin_cli.building.fields import Fields
 from mechkin_cli.building.joints import lead_of
+from mechkin_cli.mechanism.elementary import Part
 from mechkin_cli.mechanism.frames import GROUND, Frame, frame_about
-from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Part
+from mechkin_cli.mechanism.joint_table import joint_type
+from mechkin_cli.mechanism.model import GROUND_NAME, Joint
 from mechkin_cli.mechanism.vectors import Vector, add, scale, subtract, unit
 from mechkin_cli.tape.scalars import cos, sin
 from mechkin_cli.units import ANGLE, LENGTH
@@ -50,7 +52,11 @@ def build_chain(
         if second == GROUND_NAME:
             behind = _along_x(GROUND, -numbers.alpha, -numbers.a)
         parts = (Part(row.type, at_joint, behind),)
-        lead = lead_of(fields, ("chain", i, "lead"), row.lead) if row.type == "H" else 0.0
+        lead = (
+            lead_of(fields, ("chain", i, "lead"), row.lead)
+            if joint_type(row.type).is_threaded
+            else 0.0
+        )
         joints[row.joint] = Joint(row.joint, row.type, first, second, at_joint, behind, parts, lead)
     return joints
 

@@ -6,17 +6,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.mechanism import joint_table
 from mechkin_cli.mechanism.model import Joint
 from mechkin_cli.nearest import nearest_hint
-from mechkin_cli.solver.graph import ANGLES
-from mechkin_cli.units import ANGLE, LENGTH, TIME, Dimension
+from mechkin_cli.units import TIME, Dimension
 
 CODE = "unknown-coordinate"
 
 
 def dimension_of(coordinate: str, order: int = 0) -> Dimension:
     """What a coordinate, or its derivative of some order over time, measures."""
-    return (ANGLE if coordinate in ANGLES else LENGTH) / TIME**order
+    return joint_table.dimension_of(coordinate) / TIME**order
 
 
 def is_coordinate(fields: Fields, path: Path, name: str, joints: Mapping[str, Joint]) -> bool:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.building.per_link import Frames, directions_of, place_of, points_of
+from mechkin_cli.building.halves import Halves
+from mechkin_cli.building.per_link import directions_of, place_of, points_of
+from mechkin_cli.mechanism.elementary import Part
 from mechkin_cli.mechanism.frames import (
     GROUND,
     frame_about,
@@ -14,8 +16,9 @@ from mechkin_cli.mechanism.frames import (
     turned_shortest,
     upright,
 )
-from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Part
-from mechkin_cli.mechanism.vectors import Vector, cross, norm, scale
+from mechkin_cli.mechanism.joint_table import Drawing, JointType, joint_type
+from mechkin_cli.mechanism.model import GROUND_NAME, Joint
+from mechkin_cli.mechanism.vectors import Vector, cross, norm
 from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.tolerances import PARALLEL
 from mechkin_cli.units import LENGTH
@@ -48,10 +51,21 @@ def _links_known(fields: Fields, path: Path, section: Any, links: Mapping[str, A
 
 def _build(fields: Fields, name: str, section: Any) -> Joint:
     path: Path = ("joints", name)
+    kind = joint_type(section.type)
+    halves = _DRAWINGS[kind.drawing.kind](fields, path, section, kind.drawing)
+    lead = lead_of(fields, (*path, "lead"), section.lead) if kind.is_threaded else 0.0
     first, second = section.links
-    on_first, on_second, parts = _FRAMES[section.type](fields, path, section)
-    lead = lead_of(fields, (*path, "lead"), section.lead) if section.type == "H" else 0.0
-    return Joint(name, section.type, first, second, on_first, on_second, parts, lead)
+    parts = parts_of(kind, halves)
+    return Joint(name, kind.letter, first, second, halves.on_first, halves.on_second, parts, lead)
+
+
+def parts_of(kind: JointType, halves: Halves) -> tuple[Part, ...]:
+    """The chain of a pair as drawn."""
+    parts = []
+    for step in kind.steps:
+        still = halves.along(step.along) if step.along else None
+        parts.append(Part(step.letter, *((still, still) if still else halves.meeting)))
+    return tuple(parts)
 
 
 def lead_of(fields: Fields, path: Path, text: str) -> float:
@@ -63,91 +77,71 @@ def lead_of(fields: Fields, path: Path, text: str) -> float:
     return lead
 
 
-def _axis_frames(fields: Fields, path: Path, section: Any) -> Frames:
-    """R, P, C, H: z along the axis on either link."""
+def _axis(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halves:
+    """z along the axis on either link."""
     points = points_of(fields, path, section)
     errors = fields.error_count
-    axes = directions_of(fields, path, section, "axis")
+    axes = directions_of(fields, path, section, *drawing.keys)
     x_first, x_second = _zero_directions(fields, path, section, axes, errors)
     on_first = frame_about(axes[0], x_first, points[0])
     on_second = frame_about(axes[1], x_second, points[1])
-    return on_first, on_second, (Part(section.type, on_first, on_second),)
+    return Halves(on_first, on_second, (on_first, on_second))
 
 
-def _spheric_frames(fields: Fields, path: Path, section: Any) -> Frames:
-    """S: ground axes at the sphere's centre."""
+def _ball(fields: Fields, path: Path, section: Any, _: Drawing) -> Halves:
+    """Ground axes at the sphere's centre."""
     first, second = points_of(fields, path, section)
-    on_first, on_second = upright(first), upright(second)
-    return on_first, on_second, (Part("S", on_first, on_second),)
+    meeting = upright(first), upright(second)
+    return Halves(*meeting, meeting)
 
 
-def _plane_frames(fields: Fields, path: Path, section: Any) -> Frames:
-    """Sp: turns about the sphere's centre, then slides in the plane of the second link."""
+def _ball_on(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halves:
+    """Ground axes at the sphere's centre; on the second link z along its normal or groove."""
     first, second = points_of(fields, path, section)
-    normal = directions_of(fields, path, section, "normal")[1]
-    x = perpendicular(normal)
-    on_second = frame_about(normal, x, second)
-    slides = [frame_about(axis, normal, second) for axis in (on_second.x, on_second.y)]
-    turn = Part("S", upright(first), upright(second))
-    return upright(first), on_second, (turn, *(Part("P", f, f) for f in slides))
+    z = directions_of(fields, path, section, *drawing.keys)[1]
+    on_second = frame_about(z, perpendicular(z), second)
+    return Halves(upright(first), on_second, (upright(first), upright(second)))
 
 
-def _groove_frames(fields: Fields, path: Path, section: Any) -> Frames:
-    """Sg: turns about the sphere's centre; where s grows the second link runs back along its
-    groove."""
-    first, second = points_of(fields, path, section)
-    groove = directions_of(fields, path, section, "groove")[1]
-    on_second = frame_about(groove, perpendicular(groove), second)
-    back = frame_about(scale(-1.0, groove), on_second.x, second)
-    turn = Part("S", upright(first), upright(second))
-    return upright(first), on_second, (turn, Part("P", back, back))
-
-
-def _planar_frames(fields: Fields, path: Path, section: Any) -> Frames:
-    """E: slides along x and y of the first link, then turns about the normal."""
+def _plane(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halves:
+    """z and x along the two directions given on either link."""
+    along_z, along_x = drawing.keys
     points = points_of(fields, path, section)
     errors = fields.error_count
-    normals = directions_of(fields, path, section, "normal")
-    x = directions_of(fields, path, section, "x")
+    normals = directions_of(fields, path, section, along_z)
+    x = directions_of(fields, path, section, along_x)
     directions: list[Vector] = []
     for i in range(2):
         if i == 1 and (normals[1], x[1]) == (normals[0], x[0]):
             directions.append(directions[0])
             continue
-        place = place_of(path, section, "x", i)
-        directions.append(_square(fields, place, normals[i], x[i], "x", "normal", errors))
+        place = place_of(path, section, along_x, i)
+        directions.append(_square(fields, place, normals[i], x[i], along_x, along_z, errors))
     frames = [frame_about(n, d, p) for n, d, p in zip(normals, directions, points, strict=True)]
     on_first, on_second = frames
-    slides = [frame_about(axis, on_first.z, points[0]) for axis in (on_first.x, on_first.y)]
-    return on_first, on_second, (*(Part("P", f, f) for f in slides), Part("R", on_first, on_second))
+    return Halves(on_first, on_second, (on_first, on_second))
 
 
-def _turning_frames(fields: Fields, path: Path, section: Any) -> Frames:
-    """U, Ss, Sc, Cp: two turns."""
-    from mechkin_cli.building.two_turns import FRAMES
+def _two_turns(fields: Fields, path: Path, section: Any, drawing: Drawing) -> Halves:
+    from mechkin_cli.building.two_turns import DRAWINGS
 
-    return FRAMES[section.type](fields, path, section)
-
-
-def _weld_frames(fields: Fields, path: Path, section: Any) -> Frames:
-    """W: one body."""
-    return GROUND, GROUND, (Part("W", GROUND, GROUND),)
+    return DRAWINGS[drawing.kind](fields, path, section, drawing)
 
 
-_FRAMES = {
-    "R": _axis_frames,
-    "P": _axis_frames,
-    "C": _axis_frames,
-    "H": _axis_frames,
-    "S": _spheric_frames,
-    "Sp": _plane_frames,
-    "Sg": _groove_frames,
-    "U": _turning_frames,
-    "E": _planar_frames,
-    "Ss": _turning_frames,
-    "Sc": _turning_frames,
-    "Cp": _turning_frames,
-    "W": _weld_frames,
+def _weld(*_: Any) -> Halves:
+    """One body."""
+    return Halves(GROUND, GROUND, (GROUND, GROUND))
+
+
+_DRAWINGS: dict[str, Callable[[Fields, Path, Any, Drawing], Halves]] = {
+    "axis": _axis,
+    "ball": _ball,
+    "ball on": _ball_on,
+    "plane": _plane,
+    "two axes": _two_turns,
+    "square axes": _two_turns,
+    "slotted": _two_turns,
+    "weld": _weld,
 }
 
 

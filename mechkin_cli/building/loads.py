@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.building.coordinates import CODE, without
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.expressions import ExpressionError, parse
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.model import (
     GROUND_NAME,
     Amount,
@@ -24,7 +25,6 @@ from mechkin_cli.mechanism.model import (
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO, Vector, add
 from mechkin_cli.nearest import nearest_hint
-from mechkin_cli.solver.graph import ANGLES
 from mechkin_cli.units import (
     ACCELERATION,
     ANGLE,
@@ -107,10 +107,10 @@ class LoadBuilder:
         self.loads.append(LinkLoad(section.type, section.link, (x, y, z), section.axes, point))
 
     def _add_to_joint(self, path: Path, section: Any) -> None:
-        coordinate: Literal["theta", "s"] = "theta" if section.type == "torque" else "s"
+        coordinate = "theta" if section.type == "torque" else "s"
         if not self._has_coordinate(path, section.joint, coordinate):
             return
-        dimension = MOMENT if coordinate == "theta" else FORCE
+        dimension = MOMENT if is_angle(coordinate) else FORCE
         name = f"{section.joint}.{coordinate}"
         value = self._value((*path, "value"), section.value, dimension, name)
         self.loads.append(JointLoad(section.joint, coordinate, value))
@@ -144,7 +144,7 @@ class LoadBuilder:
         joint, coordinate = section.joint, section.coordinate
         if not self._has_coordinate(path, joint, coordinate):
             return
-        turning = coordinate in ANGLES
+        turning = is_angle(coordinate)
         number = self.fields.number
         if section.type == "spring":
             stiffness_of = TORSIONAL_STIFFNESS if turning else STIFFNESS

@@ -110,7 +110,10 @@ def _driven_twice(fields: Fields, name: str, joints: Mapping[str, Joint]) -> boo
     joint = joints[name.partition(".")[0]]
     turn = f"{joint.name}.theta"
     path: Path = ("motion", "inputs")
-    twice = joint.letter == "H" and name != turn and fields.document.node((*path, turn)) is not None
+    twice = (
+        joint.type.coordinate[name.partition(".")[2]].on_thread
+        and fields.document.node((*path, turn)) is not None
+    )
     if twice:
         text = f"{turn} and {name} are one freedom"
         fields.key_error("driven-twice", (*path, name), text, "drive one of them")

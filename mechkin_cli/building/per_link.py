@@ -6,13 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.mechanism.frames import Frame
-from mechkin_cli.mechanism.model import Part
 from mechkin_cli.mechanism.vectors import Vector
 from mechkin_cli.units import LENGTH
-
-Frames = tuple[Frame, Frame, tuple[Part, ...]]
-"""On the first link, on the second link, and the joint's parts."""
 
 
 def points_of(fields: Fields, path: Path, section: Any) -> tuple[Vector, Vector]:

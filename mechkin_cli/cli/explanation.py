@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from mechkin_cli.kernel.width import INSTRUCTIONS, width, widths
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, POWER_KINDS
-from mechkin_cli.mechanism.joint_types import FREE
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS
 
@@ -58,7 +57,7 @@ def _freedom(joint: Joint, freedom: int) -> str:
 
 
 def _joint(joint: Joint, words: str) -> str:
-    kind = "six unknowns" if joint.letter == FREE else joint.letter
+    kind = "six unknowns" if joint.type.is_free else joint.letter
     return f"{joint.name} ({kind}{words})"
 
 
@@ -68,9 +67,10 @@ def _demand_lines(analysis: Analysis) -> list[str]:
     massless = not any(link.has_mass for link in mechanism.links.values())
     forces = bool(demand & Demand.FORCES)
     known = analysis.model.problem.quantities()
-    asked = [known[name] for name in result.slots]
+    asked = [known[name] for name in result.columns if name in known]
     reactions = any(quantity.kind in WRENCH_KINDS for quantity in asked)
     lines = [
+        f"first assembly: {result.how or 'none found'}",
         f"positions: {result.rows} rows, {result.nodes} nodes followed, the rest filled in between",
         _line("velocities", bool(demand & Demand.VELOCITY), "no column reads a rate"),
         _line("accelerations", bool(demand & Demand.ACCELERATION), _without(forces, massless)),

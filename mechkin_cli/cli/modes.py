@@ -95,15 +95,14 @@ def _table(model: Model, found: Modes) -> Columns:
     """Name (with a star where the file takes the mode), coordinates, residual, condition."""
     import numpy as np
 
-    from mechkin_cli.solver.layout import is_slide
+    from mechkin_cli.mechanism.joint_table import dimension_of
     from mechkin_cli.tables.columns import Column, Columns, Words
-    from mechkin_cli.units import ANGLE, LENGTH
 
     modes, units = found.modes, model.problem.units
     names = tuple(mode.name + ("*" if mode.name == found.picked else " ") for mode in modes)
     columns = [Column("mode", "", Words(np.arange(len(modes), dtype=np.int32), names))]
     for name in modes[0].coordinates:
-        unit = units.label(LENGTH if is_slide(name.partition(".")[2]) else ANGLE)
+        unit = units.label(dimension_of(name.partition(".")[2]))
         columns.append(Column(name, unit, np.array([mode.coordinates[name] for mode in modes])))
     columns.append(Column("residual", "", np.array([mode.residual for mode in modes])))
     columns.append(Column("condition", "", np.array([mode.condition for mode in modes])))

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.analysis.result import Result
+from mechkin_cli.analysis.sweep import Result, analyze
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.expressions import Expression, Vector, parse
 from mechkin_cli.tables.columns import Columns, evaluate, mode_words, status_words
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.interface.model import Model
+    from mechkin_cli.solver.session import Session
 
 
 class Analysis:
@@ -28,14 +29,13 @@ class Analysis:
         self,
         model: Model,
         layouts: tuple[TableLayout, ...],
-        sweep: Callable[[Iterable[str]], Result],
+        session: Session,
         names: Iterable[str],
     ) -> None:
         self.model = model
         self.layouts = layouts
-        self.result = sweep(names)
-        self._sweep = sweep
-        self._more: dict[str, Result] = {}
+        self._session = session
+        self.result = analyze(session, names)
 
     @property
     def rows(self) -> int:
@@ -89,19 +89,12 @@ class Analysis:
         return np.asarray(self.result.units.from_si(rows, dimension), float)  # type: ignore[arg-type]
 
     def _with(self, names: Iterable[str]) -> Result:
-        """A result that has all the quantities among some dotted names."""
-        known = self.model.quantities
-        wanted = []
-        for name in names:
-            quantity = name if name in known else name.rpartition(".")[0]
-            if quantity in known and quantity not in self.result.slots:
-                wanted.append(quantity)
-        computed = sorted(name for name in wanted if name != "time")
-        wanted = [name for name in computed if not name.startswith("row.")]
-        if not wanted:
+        """The result that has all the quantities among some dotted names: the run's own, but where
+        `follow:` has left out loops that they need."""
+        here = self.result.problem.quantities()
+        known = self.model.problem.quantities()
+        wanted = [name if name in known else name.rpartition(".")[0] for name in names]
+        if all(name in here or name not in known for name in wanted):
             return self.result
-        key = " ".join(wanted)
-        if key not in self._more:
-            every = [*self.result.slots, *wanted]
-            self._more[key] = self._sweep(every)
-        return self._more[key]
+        every = dict.fromkeys((*self.result.columns, *wanted))
+        return analyze(self._session, [name for name in every if name in known])

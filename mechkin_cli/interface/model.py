@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TYPE_CHECKING
 
-from mechkin_cli.analysis.sweep import analyze as run_sweep
 from mechkin_cli.building.build import Built
 from mechkin_cli.building.columns import used_quantities
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
@@ -20,6 +19,7 @@ from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import SolverGraph
+from mechkin_cli.solver.session import Packing, Session
 from mechkin_cli.tables.layout import TableLayout
 
 if TYPE_CHECKING:
@@ -62,6 +62,15 @@ class Model:
             raise InvalidFile([*self.diagnostics, graph])
         return graph
 
+    @cached_property
+    def session(self) -> Session:
+        """The mechanism in the kernel, as the file drives it; every question goes through it.
+
+        Raises:
+            InvalidFile: the mechanism cannot be solved as it is driven.
+        """
+        return Session(self.problem, self.graph)
+
     @property
     def tables(self) -> tuple[TableLayout, ...]:
         """Layouts of the file's tables; without any, the one table `sweep`."""
@@ -100,9 +109,11 @@ class Model:
             UsageError: an unknown table, quantity or mode, or a width that the machine lacks.
         """
         check_width(lanes)
-        problem, _ = self.problem, self.graph
+        session, problem = self.session, self.problem
+        if closed_at:
+            session = Session(problem, closed_at=closed_at)
         if mode is not None:
-            problem = replace(problem, assembly=replace(problem.assembly, near={}, mode=mode))
+            session = session.assembled(replace(problem.assembly, near={}, mode=mode))
         layouts = self._chosen_tables(tables)
         names = [*used_quantities(layouts, problem.quantities()), *(quantities or ())]
         for name in names:
@@ -110,9 +121,7 @@ class Model:
                 hint = hint_of(name)
                 raise UsageError(f"there is no quantity {name}" + (f"; {hint}" if hint else ""))
         self._refuse_loaded_spin(problem, names)
-        closings = list(closed_at) if closed_at else None
-        sweep = partial(run_sweep, problem, closed_at=closings, lanes=lanes)
-        analysis = Analysis(self, layouts, sweep, names)
+        analysis = Analysis(self, layouts, session.packed(Packing(lanes)), names)
         for diagnostic in analysis.diagnostics if mode is not None else ():
             if diagnostic.code == "no-such-mode":
                 raise UsageError(f"{diagnostic.message}: {diagnostic.measured}")
@@ -124,7 +133,7 @@ class Model:
         if not find_legs(problem.mechanism):
             return
         if demand_of(problem.mechanism, [known[name] for name in names]) & Demand.FORCES:
-            from mechkin_cli.analysis.idle import spin_errors
+            from mechkin_cli.mechanism.idle import spin_errors
 
             for _, diagnostic in spin_errors(problem):
                 raise UsageError(str(diagnostic))
@@ -149,7 +158,7 @@ class Model:
         from mechkin_cli.analysis.modes import find_modes
 
         places = None if at is None else input_values(self.problem, at)
-        return find_modes(self.problem, self.graph, places)
+        return find_modes(self.session, places)
 
     def ranges(self, input: str | None = None, outputs: Iterable[str] = ()) -> Ranges:
         """The ranges of an input over which each mode assembles, and the circuits they form.
@@ -165,7 +174,7 @@ class Model:
         """
         from mechkin_cli.analysis.ranges import find_ranges
 
-        return find_ranges(self.problem, self.graph, input, tuple(outputs))
+        return find_ranges(self.session, input, tuple(outputs))
 
     def mobility(self) -> Mobility:
         """What can move: Kutzbach's count, the true mobility, idle freedoms, redundant constraints.
@@ -179,7 +188,8 @@ class Model:
         """
         from mechkin_cli.analysis.mobility import find_mobility
 
-        return find_mobility(self.problem)
+        solvable = not isinstance(self._built.graph, Diagnostic)
+        return find_mobility(self.problem, self.session if solvable else None)
 
     def _chosen_tables(self, names: Sequence[str] | None) -> tuple[TableLayout, ...]:
         if names is None:

@@ -8,9 +8,8 @@ import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
+from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
-from mechkin_cli.solver.graph import ANGLES
-from mechkin_cli.units import ANGLE, LENGTH
 
 Setting = str | float
 
@@ -44,7 +43,7 @@ def input_values(problem: Problem, at: Setting | Mapping[str, Setting]) -> dict[
 def _input_value(problem: Problem, name: str, value: Setting) -> float:
     """A value of an input in the file's units."""
     text = value if isinstance(value, str) else repr(float(value))
-    dimension = ANGLE if name.partition(".")[2] in ANGLES else LENGTH
+    dimension = dimension_of(name.partition(".")[2])
     resolve = lookup(problem.parameters)
     try:
         return constant_in_file_units(text, dimension, problem.units, resolve)

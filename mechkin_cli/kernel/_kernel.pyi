@@ -16,9 +16,8 @@ widest: Final[int]
 class JointTableRow(TypedDict):
     letter: str
     code: int
-    parts: str
-    coordinates: str
     equations: int
+    lengths: int
 
 class TreeTableRow(TypedDict):
     code: int
@@ -217,6 +216,14 @@ class Plan:
     def constants(self) -> Floats: ...
     def with_constants(self, constants: Floats) -> Plan: ...
     def with_size(self, size: float) -> Plan: ...
+    def assembly_size(
+        self,
+        *,
+        inputs: Floats,
+        guess: Floats,
+        iterations: int = 0,
+        tests: tuple[float, float, float],
+    ) -> float: ...
     def run(
         self,
         *,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from mechkin_cli.mechanism.joint_table import JOINT_TYPES, dimension_of
 from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism
 from mechkin_cli.mechanism.quantities import Kind, Wanted
 from mechkin_cli.mechanism.vectors import ZERO
@@ -23,8 +24,14 @@ FINITE_KINDS = {"finite_axis", "finite_point", "finite_angle", "finite_slide"}
 POWER_KINDS = {"mechanical_advantage", "transmission_angle"}
 DERIVED_KINDS = ORIENTATION_KINDS | INSTANT_KINDS | FINITE_KINDS | POWER_KINDS
 
-_ORIENTED = ("S", "Sp", "Sg")
-_GUIDED = ("R", "P", "H", "C")
+_ORIENTED = [kind.letter for kind in JOINT_TYPES.values() if kind.is_oriented]
+_GUIDES = [kind.letter for kind in JOINT_TYPES.values() if kind.is_guide]
+
+
+def _either(letters: Sequence[str]) -> str:
+    return f"{', '.join(letters[:-1])} or {letters[-1]}"
+
+
 _SCREWS: tuple[tuple[Kind, Dimension, bool, int], ...] = (
     ("screw_axis", DIMENSIONLESS, True, 1),
     ("screw_point", LENGTH, True, 1),
@@ -36,8 +43,8 @@ _SCREWS: tuple[tuple[Kind, Dimension, bool, int], ...] = (
 )
 _HINTS = {
     "transmission_angle": (
-        "a transmission angle has theta or s, unless an input, of an R, P, H or C between ground "
-        "and a link with exactly one other joint, of type S, Sp or Sg"
+        f"a transmission angle has theta or s, unless an input, of an {_either(_GUIDES)} between "
+        f"ground and a link with exactly one other joint, of type {_either(_ORIENTED)}"
     ),
     "mechanical_advantage": (
         "a mechanical advantage has every coordinate that is no input (J.theta, J.s, ...), where "
@@ -73,7 +80,7 @@ def hint_of(name: str) -> str | None:
 def driving_joint(mechanism: Mechanism, joint: Joint) -> Joint | None:
     """The joint that alone drives the link which `joint` guides on ground; None where the
     structure is another."""
-    if joint.letter not in _GUIDED or GROUND_NAME not in (joint.first, joint.second):
+    if not joint.type.is_guide or GROUND_NAME not in (joint.first, joint.second):
         return None
     link = output_link(joint)
     others = [
@@ -81,7 +88,7 @@ def driving_joint(mechanism: Mechanism, joint: Joint) -> Joint | None:
         for other in mechanism.joints.values()
         if other is not joint and link in (other.first, other.second)
     ]
-    return others[0] if len(others) == 1 and others[0].letter in _ORIENTED else None
+    return others[0] if len(others) == 1 and others[0].type.is_oriented else None
 
 
 def output_link(joint: Joint) -> str:
@@ -97,7 +104,7 @@ def reference_point(mechanism: Mechanism, link: str) -> Attached:
 
 def _of_orientations(mechanism: Mechanism) -> Iterator[Wanted]:
     for joint in mechanism.joints.values():
-        if joint.letter in _ORIENTED:
+        if joint.type.is_oriented:
             for word in QUATERNION:
                 name = f"{joint.name}.{word}"
                 yield Wanted(name, "quaternion", joint.name, DIMENSIONLESS, False, word)
@@ -118,7 +125,7 @@ def _of_advantages(
         for coordinate in joint.type.coordinates:
             if (joint.name, coordinate) not in inputs:
                 name = f"{joint.name}.{coordinate}.mechanical_advantage"
-                dimension = _dimension(leading) / _dimension(coordinate)
+                dimension = dimension_of(leading) / dimension_of(coordinate)
                 kind: Kind = "mechanical_advantage"
                 yield Wanted(name, kind, joint.name, dimension, False, coordinate)
 
@@ -131,7 +138,3 @@ def _of_transmissions(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -
                     name = f"{joint.name}.{coordinate}.transmission_angle"
                     kind: Kind = "transmission_angle"
                     yield Wanted(name, kind, joint.name, ANGLE, False, coordinate)
-
-
-def _dimension(coordinate: str) -> Dimension:
-    return ANGLE if coordinate.startswith("theta") else LENGTH

@@ -118,19 +118,19 @@ def _leg_at(name: str, joints_of: Mapping[str, list[Joint]], taken: Collection[s
     if name == GROUND_NAME or name in taken or len(joints_of[name]) != 2:
         return None
     start, other = joints_of[name]
-    if start.letter != "S":
+    if not start.type.is_ball:
         start, other = other, start
-    if start.letter != "S":
+    if not start.type.is_ball:
         return None
     first = _far(start, name)
-    if other.letter == "S":
+    if other.type.is_ball:
         leg = Leg(start, other, first, _far(other, name), name)
         return leg if leg.first != leg.second and _spread(leg.span, joints_of) else None
     rod = _far(other, name)
-    if other.letter != "P" or rod == GROUND_NAME or len(joints_of[rod]) != 2 or rod in taken:
+    if not other.type.is_slider or rod == GROUND_NAME or len(joints_of[rod]) != 2 or rod in taken:
         return None
     end = next(joint for joint in joints_of[rod] if joint is not other)
-    if end.letter != "S":
+    if not end.type.is_ball:
         return None
     leg = Leg(start, end, first, _far(end, rod), name, other, rod)
     return leg if leg.first != leg.second and _is_straight(leg) else None

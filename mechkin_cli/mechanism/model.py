@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import pi
 from typing import Literal, NamedTuple
 
+from mechkin_cli.mechanism.elementary import Part, Screw
 from mechkin_cli.mechanism.frames import Frame
-from mechkin_cli.mechanism.joint_types import JointType, joint_types
-from mechkin_cli.mechanism.vectors import ZERO, Vector, dot
+from mechkin_cli.mechanism.joint_table import FIRST, SECOND, Drawn, JointType, joint_type
+from mechkin_cli.mechanism.vectors import ZERO, Vector, dot, scale
 from mechkin_cli.tape.scalars import largest, nonzero, smallest
 
 GROUND_NAME = "ground"
@@ -33,21 +35,6 @@ class Link(NamedTuple):
     def has_mass(self) -> bool:
         """Whether the link has inertia of any kind."""
         return any(moment != 0.0 for moment in (self.mass, *self.inertia))
-
-
-class Part(NamedTuple):
-    """An elementary displacement of a joint's chain; its frame as drawn on the body before and
-    after it."""
-
-    letter: str
-    before: Frame
-    after: Frame
-
-    def reversed(self) -> Part:
-        """The same part passed the other way: the same coordinate about the reversed axis."""
-        if self.letter in "SW":
-            return Part(self.letter, self.after, self.before)
-        return Part(self.letter, self.after.flipped(), self.before.flipped())
 
 
 class Joint(NamedTuple):
@@ -71,7 +58,7 @@ class Joint(NamedTuple):
     @property
     def type(self) -> JointType:
         """The joint's row of the joint table."""
-        return joint_types()[self.letter]
+        return joint_type(self.letter)
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -82,24 +69,50 @@ class Joint(NamedTuple):
     def point(self) -> Attached:
         """The joint's point: what runs on a plane or in a groove of the second link rides on the
         first, other points on the second."""
-        if self.letter in ("Sp", "Sg", "Cp"):
+        if self.type.point_on == FIRST:
             return Attached(self.first, self.on_first.o)
         return Attached(self.second, self.on_second.o)
 
     @property
     def axis(self) -> Attached:
-        """The axis (normal, groove) of a joint that has one; a cylinder's rides on the first
-        link."""
-        if self.letter in ("Sc", "Cp"):
-            return Attached(self.first, self.parts[0].before.z)
-        return Attached(self.second, self.on_second.z)
+        """The axis (normal, groove) of a joint that has one, else z of its second frame."""
+        return self.drawn(self.type.axis or Drawn(SECOND))
+
+    def drawn(self, direction: Drawn) -> Attached:
+        """A direction of the joint table as drawn with this joint."""
+        link, frame = ((self.first, self.on_first), (self.second, self.on_second))[direction.side]
+        if direction.axis == "own":
+            own = next(i for i, step in enumerate(self.type.steps) if step.along == direction)
+            return Attached(link, self.parts[own].before.z)
+        vector: Vector = getattr(frame, direction.axis)
+        return Attached(link, scale(-1.0, vector) if direction.reverse else vector)
+
+    @property
+    def pitch(self) -> float:
+        """Slide per radian of a joint with a lead, in m; 0 without one."""
+        return self.lead / (2.0 * pi)
+
+    def unit_of(self, coordinate: str, length: float) -> float:
+        """A coordinate (rad, m) per unit of its freedom, whose slides are told in `length` (m)."""
+        known = self.type.coordinate[coordinate]
+        if known.on_thread:
+            return self.pitch
+        return 1.0 if known.is_angle else length
+
+    @property
+    def screws(self) -> tuple[Screw, ...]:
+        """The unit screws of its freedoms as drawn (about the ground origin, m)."""
+        return tuple(screw for part in self.parts for screw in part.screws(self.pitch))
 
     @property
     def parameter(self) -> float:
-        """Cosine of the angle between the axes of U, between axis and pin of Sc."""
-        if self.letter == "U":
+        """What its closing equations have to know: the cosine of the angle between its axes, or
+        between its axis and its pin, which is -y of the first frame."""
+        if self.type.parameter == "between axes":
             return dot(self.on_first.z, self.on_second.z)
-        return -dot(self.axis.vector, self.on_first.y) if self.letter == "Sc" else 0.0
+        if self.type.parameter == "from axis to pin":
+            return -dot(self.axis.vector, self.on_first.y)
+        return 0.0
 
 
 class Attached(NamedTuple):
@@ -143,7 +156,7 @@ class JointLoad(NamedTuple):
     the first."""
 
     joint: str
-    coordinate: Literal["theta", "s"]
+    coordinate: str
     value: Amount
 
     @property
@@ -213,7 +226,7 @@ class Mechanism:
         """Every joint's point on each of its links, by joint name; welds have none."""
         found = []
         for joint in self.joints.values():
-            if joint.letter != "W":
+            if joint.type.has_point:
                 found.append((joint.name, Attached(joint.first, joint.on_first.o)))
                 found.append((joint.name, Attached(joint.second, joint.on_second.o)))
         return found

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism
 from mechkin_cli.mechanism.motion import ORDERS
@@ -80,14 +81,8 @@ class Wanted(NamedTuple):
     order: int = 0
 
 
-_DERIVATIVES = {
-    "theta": (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION, ANGULAR_JERK),
-    "s": (LENGTH, VELOCITY, ACCELERATION, JERK),
-}
-_DERIVATIVES |= dict.fromkeys(("theta1", "theta2"), _DERIVATIVES["theta"])
-_DERIVATIVES |= dict.fromkeys(("x", "y"), _DERIVATIVES["s"])
-_WITH_AXIS = ("R", "P", "C", "H", "Sp", "Sg", "E", "Sc", "Cp")
-_WITH_SLIP = ("Sp", "Sg", "Cp")
+_OF_ANGLES = (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION, ANGULAR_JERK)
+_OF_LENGTHS = (LENGTH, VELOCITY, ACCELERATION, JERK)
 _GROUND: dict[str, tuple[Kind, Dimension]] = {
     "shaking_force": ("shaking_force", FORCE),
     "shaking_moment": ("shaking_moment", MOMENT),
@@ -122,26 +117,26 @@ def catalogue(
 
 def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
     for joint in mechanism.joints.values():
-        for coordinate in joint.type.coordinates:
-            for order, dimension in enumerate(_DERIVATIVES[coordinate]):
-                name = f"{joint.name}.{coordinate}{ORDERS[order]}"
-                yield Wanted(name, "coordinate", joint.name, dimension, False, coordinate, order)
-        if joint.letter != "W":
+        for known in joint.type.named:
+            for order, dimension in enumerate(_OF_ANGLES if known.is_angle else _OF_LENGTHS):
+                name = f"{joint.name}.{known.name}{ORDERS[order]}"
+                yield Wanted(name, "coordinate", joint.name, dimension, False, known.name, order)
+        if joint.type.has_point:
             yield Wanted(f"{joint.name}.point", "joint_point", joint.name, LENGTH, True)
-        if joint.letter in _WITH_SLIP:
+        if joint.type.has_slip:
             yield Wanted(f"{joint.name}.slip", "slip", joint.name, LENGTH, True)
-        if joint.letter in _WITH_AXIS:
+        if joint.type.axis is not None:
             yield Wanted(f"{joint.name}.axis", "axis", joint.name, DIMENSIONLESS, True)
         for word, (kind, dimension) in _JOINT_WRENCH.items():
-            if kind == "moment" and joint.letter == "W":
-                continue  # a weld has no point of its own
+            if kind == "moment" and not joint.type.has_point:
+                continue
             yield Wanted(f"{joint.name}.{word}", kind, joint.name, dimension, True)
 
 
 def _of_efforts(inputs: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
     joints = [joint for joint, _ in inputs]
     for joint, coordinate in inputs:
-        dimension = MOMENT if coordinate.startswith("theta") else FORCE
+        dimension = MOMENT if is_angle(coordinate) else FORCE
         if joints.count(joint) == 1:
             yield Wanted(f"{joint}.effort", "effort", joint, dimension, False, coordinate)
         yield Wanted(f"{joint}.{coordinate}.effort", "effort", joint, dimension, False, coordinate)

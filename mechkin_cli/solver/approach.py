@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli.kernel import functions
-from mechkin_cli.solver.batch import Batch, run
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.follow import Followed, TrackEnd, follow
+from mechkin_cli.solver.follow import Followed, TrackEnd
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.batch import Batch
+    from mechkin_cli.solver.session import Session
 
 NODES = 9
 """Places that are read."""
@@ -41,12 +41,12 @@ class Extrapolated(NamedTuple):
 
 
 def approach(
-    plan: Plan, followed: Followed, inputs: Floats, state: Floats, span: float
+    session: Session, followed: Followed, inputs: Floats, state: Floats, span: float
 ) -> Approach | None:
     """Places between a span and a tenth of it before the last one.
 
     Args:
-        plan: the kernel's plan.
+        session: the mechanism as it is driven.
         followed: the way to the last place.
         inputs: (inputs,) an earlier place of the same straight way, farther off than the span.
         state: (states,) there.
@@ -58,13 +58,12 @@ def approach(
     before: Floats = span * (0.55 + 0.45 * functions.cos(angles))
     places = followed.inputs[:, None] - followed.direction[:, None] * before
     path = np.concatenate([inputs[:, None], places], axis=1)
-    way = follow(plan, np.ascontiguousarray(path), state)
+    way = session.follow(np.ascontiguousarray(path), state)
     if way.end != TrackEnd.FINISHED:
         return None
-    batch = run(
-        plan,
-        np.ascontiguousarray(path[:, 1:]),
-        np.ascontiguousarray(way.guess[:, 1:]),
+    batch = session.run(
+        path[:, 1:],
+        way.guess[:, 1:],
         rates=np.repeat(followed.direction[:, None], NODES, axis=1),
         demand=Demand.VELOCITY | Demand.CONDITION | Demand.SINGULAR,
     )

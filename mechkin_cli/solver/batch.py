@@ -128,6 +128,17 @@ def run(
     return Batch(states, values, first, second, *measured, flags)
 
 
+def assembly_size(plan: Plan, inputs: Floats, state: Floats) -> float:
+    """Diagonal (m) of the box of all joint points in the assembly at `inputs` (inputs,) near
+    `state` (states,); 1 where they coincide."""
+    return plan.assembly_size(
+        inputs=np.ascontiguousarray(inputs[:, None]),
+        guess=np.ascontiguousarray(state[:, None]),
+        iterations=tolerances.NEWTON_ITERATIONS,
+        tests=RESIDUAL_TESTS,
+    )
+
+
 @overload
 def _contiguous(array: Floats) -> Floats: ...
 @overload

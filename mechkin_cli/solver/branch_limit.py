@@ -8,33 +8,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.branch_point import BranchPoint, locate_branch_point
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.dead_centre import DeadCentre, locate
 from mechkin_cli.solver.follow import Followed
-from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.runaway import Runaway, find_runaway
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.session import Session
 
 
 def find_limit(
-    layout: Layout,
-    plan: Plan,
-    driven: list[tuple[str, str]],
-    followed: Followed,
-    inputs: Floats,
-    state: Floats,
+    session: Session, followed: Followed, inputs: Floats, state: Floats
 ) -> DeadCentre | Runaway | BranchPoint | None:
     """What ended a branch, or None.
 
     Args:
-        layout: the mechanism in the kernel.
-        plan: its plan.
-        driven: (joint, coordinate) of the inputs.
+        session: the mechanism as it is driven.
         followed: the way to the branch's end.
         inputs: (inputs,) an earlier place of the same straight way.
         state: (states,) there.
@@ -42,19 +33,18 @@ def find_limit(
     moving = np.flatnonzero(followed.direction)
     if moving.size == 1:
         number = int(moving[0])
-        first = _derivatives(plan, followed)
+        first = _derivatives(session, followed)
         if first is not None:
-            fold = locate(layout, driven, number, followed.inputs, followed.state, first)
+            fold = locate(session, number, followed.inputs, followed.state, first)
             if fold is not None and _lies_ahead(fold, followed, number):
                 return fold
-    runaway = find_runaway(layout, followed.state)
-    return runaway or locate_branch_point(plan, followed, inputs, state)
+    runaway = find_runaway(session.layout, followed.state)
+    return runaway or locate_branch_point(session, followed, inputs, state)
 
 
-def _derivatives(plan: Plan, followed: Followed) -> Floats | None:
+def _derivatives(session: Session, followed: Followed) -> Floats | None:
     rates = np.ascontiguousarray(followed.direction[:, None])
-    batch = run(
-        plan,
+    batch = session.run(
         followed.inputs[:, None],
         followed.state[:, None],
         rates=rates,

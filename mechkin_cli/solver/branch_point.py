@@ -17,7 +17,7 @@ from mechkin_cli.solver.follow import Followed
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.session import Session
 
 
 class BranchPoint(NamedTuple):
@@ -28,19 +28,20 @@ class BranchPoint(NamedTuple):
 
 
 def locate_branch_point(
-    plan: Plan, followed: Followed, inputs: Floats, state: Floats
+    session: Session, followed: Followed, inputs: Floats, state: Floats
 ) -> BranchPoint | None:
     """The branch point next to the place where a branch could not be followed further, or None if
     the singular value tells of none.
 
     Args:
-        plan: the kernel's plan.
+        session: the mechanism as it is driven.
         followed: the way to that place.
         inputs: (inputs,) an earlier place of the same straight way, where it begins to be read.
         state: (states,) there.
     """
     places = [
-        _extrapolated(plan, followed, inputs, state, span) for span in tolerances.BRANCH_POINT_SPANS
+        _extrapolated(session, followed, inputs, state, span)
+        for span in tolerances.BRANCH_POINT_SPANS
     ]
     sure = [p for p in places if p is not None and p.doubt <= tolerances.BRANCH_POINT_DOUBT]
     best = min(sure, key=lambda place: place.doubt, default=None)
@@ -50,10 +51,10 @@ def locate_branch_point(
 
 
 def _extrapolated(
-    plan: Plan, followed: Followed, inputs: Floats, state: Floats, span: float
+    session: Session, followed: Followed, inputs: Floats, state: Floats, span: float
 ) -> Extrapolated | None:
     """The zero of the singular value as seen over a span before the last place."""
-    seen = approach(plan, followed, inputs, state, span)
+    seen = approach(session, followed, inputs, state, span)
     if seen is None or seen.batch.condition is None or not np.all(seen.batch.condition > 0.0):
         return None
     singular = 1.0 / seen.batch.condition

@@ -19,13 +19,12 @@ from mechkin_cli.solver.branch_limit import find_limit
 from mechkin_cli.solver.branch_point import BranchPoint
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.dead_centre import DeadCentre
-from mechkin_cli.solver.follow import TrackEnd, follow
-from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.runaway import Runaway
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.session import Session
 
 EndKind = Literal["dead-centre", "branch-point", "unbounded", "branch-lost", "full-turn", "far"]
 
@@ -64,27 +63,17 @@ class Walker:
     """Walks along the branches of one input; the other inputs are held.
 
     Args:
-        layout: the mechanism in the kernel.
-        plan: its plan.
-        driven: (joint, coordinate) of the inputs.
+        session: the mechanism as it is driven.
         number: the input that moves.
         inputs: (inputs,) where places are taken.
     """
 
-    def __init__(
-        self,
-        layout: Layout,
-        plan: Plan,
-        driven: list[tuple[str, str]],
-        number: int,
-        inputs: Floats,
-    ) -> None:
-        self.layout, self.plan, self.driven = layout, plan, driven
-        self.number, self.inputs = number, inputs
+    def __init__(self, session: Session, number: int, inputs: Floats) -> None:
+        self.session, self.number, self.inputs = session, number, inputs
+        layout = session.layout
         edge, freedom = layout.graph.inputs[number]
         joint = layout.graph.edges[edge].joint
-        slide = joint.type.slides[freedom]
-        self.period = None if slide or joint.letter == "H" else 2.0 * pi
+        self.period = 2.0 * pi if joint.type.chain[freedom].is_cyclic else None
 
     def circuit(self, state: Floats) -> list[Branch]:
         """All branches of the circuit through an assembly at the first value, that one first."""
@@ -138,10 +127,10 @@ class Walker:
             target = self._next(place.value, direction)
             path = np.repeat(self.inputs[:, None], 2, axis=1)
             path[self.number] = place.value, target
-            way = follow(self.plan, path, place.state)
+            way = self.session.follow(path, place.state)
             if way.end != TrackEnd.FINISHED:
                 origin = path[:, 0]
-                limit = find_limit(self.layout, self.plan, self.driven, way, origin, place.state)
+                limit = find_limit(self.session, way, origin, place.state)
                 last = float(way.inputs[self.number])
                 if isinstance(limit, DeadCentre):
                     return End("dead-centre", limit.value, limit, way.state), places
@@ -172,5 +161,5 @@ class Walker:
         return self._is_same(one.state, other.state, tolerances.SAME_DEAD_CENTRE)
 
     def _is_same(self, one: Floats, other: Floats, limit: float = tolerances.SAME_MODE) -> bool:
-        keys = [pose_keys(self.layout, state[:, None]) for state in (one, other)]
+        keys = [pose_keys(self.session.layout, state[:, None]) for state in (one, other)]
         return bool(same_poses(keys[0], keys[1], limit)[0, 0])

@@ -8,7 +8,6 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import functions
-from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
@@ -69,16 +68,16 @@ def pose_keys(layout: Layout, states: Floats) -> Floats:
     keys: list[Floats] = []
     for carrier in layout.carriers:
         state = carrier.state
-        if carrier.part.letter == "S":
+        if carrier.part.type.is_ball:
             q = states[state : state + 4]
             keys.extend(q[i] * q[j] for i in range(4) for j in range(i, 4))
             continue
-        for freedom, slide in enumerate(tree_types()[carrier.part.letter].slides):
-            value = np.ascontiguousarray(states[state + freedom])
-            if slide or carrier.part.letter == "H":
-                keys.append(value)
-            else:
+        for number, freedom in enumerate(carrier.part.type.freedoms):
+            value = np.ascontiguousarray(states[state + number])
+            if freedom.is_cyclic:
                 keys.extend((functions.cos(value), functions.sin(value)))
+            else:
+                keys.append(value)
     return np.stack(keys) if keys else np.zeros((0, states.shape[1]))
 
 

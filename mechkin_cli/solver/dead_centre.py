@@ -12,14 +12,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.solver.batch import Batch, run
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
-from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.batch import Batch
+    from mechkin_cli.solver.session import Session
 
 
 MOTION = Demand.VELOCITY | Demand.ACCELERATION
@@ -28,7 +26,7 @@ MOTION = Demand.VELOCITY | Demand.ACCELERATION
 class Exchanged(NamedTuple):
     """The same mechanism with coordinate `driven` (a column) in place of input number `input`."""
 
-    plan: Plan
+    session: Session
     input: int
     input_column: int
     driven: int
@@ -43,8 +41,7 @@ class Exchanged(NamedTuple):
         rates = np.zeros_like(values)
         rates[self.input] = 1.0
         zeros = np.zeros((values.size, 1))
-        return run(
-            self.plan,
+        return self.session.run(
             values[:, None],
             state[:, None],
             rates=rates[:, None],
@@ -101,67 +98,50 @@ class DeadCentre(NamedTuple):
         return state
 
 
-def exchange(
-    layout: Layout, names: list[tuple[str, str]], number: int, first: Floats
-) -> Exchanged | None:
+def exchange(session: Session, number: int, first: Floats) -> Exchanged | None:
     """The mechanism driven by its fastest scalar coordinate instead of input `number`.
 
     `first` are the derivatives of the columns along the branch. None if there is no such
     coordinate.
     """
-    graph = layout.graph
+    graph, layout = session.graph, session.layout
     inputs = set(graph.inputs)
     candidates = []
     for k, edge in enumerate(graph.edges):
-        for coordinate, freedom in edge.joint.type.freedom_of.items():
-            if (k, freedom) not in inputs and edge.joint.letter + coordinate != "Hs":
+        for coordinate, freedom in edge.joint.type.scalars.items():
+            if (k, freedom) not in inputs:
                 speed = abs(float(first[layout.column(k, freedom)]))
                 if speed >= tolerances.EXCHANGE_SPEED:
                     candidates.append((-speed, k, freedom, coordinate))
-    closed_at = [closing.joint.name for closing in graph.closings]
+    input_edge, input_freedom = graph.inputs[number]
     for _, k, freedom, coordinate in sorted(candidates):
-        swapped = list(names)
-        swapped[number] = (graph.edges[k].joint.name, coordinate)
-        try:
-            other = build_graph(layout.mechanism, swapped, closed_at)
-        except UnsolvableGraph:
-            continue
-        return _exchanged(layout, other, number, k, freedom)
+        other = session.exchanged(number, (graph.edges[k].joint.name, coordinate))
+        if other is not None:
+            return Exchanged(
+                other,
+                number,
+                layout.column(input_edge, input_freedom),
+                layout.column(k, freedom),
+                layout.state(k, freedom),
+                layout.state(input_edge, input_freedom),
+            )
     return None
 
 
-def _exchanged(layout: Layout, other: SolverGraph, number: int, k: int, freedom: int) -> Exchanged:
-    edge, input_freedom = layout.graph.inputs[number]
-    return Exchanged(
-        Layout(layout.mechanism, other).build(),
-        number,
-        layout.column(edge, input_freedom),
-        layout.column(k, freedom),
-        layout.state(k, freedom),
-        layout.state(edge, input_freedom),
-    )
-
-
 def locate(
-    layout: Layout,
-    names: list[tuple[str, str]],
-    number: int,
-    inputs: Floats,
-    state: Floats,
-    first: Floats,
+    session: Session, number: int, inputs: Floats, state: Floats, first: Floats
 ) -> DeadCentre | None:
     """The dead centre of input `number` next to a place on the branch, or None if Newton finds
     none.
 
     Args:
-        layout: the mechanism as it is driven.
-        names: (joint, coordinate) of the inputs.
+        session: the mechanism as it is driven.
         number: the input that was moving.
         inputs: (inputs,) values at the place.
         state: (states,) there.
         first: (columns,) derivatives along the branch there.
     """
-    exchanged = exchange(layout, names, number, first)
+    exchanged = exchange(session, number, first)
     if exchanged is None:
         return None
     value = float(state[exchanged.driven_state])

@@ -8,7 +8,6 @@ section 8).
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.kernel import _kernel
@@ -18,7 +17,7 @@ from mechkin_cli.mechanism.model import Attached, Damper, Load, Mechanism, varyi
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO, Vector
 from mechkin_cli.solver.codes import Demand, OutputCode
-from mechkin_cli.solver.layout import Layout, is_slide
+from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.records import Output, hand_over_outputs
 
 if TYPE_CHECKING:
@@ -122,16 +121,13 @@ class OutputPlan:
     def _add_coordinate(self, wanted: Wanted) -> int:
         layout = self.layout
         joint = layout.mechanism.joints[wanted.owner]
-        slide = is_slide(wanted.coordinate)
-        factor = layout.length if slide else 1.0
+        factor = joint.unit_of(wanted.coordinate, layout.length)
         freedom = joint.type.freedom_of[wanted.coordinate]
         reference = layout.joint_reference[wanted.owner]
         if reference < 0:
             number = -1 - reference
             return self._output(OutputCode.CLOSING, number, factor, wanted.order, freedom=freedom)
-        if joint.letter == "H" and slide:
-            factor = joint.lead / (2.0 * pi)
-        edge = next(k for k, e in enumerate(layout.graph.edges) if e.joint.name == joint.name)
+        edge = layout.edge_number[joint.name]
         if wanted.order == 0:
             return self._output(OutputCode.STATE, layout.state(edge, freedom), factor)
         code = (OutputCode.RATE, OutputCode.ACCELERATION, OutputCode.JERK)[wanted.order - 1]
@@ -172,11 +168,8 @@ class OutputPlan:
             return self._output(code, layout.place_number[owner], factor)
         if kind == "effort":
             number = self.inputs.index((owner, wanted.coordinate))
-            joint = mechanism.joints[owner]
-            factor = length if is_slide(wanted.coordinate) else length * length
-            if joint.letter == "H" and wanted.coordinate == "s":
-                # a force along s does the work of the torque force * slide per radian
-                factor = length * length / (joint.lead / (2.0 * pi))
+            # a force along a thread does the work of the torque force * slide per radian
+            factor = length * length / mechanism.joints[owner].unit_of(wanted.coordinate, length)
             return self._output(OutputCode.EFFORT, number, factor)
         if kind == "holding_moment":
             number = layout.leg_number[owner]

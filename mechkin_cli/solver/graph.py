@@ -13,13 +13,11 @@ from itertools import combinations, islice
 from typing import NamedTuple
 
 from mechkin_cli.diagnostics import Diagnostic, MechkinError
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.legs import Leg
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism, Spring
 from mechkin_cli.solver.loop_rank import loop_order
 from mechkin_cli.solver.reduction import Reduction, cut_links, reduce
-
-ANGLES = ("theta", "theta1", "theta2")
-"""Coordinates that are angles."""
 
 MOST_TREES = 20000
 """Choices of closing joints that are compared; mechanisms with more have their first ones
@@ -165,7 +163,7 @@ def _kept(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> set[str]:
     return {joint for joint, _ in inputs} | {
         load.joint
         for load in mechanism.loads
-        if isinstance(load, Spring) and load.joint and load.coordinate in ANGLES
+        if isinstance(load, Spring) and load.joint and is_angle(load.coordinate or "")
     }
 
 

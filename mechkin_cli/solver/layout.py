@@ -11,14 +11,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli import tolerances
+from mechkin_cli.mechanism.elementary import Part
 from mechkin_cli.mechanism.frames import GROUND, Frame, upright
-from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.mechanism.legs import frame_on
 from mechkin_cli.mechanism.model import (
     GROUND_NAME,
     Attached,
     Mechanism,
-    Part,
 )
 from mechkin_cli.mechanism.vectors import ZERO, Vector, norm, scale, subtract
 from mechkin_cli.solver.graph import SolverGraph, TreeEdge
@@ -74,8 +73,8 @@ class Layout:
             for part, first_freedom in _hung(edge) if edge.hung else _outward(edge):
                 found.append(Carrier(number, part, parent, first_freedom, column, state))
                 parent = len(found) - 1
-                column += tree_types()[part.letter].freedoms
-                state += tree_types()[part.letter].states
+                column += len(part.type.freedoms)
+                state += part.type.states
             body[edge.child] = parent
         return tuple(found)
 
@@ -95,6 +94,11 @@ class Layout:
     def link_frame(self) -> dict[str, Frame]:
         """Frame of each link in its own drawing (m)."""
         return {name: self.body_frame[number] for name, number in self.link_number.items()}
+
+    @cached_property
+    def edge_number(self) -> dict[str, int]:
+        """Number of the tree edge of each joint that is one."""
+        return {edge.joint.name: k for k, edge in enumerate(self.graph.edges)}
 
     @cached_property
     def joint_reference(self) -> dict[str, int]:
@@ -127,7 +131,7 @@ class Layout:
     def carrier_of(self, edge: int, freedom: int) -> tuple[int, int]:
         """The kernel joint that has a user's freedom of a tree edge, and its freedom there."""
         for k, carrier in enumerate(self.carriers):
-            count = tree_types()[carrier.part.letter].freedoms
+            count = len(carrier.part.type.freedoms)
             if carrier.edge == edge and 0 <= freedom - carrier.first_freedom < count:
                 return k, freedom - carrier.first_freedom
         raise IndexError(f"edge {edge} has no freedom {freedom}")
@@ -145,7 +149,7 @@ class Layout:
     @property
     def states(self) -> int:
         """Length of the state vector."""
-        return sum(tree_types()[c.part.letter].states for c in self.carriers)
+        return sum(c.part.type.states for c in self.carriers)
 
     def point(self, at: Attached) -> Vector:
         """A point of a link in the link's frame, in length units."""
@@ -167,19 +171,13 @@ class Layout:
         return build_plan(self, size)
 
 
-def is_slide(coordinate: str) -> bool:
-    """Whether a coordinate is a length; the s of a helical joint is one though its freedom is an
-    angle."""
-    return coordinate in ("s", "x", "y")
-
-
 def _outward(edge: TreeEdge) -> list[tuple[Part, int]]:
     """The parts of an edge from parent to child, each with its first freedom in the user's
     count."""
     parts, first = [], 0
     for part in edge.joint.parts:
         parts.append((part, first))
-        first += tree_types()[part.letter].freedoms
+        first += len(part.type.freedoms)
     if edge.forward:
         return parts
     return [(part.reversed(), start) for part, start in reversed(parts)]

@@ -3,11 +3,9 @@ inertias, loads and the points that tell the size."""
 
 from __future__ import annotations
 
-from math import pi
 from typing import TYPE_CHECKING
 
 from mechkin_cli.mechanism.frames import turned_tensor
-from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.mechanism.legs import frame_on
 from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint
 from mechkin_cli.mechanism.vectors import norm, scale
@@ -70,11 +68,10 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
 
 def _tree_joints(layout: Layout) -> Iterator[TreeJoint]:
     for carrier in layout.carriers:
-        lead = layout.graph.edges[carrier.edge].joint.lead
         yield TreeJoint(
-            tree_types()[carrier.part.letter].code,
+            carrier.part.type.code,
             carrier.parent,
-            lead / (2.0 * pi) / layout.length,
+            layout.graph.edges[carrier.edge].joint.pitch / layout.length,
             layout.frame_on(carrier.parent, carrier.part.before),
         )
 
@@ -165,8 +162,9 @@ def _inputs(layout: Layout) -> Iterator[Input]:
     graph = layout.graph
     for (edge, freedom), (name, coordinate) in zip(graph.inputs, graph.driven, strict=True):
         joint = graph.edges[edge].joint
-        along_thread = joint.letter == "H" and coordinate == "s"
-        force_per_torque = 2.0 * pi * layout.length / joint.lead if along_thread else 1.0
+        # a force along a thread is driven as the torque about it
+        known = joint.type.coordinate[coordinate]
+        force_per_torque = layout.length / joint.pitch if known.on_thread else 1.0
         axis = layout.axis_number.get((name, coordinate), NO_AXIS)
         yield Input(layout.column(edge, freedom), axis, force_per_torque)
 

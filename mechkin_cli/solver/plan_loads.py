@@ -19,7 +19,6 @@ from mechkin_cli.mechanism.model import (
 )
 from mechkin_cli.mechanism.vectors import ZERO, scale
 from mechkin_cli.solver.codes import LoadCode
-from mechkin_cli.solver.layout import is_slide
 from mechkin_cli.solver.records import AppliedLoad
 
 if TYPE_CHECKING:
@@ -72,7 +71,7 @@ def _coordinate(layout: Layout, name: str, coordinate: str) -> tuple[int, int, i
     slide."""
     joint = layout.mechanism.joints[name]
     freedom = joint.type.freedom_of[coordinate]
-    slide = is_slide(coordinate)
+    slide = not joint.type.coordinate[coordinate].is_angle
     axis = layout.axis_number[name, coordinate]
     for number, edge in enumerate(layout.graph.edges):
         if edge.joint.name == name:

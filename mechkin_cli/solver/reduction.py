@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
+from mechkin_cli.mechanism.elementary import Part
 from mechkin_cli.mechanism.frames import GROUND, frame_about, upright
-from mechkin_cli.mechanism.joint_types import FREE
+from mechkin_cli.mechanism.joint_table import FREE
 from mechkin_cli.mechanism.legs import Leg, find_legs, frame_on
-from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism, Part
+from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
 from mechkin_cli.mechanism.vectors import ZERO, Vector, add, scale
 
 
@@ -93,4 +94,4 @@ def _free_pair(body: str, points: list[Vector]) -> Joint:
     axes = ((GROUND.x, GROUND.y), (GROUND.y, GROUND.z), (GROUND.z, GROUND.x))
     slides = [frame_about(axis, x, middle) for axis, x in axes]
     parts = (*(Part("P", frame, frame) for frame in slides), Part("S", still, still))
-    return Joint(f"{body} (free)", FREE, GROUND_NAME, body, still, still, parts)
+    return Joint(f"{body} (free)", FREE.letter, GROUND_NAME, body, still, still, parts)

@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli import tolerances
-from mechkin_cli.mechanism.joint_types import tree_types
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
@@ -27,7 +26,7 @@ def find_runaway(layout: Layout, state: Floats) -> Runaway | None:
     driven = {layout.state(edge, freedom) for edge, freedom in layout.graph.inputs}
     longest = Runaway("", 0.0)
     for carrier in layout.carriers:
-        for freedom, slide in enumerate(tree_types()[carrier.part.letter].slides):
+        for freedom, slide in enumerate(carrier.part.type.slides):
             number = carrier.state + freedom
             length = float(state[number])
             if slide and number not in driven and abs(length) > abs(longest.slide):

@@ -8,14 +8,13 @@ with M = 0 the chance is known only to be of order 1 / C).
 
 from __future__ import annotations
 
-from math import pi
+from math import isfinite, pi
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.kernel.width import width
-from mechkin_cli.mechanism.joint_types import tree_types
+from mechkin_cli.kernel.width import threads_for, width
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.clusters import Clusters, pose_keys, same_poses
 from mechkin_cli.solver.codes import Demand
@@ -23,8 +22,18 @@ from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.random_starts import RandomStarts
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
+
+
+class Within(NamedTuple):
+    """A box of states: `radius` (states,) about `centre` (states,), infinite where any value will
+    do."""
+
+    centre: Floats
+    radius: Floats
 
 
 class Found(NamedTuple):
@@ -53,7 +62,9 @@ class Found(NamedTuple):
         return int(self.states.shape[1])
 
 
-def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Found:
+def assemblies(
+    layout: Layout, plan: Plan, inputs: Floats, turns: int = 1, within: Within | None = None
+) -> Found:
     """The assemblies at one set of inputs.
 
     Args:
@@ -61,6 +72,7 @@ def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Fo
         plan: its plan.
         inputs: (inputs,) in kernel units.
         turns: turns of helical joints to either side.
+        within: where random starts are taken; None: everywhere.
     """
     generator = RandomStarts()
     partial: list[Floats] = [np.zeros((plan.states, 1))]
@@ -71,7 +83,7 @@ def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Fo
     for number in range(len(layout.graph.blocks)):
         continued: list[Floats] = []
         for base in partial:
-            clusters = _search_block(layout, plan, number, inputs, base, generator, turns)
+            clusters = _search_block(layout, plan, number, inputs, base, generator, turns, within)
             continued.extend(state[:, None] for state in clusters.states.T)
             starts, closed = starts + clusters.tried, closed + clusters.closed
             chance = max(chance, clusters.chance if clusters.closed else 0.0)
@@ -83,6 +95,37 @@ def assemblies(layout: Layout, plan: Plan, inputs: Floats, turns: int = 1) -> Fo
     return Found(states, residual, condition, starts, closed, chance, closest, stopped, free)
 
 
+def single_assembly(layout: Layout, plan: Plan, inputs: Floats, state: Floats) -> Floats:
+    """Where one start (states,) ends, block by block; closed or not."""
+    values, states = np.ascontiguousarray(inputs[:, None]), state[:, None].copy()
+    for number in range(len(layout.graph.blocks)):
+        _ends(plan, number, values, states)
+    found: Floats = states[:, 0].copy()
+    return found
+
+
+def _ends(
+    plan: Plan, number: int, values: Floats, states: Floats
+) -> tuple[Floats, NDArray[np.uint8]]:
+    """Takes the starts `states` (states, starts) of a block to their ends, in place; residuals and
+    flags."""
+    size = states.shape[1]
+    residual, flags = np.empty(size), np.empty(size, dtype=np.uint8)
+    plan.search(
+        block=number,
+        inputs=values,
+        states=states,
+        residual=residual,
+        flags=flags,
+        iterations=tolerances.SEARCH_ITERATIONS,
+        tests=(tolerances.SEARCH_RESIDUAL,),
+        lanes=width(),
+        # an iteration of a start costs as much as a row or more
+        threads=threads_for(size * tolerances.SEARCH_ITERATIONS),
+    )
+    return residual, flags
+
+
 def _search_block(
     layout: Layout,
     plan: Plan,
@@ -91,6 +134,7 @@ def _search_block(
     base: Floats,
     generator: RandomStarts,
     turns: int,
+    within: Within | None,
 ) -> Clusters:
     clusters = Clusters(layout)
     size = tolerances.SEARCH_STARTS
@@ -99,20 +143,12 @@ def _search_block(
     while not (clusters.settled or clusters.exhausted):
         states = np.repeat(base, size, axis=1)
         _randomise(layout, number, states, generator, turns)
-        residual, flags = np.empty(size), np.empty(size, dtype=np.uint8)
-        plan.search(
-            block=number,
-            inputs=values,
-            states=states,
-            residual=residual,
-            flags=flags,
-            iterations=tolerances.SEARCH_ITERATIONS,
-            tests=(tolerances.SEARCH_RESIDUAL,),
-            lanes=width(),
-        )
+        if within is not None:
+            _bring_within(layout, number, states, generator, within)
+        residual, flags = _ends(plan, number, values, states)
         clusters.closest = min(clusters.closest, float(np.min(residual)))
-        within = np.all(np.abs(states[threads]) <= _most_turn(turns), axis=0)
-        states, free = _isolated(layout, plan, values, states[:, (flags == 0) & within])
+        turned = np.all(np.abs(states[threads]) <= _most_turn(turns), axis=0)
+        states, free = _isolated(layout, plan, values, states[:, (flags == 0) & turned])
         clusters.add(states)
         clusters.free += free
         clusters.tried += size
@@ -135,7 +171,7 @@ def _isolated(layout: Layout, plan: Plan, values: Floats, states: Floats) -> tup
 def _threads(layout: Layout, number: int) -> list[int]:
     """States of a block that are turns of threads."""
     unknowns = (layout.carrier_of(*u)[0] for u in layout.graph.blocks[number].unknowns)
-    return [layout.carriers[k].state for k in unknowns if layout.carriers[k].part.letter == "H"]
+    return [layout.carriers[k].state for k in unknowns if layout.carriers[k].part.type.is_thread]
 
 
 def _most_turn(turns: int) -> float:
@@ -152,18 +188,30 @@ def _randomise(
         k, local = layout.carrier_of(edge, freedom)
         carrier = layout.carriers[k]
         state = carrier.state + local
-        if carrier.part.letter == "S":
+        if carrier.part.type.is_ball:
             if local == 0:
                 states[state : state + 4] = generator.quaternions(rows)
-        elif tree_types()[carrier.part.letter].slides[local]:
+        elif carrier.part.type.slides[local]:
             states[state] = generator.between(reach, rows)
         else:
-            half = _most_turn(turns) if carrier.part.letter == "H" else pi
+            half = _most_turn(turns) if carrier.part.type.is_thread else pi
             states[state] = generator.between(half, rows)
 
 
+def _bring_within(
+    layout: Layout, number: int, states: Floats, generator: RandomStarts, within: Within
+) -> None:
+    """Takes the starts of a block from a box, where it is bounded."""
+    for edge, freedom in layout.graph.blocks[number].unknowns:
+        k, local = layout.carrier_of(edge, freedom)
+        state = layout.carriers[k].state + local
+        radius = float(within.radius[state])
+        if isfinite(radius):
+            states[state] = within.centre[state] + generator.between(radius, states.shape[1])
+
+
 def _quaternion_scalars(layout: Layout) -> list[int]:
-    return [carrier.state for carrier in layout.carriers if carrier.part.letter == "S"]
+    return [carrier.state for carrier in layout.carriers if carrier.part.type.is_ball]
 
 
 def with_assemblies(
@@ -201,8 +249,8 @@ def wrap_angles(layout: Layout, states: Floats) -> None:
     """Brings the angles of unknown turns into (-pi, pi], in place; threads keep their turns."""
     driven = {layout.state(edge, freedom) for edge, freedom in layout.graph.inputs}
     for carrier in layout.carriers:
-        if carrier.part.letter not in "RC" or carrier.state in driven:
-            continue
-        row = states[carrier.state]
-        turns = np.ceil((row - pi) / (2.0 * pi))
-        row -= turns * (2.0 * pi)
+        for number, freedom in enumerate(carrier.part.type.freedoms, start=carrier.state):
+            if freedom.is_cyclic and number not in driven:
+                row = states[number]
+                turns = np.ceil((row - pi) / (2.0 * pi))
+                row -= turns * (2.0 * pi)

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.model import Amount, JointLoad, LinkLoad, Load, Varying, varying
-from mechkin_cli.solver.layout import Layout, is_slide
+from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -32,7 +33,7 @@ def kernel_loads(layout: Layout, values: Floats) -> Floats:
 def _columns(layout: Layout, load: Load, values: Floats) -> list[Floats]:
     length = layout.length
     if isinstance(load, JointLoad):
-        per = length if is_slide(load.coordinate) else length * length
+        per = length * length if is_angle(load.coordinate) else length
         return [_rows(load.value, values) / per]
     assert isinstance(load, LinkLoad)
     per = 1.0 / length if load.kind == "force" else 1.0 / (length * length)

@@ -69,8 +69,8 @@ def status_words(source: Source) -> Words:
 
 
 def mode_words(source: Source) -> Words:
-    """The assembly mode of every row."""
-    return Words(np.zeros(source.rows, dtype=np.int32), (source.mode,))
+    """The letter of every row's assembly mode."""
+    return Words(np.zeros(source.rows, dtype=np.int32), (source.letter,))
 
 
 def solved_rows(source: Source) -> NDArray[np.bool_]:

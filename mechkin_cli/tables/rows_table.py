@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mechkin_cli.tables.columns import Column, Columns, mode_words, status_words
+from mechkin_cli.tables.columns import Column, Columns, Words, status_words
 from mechkin_cli.tables.source import Source
 
 
@@ -20,7 +20,7 @@ def rows_table(source: Source) -> Columns:
     columns = (
         Column("row", "", np.arange(1, source.rows + 1, dtype=np.float64), 0),
         *inputs,
-        Column("mode", "", mode_words(source)),
+        Column("mode", "", Words(np.zeros(source.rows, dtype=np.int32), (source.mode,))),
         Column("status", "", status_words(source)),
         Column("residual", "", source.residual),
         Column("condition", "", source.condition),

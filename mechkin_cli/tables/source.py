@@ -47,6 +47,11 @@ class Source(Protocol):
         ...
 
     @property
+    def letter(self) -> str:
+        """The same by its letter, which may have to be searched for."""
+        ...
+
+    @property
     def status(self) -> StatusArray:
         """Codes of `mechkin_cli.status.Status`."""
         ...

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.rows import kernel_inputs
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.graph import build_graph
+from mechkin_cli.solver.inputs import kernel_inputs
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.search import Found, assemblies
 

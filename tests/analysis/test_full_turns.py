@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 from mechanisms.runs import model
 
-from mechkin_cli.analysis.notes import open_turn_note
-from mechkin_cli.analysis.setup import prepare
+from mechkin_cli.analysis.sweep.notes import open_turn_note
 from mechkin_cli.solver.clusters import pose_keys, same_poses
-from mechkin_cli.solver.search import assemblies
 
 
 def test_a_turn_that_closes_is_not_mentioned() -> None:
@@ -19,20 +17,19 @@ def test_a_turn_that_closes_is_not_mentioned() -> None:
 
 def test_a_turn_that_ends_at_another_assembly_is_told() -> None:
     """The two assemblies of an RSSR put at either end of its turn."""
-    rssr = model("rssr")
-    setup = prepare(rssr.problem, (), verdicts=False, closed_at=None, lanes=0)
-    layout, inputs = setup.layout, setup.inputs.values
-    found = assemblies(layout, layout.build(), inputs[:, 0])
+    session = model("rssr").session
+    layout, inputs = session.layout, session.inputs.values
+    found = session.search(inputs[:, 0])
     assert found.number == 2
     keys = pose_keys(layout, found.states)
     assert not same_poses(keys[:, :1], keys[:, 1:])[0, 0]
     states = np.repeat(found.states[:, :1], inputs.shape[1], axis=1)
     reached = np.ones(inputs.shape[1], dtype=bool)
-    assert open_turn_note(setup, states, reached) is None
+    assert open_turn_note(session, states, reached) is None
     states[:, -1] = found.states[:, 1]
-    note = open_turn_note(setup, states, reached)
+    note = open_turn_note(session, states, reached)
     assert note is not None
     assert (note.code, note.severity) == ("turn-not-closed", "note")
     assert "after 1 full turn of O1.theta, in row 37" in note.message
     reached[-1] = False
-    assert open_turn_note(setup, states, reached) is None
+    assert open_turn_note(session, states, reached) is None

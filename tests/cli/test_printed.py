@@ -123,7 +123,7 @@ def test_a_setting_that_cannot_be(mechkin, write, setting, words) -> None:
 
 def test_mode_chooses_the_assembly(mechkin) -> None:
     chosen = mechkin("analyze", RCSR, "--table", "table_03", "--json").json
-    (mode,) = {row for c in chosen["rows"] if c["label"] == "mode" for row in c["values"]}
+    mode = mechkin("modes", RCSR, "--json").json["assembly"]
     other = "A" if mode == "B" else "B"
     by_name = mechkin("analyze", RCSR, "--table", "table_03", "--json", "--mode", mode).json
     found = mechkin("analyze", RCSR, "--table", "table_03", "--json", "--mode", other).json

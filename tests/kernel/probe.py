@@ -23,8 +23,10 @@ from kernel.plans import (
     run,
 )
 
+from mechkin_cli.mechanism.joint_table import JOINT_TYPES
 from mechkin_cli.solver.codes import RowFlag
 
+SEEDS = list(JOINT_TYPES)
 MOVED = 6
 """Number of the link that the six probing joints carry."""
 
@@ -40,7 +42,7 @@ class Probe:
     """The plan, and states that give the pair's second frame a displacement against its first."""
 
     def __init__(self, letter: str, seed: int) -> None:
-        generator = np.random.default_rng([seed, TABLE[letter]["code"]])
+        generator = np.random.default_rng([seed, SEEDS.index(letter)])
         self.pair = PAIRS[letter]
         self.base = random_pose(generator)
         joints = [TreeJoint("R", -1, random_pose(generator))]

@@ -17,7 +17,7 @@ from kernel.probe import MOVED, Probe, largest
 
 from mechkin_cli.solver.codes import Demand, LoadCode, OutputCode, RowFlag
 
-CLOSING = [letter for letter, entry in TABLE.items() if entry["equations"]]
+CLOSING = list(TABLE)
 LOAD_POINT = (0.4, 0.3, -0.2)
 
 

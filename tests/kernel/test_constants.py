@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,10 @@ import pytest
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.solver.batch import Batch, run
+from mechkin_cli.analysis.assembly import choose_start
+from mechkin_cli.analysis.probe import Probe
+from mechkin_cli.analysis.rows import kernel_inputs
+from mechkin_cli.solver.batch import Batch, assembly_size, run
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.layout import Layout
@@ -94,3 +98,26 @@ def test_a_size_given_later_is_the_size_built_with() -> None:
     assert_same(
         computed(later, own.outputs), computed(before, OutputPlan(layout, before, []).outputs)
     )
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_the_size_is_that_of_the_box_of_the_joint_points(path: Any) -> None:
+    """Against the points that the first row's assembly has, one by one."""
+    model = mk.load(path)
+    problem = model.problem
+    if not problem.motion.inputs or problem.follow is not None:
+        pytest.skip("drives nothing, or follows a part")
+    layout = Layout(problem.mechanism, model.graph)
+    plan = layout.build()
+    inputs = kernel_inputs(problem, layout).values
+    probe = Probe(problem, layout)
+    start = choose_start(problem, layout, plan, inputs, probe)
+    if start.state is None:
+        pytest.skip("has no assembly")
+    first = inputs[:, start.row]
+    _, moving = probe.read(first, start.state[:, None])
+    points = [at.vector for _, at in problem.mechanism.joint_points() if at.link == "ground"]
+    every = [*moving[:, :, 0].tolist(), *points]
+    extent = [max(p[i] for p in every) - min(p[i] for p in every) for i in range(3)]
+    x, y, z = extent
+    assert assembly_size(plan, first, start.state) == (sqrt(x * x + y * y + z * z) or 1.0)

@@ -1,58 +1,133 @@
-"""The constants of the kernel's tables agree with the textbook forms of the pairs."""
+"""The joint table and the kernel's entries agree with the textbook forms of the pairs."""
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
 import pytest
-from kernel.pairs import ELEMENTARY, PAIRS
+from kernel.pairs import COSINE, ELEMENTARY, PAIRS, PITCH, SLOTTED, Matrix, derivative, mp, vector
 from kernel.plans import TABLE, TREE_LETTERS
 
+from mechkin_cli.building.halves import Halves
+from mechkin_cli.building.joints import parts_of
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.mechanism import elementary
+from mechkin_cli.mechanism.frames import Frame
+from mechkin_cli.mechanism.joint_table import FIRST, JOINT_TYPES, dimension_of
+from mechkin_cli.mechanism.model import Joint
 
-LETTERS = list(TABLE)
+LETTERS = list(JOINT_TYPES)
+
+
+def drawn(matrix: Matrix) -> Frame:
+    """A textbook frame, rounded."""
+    return Frame(*(tuple(float(c) for c in vector(matrix, column)) for column in range(4)))
+
+
+def joint_of(letter: str) -> Joint:
+    """The pair between the textbook's frames, its coordinates zero."""
+    kind, pair = JOINT_TYPES[letter], PAIRS[letter]
+    meeting = next(i for i, step in enumerate(kind.steps) if step.along is None)
+    between = drawn(pair.chain[meeting][1])
+    halves = Halves(drawn(mp.eye(4)), drawn(pair.home), (between, between), drawn(SLOTTED))
+    ends = halves.on_first, halves.on_second
+    return Joint("J", letter, "a", "b", *ends, parts_of(kind, halves), PITCH * 2 * np.pi)
 
 
 def test_every_type_of_the_table_has_its_textbook_form() -> None:
-    assert set(PAIRS) == set(TABLE)
+    assert set(PAIRS) == set(LETTERS)
 
 
-def test_the_code_of_a_type_is_its_place_in_the_table() -> None:
-    assert [entry["code"] for entry in TABLE.values()] == list(range(len(TABLE)))
+def test_the_code_of_an_entry_is_its_place_in_the_kernel() -> None:
+    rows = _kernel.joint_table()
+    assert [row["code"] for row in rows] == list(range(len(rows)))
+    assert {row["letter"] for row in rows} == {row["letter"] for row in TABLE.values()}
 
 
 @pytest.mark.parametrize("letter", LETTERS)
 def test_parts_are_the_chain_of_elementary_displacements(letter: str) -> None:
-    assert TABLE[letter]["parts"] == "".join(part for part, _ in PAIRS[letter].chain)
+    assert list(JOINT_TYPES[letter].parts) == [part for part, _ in PAIRS[letter].chain]
 
 
 @pytest.mark.parametrize("letter", LETTERS)
 def test_freedoms_and_closing_equations_make_six(letter: str) -> None:
     """H closes no loop: the count of its turns would be lost."""
-    expected = 0 if letter == "H" else 6 - PAIRS[letter].freedoms
-    assert TABLE[letter]["equations"] == expected
+    kind = JOINT_TYPES[letter]
+    assert kind.freedoms == PAIRS[letter].freedoms
+    if letter == "H":
+        assert kind.equations == 0
+        return
+    assert kind.equations == TABLE[letter]["equations"] == 6 - PAIRS[letter].freedoms
+
+
+@pytest.mark.parametrize("letter", list(TABLE))
+def test_lengths_are_what_forces_hold(letter: str) -> None:
+    """The directions in which the second link, turned at will, cannot slide."""
+    kind = joint_of(letter)
+    turns = [linear for angular, linear in kind.screws if any(angular)]
+    slides = [linear for angular, linear in kind.screws if not any(angular)]
+    assert len(turns) + len(slides) == PAIRS[letter].freedoms
+    assert TABLE[letter]["lengths"] == 3 - np.linalg.matrix_rank(np.array([*slides, (0, 0, 0)]))
 
 
 @pytest.mark.parametrize("letter", LETTERS)
-def test_coordinates_are_named_in_the_order_of_the_freedoms(letter: str) -> None:
+def test_coordinates_have_the_textbook_names_and_freedoms(letter: str) -> None:
     """Turns about a sphere's centre and the slides of a sphere on a plane have no names."""
-    names = TABLE[letter]["coordinates"].split()
-    expected = ["-"] * PAIRS[letter].freedoms
-    for name, (freedom, _) in PAIRS[letter].coordinates.items():
-        expected[freedom] = name
-    assert names == expected
+    found = JOINT_TYPES[letter].scalars
+    assert found == {name: freedom for name, (freedom, _) in PAIRS[letter].coordinates.items()}
+
+
+@pytest.mark.parametrize("letter", LETTERS)
+def test_a_coordinate_measures_what_its_freedom_does(letter: str) -> None:
+    slides = PAIRS[letter].slides
+    for known in JOINT_TYPES[letter].named:
+        assert known.is_angle == (not slides[known.freedom] and not known.on_thread)
+        assert dimension_of(known.name) == known.dimension
+
+
+@pytest.mark.parametrize("letter", LETTERS)
+def test_the_point_rides_where_the_textbook_has_it(letter: str) -> None:
+    assert (JOINT_TYPES[letter].point_on == FIRST) == PAIRS[letter].point_on_first
+
+
+@pytest.mark.parametrize("letter", LETTERS)
+def test_screws_as_drawn_are_the_rates_of_the_displacement(letter: str) -> None:
+    pair, joint = PAIRS[letter], joint_of(letter)
+    home = [
+        c for part in pair.parts for c in ([1, 0, 0, 0] if part.quaternion else [0] * part.states)
+    ]
+    for freedom, (angular, linear) in enumerate(joint.screws):
+        rates = [int(freedom == k) for k in range(pair.freedoms)]
+
+        def at(time: Any, rates: list[int] = rates) -> Matrix:
+            return pair.moving(home, rates, [0] * len(rates), time)
+
+        twist = derivative(at, 1) * mp.inverse(at(mp.mpf(0)))
+        expected = [twist[2, 1], twist[0, 2], twist[1, 0], *(twist[i, 3] for i in range(3))]
+        assert [*angular, *linear] == pytest.approx([float(c) for c in expected], abs=1e-15)
+
+
+def test_parameters_are_the_cosines_of_the_textbook_pairs() -> None:
+    for letter in LETTERS:
+        expected = COSINE if PAIRS[letter].parameter else 0.0
+        assert joint_of(letter).parameter == pytest.approx(expected, abs=1e-15)
 
 
 @pytest.mark.parametrize("letter", TREE_LETTERS)
 def test_tree_displacements(letter: str) -> None:
     """Freedoms, states and which freedoms are lengths."""
-    entry = _kernel.tree_table()[TREE_LETTERS.index(letter)]
+    entry, part = _kernel.tree_table()[TREE_LETTERS.index(letter)], elementary.ELEMENTARY[letter]
     screws = ELEMENTARY[letter].screws
-    slides = sum((not any(angular)) << f for f, (angular, _) in enumerate(screws))
-    assert entry["code"] == TREE_LETTERS.index(letter)
-    assert entry["freedoms"] == len(screws)
-    assert entry["states"] == ELEMENTARY[letter].states
-    assert entry["slides"] == slides
+    slides = tuple(not any(angular) for angular, _ in screws)
+    assert entry["code"] == part.code == TREE_LETTERS.index(letter)
+    assert entry["freedoms"] == len(part.freedoms) == len(screws)
+    assert entry["states"] == part.states == ELEMENTARY[letter].states
+    assert entry["slides"] == sum(slide << f for f, slide in enumerate(slides))
+    assert part.slides == slides
 
 
 def test_there_are_no_other_tree_displacements_but_the_hanging_of_legs() -> None:
     assert len(_kernel.tree_table()) == len(TREE_LETTERS) + 1 == len(ELEMENTARY) + 1
+    assert len(elementary.ELEMENTARY) == len(_kernel.tree_table())
     assert _kernel.tree_table()[-1]["freedoms"] == _kernel.tree_table()[-1]["states"] == 0

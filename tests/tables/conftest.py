@@ -23,6 +23,7 @@ class HandWritten:
     quantities: Mapping[str, Quantity]
     rows: int = 4
     mode: str = "A"
+    letter: str = "A"
     coordinates: tuple[str, ...] = ("O1.theta", "O2.s")
     inputs: dict = field(default_factory=lambda: {"O1.theta": np.array([190.0, 191, 192, 193])})
     input_rates: dict = field(default_factory=dict)

@@ -21,74 +21,51 @@ from mechkin_cli.units import ANGULAR_RATE, DIMENSIONLESS, LENGTH, VELOCITY
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from mechkin_cli.analysis.assembly import Start
     from mechkin_cli.analysis.derived.rotations import Rotation
     from mechkin_cli.analysis.derived.row_vectors import RowVector
-    from mechkin_cli.analysis.rows import KernelInputs, RowStates
-    from mechkin_cli.analysis.setup import Setup
+    from mechkin_cli.analysis.sweep.result import Result
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.mechanism.problem import Problem
-    from mechkin_cli.solver.demand import Slot
-    from mechkin_cli.solver.layout import Layout
+    from mechkin_cli.solver.inputs import KernelInputs
+    from mechkin_cli.solver.session import Session
 
 AXES = ("x", "y", "z")
 
 
-class FinishedRun(NamedTuple):
-    """A finished run of a sweep: `values` (slots, rows) in SI, nan where a row has none."""
+class Reading(NamedTuple):
+    """Basis quantities of a result at the rates of `inputs`: `columns` by name, (1, rows) or
+    (3, rows) in SI, nan where a row has none."""
 
-    setup: Setup
-    rows: RowStates
-    values: Floats
-
-    @property
-    def problem(self) -> Problem:
-        """What was run."""
-        return self.setup.problem
+    result: Result
+    columns: Mapping[str, Floats]
+    inputs: KernelInputs
 
     @property
-    def layout(self) -> Layout:
-        """How its mechanism lies in the kernel."""
-        return self.setup.layout
-
-    @property
-    def inputs(self) -> KernelInputs:
-        """The inputs with their rates, in kernel units."""
-        return self.setup.inputs
-
-    @property
-    def start(self) -> Start:
-        """The first assembly."""
-        return self.setup.start
-
-    @property
-    def slots(self) -> Mapping[str, Slot]:
-        """Where each quantity stands in `values`."""
-        return self.setup.outputs.slots
+    def session(self) -> Session:
+        """The mechanism in the kernel."""
+        return self.result.session
 
     def scalar(self, name: str) -> Floats:
-        """A scalar output over the rows."""
-        found: Floats = self.values[self.slots[name].first]
+        """A scalar over the rows."""
+        found: Floats = self.columns[name][0]
         return found
 
     def vector(self, name: str) -> RowVector:
-        """A vector output over the rows."""
-        return vector_at(self.values, self.slots, name)
+        """A vector over the rows."""
+        return vector_of(self.columns[name])
 
     def rotation(self, link: str) -> Rotation:
         """The columns of a link's rotation from the drawing."""
-        return rotation_at(self.values, self.slots, link)
+        return rotation_of(self.columns, link)
 
 
-def vector_at(values: Floats, slots: Mapping[str, Slot], name: str) -> RowVector:
-    """A vector among some outputs."""
-    first = slots[name].first
-    return (values[first], values[first + 1], values[first + 2])
+def vector_of(columns: Floats) -> RowVector:
+    """The components of (3, rows)."""
+    return (columns[0], columns[1], columns[2])
 
 
-def rotation_at(values: Floats, slots: Mapping[str, Slot], link: str) -> Rotation:
-    """The columns of a link's rotation among some outputs."""
-    x, y, z = (vector_at(values, slots, f"{link} {axis}") for axis in AXES)
+def rotation_of(columns: Mapping[str, Floats], link: str) -> Rotation:
+    """The columns of a link's rotation among some quantities."""
+    x, y, z = (vector_of(columns[f"{link} {axis}"]) for axis in AXES)
     return (x, y, z)
 
 

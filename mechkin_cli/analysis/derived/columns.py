@@ -9,39 +9,37 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.analysis.derived.advantage import mechanical_advantages
-from mechkin_cli.analysis.derived.basis import FinishedRun, basis_of
+from mechkin_cli.analysis.derived.basis import Reading, basis_of
 from mechkin_cli.analysis.derived.orientation import continuous_quaternion, turn
 from mechkin_cli.analysis.derived.screws import finite_screw, instant_screw
 from mechkin_cli.analysis.derived.transmission import transmission_angle
 from mechkin_cli.analysis.derived.unit_rate import at_unit_rate
 from mechkin_cli.mechanism.derived_quantities import FINITE_KINDS, INSTANT_KINDS, QUATERNION
 from mechkin_cli.mechanism.quantities import Wanted
-from mechkin_cli.solver.demand import Slot
 
 if TYPE_CHECKING:
+    from mechkin_cli.analysis.sweep.result import Result
     from mechkin_cli.arrays import Floats
 
 
-def derived_columns(run: FinishedRun, wanted: Sequence[Wanted]) -> tuple[Floats, dict[str, Slot]]:
-    """The columns (slots, rows) of some derived quantities, in SI, and their slots, counted behind
-    those of the run."""
-    columns: list[Floats] = []
-    slots: dict[str, Slot] = {}
+def derived_columns(result: Result, wanted: Sequence[Wanted]) -> dict[str, Floats]:
+    """Some derived quantities by name, (1, rows) or (3, rows) in SI."""
+    run = Reading(result, result.columns, result.session.inputs)
     with np.errstate(all="ignore"):
-        for quantity, parts in zip(wanted, _computed(run, wanted), strict=True):
-            slots[quantity.name] = Slot(len(run.values) + len(columns), len(parts))
-            columns += parts
-    return np.stack(columns), slots
+        parts = _computed(run, wanted)
+        return {q.name: np.stack(own) for q, own in zip(wanted, parts, strict=True)}
 
 
-def _moving(run: FinishedRun, instant: list[Wanted]) -> FinishedRun:
+def _moving(run: Reading, instant: list[Wanted]) -> Reading:
     """The run whose rates instant screws have: a file that gives none moves at unit rate."""
-    if not instant or run.inputs.rates.any() or run.problem.motion.leading is None:
+    session = run.session
+    leading = session.problem.motion.leading
+    if not instant or session.inputs.rates.any() or leading is None:
         return run
-    return at_unit_rate(run, basis_of(run.layout.mechanism, instant))
+    return at_unit_rate(run, basis_of(session.problem.mechanism, instant))
 
 
-def _computed(run: FinishedRun, wanted: Sequence[Wanted]) -> list[list[Floats]]:
+def _computed(run: Reading, wanted: Sequence[Wanted]) -> list[list[Floats]]:
     quaternion = cache(lambda owner: continuous_quaternion(run, owner))
     moving = _moving(run, [quantity for quantity in wanted if quantity.kind in INSTANT_KINDS])
     instant = cache(lambda owner: instant_screw(moving, owner))

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.analysis.closing_angles import leading_rows, outputs_between
-from mechkin_cli.analysis.derived.basis import FinishedRun, directions, rotation_at
+from mechkin_cli.analysis.derived.basis import Reading, directions, rotation_of
 from mechkin_cli.analysis.derived.rotations import (
     inner,
     quaternion,
@@ -20,7 +19,7 @@ from mechkin_cli.analysis.derived.rotations import (
     rotation_vector,
     times,
 )
-from mechkin_cli.solver.codes import Demand
+from mechkin_cli.analysis.sweep.closing_angles import leading_rows, outputs_between
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.derived.rotations import Quaternion
@@ -28,40 +27,43 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
 
 
-def turn(run: FinishedRun, joint: str) -> RowVector:
+def turn(run: Reading, joint: str) -> RowVector:
     """The rotation vector (rad), of length 0 to pi."""
     return rotation_vector(_upright(run, joint))
 
 
-def continuous_quaternion(run: FinishedRun, joint: str) -> Quaternion:
+def continuous_quaternion(run: Reading, joint: str) -> Quaternion:
     """The unit quaternion, scalar first; continuous from the first row, where q0 >= 0."""
     q = _upright(run, joint)
-    reached = run.rows.reached
-    if run.start.state is None or not reached[run.start.row]:
+    reached, start = run.result.row_states.reached, run.result.start
+    if start.state is None or not reached[start.row]:
         return q
     signs = np.ones(reached.size)
-    for way in (slice(run.start.row, None), slice(run.start.row, None, -1)):
+    for way in (slice(start.row, None), slice(start.row, None, -1)):
         count = leading_rows(reached[way])
         part = (q[0][way][:count], q[1][way][:count], q[2][way][:count], q[3][way][:count])
-        followed = _followed_signs(run, joint, part, run.inputs.values[:, way][:, :count])
+        followed = _followed_signs(run, joint, part, run.session.inputs.values[:, way][:, :count])
         signs[way][: followed.size] = followed
     return times(signs * signs[int(np.argmax(reached))], q)
 
 
-def _upright(run: FinishedRun, joint: str) -> Quaternion:
-    links = run.layout.mechanism.joints[joint]
+def _upright(run: Reading, joint: str) -> Quaternion:
+    links = run.session.problem.mechanism.joints[joint]
     return quaternion(relative(run.rotation(links.first), run.rotation(links.second)))
 
 
-def _followed_signs(run: FinishedRun, joint: str, q: Quaternion, inputs: Floats) -> Floats:
+def _followed_signs(run: Reading, joint: str, q: Quaternion, inputs: Floats) -> Floats:
     """Signs that make the quaternions of some rows continuous, +1 at the first."""
-    if inputs.shape[1] < 2 or run.start.state is None:
+    state = run.result.start.state
+    if inputs.shape[1] < 2 or state is None:
         return np.ones(inputs.shape[1])
-    links = run.layout.mechanism.joints[joint]
+    session = run.session
+    links = session.problem.mechanism.joints[joint]
     wanted = (*directions(links.first), *directions(links.second))
-    own = run.setup.reading(wanted, Demand.POSITION).outputs
-    values, places = outputs_between(own, inputs, run.start.state)
-    ends = (rotation_at(values, own.slots, link) for link in (links.first, links.second))
+    readout = session.readout(wanted)
+    values, places = outputs_between(session, readout, inputs, state)
+    columns = {name: values[slot.first : slot.first + 3] for name, slot in readout.slots.items()}
+    ends = (rotation_of(columns, link) for link in (links.first, links.second))
     path = quaternion(relative(*ends))
     back = inner(_part(path, slice(1, None)), _part(path, slice(None, -1))) < 0.0
     signs = np.cumprod(np.concatenate((np.ones(1), np.where(back, -1.0, 1.0))))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.derived.basis import FinishedRun
+from mechkin_cli.analysis.derived.basis import Reading
 from mechkin_cli.analysis.derived.rotations import angle, quaternion
 from mechkin_cli.analysis.derived.row_vectors import (
     add,
@@ -60,9 +60,9 @@ class FiniteScrew(NamedTuple):
     slide: Floats
 
 
-def instant_screw(run: FinishedRun, link: str) -> InstantScrew:
+def instant_screw(run: Reading, link: str) -> InstantScrew:
     """The screw of a link's velocity."""
-    unit = run.layout.length
+    unit = run.session.layout.length
     omega = run.vector(f"{link}.omega")
     place, velocity = run.vector(f"{link} place"), run.vector(f"{link} velocity")
     rate, speed = length(omega), length(velocity)
@@ -75,17 +75,17 @@ def instant_screw(run: FinishedRun, link: str) -> InstantScrew:
     return InstantScrew(axis, choose(turns, off(axis, centre), np.nan), pitch)
 
 
-def finite_screw(run: FinishedRun, link: str) -> FiniteScrew:
+def finite_screw(run: Reading, link: str) -> FiniteScrew:
     """The screw of a link's displacement from the drawing."""
     q = quaternion(run.rotation(link))
     size = length(q[1:])
     place = run.vector(f"{link} place")
-    x, y, z = reference_point(run.layout.mechanism, link).vector
+    x, y, z = reference_point(run.session.layout.mechanism, link).vector
     drawn = (np.full_like(size, x), np.full_like(size, y), np.full_like(size, z))
     shift = subtract(place, drawn)
     distance = length(shift)
     turned = size > tolerances.NO_TURN
-    moved = distance > tolerances.NO_TURN * run.layout.length
+    moved = distance > tolerances.NO_TURN * run.session.layout.length
     axis = choose(turned, divide(q[1:], size), choose(moved, divide(shift, distance), np.nan))
     lever = scale(np.abs(q[0]) / size, cross(axis, shift))
     centre = scale(0.5, add(add(drawn, place), lever))

@@ -11,14 +11,12 @@ between coupler and rocker.
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.batched import run_reached
-from mechkin_cli.analysis.derived.basis import FinishedRun, vector_at
+from mechkin_cli.analysis.derived.basis import Reading, vector_of
 from mechkin_cli.analysis.derived.row_vectors import (
     add,
     choose,
@@ -33,9 +31,6 @@ from mechkin_cli.mechanism.derived_quantities import driving_joint
 from mechkin_cli.mechanism.model import Joint, JointLoad, Link, Mechanism
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.graph import is_redundant
-from mechkin_cli.solver.layout import Layout
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
@@ -43,40 +38,37 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
 
 
-def transmission_angle(run: FinishedRun, quantity: Wanted) -> Floats:
+def transmission_angle(run: Reading, quantity: Wanted) -> Floats:
     """The angle (rad, 0 to pi/2) of one coordinate over the rows; nan where the force is not
     unique, or where the driving joint's point does not move with the coordinate."""
-    mechanism = run.layout.mechanism
+    problem = run.session.problem
+    mechanism = problem.mechanism
     guide = mechanism.joints[quantity.owner]
     driver = driving_joint(mechanism, guide)
     assert driver is not None
-    layout = Layout(_with_unit_load(mechanism, quantity), run.layout.graph)
-    known = run.problem.quantities()
+    loaded = replace(problem, mechanism=_with_unit_load(mechanism, quantity), load_laws=())
+    session = run.session.of(loaded, run.session.graph)
+    known = problem.quantities()
     names = (f"{driver.name}.force", f"{driver.name}.point", f"{guide.name}.point")
     wanted = [known[name] for name in (*names, f"{guide.name}.axis")]
-    setup = replace(run.setup, layout=layout).reading(wanted, Demand.FORCES)
-    slots = setup.outputs.slots
 
     def angle(shift: int) -> Floats:
-        batch = run_reached(setup, run.rows, shift=shift)
-        values = batch.outputs
-        assert values is not None
-        force, point, centre = (vector_at(values, slots, name) for name in names)
-        axis = vector_at(values, slots, f"{guide.name}.axis")
-        arm = subtract(point, centre)
-        return _between(force, _velocity(guide, quantity.coordinate, axis, arm, layout.length))
+        columns = run.result.evaluated(wanted, session=session, shift=shift)
+        force, point, centre = (vector_of(columns[name]) for name in names)
+        axis = vector_of(columns[f"{guide.name}.axis"])
+        arm, unit = subtract(point, centre), session.layout.length
+        return _between(force, _velocity(guide, quantity.coordinate, axis, arm, unit))
 
-    found = angle(0)
-    lost = ~run.rows.reached | (run.rows.status == Status.rank_unclear)
-    for shift in (1, 2) if is_redundant(run.layout.graph) else ():
+    found, rows = angle(0), run.result.row_states
+    lost = ~rows.reached | (rows.status == Status.rank_unclear)
+    for shift in run.result.shifts:
         lost |= ~(np.abs(angle(shift) - found) <= tolerances.UNIQUE_CELL)
     return np.where(lost, np.nan, found)
 
 
 def _with_unit_load(mechanism: Mechanism, quantity: Wanted) -> Mechanism:
     """The mechanism without masses and loads but one on a coordinate."""
-    slide = quantity.coordinate == "s"
-    load = JointLoad(quantity.owner, "s" if slide else "theta", 1.0)
+    load = JointLoad(quantity.owner, quantity.coordinate, 1.0)
     links = {name: Link(name) for name in mechanism.links}
     return replace(mechanism, links=links, loads=(load,), gravity=ZERO)
 
@@ -86,11 +78,11 @@ def _velocity(
 ) -> RowVector:
     """Velocity of a point of the link, up to its sense, in lengths per length or rad; zero where it
     is zero to rounding."""
-    if guide.letter != "H" and coordinate == "s":
+    if guide.type.chain[guide.type.freedom_of[coordinate]].is_slide:
         return axis
     around = cross(axis, arm)
-    if guide.letter == "H":
-        around = add(around, scale(guide.lead / (2.0 * pi), axis))
+    if guide.type.is_threaded:
+        around = add(around, scale(guide.pitch, axis))
     return choose(length(around) > tolerances.STANDS_STILL * unit, around, 0.0)
 
 

@@ -100,6 +100,6 @@ def _words(border: list[Joint], twist: Floats) -> tuple[str, str]:
         return "slide", f"along the axis of {names}"
     if abs(float(spin @ slide)) > tolerances.MOBILITY_NO_TWIST:
         return "move", f"along the thread of {names}"
-    if all(joint.letter in ("S", "Sp", "Sg") for joint in border):
+    if all(joint.type.is_oriented for joint in border):
         return "spin", "about " + "-".join(joint.name for joint in border)
     return "turn", f"about the common axis of {names}"

@@ -33,6 +33,7 @@ from mechkin_cli.solver.random_starts import RandomStarts
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.solver.session import Session
 
 
 class Rank(NamedTuple):
@@ -107,11 +108,12 @@ def _compared(found: Mobility) -> str:
     )
 
 
-def find_mobility(problem: Problem) -> Mobility:
-    """The mobility of a mechanism; its inputs count as free."""
+def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
+    """The mobility of a mechanism; its inputs count as free. `session` of the problem, where it can
+    be solved as it is driven, gives the first row's assembly."""
     mechanism = problem.mechanism
     body = body_of(mechanism)
-    start = first_row(problem, body) or assembled(body)
+    start = (session and first_row(session, body)) or assembled(body)
     if start is None:
         return _unknown(problem, [_not_assembled(body)])
     first = rank_of(start)

@@ -1,8 +1,9 @@
-// What the closing equations of the pairs are made of, between the frame A on the first link and B on the second.
+// Elementary conditions between the frame A on the first link of a pair and B on the second, of which the pairs'
+// closing equations are composed (pairs.hpp).
 //
-// Each constraint has its residual, its Jacobian column for a unit twist of B against A, its second derivative and
-// the wrench it transmits; d = B.o - A.o. The Jacobian of an equation is the product of its wrench with that twist,
-// exact where the joint is closed.
+// Each condition has its residual, its Jacobian column for a unit twist of B against A, its second and third derivative
+// and what it transmits: a force at a point, or a moment; d = B.o - A.o. The Jacobian of an equation is the product of
+// its wrench with that twist, exact where the joint is closed. `side` tells an assembly from a false root.
 #pragma once
 
 #include "tree_joints.hpp"
@@ -50,30 +51,53 @@ MECHKIN_INLINE Pack third_of_product(Vec3 x, const MotionToJerk& a, Vec3 z, cons
   return dot(a.third_rate(x), z) + Pack(3.0) * dot(a.second_rate(x), b.rate(z)) +
          Pack(3.0) * dot(a.rate(x), b.second_rate(z)) + dot(x, b.third_rate(z));
 }
-// axis.d and its derivatives, for an axis carried by a link with motion m.
-MECHKIN_INLINE void along(Vec3 axis, const MotionToJerk& m, const Closure& k, const PairMotion& p, Pack* out) {
-  out[0] = dot(axis, k.d);
-  if (p.order < 1) return;
-  out[1] = dot(axis, first_of_d(k, p.a, p.b)) + dot(m.rate(axis), k.d);
-  if (p.order < 2) return;
-  out[2] = second_along(axis, m, k, p.a, p.b);
-  if (p.order < 3) return;
-  out[3] = third_along(axis, m, k, p.a, p.b);
-}
-// Angle of B.X against A.X about the common axis, and its derivatives.
-MECHKIN_INLINE void about(const Closure& k, const PairMotion& p, Pack* out) {
-  out[0] = atan2(dot(k.A.Y, k.B.X), dot(k.A.X, k.B.X));
-  if (p.order < 1) return;
-  out[1] = dot(k.A.Z, p.relative_omega());
-  if (p.order < 2) return;
-  out[2] = dot(k.A.Z, p.relative_alpha()) + dot(p.a.rate(k.A.Z), p.relative_omega());
-  if (p.order < 3) return;
-  out[3] = dot(k.A.Z, p.relative_jerk()) + Pack(2.0) * dot(p.a.rate(k.A.Z), p.relative_alpha()) +
-           dot(p.a.second_rate(k.A.Z), p.relative_omega());
-}
+// Directions that ride on a link.
+struct OnFirst {
+  static MECHKIN_INLINE const MotionToJerk& of(const MotionToJerk& a, const MotionToJerk&) { return a; }
+  static MECHKIN_INLINE const Motion& of(const Motion& a, const Motion&) { return a; }
+  static MECHKIN_INLINE Vec3 opposite(const Closure& k) { return k.B.o; }
+};
+struct OnSecond {
+  static MECHKIN_INLINE const MotionToJerk& of(const MotionToJerk&, const MotionToJerk& b) { return b; }
+  static MECHKIN_INLINE const Motion& of(const Motion&, const Motion& b) { return b; }
+  static MECHKIN_INLINE Vec3 opposite(const Closure& k) { return k.A.o; }
+};
+struct AX : OnFirst { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.A.X; } };
+struct AY : OnFirst { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.A.Y; } };
+struct AZ : OnFirst { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.A.Z; } };
+struct BX : OnSecond { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.B.X; } };
+struct BY : OnSecond { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.B.Y; } };
+struct BZ : OnSecond { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.B.Z; } };
+template <class Direction>
+struct Reverse : Direction { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return -Direction::vector(k); } };
+
+// In the plane x_A y_A, at an angle from -y_A whose cosine is the pair's parameter, and square to that.
+MECHKIN_INLINE Pack sine_of_parameter(const Closure& k) { return sqrt(Pack(1.0) - k.parameter * k.parameter); }
+struct AlongCylinder : OnFirst {
+  static MECHKIN_INLINE Vec3 vector(const Closure& k) { return sine_of_parameter(k) * k.A.X - k.parameter * k.A.Y; }
+};
+struct AcrossCylinder : OnFirst {
+  static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.parameter * k.A.X + sine_of_parameter(k) * k.A.Y; }
+};
+
+// Cosines that an angle keeps.
+struct Parameter { static MECHKIN_INLINE Pack value(const Closure& k) { return k.parameter; } };
+struct Square { static MECHKIN_INLINE Pack value(const Closure&) { return Pack(0.0); } };
+
+// Conditions on lengths, which transmit a force, and on directions, which transmit a moment.
+template <int COUNT>
+struct LengthCondition {
+  static constexpr int equations = COUNT, lengths = COUNT;
+  static MECHKIN_INLINE Mask side(const Closure&) { return all_lanes(true); }
+};
+template <int COUNT>
+struct DirectionCondition {
+  static constexpr int equations = COUNT, lengths = 0;
+  static MECHKIN_INLINE Mask side(const Closure&) { return all_lanes(true); }
+};
 
 // d = 0: a common point, in ground axes.
-struct CommonPoint {
+struct CommonPoint : LengthCondition<3> {
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = k.d.x, r[1] = k.d.y, r[2] = k.d.z; }
   static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) {
     const Vec3 v = s.at(k.B.o);
@@ -87,29 +111,27 @@ struct CommonPoint {
     const Vec3 d3 = third_of_d(k, a, b);
     r[0] = d3.x, r[1] = d3.y, r[2] = d3.z;
   }
-  static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) { return force_at(k.B.o, {l[0], l[1], l[2]}); }
+  static MECHKIN_INLINE Vec3 force(const Closure&, const Pack* l) { return {l[0], l[1], l[2]}; }
+  static MECHKIN_INLINE Vec3 point(const Closure& k) { return k.B.o; }
 };
 
-// x_A.d = y_A.d = 0: B's origin on A's axis.
-struct PointOnAxis {
-  static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = dot(k.A.X, k.d), r[1] = dot(k.A.Y, k.d); }
-  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) {
-    const Vec3 v = s.at(k.B.o);
-    r[0] = dot(k.A.X, v), r[1] = dot(k.A.Y, v);
-  }
+// u.d = 0: the other link's origin in the plane square to u through the origin of the link that carries u.
+template <class U>
+struct InPlane : LengthCondition<1> {
+  static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = dot(U::vector(k), k.d); }
+  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) { r[0] = dot(U::vector(k), s.at(point(k))); }
   static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
-    r[0] = second_along(k.A.X, a, k, a, b), r[1] = second_along(k.A.Y, a, k, a, b);
+    r[0] = second_along(U::vector(k), U::of(a, b), k, a, b);
   }
   static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
-    r[0] = third_along(k.A.X, a, k, a, b), r[1] = third_along(k.A.Y, a, k, a, b);
+    r[0] = third_along(U::vector(k), U::of(a, b), k, a, b);
   }
-  static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) {
-    return force_at(k.B.o, l[0] * k.A.X + l[1] * k.A.Y);
-  }
+  static MECHKIN_INLINE Vec3 force(const Closure& k, const Pack* l) { return l[0] * U::vector(k); }
+  static MECHKIN_INLINE Vec3 point(const Closure& k) { return U::opposite(k); }
 };
 
 // x_A.z_B = y_A.z_B = 0: parallel axes, with z_A.z_B > 0 beside them.
-struct ParallelAxes {
+struct ParallelAxes : DirectionCondition<2> {
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) {
     r[0] = dot(k.A.X, k.B.Z);
     r[1] = dot(k.A.Y, k.B.Z);
@@ -135,7 +157,7 @@ struct ParallelAxes {
 
 // Equal orientation: the rotation that carries A onto B, as a rotation vector in ground axes. Its skew part alone
 // would vanish at half a turn as well and give false assemblies.
-struct SameOrientation {
+struct SameOrientation : DirectionCondition<3> {
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) {
     const Vec3 skew = Pack(0.5) * (cross(k.A.X, k.B.X) + cross(k.A.Y, k.B.Y) + cross(k.A.Z, k.B.Z));
     const Pack c = Pack(0.5) * (dot(k.A.X, k.B.X) + dot(k.A.Y, k.B.Y) + dot(k.A.Z, k.B.Z) - Pack(1.0));
@@ -147,24 +169,24 @@ struct SameOrientation {
     const Vec3 e = select(tiny, lost, (angle / select(tiny, Pack(1.0), s)) * skew);
     r[0] = e.x, r[1] = e.y, r[2] = e.z;
   }
-  static MECHKIN_INLINE void column(Twist s, Pack* r) {
+  static MECHKIN_INLINE void column(const Closure&, Twist s, Pack* r) {
     r[0] = s.angular.x, r[1] = s.angular.y, r[2] = s.angular.z;
   }
-  static MECHKIN_INLINE void second(const Motion& a, const Motion& b, Pack* r) {
+  static MECHKIN_INLINE void second(const Closure&, const Motion& a, const Motion& b, Pack* r) {
     const Vec3 e = b.acceleration.angular - a.acceleration.angular;
     r[0] = e.x, r[1] = e.y, r[2] = e.z;
   }
-  static MECHKIN_INLINE void third(const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+  static MECHKIN_INLINE void third(const Closure&, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
     const Vec3 e = b.jerk.angular - a.jerk.angular;
     r[0] = e.x, r[1] = e.y, r[2] = e.z;
   }
-  static MECHKIN_INLINE Vec3 moment(const Pack* l) { return {l[0], l[1], l[2]}; }
+  static MECHKIN_INLINE Vec3 moment(const Closure&, const Pack* l) { return {l[0], l[1], l[2]}; }
 };
 
-// Turns about z_A, fixed in the first link, and then about z_B, fixed in the second: z_A.z_B keeps its cosine.
-// x_A = x_B square to both at home.
-struct TwoTurns {
-  static MECHKIN_INLINE void residual(const Closure& k, Pack cosine, Pack* r) { r[0] = dot(k.A.Z, k.B.Z) - cosine; }
+// z_A.z_B keeps its cosine.
+template <class Cosine>
+struct KeptAngle : DirectionCondition<1> {
+  static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = dot(k.A.Z, k.B.Z) - Cosine::value(k); }
   static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) {
     r[0] = dot(s.angular, cross(k.B.Z, k.A.Z));
   }
@@ -176,24 +198,28 @@ struct TwoTurns {
     r[0] = third_of_product(k.A.Z, a, k.B.Z, b);
   }
   static MECHKIN_INLINE Vec3 moment(const Closure& k, const Pack* l) { return l[0] * cross(k.B.Z, k.A.Z); }
-  // B = Rz(theta1) Rx(angle of the axes) Rz(theta2); rates from the dual basis of the two axes.
-  static MECHKIN_INLINE void coordinate(const Closure& k, Pack c, const PairMotion& p, int turn, Pack* out) {
-    const Pack scale = Pack(1.0) / (Pack(1.0) - c * c);
-    const Pose &A = k.A, &B = k.B;
-    out[0] = turn == 0 ? atan2(dot(A.X, B.Z), -dot(A.Y, B.Z)) : atan2(dot(B.X, A.Z), dot(B.Y, A.Z));
-    if (p.order < 1) return;
-    const Vec3 one = turn == 0 ? A.Z : B.Z, other = turn == 0 ? B.Z : A.Z;
-    const Motion &m = turn == 0 ? p.a : p.b, &n = turn == 0 ? p.b : p.a;
-    const Vec3 dual = scale * (one - c * other);
-    out[1] = dot(dual, p.relative_omega());
-    if (p.order < 2) return;
-    const Vec3 dual_rate = scale * (m.rate(one) - c * n.rate(other));
-    out[2] = dot(dual, p.relative_alpha()) + dot(dual_rate, p.relative_omega());
-    if (p.order < 3) return;
-    const Vec3 dual_second = scale * (m.second_rate(one) - c * n.second_rate(other));
-    out[3] = dot(dual, p.relative_jerk()) + Pack(2.0) * dot(dual_rate, p.relative_alpha()) +
-             dot(dual_second, p.relative_omega());
+};
+
+// |d| = parameter: two points at a given distance.
+struct Distance : LengthCondition<1> {
+  static MECHKIN_INLINE Pack length(const Closure& k) { return sqrt(dot(k.d, k.d)); }
+  static MECHKIN_INLINE Vec3 line(const Closure& k) { return (Pack(1.0) / length(k)) * k.d; }
+  static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = length(k) - k.parameter; }
+  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) { r[0] = dot(line(k), s.at(k.B.o)); }
+  static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
+    const Vec3 e = line(k), d1 = first_of_d(k, a, b);
+    const Pack along = dot(e, d1);
+    r[0] = dot(e, second_of_d(k, a, b)) + (dot(d1, d1) - along * along) / length(k);
   }
+  // |d| |d|''' = 3 d'.d'' + d.d''' - 3 |d|' |d|''
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    const Vec3 d1 = first_of_d(k, a, b), d2 = second_of_d(k, a, b);
+    Pack bend = 0.0;
+    second(k, a, b, &bend);
+    r[0] = (Pack(3.0) * dot(d1, d2) + dot(k.d, third_of_d(k, a, b)) - Pack(3.0) * dot(line(k), d1) * bend) / length(k);
+  }
+  static MECHKIN_INLINE Vec3 force(const Closure& k, const Pack* l) { return l[0] * line(k); }
+  static MECHKIN_INLINE Vec3 point(const Closure& k) { return k.B.o; }
 };
 
 }  // namespace

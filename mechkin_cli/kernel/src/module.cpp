@@ -41,14 +41,13 @@ NewValues elementwise(int operation, Values x, Values y, int lanes) {
 // The joint table and the tree displacements that its pairs are chains of.
 nb::list joint_table() {
   nb::list table;
-  for (int code = 0; code < PAIR_CODES; ++code) {
+  for (int code = 0; code < kernel_unit()->pair_codes; ++code) {
     const PairType& t = kernel_unit()->pair_types[code];
     nb::dict entry;
     entry["letter"] = t.letter;
     entry["code"] = code;
-    entry["parts"] = t.parts;
-    entry["coordinates"] = t.coordinates;
     entry["equations"] = t.equations;
+    entry["lengths"] = t.lengths;
     table.append(entry);
   }
   return table;

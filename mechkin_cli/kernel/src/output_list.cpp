@@ -85,14 +85,7 @@ unsigned output_demand(int type, int order) {
 void check_closing_coordinate(const Plan& p, int c, int freedom) {
   const int type = p.closing[c].type;
   require(type != PAIR_LEG, "a leg has no coordinates");
-  // the names of a pair's coordinates by freedom; "-": a freedom that none is
-  const char* names = kernel_unit()->pair_types[type].coordinates;
-  int number = 0;
-  for (const char* at = names; *at; ++number) {
-    const std::size_t length = std::strcspn(at, " ");
-    if (number == freedom && !(length == 1 && *at == '-')) return;
-    at += length + (at[length] == ' ');
-  }
+  if (freedom >= 0 && freedom < 6 && kernel_unit()->pair_types[type].coordinates >> freedom & 1) return;
   throw std::invalid_argument("closing joint " + std::to_string(c) + " has no coordinate " + std::to_string(freedom));
 }
 

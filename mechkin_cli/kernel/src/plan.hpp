@@ -5,7 +5,7 @@
 // carried by tree joint k; ground is -1. Link frames: the frame of the link's tree joint, moved.
 #pragma once
 
-// Displacements that carry links in the tree; other pairs are chains of these (joint_types.py).
+// Displacements that carry links in the tree; other pairs are chains of these (joint_table.py).
 // TREE_L hangs the body of a leg between two points (legs.hpp).
 enum TreeCode : int {
   TREE_R = 0,
@@ -18,25 +18,9 @@ enum TreeCode : int {
   TREE_CODES = 7
 };
 
-// Pairs, in the order of the joint table (pairs.hpp). PAIR_LEG is no pair of the file format: the distance of two
-// points that a leg keeps.
-enum PairCode : int {
-  PAIR_R = 0,
-  PAIR_P = 1,
-  PAIR_H = 2,
-  PAIR_C = 3,
-  PAIR_S = 4,
-  PAIR_SP = 5,
-  PAIR_SG = 6,
-  PAIR_U = 7,
-  PAIR_E = 8,
-  PAIR_W = 9,
-  PAIR_SS = 10,
-  PAIR_SC = 11,
-  PAIR_CP = 12,
-  PAIR_CODES = 13,
-  PAIR_LEG = 13
-};
+// Pairs that close loops have their place in the list of pairs.hpp as code. PAIR_LEG is no pair of the file format: the
+// distance of two points that a leg keeps.
+enum PairCode : int { PAIR_LEG = 0 };
 
 // Axes (columns of the rotation) and origin of a frame, in a link's frame or in ground axes.
 struct Frame {

@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "arguments.hpp"
+#include "assembly_size.hpp"
 #include "bindings.hpp"
 #include "output_list.hpp"
 #include "plan_builder.hpp"
@@ -55,19 +56,36 @@ FrozenPlan with_size(const FrozenPlan& plan, double size) {
   return other;
 }
 
+double measured_size(const FrozenPlan& plan, const nb::kwargs& keywords) {
+  const Plan& p = plan.view();
+  Arguments given(keywords);
+  const double* const inputs = given.read_required("inputs", p.inputs);
+  const double* const guess = given.read_required("guess", p.states);
+  const int iterations = (int)given.integer("iterations", 0, MOST_ITERATIONS, 0);
+  const std::vector<double> tests = given.limits("tests", 3);
+  given.finish();
+  if (given.rows() != 1) throw nb::value_error("the size is that of one assembly");
+  const KernelUnit& unit = *kernel_unit(2);
+  SizeMemory memory(p, unit);
+  nb::gil_scoped_release released;
+  FloatingPointState state;
+  return assembly_size(p, unit, inputs, guess, {tests[0], tests[1], tests[2], iterations}, memory);
+}
+
 // What is demanded goes with what is given.
-void check_demand(const Request& r, const OutputList* outputs, int load_values) {
+void check_demand(const Request& r, const OutputList* outputs, const Plan& p) {
   const auto refuse = [](bool condition, const char* message) {
     if (condition) throw nb::value_error(message);
   };
   const bool velocity = r.demand & DEMAND_VELOCITY, acceleration = r.demand & DEMAND_ACCELERATION;
+  refuse(r.demand && p.columns && !p.blocks && !p.inputs, "a tree without inputs and blocks has poses only");
   refuse(!outputs != !r.outputs, "outputs and values are given together");
   refuse(outputs && (outputs->demand() & ~r.demand), "the outputs need more than is demanded");
   refuse(velocity && !r.rates, "velocities need rates of the inputs");
   refuse(acceleration && (!velocity || !r.accelerations),
          "accelerations need rates and accelerations of the inputs");
   refuse(r.demand & DEMAND_JERK && (!acceleration || !r.jerks), "jerks need accelerations, and jerks of the inputs");
-  refuse(r.demand & DEMAND_FORCES && load_values && !r.loads, "forces need the values of varying loads");
+  refuse(r.demand & DEMAND_FORCES && p.load_values && !r.loads, "forces need the values of varying loads");
   refuse(r.demand & DEMAND_POWER && !(r.demand & DEMAND_FORCES), "the power error needs forces");
   refuse(!(r.demand & DEMAND_CONDITION) != !r.condition, "an array for the condition goes with its demand");
   refuse(!(r.demand & DEMAND_POWER) != !r.power_error, "an array for the power error goes with its demand");
@@ -137,7 +155,7 @@ void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
   const int threads = threads_for(r.rows, given.integer("threads", 1, MOST_THREADS, 1));
   given.finish();
   if (r.rows == 0) return;
-  check_demand(r, outputs, p.load_values);
+  check_demand(r, outputs, p);
   Workspaces memory(unit, p, threads);
   nb::gil_scoped_release released;
   FloatingPointState state;
@@ -238,6 +256,7 @@ void bind_plan(nb::module_& m) {
       .def_prop_ro("constants", &constants_of<FrozenPlan>, nb::rv_policy::automatic)
       .def("with_constants", &with_constants<FrozenPlan>, "constants"_a)
       .def("with_size", &with_size, "size"_a)
+      .def("assembly_size", &measured_size, "arguments"_a)
       .def("run", &run, "arguments"_a)
       .def("search", &search, "arguments"_a);
   bind_outputs(m);

@@ -8,9 +8,7 @@ namespace {
 // Entries of a block's matrices are counted in int; its Jacobian would take 128 MB a lane.
 constexpr int MOST_BLOCK_ROWS = 4096;
 
-int equations(const ClosingJoint& j) {
-  return j.type == PAIR_LEG ? 1 : kernel_unit()->pair_types[j.type].equations;
-}
+int equations(const ClosingJoint& j) { return kernel_unit()->pair_types[j.type].equations; }
 
 }  // namespace
 
@@ -132,10 +130,12 @@ void PlanBuilder::sort_drives() {
 
 FrozenPlan PlanBuilder::finish() {
   open();
+  // a tree whose states are given whole: only its poses are asked for
+  const bool posed = block_.empty() && input_column_.empty();
   for (int c = 0; c < plan_.columns; ++c) {
     bool input = false;
     for (int i : input_column_) input = input || i == c;
-    require(input != (column_block_[c] >= 0), "every column must be an input or an unknown, not both");
+    require(posed || input != (column_block_[c] >= 0), "every column must be an input or an unknown, not both");
   }
   check_order();
   sort_drives();

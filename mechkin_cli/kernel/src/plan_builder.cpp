@@ -78,7 +78,7 @@ void PlanBuilder::add_tree_joint(int type, int parent, double pitch, const Frame
 void PlanBuilder::add_closing_joint(int type, int first, int second, const FrameData& on_first,
                                     const FrameData& on_second, double parameter, const Loop& loop) {
   open();
-  require(type >= 0 && type < PAIR_CODES && pair_type(type).equations > 0, "this pair cannot close a loop");
+  require(type > PAIR_LEG && type < kernel_unit()->pair_codes, "this pair cannot close a loop");
   check_link(first);
   check_link(second);
   check_finite(on_first), check_finite(on_second), check_finite(parameter);

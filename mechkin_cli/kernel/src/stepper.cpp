@@ -23,17 +23,12 @@ std::vector<ClosingTurn> closing_turns(const Plan& plan, const KernelUnit& unit)
     slot += width;
   };
   for (int c = 0; c < plan.closings; ++c) {
-    if (plan.closing[c].type >= PAIR_CODES) continue;  // a leg
-    const char* name = unit.pair_types[plan.closing[c].type].coordinates;
-    if (*name == '-') {
-      add(c, -1, 4);
-      continue;
-    }
-    for (int freedom = 0; *name; ++freedom) {
-      if (std::strncmp(name, "theta", 5) == 0) add(c, freedom, 1);
-      while (*name && *name != ' ') ++name;
-      while (*name == ' ') ++name;
-    }
+    if (plan.closing[c].type == PAIR_LEG) continue;
+    const PairType& pair = unit.pair_types[plan.closing[c].type];
+    const bool oriented = !(pair.coordinates & 1) && pair.equations < 6;  // a ball; a weld has no freedom
+    if (oriented) add(c, -1, 4);
+    for (int freedom = 0; pair.angles >> freedom; ++freedom)
+      if (pair.angles >> freedom & 1) add(c, freedom, 1);
   }
   return turns;
 }

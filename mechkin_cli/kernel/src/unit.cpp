@@ -179,19 +179,16 @@ constexpr TreeType tree_types[TREE_CODES] = {tree_type<Turn>(),         tree_typ
                                              tree_type<TurnAndSlide>(), tree_type<Orientation>(), tree_type<Fixed>(),
                                              tree_type<Fixed>()};
 
-template <class Entry>
-constexpr PairType pair_type() {
-  return {Entry::letter, Entry::parts, Entry::coordinates, Entry::equations};
-}
-// in the order of PairCode
-constexpr PairType pair_types[PAIR_CODES] = {
-    pair_type<Revolute>(),      pair_type<Prismatic>(),      pair_type<Helical>(),   pair_type<Cylindric>(),
-    pair_type<Spheric>(),       pair_type<SphereOnPlane>(),  pair_type<SphereInGroove>(),
-    pair_type<Universal>(),     pair_type<Planar>(),         pair_type<Weld>(),      pair_type<SlottedSphere>(),
-    pair_type<SphereInSlottedCylinder>(), pair_type<CylinderOnPlane>()};
+// in the order of their codes
+template <class... All>
+struct PairTypes;
+template <class... All>
+struct PairTypes<Entries<All...>> {
+  static constexpr PairType table[] = {{All::letter, All::equations, All::lengths, All::coordinates(), All::angles()}...};
+};
 
-const KernelUnit unit = {LANES, tree_types, pair_types, workspace_size, run, run_rows, search_rows, elementwise,
-                         replay_size, replay};
+const KernelUnit unit = {LANES, tree_types, PairTypes<Pairs>::table, Pairs::count, workspace_size, run, run_rows, search_rows,
+                         elementwise, replay_size, replay};
 
 }  // namespace
 

@@ -10,14 +10,17 @@ struct TreeType {
   int slides;  // bit f: freedom f is a length
 };
 struct PairType {
-  const char *letter, *parts, *coordinates;
-  int equations;  // as a closing joint; 0: closes no loop
+  const char* letter;
+  int equations, lengths;  // how many close it, and how many of them, the first ones, are lengths
+  int coordinates;         // bit f: freedom f is one
+  int angles;              // bit f: freedom f is one that is an angle
 };
 
 struct KernelUnit {
   int lanes;
   const TreeType* tree_types;  // TREE_CODES
-  const PairType* pair_types;  // PAIR_CODES
+  const PairType* pair_types;
+  int pair_codes;
   long (*workspace_size)(const Plan&);
   void (*run)(const Plan&, const Request&, char* workspace);
   // Rows [begin, end) alone; what a row gets does not depend on the cut.

@@ -7,8 +7,9 @@ no quantity asked for depends on, and that no joint listed lies in, are left out
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism
@@ -18,16 +19,25 @@ from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import SolverGraph
 
+if TYPE_CHECKING:
+    from mechkin_cli.solver.session import Session
 
-def followed_part(problem: Problem, graph: SolverGraph, wanted: Iterable[Wanted]) -> Problem:
-    """The problem of the loops that are followed; the same problem if that is all of them."""
-    wanted = list(wanted)
+
+def followed_session(session: Session, wanted: Iterable[Wanted]) -> Session:
+    """The session of the loops that are followed; the same one if that is all of them."""
+    problem, wanted = session.problem, list(wanted)
     if problem.follow is None or demand_of(problem.mechanism, wanted) & Demand.FORCES:
-        return problem
-    needed = _needed_blocks(problem, graph, wanted)
-    left_out = [b for b in range(len(graph.blocks)) if b not in needed]
+        return session
+    needed = _needed_blocks(problem, session.graph, wanted)
+    left_out = tuple(b for b in range(len(session.graph.blocks)) if b not in needed)
     if not left_out:
-        return problem
+        return session
+    key = ("part", left_out)
+    return session.once(key, lambda: session.of(_part(problem, session.graph, left_out)))
+
+
+def _part(problem: Problem, graph: SolverGraph, left_out: Sequence[int]) -> Problem:
+    """The problem without some blocks."""
     mechanism = _without(problem.mechanism, graph, left_out)
     note = _note(graph, left_out)
     near = {k: v for k, v in problem.assembly.near.items() if k in mechanism.coordinates}
@@ -92,7 +102,7 @@ def _links_of(mechanism: Mechanism, quantity: Wanted) -> tuple[str, ...]:
     return (quantity.owner,) if quantity.owner in mechanism.links else ()
 
 
-def _without(mechanism: Mechanism, graph: SolverGraph, left_out: list[int]) -> Mechanism:
+def _without(mechanism: Mechanism, graph: SolverGraph, left_out: Sequence[int]) -> Mechanism:
     """The mechanism without some blocks' closing joints and what their unknowns carry."""
     unknown = {k for b in left_out for k, _ in graph.blocks[b].unknowns}
     gone_joints = {graph.closings[c].joint.name for b in left_out for c in graph.blocks[b].closings}
@@ -113,7 +123,7 @@ def _without(mechanism: Mechanism, graph: SolverGraph, left_out: list[int]) -> M
     )
 
 
-def _note(graph: SolverGraph, left_out: list[int]) -> Diagnostic:
+def _note(graph: SolverGraph, left_out: Sequence[int]) -> Diagnostic:
     names = []
     for b in left_out:
         for c in graph.blocks[b].closings:

@@ -28,9 +28,7 @@ from mechkin_cli.tape.scalars import largest
 from mechkin_cli.units import LENGTH, MOMENT
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from mechkin_cli.solver.demand import Slot
+    from mechkin_cli.arrays import Floats
 
 
 def spin_errors(problem: Problem) -> list[tuple[str, Diagnostic]]:
@@ -50,16 +48,14 @@ def spin_errors(problem: Problem) -> list[tuple[str, Diagnostic]]:
     return found
 
 
-def holding_notes(
-    problem: Problem, slots: Mapping[str, Slot], values: NDArray[np.float64]
-) -> list[Diagnostic]:
-    """The largest moment that holds each leg from spinning."""
+def holding_notes(problem: Problem, moments: Mapping[str, Floats]) -> list[Diagnostic]:
+    """The largest moment that holds each leg from spinning; `moments` (N m) by name, (rows,)."""
     notes = []
     for leg in find_legs(problem.mechanism):
-        slot = slots.get(f"{leg.body}.holding_moment")
-        if slot is None:
+        moment = moments.get(f"{leg.body}.holding_moment")
+        if moment is None:
             continue
-        row = np.abs(values[slot.first])
+        row = np.abs(moment)
         largest = float(np.max(row[np.isfinite(row)], initial=0.0))
         text = f"{float(problem.units.from_si(largest, MOMENT)):.6g}"
         notes.append(

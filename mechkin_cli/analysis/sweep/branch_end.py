@@ -7,26 +7,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.rows import (
-    MAY_BE_RIGID,
-    RowStates,
-    input_number,
-    input_numbers,
-    input_text,
-)
-from mechkin_cli.analysis.setup import Setup
+from mechkin_cli.analysis.assembly.start import MAY_BE_RIGID
+from mechkin_cli.analysis.sweep.rows import Rows
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.solver.branch_limit import find_limit
 from mechkin_cli.solver.branch_point import BranchPoint
 from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import Followed
-from mechkin_cli.solver.graph import is_redundant
+from mechkin_cli.solver.inputs import input_number, input_numbers, input_text
 from mechkin_cli.solver.runaway import Runaway
 from mechkin_cli.status import Status
 from mechkin_cli.units import LENGTH
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.solver.session import Session
 
 
 MAY_BE_SPECIAL = "this may be a branch point or a special position; sweep from its other side"
@@ -36,7 +31,7 @@ MAY_BE_FOLD = (
 )
 
 
-def explain_end(setup: Setup, path: Floats, followed: Followed, rows: RowStates) -> int | None:
+def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) -> int | None:
     """Finds why a branch ended; rows before a dead centre get their guesses from its shape.
 
     `path` (inputs, rows) in kernel units and `rows` are in the order in which they were followed.
@@ -44,7 +39,7 @@ def explain_end(setup: Setup, path: Floats, followed: Followed, rows: RowStates)
     Returns the row from which the way can be followed anew, back from the last place on the branch;
     None where it ends.
     """
-    locked = _locked_inputs(setup, path, followed)
+    locked = _locked_inputs(session, path, followed)
     if locked:
         rows.status[~rows.reached] = Status.branch_lost
         rows.diagnostics.extend(locked)
@@ -53,39 +48,38 @@ def explain_end(setup: Setup, path: Floats, followed: Followed, rows: RowStates)
     row = followed.reached - 1
     while row > 0 and np.max(np.abs(followed.inputs - path[:, row])) <= far:
         row -= 1
-    layout, plan, driven = setup.layout, setup.outputs.plan, setup.problem.motion.driven
-    limit = find_limit(layout, plan, driven, followed, path[:, row], rows.guess[:, row])
+    limit = find_limit(session, followed, path[:, row], rows.states[:, row])
     if isinstance(limit, DeadCentre):
         number = int(np.flatnonzero(followed.direction)[0])
         back = _fill_before(limit, path, followed, number, rows)
         if back is not None or rows.reached.all():
             return back
         rows.status[~rows.reached] = Status.beyond_dead_centre
-        rows.diagnostics.append(_dead_centre_note(setup, limit, number, path, rows))
+        rows.diagnostics.append(_dead_centre_note(session, limit, number, path, rows))
         return None
     rows.status[~rows.reached] = Status.branch_lost
     if isinstance(limit, Runaway):
-        rows.diagnostics.append(_runaway_note(setup, followed, limit, rows))
+        rows.diagnostics.append(_runaway_note(session, followed, limit, rows))
     elif isinstance(limit, BranchPoint):
-        rows.diagnostics.append(_branch_point_note(setup, followed, limit, rows))
+        rows.diagnostics.append(_branch_point_note(session, followed, limit, rows))
     else:
-        rows.diagnostics.append(_lost_note(setup, followed, rows))
+        rows.diagnostics.append(_lost_note(session, followed, rows))
     return None
 
 
-def _locked_inputs(setup: Setup, path: Floats, followed: Followed) -> list[Diagnostic]:
+def _locked_inputs(session: Session, path: Floats, followed: Followed) -> list[Diagnostic]:
     """What the mobility of an overconstrained mechanism says of inputs that hardly moved."""
     way = float(np.max(np.abs(followed.inputs - path[:, 0]), initial=0.0))
-    if way > tolerances.PASSED or not is_redundant(setup.graph):
+    if way > tolerances.PASSED or not session.is_redundant:
         return []
     from mechkin_cli.analysis.mobility import find_mobility
 
-    found = find_mobility(setup.problem).diagnostics
+    found = find_mobility(session.problem, session).diagnostics
     return [d for d in found if d.code in ("input-locked", "inputs-dependent")]
 
 
 def _fill_before(
-    fold: DeadCentre, path: Floats, followed: Followed, number: int, rows: RowStates
+    fold: DeadCentre, path: Floats, followed: Followed, number: int, rows: Rows
 ) -> int | None:
     """Guesses for the rows between the last place followed and the fold.
 
@@ -102,19 +96,19 @@ def _fill_before(
         guess = fold.guess(value, followed.state)
         if guess is None:
             return None
-        rows.guess[:, row] = guess
+        rows.states[:, row] = guess
         rows.limit[row] = tolerances.JUMP_LIMIT
         rows.reached[row] = True
         before = value
     return None
 
 
-def _row_span(rows: RowStates) -> str:
+def _row_span(rows: Rows) -> str:
     missing = np.sort(rows.numbers[~rows.reached]) + 1
     return f"row {missing[0]}" if missing.size == 1 else f"rows {missing[0]} to {missing[-1]}"
 
 
-def _stay_empty(rows: RowStates, where: str = "") -> str:
+def _stay_empty(rows: Rows, where: str = "") -> str:
     """The missing rows in words, and `where` they lie."""
     one = int(np.count_nonzero(~rows.reached)) == 1
     lie = f"{'lies' if one else 'lie'} {where} and " if where else ""
@@ -122,9 +116,9 @@ def _stay_empty(rows: RowStates, where: str = "") -> str:
 
 
 def _dead_centre_note(
-    setup: Setup, fold: DeadCentre, number: int, path: Floats, rows: RowStates
+    session: Session, fold: DeadCentre, number: int, path: Floats, rows: Rows
 ) -> Diagnostic:
-    place = input_number(setup.problem, setup.layout, number, fold.value)
+    place = input_number(session.problem, session.layout, number, fold.value)
     inwards = float(fold.second[fold.exchanged.input_column])
     beyond = (path[number, ~rows.reached] - fold.value) * inwards <= 0.0
     where = "beyond it" if beyond.all() else "beyond it on the way of the rows"
@@ -138,10 +132,10 @@ def _dead_centre_note(
     )
 
 
-def _runaway_note(setup: Setup, followed: Followed, limit: Runaway, rows: RowStates) -> Diagnostic:
-    places = input_numbers(setup.problem, setup.layout, followed.inputs)
-    units = setup.problem.units
-    slide = float(units.from_si(limit.slide * setup.layout.length, LENGTH))
+def _runaway_note(session: Session, followed: Followed, limit: Runaway, rows: Rows) -> Diagnostic:
+    places = input_numbers(session.problem, session.layout, followed.inputs)
+    units = session.problem.units
+    slide = float(units.from_si(limit.slide * session.layout.length, LENGTH))
     return Diagnostic(
         "unbounded",
         "error",
@@ -155,10 +149,10 @@ def _runaway_note(setup: Setup, followed: Followed, limit: Runaway, rows: RowSta
 
 
 def _branch_point_note(
-    setup: Setup, followed: Followed, point: BranchPoint, rows: RowStates
+    session: Session, followed: Followed, point: BranchPoint, rows: Rows
 ) -> Diagnostic:
     places = input_numbers(
-        setup.problem, setup.layout, followed.inputs + point.distance * followed.direction
+        session.problem, session.layout, followed.inputs + point.distance * followed.direction
     )
     return Diagnostic(
         "branch-point",
@@ -172,8 +166,8 @@ def _branch_point_note(
     )
 
 
-def _lost_note(setup: Setup, followed: Followed, rows: RowStates) -> Diagnostic:
-    places = input_numbers(setup.problem, setup.layout, followed.inputs)
+def _lost_note(session: Session, followed: Followed, rows: Rows) -> Diagnostic:
+    places = input_numbers(session.problem, session.layout, followed.inputs)
     together = np.count_nonzero(followed.direction) > 1
     special = MAY_BE_FOLD if together else MAY_BE_SPECIAL
     return Diagnostic(
@@ -181,6 +175,6 @@ def _lost_note(setup: Setup, followed: Followed, rows: RowStates) -> Diagnostic:
         "error",
         f"the branch could not be followed further; {_stay_empty(rows)}",
         measured=f"last place {', '.join(map(input_text, places))}",
-        hint=MAY_BE_RIGID if is_redundant(setup.graph) else special,
+        hint=MAY_BE_RIGID if session.is_redundant else special,
         numbers=places,
     )

@@ -10,26 +10,21 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.assembly import nothing_found
-from mechkin_cli.analysis.home import is_home_assembled, nearest_to_home
-from mechkin_cli.analysis.named_modes import NamedModes, name_modes
-from mechkin_cli.analysis.probe import Probe
-from mechkin_cli.analysis.rows import input_number, kernel_inputs
+from mechkin_cli.analysis.assembly.home import is_home_assembled, nearest_to_home
+from mechkin_cli.analysis.assembly.named_modes import NamedModes, name_modes
+from mechkin_cli.analysis.assembly.start import nothing_found
 from mechkin_cli.diagnostics import Diagnostic, UsageError
+from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
-from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.circuit import Branch, End, Walker
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import OutputPlan
-from mechkin_cli.solver.follow import follow
-from mechkin_cli.solver.graph import ANGLES, SolverGraph
-from mechkin_cli.solver.layout import Layout
-from mechkin_cli.units import ANGLE, LENGTH
+from mechkin_cli.solver.inputs import input_number
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.solver.session import Session
 
 SAMPLES = 720
 """Places of a range at which the sign of an output's rate is read."""
@@ -82,9 +77,7 @@ class Ranges:
     diagnostics: tuple[Diagnostic, ...]
 
 
-def find_ranges(
-    problem: Problem, graph: SolverGraph, name: str | None = None, outputs: tuple[str, ...] = ()
-) -> Ranges:
+def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, ...] = ()) -> Ranges:
     """The ranges of the input `name` (the first that the file sweeps), with the extremes of some
     coordinates.
 
@@ -93,6 +86,7 @@ def find_ranges(
     Raises:
         UsageError: no input, or an unknown input or coordinate.
     """
+    problem = session.problem
     number = _input_number(problem, name)
     for output in outputs:
         if output not in problem.mechanism.coordinates:
@@ -100,22 +94,20 @@ def find_ranges(
                 f"there is no coordinate {output}; coordinates are "
                 f"{', '.join(problem.mechanism.coordinates)}"
             )
-    layout = Layout(problem.mechanism, graph)
-    plan = layout.build()
-    path = kernel_inputs(problem, layout).values
-    first, probe = path[:, 0], Probe(problem, layout)
-    named = name_modes(problem, layout, plan, first, probe)
-    if named.number == 0 and is_home_assembled(layout, plan):
+    path = session.inputs.values
+    first = path[:, 0]
+    named = name_modes(session, first)
+    if named.number == 0 and is_home_assembled(session):
         first = path[:, nearest_to_home(path)]
-        named = name_modes(problem, layout, plan, first, probe)
+        named = name_modes(session, first)
     item = problem.motion.inputs[number]
     at = {i.name: float(i.written[0]) for i in problem.motion.inputs if i is not item}
-    unit = problem.units.label(ANGLE if item.coordinate in ANGLES else LENGTH)
+    unit = problem.units.label(dimension_of(item.coordinate))
     if named.number == 0:
-        note = nothing_found(problem, graph, named.found)
+        note = nothing_found(session, named.found)
         return Ranges(item.name, unit, at, (), (), (*problem.diagnostics, note))
-    walker = Walker(layout, plan, problem.motion.driven, number, first)
-    ranges, circuits = _Survey(problem, layout, named, walker, outputs).ranges()
+    walker = Walker(session, number, first)
+    ranges, circuits = _Survey(session, named, walker, outputs).ranges()
     return Ranges(item.name, unit, at, ranges, circuits, problem.diagnostics)
 
 
@@ -137,16 +129,16 @@ class _Survey:
 
     def __init__(
         self,
-        problem: Problem,
-        layout: Layout,
+        session: Session,
         named: NamedModes,
         walker: Walker,
         outputs: tuple[str, ...],
     ) -> None:
-        self.problem, self.layout, self.named, self.walker = problem, layout, named, walker
-        quantities = problem.quantities()
+        self.session, self.problem, self.layout = session, session.problem, session.layout
+        self.named, self.walker = named, walker
+        quantities = self.problem.quantities()
         self.outputs = [quantities[name] for name in outputs]
-        self.keys = pose_keys(layout, named.found.states)
+        self.keys = pose_keys(self.layout, named.found.states)
 
     def ranges(self) -> tuple[tuple[Range, ...], tuple[tuple[str, ...], ...]]:
         """The ranges in the order of the letters, and the circuits."""
@@ -212,16 +204,10 @@ class _Stationary:
 
     def __init__(self, survey: _Survey, branch: Branch, wanted: Wanted) -> None:
         self.walker, self.branch = survey.walker, branch
-        layout = survey.layout
-        self.plan = layout.build()
-        outputs = OutputPlan(layout, self.plan, survey.problem.motion.driven)
-        self.outputs = outputs
-        known = survey.problem.quantities()
-        self.slots = []
-        for suffix in ("", "_dot", "_ddot"):
-            quantity = known[wanted.name + suffix]
-            outputs.add(quantity)
-            self.slots.append(outputs.slots[quantity.name].first)
+        self.session, known = survey.session, survey.problem.quantities()
+        orders = [known[wanted.name + suffix] for suffix in ("", "_dot", "_ddot")]
+        self.readout = self.session.readout(orders)
+        self.slots = [self.readout.slots[quantity.name].first for quantity in orders]
 
     def places(self) -> list[tuple[float, float]]:
         """(input, output) in kernel units and SI."""
@@ -236,7 +222,7 @@ class _Stationary:
             steps = first + (last - first) * np.linspace(0.0, 1.0, SAMPLES + 1)[:-1]
             path = np.repeat(self.walker.inputs[:, None], steps.size, axis=1)
             path[self.walker.number] = steps
-            way = follow(self.plan, path, start.state)
+            way = self.session.follow(path, start.state)
             count = way.reached
             rates = self._derivatives(path[:, :count], way.guess[:, :count])[1]
             for k in np.flatnonzero(rates[:-1] * rates[1:] <= 0.0):
@@ -249,14 +235,13 @@ class _Stationary:
         """The output and its first two derivatives by the input, (3, places)."""
         rates = np.zeros_like(inputs)
         rates[self.walker.number] = 1.0
-        batch = run(
-            self.plan,
-            np.ascontiguousarray(inputs),
-            np.ascontiguousarray(guess),
+        batch = self.session.run(
+            inputs,
+            guess,
+            readout=self.readout,
             rates=rates,
             accelerations=np.zeros_like(rates),
             demand=Demand.VELOCITY | Demand.ACCELERATION,
-            outputs=self.outputs.outputs,
         )
         assert batch.outputs is not None
         return batch.outputs[self.slots]
@@ -272,7 +257,7 @@ class _Stationary:
         for _ in range(tolerances.DEAD_CENTRE_ITERATIONS):
             path = np.stack([inputs, inputs], axis=1)
             path[self.walker.number] = first, value
-            state = follow(self.plan, path, guess).state
+            state = self.session.follow(path, guess).state
             output, rate, bend = (
                 float(x) for x in self._derivatives(path[:, 1:], state[:, None])[:, 0]
             )

@@ -7,29 +7,33 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.solver.batch import run
-from mechkin_cli.solver.follow import Followed, follow
-from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.follow import Followed
+    from mechkin_cli.solver.layout import Layout
+    from mechkin_cli.solver.session import Session
 
 
 def home_state(layout: Layout) -> Floats:
     """States of the home drawing: every coordinate zero."""
     state = np.zeros(layout.states)
     for carrier in layout.carriers:
-        if carrier.part.letter == "S":
+        if carrier.part.type.is_ball:
             state[carrier.state] = 1.0
     return state
 
 
-def is_home_assembled(layout: Layout, plan: Plan) -> bool:
+def is_home_assembled(session: Session) -> bool:
     """Whether the home drawing closes all loops as drawn."""
-    zeros = np.zeros((len(layout.graph.inputs), 1))
+    return session.once("home", lambda: _is_home_assembled(session))
+
+
+def _is_home_assembled(session: Session) -> bool:
+    zeros = np.zeros((len(session.graph.inputs), 1))
     tests = (0.0, 0.0, tolerances.HOME_ASSEMBLED)
-    batch = run(plan, zeros, home_state(layout)[:, None], iterations=0, tests=tests)
+    home = home_state(session.layout)[:, None]
+    batch = session.run(zeros, home, iterations=0, tests=tests)
     return bool(batch.good[0])
 
 
@@ -38,7 +42,7 @@ def nearest_to_home(path: Floats) -> int:
     return int(np.argmin(np.max(np.abs(path), axis=0))) if path.size else 0
 
 
-def follow_from_home(layout: Layout, plan: Plan, inputs: Floats) -> Followed:
+def follow_from_home(session: Session, inputs: Floats) -> Followed:
     """The branch of an assembled drawing, straight to `inputs` (inputs,)."""
     path = np.stack([np.zeros_like(inputs), inputs], axis=1)
-    return follow(plan, path, home_state(layout))
+    return session.follow(path, home_state(session.layout))

@@ -14,23 +14,23 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.assembly import choose_start, nothing_found
-from mechkin_cli.analysis.bounds import most_assemblies
-from mechkin_cli.analysis.named_modes import NamedModes, is_cyclic, name_modes, wrapped
-from mechkin_cli.analysis.probe import Probe
-from mechkin_cli.analysis.rows import input_numbers, input_text, kernel_inputs
+from mechkin_cli.analysis.assembly.named_modes import NamedModes, is_cyclic, name_modes, wrapped
+from mechkin_cli.analysis.assembly.probe import Probe
+from mechkin_cli.analysis.assembly.start import Start, choose_start, nothing_found
+from mechkin_cli.analysis.modes.bounds import most_assemblies
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.clusters import pose_keys, same_poses
-from mechkin_cli.solver.follow import TrackEnd, follow
-from mechkin_cli.solver.graph import ANGLES, SolverGraph
+from mechkin_cli.solver.follow import TrackEnd
+from mechkin_cli.solver.inputs import input_numbers, input_text, kernel_inputs
 from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.search import Found, assemblies, with_assemblies
-from mechkin_cli.units import ANGLE, LENGTH, Dimension
+from mechkin_cli.solver.search import Found, with_assemblies
+from mechkin_cli.units import Dimension
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.session import Session
 
 UNNAMED = "-"
 """Name of a mode that no branch from the first row reaches."""
@@ -92,36 +92,45 @@ class Modes:
         return text
 
 
-def find_modes(
-    problem: Problem, graph: SolverGraph, at: Mapping[str, float] | None = None
-) -> Modes:
+def find_modes(session: Session, at: Mapping[str, float] | None = None) -> Modes:
     """The assembly modes at the first row, or with the inputs `at` (by name, in the file's units)
     in place of the values there."""
-    layout = Layout(problem.mechanism, graph)
-    plan = layout.build()
-    probe = Probe(problem, layout)
-    first = kernel_inputs(problem, layout).values[:, 0]
-    named = name_modes(problem, layout, plan, first, probe)
-    start = choose_start(problem, layout, plan, first[:, None], probe, named)
-    chosen = _number_of(layout, named.found, start.state)
+    layout = session.layout
+    first = session.inputs.values[:, 0]
+    named = name_modes(session, first)
+    start = choose_start(session)
+    # an assembled drawing may be followed from another row
+    state = start.state if start.row == 0 else _state_at(session, start, first)
+    chosen = _number_of(layout, named.found, state)
     letter = UNNAMED if chosen is None else named.letters[chosen]
     if at is None:
         notes = start.diagnostics
         names = [named.letters[i] for i in range(named.number)]
-        return _result(problem, layout, probe, first, {}, named.found, names, letter, notes)
-    place = _inputs_at(problem, layout, at)
-    ends, notes = _follow_all(problem, layout, plan, first, place, named)
-    found = assemblies(layout, plan, place, problem.assembly.turns)
+        return _result(session, first, {}, named.found, names, letter, notes)
+    place = _inputs_at(session, at)
+    ends, notes = _follow_all(session, first, place, named)
+    found = session.search(place)
     if ends:
-        found = with_assemblies(layout, plan, place, found, np.stack([*ends.values()], axis=1))
+        states = np.stack([*ends.values()], axis=1)
+        found = with_assemblies(layout, session.plan, place, found, states)
     if found.number == 0:
-        notes = [nothing_found(problem, layout.graph, found, "there")]
+        notes = [nothing_found(session, found, "there")]
     names = _names_at(layout, found, ends)
-    return _result(problem, layout, probe, place, at, found, names, letter, notes)
+    return _result(session, place, at, found, names, letter, notes)
 
 
-def _inputs_at(problem: Problem, layout: Layout, at: Mapping[str, float]) -> Floats:
+def _state_at(session: Session, start: Start, first: Floats) -> Floats | None:
+    """States of the first assembly's branch at the first row."""
+    if start.state is None:
+        return None
+    path = np.stack([session.inputs.values[:, start.row], first], axis=1)
+    followed = session.follow(path, start.state)
+    return followed.state if followed.end == TrackEnd.FINISHED else None
+
+
+def _inputs_at(session: Session, at: Mapping[str, float]) -> Floats:
     """Inputs (inputs,) in kernel units."""
+    problem = session.problem
     inputs = []
     for item in problem.motion.inputs:
         value = float(item.values[0])
@@ -129,7 +138,7 @@ def _inputs_at(problem: Problem, layout: Layout, at: Mapping[str, float]) -> Flo
             value = float(problem.units.to_si(at[item.name], _dimension(item.name)))
         inputs.append(item._replace(values=np.full(problem.motion.rows, value)))
     changed = replace(problem, motion=problem.motion._replace(inputs=tuple(inputs)))
-    return kernel_inputs(changed, layout).values[:, 0]
+    return kernel_inputs(changed, session.layout).values[:, 0]
 
 
 def _number_of(layout: Layout, found: Found, state: Floats | None) -> int | None:
@@ -141,12 +150,7 @@ def _number_of(layout: Layout, found: Found, state: Floats | None) -> int | None
 
 
 def _follow_all(
-    problem: Problem,
-    layout: Layout,
-    plan: Plan,
-    first: Floats,
-    place: Floats,
-    named: NamedModes,
+    session: Session, first: Floats, place: Floats, named: NamedModes
 ) -> tuple[dict[str, Floats], list[Diagnostic]]:
     """States at `place` by letter, of the branches that arrive there; a note for each that does
     not."""
@@ -154,11 +158,11 @@ def _follow_all(
     notes = []
     path = np.stack([first, place], axis=1)
     for number, letter in named.letters.items():
-        followed = follow(plan, path, named.found.states[:, number])
+        followed = session.follow(path, named.found.states[:, number])
         if followed.end == TrackEnd.FINISHED:
             ends[letter] = followed.state
             continue
-        places = input_numbers(problem, layout, followed.inputs)
+        places = input_numbers(session.problem, session.layout, followed.inputs)
         notes.append(
             Diagnostic(
                 "branch-ends",
@@ -181,9 +185,7 @@ def _names_at(layout: Layout, found: Found, ends: Mapping[str, Floats]) -> list[
 
 
 def _result(
-    problem: Problem,
-    layout: Layout,
-    probe: Probe,
+    session: Session,
     place: Floats,
     at: Mapping[str, float],
     found: Found,
@@ -191,6 +193,7 @@ def _result(
     letter: str,
     notes: list[Diagnostic],
 ) -> Modes:
+    problem = session.problem
     if found.free and found.number:
         notes = [*notes, _free_note(found)]
     if found.stopped:
@@ -198,7 +201,7 @@ def _result(
     inputs = {
         item.name: at.get(item.name, float(item.written[0])) for item in problem.motion.inputs
     }
-    coordinates, _ = probe.read(place, found.states)
+    coordinates, _ = Probe.of(session).read(place, found.states)
     order = sorted(
         range(found.number), key=lambda i: (names[i] == UNNAMED, len(names[i]), names[i])
     )
@@ -211,7 +214,7 @@ def _result(
         )
         for i in order
     )
-    threads = any(joint.letter == "H" for joint in problem.mechanism.joints.values())
+    threads = any(joint.type.is_threaded for joint in problem.mechanism.joints.values())
     return Modes(
         modes=modes,
         inputs=inputs,
@@ -220,7 +223,7 @@ def _result(
         closed=found.closed,
         chance=found.chance,
         stopped=found.stopped,
-        bound=most_assemblies(layout.graph),
+        bound=most_assemblies(session.graph),
         turns=problem.assembly.turns if threads else None,
         diagnostics=(*problem.diagnostics, *notes),
     )
@@ -238,7 +241,7 @@ def _in_file_units(problem: Problem, name: str, value: float) -> float:
 
 
 def _dimension(name: str) -> Dimension:
-    return ANGLE if name.partition(".")[2] in ANGLES else LENGTH
+    return dimension_of(name.partition(".")[2])
 
 
 def _free_note(found: Found) -> Diagnostic:

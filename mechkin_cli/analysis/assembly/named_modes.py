@@ -11,18 +11,16 @@ from math import ceil, pi
 from typing import TYPE_CHECKING
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.home import follow_from_home, is_home_assembled
-from mechkin_cli.analysis.probe import Probe
+from mechkin_cli.analysis.assembly.home import follow_from_home, is_home_assembled
+from mechkin_cli.analysis.assembly.probe import Probe
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.model import Mechanism
-from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.follow import TrackEnd
-from mechkin_cli.solver.graph import ANGLES
-from mechkin_cli.solver.layout import Layout, is_slide
-from mechkin_cli.solver.search import Found, assemblies, with_assemblies
+from mechkin_cli.solver.search import Found, with_assemblies
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.session import Session
 
 
 @dataclass(frozen=True)
@@ -41,17 +39,22 @@ class NamedModes:
         return self.found.number
 
 
-def name_modes(
-    problem: Problem, layout: Layout, plan: Plan, inputs: Floats, probe: Probe
-) -> NamedModes:
+def name_modes(session: Session, inputs: Floats) -> NamedModes:
     """The modes at the first row, `inputs` (inputs,) in kernel units."""
-    found = assemblies(layout, plan, inputs, problem.assembly.turns)
-    if is_home_assembled(layout, plan):
-        home = follow_from_home(layout, plan, inputs)
+    return session.once(("modes", inputs.tobytes()), lambda: _name_modes(session, inputs))
+
+
+def _name_modes(session: Session, inputs: Floats) -> NamedModes:
+    found = session.search(inputs)
+    if is_home_assembled(session):
+        home = follow_from_home(session, inputs)
         if home.end == TrackEnd.FINISHED:
-            found = with_assemblies(layout, plan, inputs, found, home.state[:, None])
-    coordinates, points = probe.read(inputs, found.states)
-    return NamedModes(found, coordinates, points, letters(problem.mechanism, coordinates, points))
+            found = with_assemblies(
+                session.layout, session.plan, inputs, found, home.state[:, None]
+            )
+    coordinates, points = Probe.of(session).read(inputs, found.states)
+    names = letters(session.problem.mechanism, coordinates, points)
+    return NamedModes(found, coordinates, points, names)
 
 
 def letters(mechanism: Mechanism, coordinates: dict[str, Floats], points: Floats) -> dict[int, str]:
@@ -73,7 +76,7 @@ def _key(mechanism: Mechanism, coordinates: dict[str, Floats], number: int) -> t
     for name, values in coordinates.items():
         value = float(values[number])
         angle = is_cyclic(mechanism, name)
-        if is_slide(name.partition(".")[2]):
+        if not is_angle(name.partition(".")[2]):
             value /= size
         part = round((wrapped(value) if angle else value) / tolerances.MODE_ORDER)
         key.append(half_turn if angle and part == -half_turn else part)
@@ -98,7 +101,8 @@ def mode_name(rank: int) -> str:
 def is_cyclic(mechanism: Mechanism, name: str) -> bool:
     """Whether a turn more of a coordinate is the same place: angles but for those of threads."""
     joint, _, coordinate = name.partition(".")
-    return coordinate in ANGLES and mechanism.joints[joint].letter != "H"
+    kind = mechanism.joints[joint].type
+    return kind.chain[kind.freedom_of[coordinate]].is_cyclic
 
 
 def wrapped(angle: float) -> float:

@@ -6,53 +6,48 @@ refined path between the rows, on which no angle changes by half a turn from one
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.setup import Setup
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.quantities import Wanted
-from mechkin_cli.solver.batch import run
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.follow import follow
-from mechkin_cli.solver.graph import ANGLES
-from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.analysis.sweep.result import Columns, Result
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.solver.demand import OutputPlan
+    from mechkin_cli.solver.layout import Layout
+    from mechkin_cli.solver.session import Readout, Session
 
 
-def unwrap_closing_angles(setup: Setup, values: Floats, reached: NDArray[np.bool_]) -> None:
-    """Makes the angles of closing joints in `values` (slots, rows) continuous, in place.
-
-    `values` are the outputs of `setup`; `reached` tells the rows that have a solution.
-    """
-    start = setup.start
-    angles = [quantity for quantity in setup.wanted if _is_closing_angle(setup.layout, quantity)]
-    if not angles or start.state is None or not reached[start.row]:
+def make_continuous(result: Result, wanted: Sequence[Wanted], columns: Columns) -> None:
+    """Makes the angles of closing joints in `columns` continuous from the first row, in place."""
+    rows, start, session = result.row_states, result.start, result.session
+    angles = [quantity for quantity in wanted if _is_closing_angle(session.layout, quantity)]
+    if not angles or start.state is None or not rows.reached[start.row]:
         return
-    own = setup.reading(angles, Demand.POSITION).outputs
-    slots = [own.slots[quantity.name].first for quantity in angles]
-    turns = np.zeros((len(angles), reached.size))
+    readout = session.readout(angles)
+    slots = [readout.slots[quantity.name].first for quantity in angles]
+    turns = np.zeros((len(angles), rows.reached.size))
     for way in (slice(start.row, None), slice(start.row, None, -1)):
-        count = leading_rows(reached[way])
+        count = leading_rows(rows.reached[way])
         part = turns[:, way]
-        inputs = setup.inputs.values[:, way][:, :count]
-        part[:, :count] = _turns(own, inputs, start.state, slots)
-    first = int(np.argmax(reached))
+        inputs = session.inputs.values[:, way][:, :count]
+        part[:, :count] = _turns(session, readout, inputs, start.state, slots)
+    first = int(np.argmax(rows.reached))
     for quantity, counted in zip(angles, turns, strict=True):
-        values[setup.outputs.slots[quantity.name].first] -= (counted - counted[first]) * (2.0 * pi)
+        columns[quantity.name][0] -= (counted - counted[first]) * (2.0 * pi)
 
 
 def _is_closing_angle(layout: Layout, quantity: Wanted) -> bool:
     return (
         quantity.kind == "coordinate"
-        and quantity.coordinate in ANGLES
+        and is_angle(quantity.coordinate)
         and quantity.order == 0
         and layout.joint_reference[quantity.owner] < 0
     )
@@ -63,12 +58,14 @@ def leading_rows(reached: NDArray[np.bool_]) -> int:
     return int(reached.size if reached.all() else np.argmin(reached))
 
 
-def _turns(own: OutputPlan, inputs: Floats, start: Floats, slots: list[int]) -> Floats:
+def _turns(
+    session: Session, readout: Readout, inputs: Floats, start: Floats, slots: list[int]
+) -> Floats:
     """Whole turns by which the arctangents have jumped back since the first row (slots, rows)."""
     turns = np.zeros((len(slots), inputs.shape[1]))
     if inputs.shape[1] < 2:
         return turns
-    outputs, rows = outputs_between(own, inputs, start)
+    outputs, rows = outputs_between(session, readout, inputs, start)
     for number, slot in enumerate(slots):
         along = outputs[slot]
         jumps = np.cumsum(np.rint(np.diff(along, prepend=along[:1]) / (2.0 * pi)))
@@ -77,19 +74,14 @@ def _turns(own: OutputPlan, inputs: Floats, start: Floats, slots: list[int]) -> 
 
 
 def outputs_between(
-    own: OutputPlan, inputs: Floats, start: Floats
+    session: Session, readout: Readout, inputs: Floats, start: Floats
 ) -> tuple[Floats, NDArray[np.int64]]:
     """Outputs (slots, places) along the refined path through some rows, and the places of the rows
     that were reached; `start` is the state at the first."""
     path, rows = refined(inputs)
-    followed = follow(own.plan, path, start)
+    followed = session.follow(path, start)
     count = followed.reached
-    batch = run(
-        own.plan,
-        np.ascontiguousarray(path[:, :count]),
-        np.ascontiguousarray(followed.guess[:, :count]),
-        outputs=own.outputs,
-    )
+    batch = session.run(path[:, :count], followed.guess[:, :count], readout=readout)
     assert batch.outputs is not None
     return batch.outputs, rows[rows < count]
 

@@ -7,33 +7,30 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.named_modes import is_cyclic
-from mechkin_cli.analysis.rows import RowStates
-from mechkin_cli.analysis.setup import Setup
+from mechkin_cli.analysis.assembly.named_modes import is_cyclic
 from mechkin_cli.diagnostics import Diagnostic, Number
-from mechkin_cli.solver.batch import Batch
 from mechkin_cli.solver.clusters import pose_keys, same_poses
-from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from mechkin_cli.analysis.sweep.rows import Rows
+    from mechkin_cli.arrays import Bools, Floats
+    from mechkin_cli.solver.graph import SolverGraph
+    from mechkin_cli.solver.session import Session
 
-    from mechkin_cli.arrays import Floats
 
-
-def open_turn_note(setup: Setup, states: Floats, reached: NDArray[np.bool_]) -> Diagnostic | None:
+def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnostic | None:
     """Rows a full turn of the one moving input apart at which the mechanism is not the same.
 
     `states` (states, rows) in kernel units.
     """
-    inputs = setup.inputs.values
+    inputs = session.inputs.values
     moving = np.flatnonzero(np.ptp(inputs, axis=1) > 0.0)
     if moving.size != 1:
         return None
     number = int(moving[0])
-    item = setup.problem.motion.inputs[number]
-    if not is_cyclic(setup.problem.mechanism, item.name):
+    item = session.problem.motion.inputs[number]
+    if not is_cyclic(session.problem.mechanism, item.name):
         return None
     turns = (inputs[number] - inputs[number, 0]) / (2.0 * np.pi)
     whole = (np.rint(turns) != 0.0) & (np.abs(turns - np.rint(turns)) <= tolerances.SAME_TURN)
@@ -41,7 +38,7 @@ def open_turn_note(setup: Setup, states: Floats, reached: NDArray[np.bool_]) -> 
     if not rows.size or not reached[0]:
         return None
     row = int(rows[0])
-    keys = pose_keys(setup.layout, np.ascontiguousarray(states[:, [0, row]]))
+    keys = pose_keys(session.layout, np.ascontiguousarray(states[:, [0, row]]))
     if same_poses(keys[:, :1], keys[:, 1:])[0, 0]:
         return None
     count = round(abs(float(turns[row])))
@@ -69,10 +66,10 @@ def redundancy_note(graph: SolverGraph) -> Diagnostic:
     )
 
 
-def not_converged_note(rows: RowStates, batch: Batch) -> Diagnostic:
+def not_converged_note(rows: Rows, residual: Floats) -> Diagnostic:
     """Rows whose loops did not close."""
     failed = np.flatnonzero(rows.status == Status.not_converged)
-    worst = float(np.max(batch.residual[failed]))
+    worst = float(np.max(residual[failed]))
     return Diagnostic(
         "not-converged",
         "error",

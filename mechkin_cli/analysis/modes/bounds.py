@@ -20,7 +20,6 @@ from __future__ import annotations
 
 from collections import Counter
 
-from mechkin_cli.mechanism.joint_types import FREE, JointType, tree_types
 from mechkin_cli.solver.graph import Block, SolverGraph
 
 WITH_SPHERE = {0: 1, 1: 2, 2: 4, 3: 4}
@@ -50,34 +49,22 @@ def _of_block(graph: SolverGraph, block: Block) -> int | None:
         return _of_legs(graph, block)
     if len(block.closings) != 1 or block.equations != len(block.unknowns):
         return None
-    letters = list(_letters(graph.closings[block.closings[0]].joint.type))
+    freedoms = list(graph.closings[block.closings[0]].joint.type.chain)
     for number, freedom in block.unknowns:
-        letters.append(_letters(graph.edges[number].joint.type)[freedom])
-    found = Counter(letters)
-    turns, slides, spheres = found["R"], found["P"], found["S"] // 3
-    if len(letters) != 6 or turns + slides + 3 * spheres != 6:
+        freedoms.append(graph.edges[number].joint.type.chain[freedom])
+    found = Counter(freedom.motion for freedom in freedoms)
+    turns, slides, spheres = found["turn"], found["slide"], found["ball"] // 3
+    if len(freedoms) != 6 or turns + slides + 3 * spheres != 6:
         return None
     return (WITHOUT_SPHERE, WITH_SPHERE)[spheres].get(turns) if spheres <= 1 else None
 
 
 def _of_legs(graph: SolverGraph, block: Block) -> int | None:
     joints = [graph.edges[number].joint for number, _ in block.unknowns]
-    if len(joints) == len(block.closings) == 1 and joints[0].letter in "RP":
+    alone = len(joints) == len(block.closings) == 1
+    if alone and [f.motion for f in joints[0].type.chain] in (["turn"], ["slide"]):
         return 2
     held = {joint.name for joint in joints}
-    if len(block.closings) == 6 and len(held) == 1 and joints[0].letter == FREE:
+    if len(block.closings) == 6 and len(held) == 1 and joints[0].type.is_free:
         return ON_SIX_LEGS
     return None
-
-
-def _letters(kind: JointType) -> str:
-    """One letter per freedom: R turn, P slide, H thread, three times S."""
-    letters = ""
-    for part in kind.parts:
-        slides = tree_types()[part].slides
-        letters += (
-            "SSS"
-            if part == "S"
-            else "".join("P" if slide else "H" if part == "H" else "R" for slide in slides)
-        )
-    return letters

@@ -1,0 +1,265 @@
+"""The assembly at the first row: near given coordinates, a named mode, the home drawing, or
+nearest to it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.assembly.home import (
+    follow_from_home,
+    is_home_assembled,
+    nearest_to_home,
+)
+from mechkin_cli.analysis.assembly.named_modes import NamedModes, is_cyclic, name_modes, wrapped
+from mechkin_cli.analysis.assembly.near import Near, box_about, named_by, newton_from
+from mechkin_cli.analysis.assembly.probe import Probe
+from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.mechanism.joint_table import is_angle
+from mechkin_cli.solver.clusters import pose_keys, same_poses
+from mechkin_cli.solver.dead_centre import DeadCentre
+from mechkin_cli.solver.follow import TrackEnd
+from mechkin_cli.solver.inputs import input_numbers, input_text
+from mechkin_cli.solver.search import Found, with_assemblies
+from mechkin_cli.status import Status
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.mechanism.problem import Problem
+    from mechkin_cli.solver.session import Session
+
+NEAR = "near"
+"""Stands for the letter of an assembly that was found without all others."""
+
+MAY_BE_RIGID = (
+    "an overconstrained loop moves only if its dimensions are exact (write expressions); else "
+    "this is a branch point or a special position"
+)
+
+
+@dataclass(frozen=True)
+class Start:
+    """States at a row (the first, or the one nearest to an assembled home) and the mode's name,
+    where it is known (`near` and `home` stand for one that nobody asked for); `how` says how it was
+    found. Without states `status` says why there are none."""
+
+    state: Floats | None
+    mode: str
+    how: str
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    status: Status = Status.not_assembled
+    row: int = 0
+
+
+def choose_start(session: Session) -> Start:
+    """The assembly that the file means, found once."""
+    key = ("start", str(session.problem.assembly))
+    return session.once(key, lambda: _choose_start(session))
+
+
+def _choose_start(session: Session) -> Start:
+    path, wanted = session.inputs.values, session.problem.assembly
+    if not wanted.near and wanted.mode is None and is_home_assembled(session):
+        return _from_home(session, path)
+    if wanted.near and wanted.mode is None:
+        start = _from_near(session, path[:, 0])
+        if start is not None:
+            return start
+    modes = name_modes(session, path[:, 0])
+    if modes.number == 0:
+        return Start(None, "", "", [nothing_found(session, modes.found)])
+    if wanted.mode is not None:
+        return _by_name(modes, wanted.mode)
+    if wanted.near:
+        distances, how = _distances_near(session.problem, modes.coordinates), "near"
+    else:
+        distances, how = _distances_home(session, modes.points), "nearest to home"
+    return _nearest(modes, distances, how)
+
+
+def mode_letter(session: Session, start: Start) -> str:
+    """The letter of an assembly at the first row, by a search if it is not known yet; its own name
+    where no letter's branch has it."""
+    if start.mode != NEAR or start.state is None:
+        return start.mode
+    modes = name_modes(session, session.inputs.values[:, 0])
+    keys = pose_keys(session.layout, modes.found.states)
+    same = same_poses(keys, pose_keys(session.layout, start.state[:, None]))[:, 0]
+    return modes.letters[int(np.argmax(same))] if same.any() else start.mode
+
+
+def _from_near(session: Session, inputs: Floats) -> Start | None:
+    """By Newton's method: at once if what it finds is proven to be the nearest, else after a search
+    about what is named; None where it finds none that narrows the search."""
+    named = named_by(session)
+    newton = newton_from(session, inputs, named) if named.unknowns else None
+    if newton is None:
+        return None
+    distance = _distances(session, inputs, newton.state[:, None])[0]
+    if newton.is_nearest(distance):
+        how = (
+            f"near, {distance:.2g} rad or sizes off by Newton's method, no other within "
+            f"{newton.unique:.2g}"
+        )
+        return Start(newton.state, NEAR, how)
+    # what is named exactly is named to rounding
+    radius = tolerances.NEAR_RUNNER_UP * max(distance, tolerances.SAME_MODE)
+    if radius > tolerances.NEAR_BALL:
+        return None
+    found = session.search(inputs, box_about(session, named, radius))
+    return _nearest_about(session, inputs, newton, found, radius)
+
+
+def _nearest_about(
+    session: Session, inputs: Floats, newton: Near, found: Found, radius: float
+) -> Start | None:
+    """The nearest of all assemblies about as near as the one that Newton's method found."""
+    found = with_assemblies(session.layout, session.plan, inputs, found, newton.state[:, None])
+    distances = _distances(session, inputs, found.states)
+    order = sorted(range(found.number), key=lambda i: distances[i])
+    order = [i for i in order if distances[i] <= radius]
+    if not order:
+        return None
+    best = distances[order[0]]
+    how = (
+        f"near, {best:.2g} rad or sizes off, of {len(order)} within {radius:.2g} that "
+        f"{found.starts} starts found there"
+    )
+    notes = []
+    if len(order) > 1 and distances[order[1]] < tolerances.NEAR_RUNNER_UP * best:
+        notes.append(_unclear("two assemblies", (best, distances[order[1]])))
+    return Start(found.states[:, order[0]], NEAR, how, notes)
+
+
+def _distances(session: Session, inputs: Floats, states: Floats) -> list[float]:
+    """Of assemblies (states, number) from what `near` names."""
+    coordinates, _ = Probe.of(session).read(inputs, states)
+    return _distances_near(session.problem, coordinates)
+
+
+def _from_home(session: Session, path: Floats) -> Start:
+    """Followed from the drawing to the row whose inputs are nearest to it."""
+    problem, layout = session.problem, session.layout
+    row = nearest_to_home(path)
+    followed = follow_from_home(session, path[:, row])
+    if followed.end == TrackEnd.FINISHED:
+        return Start(followed.state, "home", "followed from the home drawing", row=row)
+    places = input_numbers(problem, layout, followed.inputs)
+    rigid = f"; {MAY_BE_RIGID}" if session.is_redundant else ""
+    diagnostic = Diagnostic(
+        "home-branch-ends",
+        "error",
+        "the assembly drawn at home ends before it comes to a row",
+        measured=f"followed up to {', '.join(map(input_text, places))}",
+        hint=f"choose another assembly with assembly: {{near: ...}}{rigid}",
+        numbers=places,
+    )
+    from mechkin_cli.solver.branch_limit import find_limit
+
+    limit = find_limit(session, followed, followed.inputs, followed.state)
+    folds = isinstance(limit, DeadCentre)
+    status = Status.beyond_dead_centre if folds else Status.branch_lost
+    return Start(None, "home", "", [diagnostic], status)
+
+
+def nothing_found(session: Session, found: Found, place: str = "at the first row") -> Diagnostic:
+    """What to say where no start closed."""
+    hint = "check the dimensions, or start the sweep at another input"
+    if session.is_redundant:
+        hint = "dimensions of an overconstrained loop must be exact (write expressions)"
+    return Diagnostic(
+        "not-assembled",
+        "error",
+        f"{session.problem.mechanism.name} cannot be assembled {place}",
+        measured=_missed(found),
+        limit=f"{tolerances.RESIDUAL_ACCEPT:g}",
+        hint=hint,
+        numbers=(
+            Number("starts", found.starts),
+            Number("residual", found.closest, limit=tolerances.RESIDUAL_ACCEPT),
+        ),
+    )
+
+
+def _missed(found: Found) -> str:
+    if found.free:
+        return (
+            f"{found.free} of {found.starts} random starts closed the loops, all where they still "
+            "move with the inputs held, or in a singular position"
+        )
+    return (
+        f"none of {found.starts} random starts closed the loops, "
+        f"the best to {found.closest:.2g} of the size"
+    )
+
+
+def _distances_near(problem: Problem, coordinates: Mapping[str, Floats]) -> list[float]:
+    """Of every assembly from what `near` names; angles the shorter way round, slides in sizes."""
+    mechanism = problem.mechanism
+    size = mechanism.box_diagonal()
+    distances = []
+    for i in range(len(next(iter(coordinates.values())))):
+        total = 0.0
+        for name, target in problem.assembly.near.items():
+            miss = float(coordinates[name][i]) - target
+            if is_cyclic(mechanism, name):
+                miss = wrapped(miss)
+            elif not is_angle(name.partition(".")[2]):
+                miss /= size
+            total += miss * miss
+        distances.append(sqrt(total))
+    return distances
+
+
+def _distances_home(session: Session, points: Floats) -> list[float]:
+    """Root mean square over the moving links' joint points, in parts of the size."""
+    home = np.array([at.vector for at in Probe.of(session).points])[:, :, None]
+    miss = (points - home) / session.problem.mechanism.box_diagonal()
+    total = np.zeros(points.shape[2])
+    for x, y, z in miss:
+        total = total + (x * x + y * y + z * z)
+    return [sqrt(float(squares) / len(home)) for squares in total]
+
+
+def _by_name(modes: NamedModes, name: str) -> Start:
+    for i, letter in modes.letters.items():
+        if letter == name:
+            return Start(modes.found.states[:, i], name, "by name")
+    diagnostic = Diagnostic(
+        "no-such-mode",
+        "error",
+        f"there is no mode {name} at the first row",
+        measured=f"modes {', '.join(modes.letters.values())}",
+        hint="take one of these",
+    )
+    return Start(None, name, "", [diagnostic])
+
+
+def _nearest(modes: NamedModes, distances: list[float], how: str) -> Start:
+    order = sorted(range(modes.number), key=lambda i: distances[i])
+    best = order[0]
+    notes = []
+    if len(order) > 1:
+        second = order[1]
+        if distances[second] < tolerances.NEAR_RUNNER_UP * distances[best]:
+            both = f"modes {modes.letters[best]} and {modes.letters[second]}"
+            notes.append(_unclear(both, (distances[best], distances[second])))
+    words = f"{how}, 1 of {modes.number} found"
+    return Start(modes.found.states[:, best], modes.letters[best], words, notes)
+
+
+def _unclear(both: str, distances: tuple[float, float]) -> Diagnostic:
+    return Diagnostic(
+        "nearest-unclear",
+        "warning",
+        f"{both} are about equally near",
+        measured=f"distances {distances[0]:.4g} and {distances[1]:.4g}",
+        limit=f"ratio {tolerances.NEAR_RUNNER_UP}",
+        hint="give more coordinates under assembly: near",
+        numbers=tuple(Number("distance", distance) for distance in distances),
+    )

@@ -1,0 +1,387 @@
+"""A finished run: the states of all rows, their verdicts, and every quantity read off them.
+
+Quantities are evaluated on the stored states when they are asked for, at the first reading or
+later; nothing is searched or followed again. What was read is kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.analysis.sweep.closing_angles import make_continuous
+from mechkin_cli.expressions import Quantity, UnknownName, Vector
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
+from mechkin_cli.status import Status
+from mechkin_cli.units import DIMENSIONLESS, UnitSystem
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.analysis.assembly.start import Start
+    from mechkin_cli.analysis.sweep.loads import RowLoads
+    from mechkin_cli.analysis.sweep.rows import Rows
+    from mechkin_cli.arrays import Bools, Floats
+    from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.mechanism.problem import Problem
+    from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.solver.batch import Batch
+    from mechkin_cli.solver.graph import SolverGraph
+    from mechkin_cli.solver.inputs import KernelInputs
+    from mechkin_cli.solver.session import Session
+
+Columns = dict[str, "Floats"]
+"""Quantities by name: (1, rows), vectors (3, rows); SI, nan where a row has none."""
+
+SHIFTS = (1, 2)
+"""Parts of the null space by which other reactions in equilibrium differ, where constraints are
+redundant. Two: one alone may leave a cell unchanged by chance."""
+
+_SOLVED = np.array([status.has_solution for status in Status])
+
+
+class Result:
+    """The rows of a sweep with a position and a verdict each.
+
+    Args:
+        session: the part of the mechanism that was followed, in parts of the first row's size.
+        start: the first assembly.
+        rows: the rows, closed.
+    """
+
+    def __init__(self, session: Session, start: Start, rows: Rows) -> None:
+        self.session = session
+        self.start = start
+        self.row_states = rows
+        self.demand = Demand.POSITION
+        self.residual = np.full(rows.reached.size, np.nan)
+        self.shifts = SHIFTS if session.is_redundant else ()
+        self._columns: Columns = {}
+        self._shifted: tuple[Columns, ...] = tuple({} for _ in self.shifts)
+        self._alternative: int | None = None
+        self._condition: Floats | None = None
+        self._power_error: Floats | None = None
+
+    # --- what was run ---------------------------------------------------------------------
+
+    @property
+    def problem(self) -> Problem:
+        """Mechanism, motion and assembly of the part that was followed."""
+        return self.session.problem
+
+    @property
+    def graph(self) -> SolverGraph:
+        """Tree, closing joints and blocks."""
+        return self.session.graph
+
+    @property
+    def mode(self) -> str:
+        """The assembly mode of the rows; `near` or `home` where no letter was asked for."""
+        return self.start.mode
+
+    @cached_property
+    def letter(self) -> str:
+        """The letter of the assembly mode, searched for if it is not known yet."""
+        from mechkin_cli.analysis.assembly.start import mode_letter
+
+        return mode_letter(self.session, self.start)
+
+    @property
+    def how(self) -> str:
+        """How the first assembly was found."""
+        return self.start.how
+
+    @property
+    def nodes(self) -> int:
+        """Steps with which the branch was followed."""
+        return self.row_states.nodes
+
+    @property
+    def rows(self) -> int:
+        """Number of rows asked for."""
+        return self.problem.motion.rows
+
+    @property
+    def status(self) -> NDArray[np.int8]:
+        """Verdict of every row, codes of `Status` (rows,)."""
+        return self.row_states.status
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Everything that the run has to say."""
+        return (
+            *self.problem.diagnostics,
+            *self.start.diagnostics,
+            *self.row_states.diagnostics,
+        )
+
+    @property
+    def units(self) -> UnitSystem:
+        """The file's units."""
+        return self.problem.units
+
+    @property
+    def coordinates(self) -> Sequence[str]:
+        """All joint coordinates in joint order."""
+        return self.problem.mechanism.coordinates
+
+    @cached_property
+    def inputs(self) -> Mapping[str, Floats]:
+        """What the rows were given, in the file's units exactly as written: time where there is
+        one, then the inputs' values."""
+        time = self.problem.motion.time
+        inputs = {i.name: i.written for i in self.problem.motion.inputs}
+        return inputs if time is None else {"time": time.written, **inputs}
+
+    @cached_property
+    def input_rates(self) -> Mapping[str, Floats]:
+        """The inputs' rates of all orders in the file's units as written, nan in rows without a
+        solution."""
+        known, rates = self.problem.quantities(), {}
+        for driven in self.problem.motion.inputs:
+            for name, (_, written) in driven.orders.items():
+                if name in known and name != driven.name:
+                    rates[name] = np.where(self.solved, written, np.nan)
+        return rates
+
+    @cached_property
+    def solved(self) -> Bools:
+        """Rows that have a position (rows,)."""
+        found: Bools = _SOLVED[self.status]
+        return found
+
+    @property
+    def complete(self) -> bool:
+        """Whether every row has a solution, and a value of every load that forces need."""
+        unloaded = self.demand & Demand.FORCES and self.loads is not None and self.loads.lost.any()
+        return bool(self.solved.all()) and not unloaded
+
+    # --- quantities -----------------------------------------------------------------------
+
+    @property
+    def condition(self) -> Floats:
+        """1 / smallest singular value of every row's scaled blocks (rows,)."""
+        if self._condition is None:
+            if self.graph.blocks:
+                self._store_verdicts(self._evaluated(Demand.CONDITION))
+            else:
+                self._condition = np.full(self.rows, np.nan)
+        assert self._condition is not None
+        return self._condition
+
+    @property
+    def power_error(self) -> Floats:
+        """|sum of powers| / sum of |powers| of every row (rows,); nan where nothing can move."""
+        if self._power_error is None:
+            from mechkin_cli.solver.demand import forces_demand
+
+            demand = forces_demand(self.problem.mechanism)
+            if not demand & Demand.VELOCITY:
+                return np.full(self.rows, np.nan)
+            self._store_verdicts(self._evaluated(demand | Demand.POWER))
+        assert self._power_error is not None
+        return self._power_error
+
+    @property
+    def has_power_error(self) -> bool:
+        """Whether the run has read forces of moving rows, so that powers balance."""
+        return self._power_error is not None
+
+    @property
+    def columns(self) -> Mapping[str, Floats]:
+        """What has been read, see `Columns`."""
+        return self._columns
+
+    @cached_property
+    def loads(self) -> RowLoads | None:
+        """The values of loads that vary."""
+        if not self.problem.load_laws:
+            return None
+        from mechkin_cli.analysis.sweep.loads import row_loads
+
+        found = row_loads(self)
+        self.row_states.diagnostics += found.diagnostics
+        return found
+
+    @cached_property
+    def alternatives(self) -> tuple[Result, ...]:
+        """The same rows with other reactions that are in equilibrium too (redundant
+        constraints)."""
+        found = []
+        for number in range(len(self.shifts)):
+            other = object.__new__(Result)
+            other.__dict__.update(self.__dict__, alternatives=(), _alternative=number)
+            found.append(other)
+        return tuple(found)
+
+    def quantity(self, name: str) -> Quantity:
+        """A parameter, direction or result by name, in SI.
+
+        Raises:
+            UnknownName: nothing has this name.
+        """
+        problem = self.problem
+        if name in problem.parameters:
+            return problem.parameters[name]
+        if name in ("row.residual", "row.condition", "row.power_error"):
+            return Quantity(getattr(self, name[4:]), DIMENSIONLESS)
+        wanted = problem.quantities().get(name)
+        if wanted is None:
+            raise UnknownName(name, sorted(self._columns), hint_of(name))
+        given = self._given(name)
+        if given is not None:
+            return Quantity(given, wanted.dimension)
+        if name not in self._columns:
+            self.read([wanted])
+        columns = self._columns[name]
+        if self._alternative is not None:
+            columns = self._shifted[self._alternative].get(name, columns)
+        if wanted.vector:
+            return Quantity(Vector(columns[0], columns[1], columns[2]), wanted.dimension)
+        return Quantity(columns[0], wanted.dimension)
+
+    def _given(self, name: str) -> Floats | None:
+        """Time, an input's value or its rates in SI; None for what is computed."""
+        motion = self.problem.motion
+        if name == "time" and motion.time is not None:
+            return motion.time.values
+        for driven in motion.inputs:
+            if name == driven.name:
+                return driven.values
+            if name.startswith(driven.name) and name in driven.orders:
+                return np.where(self.solved, driven.orders[name][0], np.nan)
+        return None
+
+    # --- reading --------------------------------------------------------------------------
+
+    def read(self, wanted: Iterable[Wanted]) -> None:
+        """Evaluates the quantities that have not been read yet."""
+        new = [q for q in dict.fromkeys(wanted) if q.name not in self._columns and q.owner != "row"]
+        derived = [quantity for quantity in new if quantity.kind in DERIVED_KINDS]
+        plain = [quantity for quantity in new if quantity.kind not in DERIVED_KINDS]
+        if derived:
+            from mechkin_cli.analysis.derived import basis_of
+
+            basis = basis_of(self.problem.mechanism, derived)
+            plain += [quantity for quantity in basis if quantity.name not in self._columns]
+        if plain:
+            self._read_plain(plain)
+        if derived:
+            from mechkin_cli.analysis.derived import derived_columns
+
+            self._columns |= derived_columns(self, derived)
+
+    def _read_plain(self, wanted: list[Wanted]) -> None:
+        demand = demand_of(self.problem.mechanism, wanted)
+        if demand & Demand.FORCES and demand & Demand.VELOCITY and self._power_error is None:
+            demand |= Demand.POWER
+        self._keep_read(self._evaluated(demand, wanted), wanted, demand)
+
+    def keep(self, batch: Batch, wanted: list[Wanted], demand: Demand) -> None:
+        """Keeps what the run that closed the rows found."""
+        self.residual = np.where(self.row_states.reached, batch.residual, np.nan)
+        self._keep_read(batch, wanted, demand)
+
+    def _keep_read(self, batch: Batch, wanted: list[Wanted], demand: Demand) -> None:
+        self.demand |= demand
+        self._store_verdicts(batch)
+        if not wanted:
+            return
+        columns = self._split(wanted, batch, self.session)
+        make_continuous(self, wanted, columns)
+        self._columns |= columns
+        reactions = [quantity for quantity in wanted if quantity.kind in WRENCH_KINDS]
+        for shift, others in zip(self.shifts if reactions else (), self._shifted, strict=False):
+            others |= self.evaluated(reactions, shift=shift)
+
+    def _evaluated(self, demand: Demand, wanted: Sequence[Wanted] = ()) -> Batch:
+        loads = self.loads if demand & Demand.FORCES else None
+        return self.run(wanted, demand, loads=None if loads is None else loads.columns)
+
+    def evaluated(
+        self,
+        wanted: Sequence[Wanted],
+        *,
+        session: Session | None = None,
+        inputs: KernelInputs | None = None,
+        demand: Demand = Demand.POSITION,
+        shift: int = 0,
+    ) -> Columns:
+        """Quantities on the stored states, not kept: with other `inputs` (rates), of a session that
+        differs in masses and loads alone, or with the reactions of a `shift`."""
+        demand |= demand_of((session or self.session).problem.mechanism, wanted)
+        own = session is None
+        loads = self.loads if own and demand & Demand.FORCES else None
+        batch = self.run(
+            wanted,
+            demand,
+            session=session,
+            inputs=inputs,
+            loads=None if loads is None else loads.columns,
+            shift=shift,
+        )
+        return self._split(wanted, batch, session or self.session)
+
+    def run(
+        self,
+        wanted: Sequence[Wanted],
+        demand: Demand,
+        *,
+        session: Session | None = None,
+        inputs: KernelInputs | None = None,
+        loads: Floats | None = None,
+        shift: int = 0,
+        iterations: int = 0,
+    ) -> Batch:
+        """One call of the kernel over all rows on their states; rows without a state repeat
+        another's."""
+        session = session or self.session
+        inputs = inputs or self.session.inputs
+        rows = self.row_states
+        values, states = inputs.values, rows.states
+        if not rows.reached.all():
+            first = int(np.argmax(rows.reached))
+            stand_in = np.where(rows.reached, np.arange(rows.reached.size), first)
+            values, states = values[:, stand_in], states[:, stand_in]
+        return session.run(
+            values,
+            states,
+            readout=session.readout(wanted) if wanted else None,
+            demand=demand,
+            rates=inputs.rates if demand & Demand.VELOCITY else None,
+            accelerations=inputs.accelerations if demand & Demand.ACCELERATION else None,
+            jerks=inputs.jerks if demand & Demand.JERK else None,
+            loads=loads,
+            shift=shift,
+            iterations=iterations,
+        )
+
+    def _split(self, wanted: Sequence[Wanted], batch: Batch, session: Session) -> Columns:
+        """The outputs of a run by name; nan in rows without a position, and what depends on a rank
+        that is unclear."""
+        values, slots = batch.outputs, session.readout(wanted).slots
+        assert values is not None
+        rows = self.row_states
+        if not rows.reached.all():
+            values[:, ~rows.reached] = np.nan
+        unclear = rows.status == Status.rank_unclear
+        columns = {}
+        for quantity in wanted:
+            slot = slots[quantity.name]
+            column = values[slot.first : slot.first + slot.width]
+            if unclear.any() and demand_of(self.problem.mechanism, [quantity]):
+                column[:, unclear] = np.nan
+            columns[quantity.name] = column
+        return columns
+
+    def _store_verdicts(self, batch: Batch) -> None:
+        missing = ~self.row_states.reached
+        if batch.condition is not None and self._condition is None:
+            self._condition = np.where(missing, np.nan, batch.condition)
+        if batch.power_error is not None and self._power_error is None:
+            self._power_error = np.where(missing, np.nan, batch.power_error)

@@ -1,0 +1,54 @@
+"""The rows of a sweep: states, and what is known of each row."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.status import Status
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.arrays import Bools, Floats
+    from mechkin_cli.diagnostics import Diagnostic
+
+
+@dataclass
+class Rows:
+    """States (states, rows), guesses until they are closed, and what is known about rows that have
+    none; `limit` is the largest correction that a guess may still need, `numbers` counts the rows
+    from 0 as the file does, `nodes` the steps with which they were followed."""
+
+    states: Floats
+    limit: Floats
+    reached: Bools
+    status: NDArray[np.int8]
+    nodes: int
+    diagnostics: list[Diagnostic]
+    numbers: NDArray[np.int64]
+
+    @classmethod
+    def without_guesses(cls, states: int, rows: int) -> Rows:
+        """Rows of which nothing is known yet; none is reached."""
+        return cls(
+            states=np.zeros((states, rows)),
+            limit=np.zeros(rows),
+            reached=np.zeros(rows, dtype=bool),
+            status=np.full(rows, int(Status.ok), dtype=np.int8),
+            nodes=0,
+            diagnostics=[],
+            numbers=np.arange(rows),
+        )
+
+    def part(self, rows: slice) -> Rows:
+        """Some of the rows, in the slice's order: views of the same arrays."""
+        arrays = (self.states[:, rows], self.limit[rows], self.reached[rows], self.status[rows])
+        return Rows(*arrays, self.nodes, self.diagnostics, self.numbers[rows])
+
+    @property
+    def has_failed(self) -> bool:
+        """Whether some row did not close."""
+        return bool((self.status == Status.not_converged).any())

@@ -1,0 +1,178 @@
+"""The sweep: first assembly, following, one batched run of what is demanded, a verdict per row."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.assembly.probe import Probe
+from mechkin_cli.analysis.assembly.start import choose_start
+from mechkin_cli.analysis.sweep.following import follow_rows
+from mechkin_cli.analysis.sweep.notes import not_converged_note, open_turn_note, redundancy_note
+from mechkin_cli.analysis.sweep.result import Result
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
+from mechkin_cli.mechanism.legs import find_legs
+from mechkin_cli.mechanism.load_laws import quantities_read
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
+from mechkin_cli.status import Status
+
+if TYPE_CHECKING:
+    from mechkin_cli.analysis.assembly.start import Start
+    from mechkin_cli.analysis.sweep.rows import Rows
+    from mechkin_cli.arrays import Bools
+    from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.mechanism.problem import Problem
+    from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.solver.batch import Batch
+    from mechkin_cli.solver.session import Session
+
+
+HOLDING = "holding_moment"
+
+
+def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool = True) -> Result:
+    """Runs the sweep of a session's problem and reads the quantities asked for.
+
+    Args:
+        session: the problem in the kernel.
+        quantities: names out of `problem.quantities()`.
+        verdicts: compute each row's condition, and its power error where forces are computed.
+
+    Raises:
+        KeyError: an unknown quantity.
+    """
+    known = session.problem.quantities()
+    asked = [known[name] for name in dict.fromkeys(quantities)]
+    session = _followed_part(session, asked)
+    start = choose_start(session)
+    if start.state is not None:
+        inputs = session.inputs.values[:, start.row]
+        session = session.sized(Probe.of(session).size(inputs, start.state))
+    asked += _held(session.problem, asked)
+    result = _closed(session, start, asked, verdicts=verdicts)
+    if result.row_states.has_failed:
+        # a filled-in row ended away from its guess: take every row as a careful step
+        result = _closed(session, start, asked, verdicts=verdicts, every_row=True)
+    result.read(asked)
+    result.row_states.diagnostics += _notes(result, asked)
+    return result
+
+
+def _followed_part(session: Session, asked: list[Wanted]) -> Session:
+    """The session of the loops that `follow:` leaves."""
+    if session.problem.follow is None:
+        return session
+    from mechkin_cli.analysis.sweep.followed import followed_session
+
+    return followed_session(session, asked)
+
+
+def _held(problem: Problem, asked: list[Wanted]) -> list[Wanted]:
+    """The moments that hold idle legs, where forces are computed and they are not asked for."""
+    if not (problem.hold_idle and demand_of(problem.mechanism, asked) & Demand.FORCES):
+        return []
+    known = problem.quantities()
+    moments = {known[f"{leg.body}.holding_moment"] for leg in find_legs(problem.mechanism)}
+    return sorted(moments.difference(asked))
+
+
+def _closed(
+    session: Session,
+    start: Start,
+    asked: list[Wanted],
+    *,
+    verdicts: bool,
+    every_row: bool = False,
+) -> Result:
+    """Follows and closes all rows and reads what can be read at once; rows that do not close lose
+    their place among the reached."""
+    rows = follow_rows(session, start, every_row=every_row)
+    result = Result(session, start, rows)
+    if not rows.reached.any():
+        return result
+    wanted, demand = _at_once(session, asked, verdicts)
+    batch = result.run(wanted, demand, iterations=tolerances.NEWTON_ITERATIONS)
+    failed = _failed(batch, rows)
+    if failed.any():
+        rows.status[failed] = Status.not_converged
+        rows.diagnostics.append(not_converged_note(rows, batch.residual))
+        rows.reached &= ~failed
+    if rows.reached.any():
+        rows.states[:, rows.reached] = batch.states[:, rows.reached]
+        _judge_condition(rows, batch)
+    result.keep(batch, wanted, demand)
+    return result
+
+
+def _at_once(session: Session, asked: list[Wanted], verdicts: bool) -> tuple[list[Wanted], Demand]:
+    """What the run that closes the rows reads off, and its demand: no derived quantities, and no
+    forces where loads vary, but what those loads read."""
+    problem, mechanism = session.problem, session.problem.mechanism
+    wanted = [q for q in asked if q.kind not in DERIVED_KINDS and q.owner != "row"]
+    demand = Demand.POSITION
+    forces = demand_of(mechanism, wanted) & Demand.FORCES
+    if problem.load_laws and forces:
+        known = problem.quantities()
+        read = [known[name] for name in quantities_read(problem)]
+        wanted = [q for q in wanted if not demand_of(mechanism, [q]) & Demand.FORCES]
+        wanted += [q for q in read if q not in wanted and q.owner != "row"]
+        # velocities also tell on which side of a fold a row lies
+        demand |= Demand.VELOCITY
+    demand |= demand_of(mechanism, wanted)
+    if verdicts and session.graph.blocks:
+        demand |= Demand.CONDITION
+    if verdicts and demand & Demand.FORCES and demand & Demand.VELOCITY:
+        demand |= Demand.POWER
+    return wanted, demand
+
+
+def _failed(batch: Batch, rows: Rows) -> Bools:
+    """Rows with a guess that did not close near it, on its side of every fold.
+
+    Orientations are there where the run demanded more than positions.
+    """
+    turned = batch.orientation != batch.orientation[int(np.argmax(rows.reached))]
+    failed: Bools = ~batch.good | turned | ~(batch.correction <= rows.limit)
+    return rows.reached & failed
+
+
+def _judge_condition(rows: Rows, batch: Batch) -> None:
+    """Verdicts by condition."""
+    condition = batch.condition
+    if condition is None:
+        return
+    singular = rows.reached & ~(condition <= tolerances.CONDITION_NEAR_SINGULAR)
+    unclear = rows.reached & ~(condition <= tolerances.CONDITION_RANK_UNCLEAR)
+    rows.status[singular & (rows.status == Status.ok)] = Status.near_singular
+    rows.status[unclear & (rows.status == Status.near_singular)] = Status.rank_unclear
+
+
+def _read_by_loads(result: Result) -> list[Wanted]:
+    """What loads that vary read, where forces are computed."""
+    if not result.demand & Demand.FORCES:
+        return []
+    known = result.problem.quantities()
+    return [known[name] for name in quantities_read(result.problem)]
+
+
+def _notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
+    """What is conventional, left open by a full turn, held, or not unique."""
+    problem, session, rows = result.problem, result.session, result.row_states
+    notes: list[Diagnostic] = []
+    if find_legs(problem.mechanism):
+        from mechkin_cli.mechanism.idle import conventional_notes, holding_notes
+
+        notes += conventional_notes(problem, [*asked, *_read_by_loads(result)])
+        if problem.hold_idle:
+            moments = {q.name: result.columns[q.name][0] for q in asked if q.kind == HOLDING}
+            notes += holding_notes(problem, moments)
+    note = open_turn_note(session, rows.states, rows.reached)
+    notes += [note] if note else []
+    unsure = any(q.kind in WRENCH_KINDS or q.kind == "transmission_angle" for q in asked)
+    if unsure and session.is_redundant and rows.reached.any():
+        notes.append(redundancy_note(session.graph))
+    return notes

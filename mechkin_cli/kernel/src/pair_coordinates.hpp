@@ -1,0 +1,91 @@
+// Coordinates of closing pairs with their derivatives up to PairMotion::order, read off the frames A and B.
+#pragma once
+
+#include "closing_equations.hpp"
+
+namespace {
+
+// axis.d and its derivatives, for an axis carried by a link with motion m.
+MECHKIN_INLINE void along(Vec3 axis, const MotionToJerk& m, const Closure& k, const PairMotion& p, Pack* out) {
+  out[0] = dot(axis, k.d);
+  if (p.order < 1) return;
+  out[1] = dot(axis, first_of_d(k, p.a, p.b)) + dot(m.rate(axis), k.d);
+  if (p.order < 2) return;
+  out[2] = second_along(axis, m, k, p.a, p.b);
+  if (p.order < 3) return;
+  out[3] = third_along(axis, m, k, p.a, p.b);
+}
+// Angle of B.X against A.X about the common axis, and its derivatives.
+MECHKIN_INLINE void about(const Closure& k, const PairMotion& p, Pack* out) {
+  out[0] = atan2(dot(k.A.Y, k.B.X), dot(k.A.X, k.B.X));
+  if (p.order < 1) return;
+  out[1] = dot(k.A.Z, p.relative_omega());
+  if (p.order < 2) return;
+  out[2] = dot(k.A.Z, p.relative_alpha()) + dot(p.a.rate(k.A.Z), p.relative_omega());
+  if (p.order < 3) return;
+  out[3] = dot(k.A.Z, p.relative_jerk()) + Pack(2.0) * dot(p.a.rate(k.A.Z), p.relative_alpha()) +
+           dot(p.a.second_rate(k.A.Z), p.relative_omega());
+}
+
+// Turns about z_A, fixed in the first link, and then about z_B, fixed in the second; x_A = x_B square to both at home:
+// B = Rz(theta1) Rx(angle of the axes) Rz(theta2). Rates from the dual basis of the two axes.
+MECHKIN_INLINE void of_two_turns(const Closure& k, Pack c, const PairMotion& p, int turn, Pack* out) {
+  const Pack scale = Pack(1.0) / (Pack(1.0) - c * c);
+  const Pose &A = k.A, &B = k.B;
+  out[0] = turn == 0 ? atan2(dot(A.X, B.Z), -dot(A.Y, B.Z)) : atan2(dot(B.X, A.Z), dot(B.Y, A.Z));
+  if (p.order < 1) return;
+  const Vec3 one = turn == 0 ? A.Z : B.Z, other = turn == 0 ? B.Z : A.Z;
+  const Motion &m = turn == 0 ? p.a : p.b, &n = turn == 0 ? p.b : p.a;
+  const Vec3 dual = scale * (one - c * other);
+  out[1] = dot(dual, p.relative_omega());
+  if (p.order < 2) return;
+  const Vec3 dual_rate = scale * (m.rate(one) - c * n.rate(other));
+  out[2] = dot(dual, p.relative_alpha()) + dot(dual_rate, p.relative_omega());
+  if (p.order < 3) return;
+  const Vec3 dual_second = scale * (m.second_rate(one) - c * n.second_rate(other));
+  out[3] = dot(dual, p.relative_jerk()) + Pack(2.0) * dot(dual_rate, p.relative_alpha()) +
+           dot(dual_second, p.relative_omega());
+}
+
+// A freedom without a coordinate: the turns of a ball, the slides of a sphere on a plane.
+struct Nameless {
+  static MECHKIN_INLINE void of(const Closure&, const PairMotion& p, Pack* out) {
+    for (int order = 0; order <= p.order; ++order) out[order] = Pack(__builtin_nan(""));
+  }
+};
+template <class Coordinate>
+constexpr bool has_name = true;
+template <>
+constexpr bool has_name<Nameless> = false;
+
+struct About {
+  static MECHKIN_INLINE void of(const Closure& k, const PairMotion& p, Pack* out) { about(k, p, out); }
+};
+template <class U>
+struct Along {
+  static MECHKIN_INLINE void of(const Closure& k, const PairMotion& p, Pack* out) {
+    along(U::vector(k), U::of(p.a, p.b), k, p, out);
+  }
+};
+template <class Cosine>
+struct FirstTurn {
+  static MECHKIN_INLINE void of(const Closure& k, const PairMotion& p, Pack* out) {
+    of_two_turns(k, Cosine::value(k), p, 0, out);
+  }
+};
+template <class Cosine>
+struct SecondTurn {
+  static MECHKIN_INLINE void of(const Closure& k, const PairMotion& p, Pack* out) {
+    of_two_turns(k, Cosine::value(k), p, 1, out);
+  }
+};
+template <class Coordinate>
+constexpr bool is_angle = false;
+template <>
+constexpr bool is_angle<About> = true;
+template <class Cosine>
+constexpr bool is_angle<FirstTurn<Cosine>> = true;
+template <class Cosine>
+constexpr bool is_angle<SecondTurn<Cosine>> = true;
+
+}  // namespace

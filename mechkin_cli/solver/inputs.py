@@ -1,0 +1,82 @@
+"""The inputs of a motion as the kernel takes them, and its numbers in words for messages.
+
+Slides are in the kernel's length unit; a helical joint is driven by its angle.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.diagnostics import Number
+from mechkin_cli.mechanism.joint_table import dimension_of
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.mechanism.motion import DrivenInput
+    from mechkin_cli.mechanism.problem import Problem
+    from mechkin_cli.solver.layout import Layout
+
+
+class KernelInputs(NamedTuple):
+    """Values and their derivatives over time (inputs, rows) in kernel units."""
+
+    values: Floats
+    rates: Floats
+    accelerations: Floats
+    jerks: Floats
+
+    def at_unit_rate(self, number: int) -> KernelInputs:
+        """The same places, where input `number` moves at unit rate and all others are held."""
+        rates = np.zeros_like(self.rates)
+        rates[number] = 1.0
+        still = np.zeros_like(rates)
+        return self._replace(rates=rates, accelerations=still, jerks=still)
+
+    def part(self, rows: slice | Floats) -> KernelInputs:
+        """Some of the rows."""
+        return KernelInputs(*(np.ascontiguousarray(array[:, rows]) for array in self))
+
+
+def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
+    """The inputs of all rows."""
+    inputs, rows = problem.motion.inputs, problem.motion.rows
+    units = [input_unit(layout, item) for item in inputs]
+
+    def table(name: str) -> Floats:
+        if not inputs:
+            return np.empty((0, rows))
+        found: Floats = np.empty((len(inputs), rows))
+        for number, (item, unit) in enumerate(zip(inputs, units, strict=True)):
+            found[number] = getattr(item, name) / unit
+        return found
+
+    return KernelInputs(table("values"), table("rates"), table("accelerations"), table("jerks"))
+
+
+def input_unit(layout: Layout, item: DrivenInput) -> float:
+    """The SI value of one kernel unit of an input."""
+    return layout.mechanism.joints[item.joint].unit_of(item.coordinate, layout.length)
+
+
+def input_number(problem: Problem, layout: Layout, number: int, value: float) -> Number:
+    """A value of input `number` in kernel units as a number in the file's units."""
+    item = problem.motion.inputs[number]
+    dimension = dimension_of(item.coordinate)
+    in_file = float(problem.units.from_si(value * input_unit(layout, item), dimension))
+    return Number(item.name, in_file, problem.units.label(dimension))
+
+
+def input_numbers(problem: Problem, layout: Layout, values: Floats) -> tuple[Number, ...]:
+    """Values of all inputs in kernel units, shape (inputs,), as numbers in the file's units."""
+    return tuple(input_number(problem, layout, k, float(v)) for k, v in enumerate(values))
+
+
+def input_text(number: Number) -> str:
+    """An input's value as messages show it.
+
+    >>> input_text(Number("O1.theta", 205.1376, "deg"))
+    'O1.theta = 205.1376 deg'
+    """
+    return f"{number.name} = {number.value:.12g} {number.unit}"

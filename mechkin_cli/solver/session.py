@@ -1,0 +1,227 @@
+"""A session: one problem's solver graph, layout, frozen plan and inputs, and its verbs.
+
+Everything that is asked of a mechanism goes through the four verbs *close*, *follow*, *search* and
+*run*. What a session has found it keeps: a question asked twice does its work once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple, TypeVar, cast
+
+from mechkin_cli import tolerances
+from mechkin_cli.solver.batch import RESIDUAL_TESTS, Batch
+from mechkin_cli.solver.batch import run as run_kernel
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import OutputPlan
+from mechkin_cli.solver.follow import Followed
+from mechkin_cli.solver.follow import follow as follow_path
+from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph, is_redundant
+from mechkin_cli.solver.inputs import KernelInputs, kernel_inputs
+from mechkin_cli.solver.layout import Layout
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.kernel._kernel import Outputs, Plan
+    from mechkin_cli.mechanism.model import Attached
+    from mechkin_cli.mechanism.motion import Assembly
+    from mechkin_cli.mechanism.problem import Problem
+    from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.solver.demand import Slot
+    from mechkin_cli.solver.search import Found, Within
+
+T = TypeVar("T")
+
+Coordinate = tuple[str, str]
+"""(joint, coordinate)."""
+
+
+@dataclass(frozen=True)
+class Packing:
+    """How the kernel packs rows: `lanes` at a time (0: the most that the machine has) on `threads`
+    (0: all cores, for work worth it). No result depends on either."""
+
+    lanes: int = 0
+    threads: int = 0
+
+
+class Readout(NamedTuple):
+    """Outputs of a plan: where each quantity stands, and the first columns of points."""
+
+    outputs: Outputs
+    slots: Mapping[str, Slot]
+    points: Sequence[int]
+
+
+class Session:
+    """A problem in the kernel.
+
+    Args:
+        problem: mechanism, motion and assembly.
+        graph: its solver graph; None builds the best one.
+        driven: the inputs, where they are not those of the problem's motion.
+        closed_at: closing joints to use instead of the best ones.
+        packing: how rows are packed.
+
+    Raises:
+        UnsolvableGraph: the mechanism cannot be solved as it is driven.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        graph: SolverGraph | None = None,
+        *,
+        driven: Sequence[Coordinate] | None = None,
+        closed_at: Sequence[str] | None = None,
+        packing: Packing = Packing(),
+    ) -> None:
+        self.problem = problem
+        self.driven = list(problem.motion.driven if driven is None else driven)
+        self.closed_at = closed_at
+        self.packing = packing
+        self.size: float | None = None
+        self.graph = graph or build_graph(problem.mechanism, self.driven, closed_at)
+        self._exchanged: dict[tuple[int, Coordinate], Session | None] = {}
+        self._readouts: dict[object, Readout] = {}
+        self._kept: dict[object, object] = {}
+
+    @cached_property
+    def layout(self) -> Layout:
+        """How the mechanism lies in the kernel."""
+        return Layout(self.problem.mechanism, self.graph)
+
+    @cached_property
+    def plan(self) -> Plan:
+        """The frozen plan; residual and condition in parts of `size` (m; None: the drawing's)."""
+        return self.layout.build()
+
+    @cached_property
+    def inputs(self) -> KernelInputs:
+        """The inputs of all rows of the problem's motion."""
+        return kernel_inputs(self.problem, self.layout)
+
+    @property
+    def is_redundant(self) -> bool:
+        """Whether some loop has more closing equations than unknowns."""
+        return is_redundant(self.graph)
+
+    def of(self, problem: Problem, graph: SolverGraph | None = None) -> Session:
+        """A session of another problem with the same choices."""
+        return Session(problem, graph, closed_at=self.closed_at, packing=self.packing)
+
+    def packed(self, packing: Packing) -> Session:
+        """The same session with rows packed otherwise."""
+        return self if packing == self.packing else self._changed(packing=packing)
+
+    def sized(self, size: float) -> Session:
+        """The same session with residual and condition in parts of another size (m)."""
+        if size == self.size:
+            return self
+        other = self._changed(size=size)
+        other.__dict__["plan"] = self.plan.with_size(size)
+        return other
+
+    def assembled(self, assembly: Assembly) -> Session:
+        """The same session with another choice of the first assembly."""
+        return self._changed(problem=replace(self.problem, assembly=assembly))
+
+    def _changed(self, **changes: object) -> Session:
+        """A session that shares graph, layout, plan, inputs and what was found."""
+        _ = self.plan  # made before it is shared: outputs belong to one structure
+        other = object.__new__(Session)
+        other.__dict__.update(self.__dict__)
+        other.__dict__.update(changes)
+        return other
+
+    def readout(self, wanted: Iterable[Wanted], points: Iterable[Attached] = ()) -> Readout:
+        """The outputs that give some quantities, and the places of some points."""
+        wanted, points = tuple(wanted), tuple(points)
+        key = (tuple(quantity.name for quantity in wanted), points)
+        if key not in self._readouts:
+            outputs = OutputPlan(self.layout, self.plan, self.driven)
+            for quantity in wanted:
+                outputs.add(quantity)
+            slots = [outputs.add_point(at, 0) for at in points]
+            self._readouts[key] = Readout(outputs.outputs, outputs.slots, slots)
+        return self._readouts[key]
+
+    def once(self, key: object, find: Callable[[], T]) -> T:
+        """What `find` gives, found once for each key."""
+        if key not in self._kept:
+            self._kept[key] = find()
+        return cast("T", self._kept[key])
+
+    def close(self, inputs: Floats, guess: Floats, demand: Demand = Demand.POSITION) -> Batch:
+        """Closes the loops at some inputs (inputs, places) from guesses (states, places)."""
+        return self.run(inputs, guess, demand=demand)
+
+    def follow(self, path: Floats, start: Floats, *, every_row: bool = False) -> Followed:
+        """Follows the branch through `start` (states,) along a path (inputs, rows)."""
+        return follow_path(self.plan, path, start, every_row=every_row)
+
+    def search(self, inputs: Floats, within: Within | None = None) -> Found:
+        """All assemblies at some inputs (inputs,) that random starts find, or those `within` a
+        box."""
+        from mechkin_cli.solver.search import assemblies
+
+        turns = self.problem.assembly.turns
+        if within is not None:
+            return assemblies(self.layout, self.plan, inputs, turns, within)
+        key = ("search", inputs.tobytes(), turns)
+        return self.once(key, lambda: assemblies(self.layout, self.plan, inputs, turns))
+
+    def run(
+        self,
+        inputs: Floats,
+        guess: Floats,
+        *,
+        readout: Readout | None = None,
+        demand: Demand = Demand.POSITION,
+        rates: Floats | None = None,
+        accelerations: Floats | None = None,
+        jerks: Floats | None = None,
+        loads: Floats | None = None,
+        derivatives: bool = False,
+        shift: int = 0,
+        iterations: int = tolerances.NEWTON_ITERATIONS,
+        tests: tuple[float, float, float] = RESIDUAL_TESTS,
+    ) -> Batch:
+        """Closes all rows and computes what is demanded; arguments as those of
+        `solver.batch.run`."""
+        return run_kernel(
+            self.plan,
+            inputs,
+            guess,
+            rates=rates,
+            accelerations=accelerations,
+            jerks=jerks,
+            loads=loads,
+            demand=demand,
+            outputs=None if readout is None else readout.outputs,
+            derivatives=derivatives,
+            shift=shift,
+            iterations=iterations,
+            tests=tests,
+            lanes=self.packing.lanes,
+            threads=self.packing.threads,
+        )
+
+    def exchanged(self, number: int, coordinate: Coordinate) -> Session | None:
+        """The session in which another coordinate is driven in place of input `number`; None where
+        it cannot be solved so."""
+        key = (number, coordinate)
+        if key not in self._exchanged:
+            driven = list(self.driven)
+            driven[number] = coordinate
+            closed_at = [closing.joint.name for closing in self.graph.closings]
+            try:
+                found = Session(
+                    self.problem, driven=driven, closed_at=closed_at, packing=self.packing
+                )
+            except UnsolvableGraph:
+                found = None
+            self._exchanged[key] = found
+        return self._exchanged[key]

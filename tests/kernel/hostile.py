@@ -1,0 +1,304 @@
+"""Misuse of the kernel by the thousand: `python hostile.py SEED COUNT`.
+
+Every call must end with a result or with TypeError, ValueError, OverflowError or MemoryError; a
+crash kills this process, which the test sees. Random records with wrong indices, codes, sizes and
+numbers make plans; calls with wrong arrays and ranges run what came out of it; finished builders
+are used again, and threads add records while others run.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+import threading
+from collections import Counter
+from typing import Any
+
+import numpy as np
+
+from mechkin_cli.kernel import _kernel
+
+REFUSALS = (TypeError, ValueError, OverflowError, MemoryError)
+INDICES = [-(2**40), -(2**31), -1000, -3, -2, -1, 0, 1, 2, 3, 4, 7, 1000, 2**31 - 1, 2**31, 2**40]
+NUMBERS = [0.0, 1.0, -1.0, 0.5, 2.0, 1e-300, 1e300, float("nan"), float("inf"), -float("inf")]
+WRONG: list[Any] = [None, "text", [], {}, 1.5, -1, 2**70, float("nan"), np.zeros(2), object()]
+
+
+class Hostile:
+    """A generator of bad calls; `wrong` is the share of bad arguments."""
+
+    def __init__(self, seed: int) -> None:
+        self.random = random.Random(seed)
+        self.wrong = self.random.choice([0.0, 0.005, 0.05, 0.3])
+        self.counts: Counter[str] = Counter()
+
+    def bad(self) -> bool:
+        return self.random.random() < self.wrong
+
+    def attempt(self, call: Any, *arguments: Any, **named: Any) -> Any:
+        try:
+            found = call(*arguments, **named)
+        except REFUSALS as refusal:
+            self.counts[type(refusal).__name__] += 1
+            return None
+        self.counts[f"{call.__name__} done"] += 1
+        return found
+
+    def index(self, least: int, end: int) -> Any:
+        if self.bad():
+            return self.random.choice([*INDICES, *WRONG])
+        return self.random.randint(least, max(least, end - 1))
+
+    def number(self) -> Any:
+        return self.random.choice([*NUMBERS, *WRONG]) if self.bad() else self.random.uniform(-1, 1)
+
+    def numbers(self, count: int) -> Any:
+        if self.bad():
+            return self.random.choice([*WRONG, [1.0] * (count - 1), [1.0] * (count + 1)])
+        return [self.number() for _ in range(count)]
+
+    def frame(self) -> Any:
+        if self.bad():
+            return self.numbers(12)
+        origin = [self.random.uniform(-1, 1) for _ in range(3)]
+        return [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, *origin]
+
+    def sign(self) -> Any:
+        return self.number() if self.bad() else self.random.choice([1.0, -1.0])
+
+    def builder(self) -> Any:
+        """A builder with a random tree, loops, legs, places, axes, blocks, loads."""
+        builder = None
+        while builder is None:
+            origin = self.numbers(3)
+            builder = self.attempt(
+                _kernel.PlanBuilder,
+                2.0 if not self.bad() else self.number(),
+                origin,
+                1.0 if not self.bad() else self.number(),
+            )
+        links = self.tree(builder)
+        closings = self.closings(builder, links)
+        places, axes = self.places(builder, links, closings)
+        self.blocks(builder, links, closings)
+        self.inputs_and_loads(builder, links, closings, places, axes)
+        return builder
+
+    def tree(self, builder: Any) -> int:
+        links = self.random.randint(0, 6)
+        self.types: list[Any] = []
+        for k in range(links):
+            parent = k - 1 if self.random.random() < 0.7 else self.index(-1, k)
+            code = self.index(0, 6)
+            self.types.append(code)
+            self.attempt(builder.add_tree_joint, code, parent, self.number(), self.frame())
+        return links
+
+    def closings(self, builder: Any, links: int) -> int:
+        closings = self.random.randint(0, 2)
+        for _ in range(closings):
+            first, second = self.index(-1, links), self.index(-1, links)
+            loop = [(self.index(0, links), self.sign()) for _ in range(links)]
+            ends = self.frame(), self.frame()
+            if self.random.random() < 0.8:
+                arguments = (self.index(0, 14), first, second, *ends, self.number(), loop)
+                self.attempt(builder.add_closing_joint, *arguments)
+            else:
+                body, rod = self.index(0, links), self.index(-1, links)
+                line = self.numbers(3)
+                arguments = (body, rod, first, second, *ends, self.number(), line, self.sign())
+                self.attempt(builder.add_leg, *arguments, loop)
+        return closings
+
+    def places(self, builder: Any, links: int, closings: int) -> tuple[int, int]:
+        count = self.random.randint(0, 3)
+        for _ in range(count):
+            joints = [self.index(-1, links) for _ in range(3)]
+            reference = self.index(-closings, links)
+            self.attempt(builder.add_place, reference, *joints, self.numbers(3), self.sign())
+        axes = self.random.randint(0, 3)
+        for _ in range(axes):
+            slide, link, other = self.index(0, 2), self.index(-1, links), self.index(-1, links)
+            vectors = self.numbers(3), self.numbers(3)
+            place = self.index(0, count)
+            slide = bool(slide) if isinstance(slide, int) else slide
+            self.attempt(builder.add_axis, place, slide, link, vectors[0], other, vectors[1])
+        return count, axes
+
+    def blocks(self, builder: Any, links: int, closings: int) -> None:
+        columns = list(range(builder.columns))
+        self.random.shuffle(columns)
+        driven = columns[: self.random.randint(0, len(columns))]
+        unknown = [c for c in columns if c not in driven]
+        joints: Any = list(range(links))
+        if closings:
+            count = closings if not self.bad() else self.index(0, 3)
+            if self.bad():
+                unknown = [self.index(0, builder.columns) for _ in unknown]
+            self.attempt(builder.add_block, count, joints, unknown)
+            if self.bad():
+                self.attempt(builder.set_rest, [self.index(0, links)])
+        else:
+            driven = columns
+            self.attempt(builder.set_rest, self.numbers(3) if self.bad() else joints)
+        for column in driven:
+            self.attempt(builder.add_input, self.index(0, 9) if self.bad() else column, -1, 1.0)
+
+    def inputs_and_loads(self, builder: Any, links: int, closings: int, _: int, axes: int) -> None:
+        if self.random.random() < 0.2:
+            self.attempt(builder.add_input, self.index(0, 4), self.index(-1, axes), self.number())
+        for _number in range(self.random.randint(0, 2)):
+            inertia = self.number(), self.numbers(3), self.numbers(6)
+            self.attempt(builder.set_inertia, self.index(0, links), *inertia)
+        self.attempt(builder.set_gravity, self.numbers(3))
+        for _number in range(self.random.randint(0, 4)):
+            code = self.index(0, 9)
+            along = isinstance(code, int) and code in (4, 7, 8)
+            link = self.index(0, axes) if along else self.index(-1, links)
+            other = self.index(-closings, links)
+            freedom = self.index(0, 3) if along else self.index(0, 1)
+            vectors = [self.numbers(3) for _ in range(3)]
+            varying = self.random.random() < 0.2
+            self.attempt(builder.add_load, code, link, other, freedom, *vectors, varying)
+        self.attempt(builder.add_size_point, self.index(-1, links), self.numbers(3))
+
+    def outputs(self, plan: Any) -> Any:
+        records = []
+        for _ in range(self.random.randint(0, 6)):
+            code = self.index(0, 19)
+            order = (
+                self.index(0, 4) if isinstance(code, int) and code in (3, 5) else self.index(0, 1)
+            )
+            number = 0 if self.random.random() < 0.5 else self.index(-1, 4)
+            record = (code, number, self.index(0, 1), order, self.numbers(3), self.number())
+            if self.attempt(_kernel.Outputs, plan, [record]) is not None:
+                records.append(record)
+        return self.attempt(_kernel.Outputs, plan, records)
+
+    def array(self, columns: int, rows: int) -> Any:
+        if self.bad():
+            shapes = [(columns, rows + 1), (columns + 1, rows), (rows,), (), (columns, rows, 1)]
+            wrong = [np.zeros(self.random.choice(shapes)), np.zeros((columns, rows), np.float32)]
+            wrong += [np.zeros((rows, columns)).T, *WRONG]
+            return self.random.choice(wrong)
+        array = np.array(
+            [[self.random.uniform(-1, 1) for _ in range(rows)] for _ in range(columns)]
+        )
+        array = array.reshape(columns, rows)
+        if array.size and self.random.random() < 0.1:
+            array.flat[0] = self.random.choice(NUMBERS)
+        return array
+
+    def per_row(self, rows: int, kind: Any = np.float64) -> Any:
+        if self.bad():
+            wrong = [np.zeros(rows + 1, kind), np.zeros((1, rows), kind), np.zeros(rows, np.int16)]
+            return self.random.choice([*wrong, *WRONG])
+        return np.zeros(rows, kind)
+
+    def run(self, plan: Any, outputs: Any) -> None:
+        rows = self.random.choice([0, 1, 2, 7, 8, 9, 65, 130])
+        demand = self.random.choice([0, 1, 3, 35, 7, 15, 31, 63, 8])
+        if outputs is not None:
+            demand |= int(outputs.demand)
+        named: dict[str, Any] = {
+            name: self.array(plan.inputs, rows)
+            for name in ("inputs", "rates", "accelerations", "jerks")
+        }
+        named |= {name: self.array(plan.states, rows) for name in ("guess", "states")}
+        named["loads"] = self.array(plan.load_values, rows)
+        named["outputs"] = outputs
+        named["values"] = None if outputs is None else self.array(outputs.slots, rows)
+        named["first"] = self.array(plan.columns, rows) if demand & 1 else None
+        named["second"] = self.array(plan.columns, rows) if demand & 2 else None
+        for name in ("residual", "correction", "orientation"):
+            named[name] = self.per_row(rows)
+        named["condition"] = self.per_row(rows) if demand & 8 else None
+        named["power_error"] = self.per_row(rows) if demand & 16 else None
+        named["flags"] = self.per_row(rows, np.uint8)
+        named["demand"] = self.index(0, 64) if self.bad() else demand
+        named["shift"] = self.index(0, 3)
+        named["iterations"] = self.index(0, 9)
+        named["tests"] = (1e-12, 1e-8, 1e-10) if not self.bad() else self.random.choice(WRONG)
+        named["lanes"] = self.random.choice([0, 2]) if not self.bad() else self.index(0, 9)
+        named["threads"] = self.index(1, 4)
+        if self.bad():
+            named[self.random.choice(["no_such", "guess"])] = named["states"]
+        if self.bad():
+            del named[self.random.choice(list(named))]
+        self.attempt(plan.run, **named)
+        self.search(plan, named, rows)
+
+    def search(self, plan: Any, named: dict[str, Any], rows: int) -> None:
+        block = self.index(0, plan.blocks)
+        chosen = {name: named.get(name) for name in ("inputs", "states", "residual", "flags")}
+        tests = (1e-12,) if not self.bad() else self.random.choice(WRONG)
+        self.attempt(plan.search, block=block, **chosen, iterations=self.index(0, 9), tests=tests)
+        count = self.random.randint(0, 5)
+        sigma = np.sort(np.array([self.random.uniform(0, 1) for _ in range(count)]))
+        if count and self.bad():
+            sigma[0] = self.random.choice(NUMBERS)
+        limits = [0.9, 0.1, 0.1, 0.1, 0.1, 0.5, 1e-9, 50, 1e-15, 1e-8, 1e-12, 0.0]
+        if self.bad():
+            limits[self.random.randrange(12)] = self.random.choice(NUMBERS)
+        start, last = np.zeros(plan.states), np.zeros(plan.states + self.bad())
+        path = [[self.number() for _ in range(plan.inputs)] for _ in range(2)]
+        arrays = self.array(plan.states, count), self.per_row(count), last
+        self.attempt(plan.track, *path, sigma, start, *arrays, limits)
+
+    def constants(self, plan: Any) -> Any:
+        values = plan.constants
+        if self.bad():
+            values = np.append(values, 1.0)
+        if self.bad():
+            values[self.random.randrange(values.size)] = self.random.choice(NUMBERS)
+        if self.bad():
+            self.attempt(plan.with_constants, self.random.choice(WRONG))
+        if self.bad():
+            self.attempt(plan.with_size, self.number())
+        arrays = {"inputs": self.array(plan.inputs, 1), "guess": self.array(plan.states, 1)}
+        self.attempt(plan.assembly_size, **arrays, iterations=3, tests=(1e-12, 1e-8, 1e-10))
+        return self.attempt(plan.with_constants, values) or plan
+
+    def trial(self) -> Counter[str]:
+        """A builder, its plan and its runs; the builder is used again after it is spent."""
+        builder = self.builder()
+        plan = self.attempt(builder.finish)
+        if plan is None:
+            self.counts["plans refused"] += 1
+            return self.counts
+        self.counts["plans"] += 1
+        adding = threading.Thread(target=self.add_more, args=(builder,))
+        adding.start()
+        for one in (plan, self.constants(plan)):
+            self.run(one, self.outputs(plan))
+        adding.join()
+        if self.counts["spent"] != 20:
+            raise AssertionError("a spent builder took a record")
+        return self.counts
+
+    def add_more(self, builder: Any) -> None:
+        """A spent builder refuses all, also while its plan runs."""
+        for _ in range(5):
+            for call, arguments in (
+                (builder.add_tree_joint, (0, -1, 0.0, [0.0] * 12)),
+                (builder.set_gravity, ([0.0, 0.0, 1.0],)),
+                (builder.add_size_point, (-1, [0.0] * 3)),
+                (builder.finish, ()),
+            ):
+                try:
+                    call(*arguments)
+                except ValueError:
+                    self.counts["spent"] += 1
+
+
+def main(seed: int, count: int) -> None:
+    """Prints how often each outcome came."""
+    counts: Counter[str] = Counter()
+    for number in range(seed, seed + count):
+        print(number, file=sys.stderr, flush=True)
+        counts += Hostile(number).trial()
+    print(dict(counts))
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), int(sys.argv[2]))

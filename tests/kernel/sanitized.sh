@@ -1,0 +1,39 @@
+#!/bin/sh
+# Builds the kernel with AddressSanitizer and UndefinedBehaviorSanitizer and runs its tests, hostile calls first.
+#
+#   tests/kernel/sanitized.sh [FOLDER [COUNT]]
+#
+# FOLDER keeps the build (a temporary one otherwise); COUNT: how many hostile trials. Needs g++ with libasan, and a
+# Python with the project's build and test requirements (PYTHON, python3 otherwise). A few minutes.
+set -eu
+here=$(cd "$(dirname "$0")/../.." && pwd)
+python=${PYTHON:-python3}
+folder=${1:-$(mktemp -d)}
+mkdir -p "$folder/package"
+
+"$python" -m cmake -S "$here/mechkin_cli/kernel" -B "$folder/build" -G Ninja -DMECHKIN_SANITIZE=ON \
+  -DCMAKE_BUILD_TYPE=None -Dnanobind_DIR="$("$python" -m nanobind --cmake_dir)" \
+  -DPython_EXECUTABLE="$("$python" -c 'import sys; print(sys.executable)')" > "$folder/configure.log"
+"$python" -m cmake --build "$folder/build" > "$folder/build.log"
+
+rm -rf "$folder/package/mechkin_cli"
+cp -r "$here/mechkin_cli" "$folder/package/"
+rm -f "$folder"/package/mechkin_cli/kernel/_kernel*.so
+cp "$folder"/build/_kernel*.so "$folder/package/mechkin_cli/kernel/"
+
+# an editable installation would come before the copy
+cat > "$folder/package/sitecustomize.py" <<END
+import sys
+
+sys.meta_path[:] = [f for f in sys.meta_path if "editable" not in type(f).__module__]
+END
+
+# Python itself leaks at its exit; its own allocator would hide what happens between objects
+LD_PRELOAD="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libstdc++.so)"
+export LD_PRELOAD ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 PYTHONMALLOC=malloc
+export UBSAN_OPTIONS=print_stacktrace=1 PYTHONPATH="$folder/package:$here/tests" PYTHONDONTWRITEBYTECODE=1
+cd "$folder"
+"$python" -c 'import mechkin_cli, sys; assert mechkin_cli.__file__.startswith(sys.argv[1])' "$folder/package"
+"$python" "$here/tests/kernel/hostile.py" 0 "${2:-3000}" 2> "$folder/hostile.log" || { tail -60 "$folder/hostile.log"; exit 1; }
+"$python" -m pytest -q -p no:cacheprovider --rootdir "$here" "$here/tests/kernel" \
+  --ignore "$here/tests/kernel/test_symbols.py" --ignore "$here/tests/kernel/test_linear.py"

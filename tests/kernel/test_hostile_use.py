@@ -1,0 +1,210 @@
+"""Misuse ends with a documented exception, in whatever order and number it comes; `hostile` is the
+generator."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from kernel import hostile
+from references import RCSR
+
+import mechkin_cli as mk
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.solver.codes import Demand, LoadCode, OutputCode
+from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.records import Output, hand_over_outputs
+
+TRIALS = 2000
+FRAME = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
+ZERO = (0.0, 0.0, 0.0)
+
+
+def test_thousands_of_bad_calls_end_with_refusals() -> None:
+    """In a process of its own, since a crash would take this one along."""
+    command = [sys.executable, hostile.__file__, "0", str(TRIALS)]
+    found = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert found.returncode == 0, found.stderr[-2000:]
+    counts = ast.literal_eval(found.stdout)
+    assert counts["plans"] > TRIALS / 4
+    assert counts["plans refused"] > TRIALS / 4
+    assert counts["ValueError"] > TRIALS
+    assert counts["TypeError"] > TRIALS
+
+
+def one_turn() -> Any:
+    builder = _kernel.PlanBuilder(1.0, ZERO, 1.0)
+    builder.add_tree_joint(_kernel.TreeCode.R, -1, 0.0, FRAME)
+    builder.add_place(0, -1, 0, 0, ZERO, 1.0)
+    builder.add_axis(0, False, 0, (0.0, 0.0, 1.0), 0, ZERO)
+    builder.set_rest([0])
+    builder.add_input(0, 0, 1.0)
+    return builder
+
+
+def arguments(plan: Any, rows: int = 3) -> dict[str, Any]:
+    return {
+        "inputs": np.zeros((plan.inputs, rows)),
+        "guess": np.zeros((plan.states, rows)),
+        "states": np.zeros((plan.states, rows)),
+        "residual": np.zeros(rows),
+        "correction": np.zeros(rows),
+        "flags": np.zeros(rows, np.uint8),
+        "tests": (1e-12, 1e-8, 1e-10),
+        "iterations": 5,
+    }
+
+
+def test_a_spent_builder_takes_nothing() -> None:
+    builder = one_turn()
+    builder.finish()
+    with pytest.raises(ValueError, match="spent"):
+        builder.add_place(0, -1, 0, 0, ZERO, 1.0)
+    with pytest.raises(ValueError, match="spent"):
+        builder.finish()
+
+
+def test_a_builder_that_cannot_finish_may_be_mended() -> None:
+    builder = _kernel.PlanBuilder(1.0, ZERO, 1.0)
+    builder.add_tree_joint(_kernel.TreeCode.R, -1, 0.0, FRAME)
+    with pytest.raises(ValueError, match="every column must be an input or an unknown"):
+        builder.finish()
+    builder.add_input(0, -1, 1.0)
+    with pytest.raises(ValueError, match="every tree joint must be placed"):
+        builder.finish()
+    builder.set_rest([0])
+    assert builder.finish().inputs == 1
+
+
+@pytest.mark.parametrize("bad", [float("nan"), float("inf"), -float("inf")])
+def test_numbers_of_a_plan_are_finite(bad: float) -> None:
+    with pytest.raises(ValueError, match="finite"):
+        one_turn().set_gravity((0.0, bad, 0.0))
+    plan = one_turn().finish()
+    constants = plan.constants
+    constants[-1] = bad
+    with pytest.raises(ValueError, match="finite"):
+        plan.with_constants(constants)
+    with pytest.raises(ValueError, match="size"):
+        plan.with_size(bad)
+    with pytest.raises(ValueError, match="finite"):
+        hand_over_outputs(plan, [Output(OutputCode.POINT, 0, 0, 0, ZERO, bad)])
+
+
+def test_a_sphere_has_no_coordinate_to_read_or_to_load() -> None:
+    model = mk.load(RCSR)
+    layout = Layout(model.problem.mechanism, model.graph)
+    spheres = [c for c, k in enumerate(layout.graph.closings) if k.joint.letter == "S"]
+    assert spheres
+    with pytest.raises(ValueError, match="has no coordinate 0"):
+        hand_over_outputs(layout.build(), [Output(OutputCode.CLOSING, spheres[0], 0, 0, ZERO, 1.0)])
+    builder = _kernel.PlanBuilder(1.0, ZERO, 1.0)
+    builder.add_tree_joint(_kernel.TreeCode.S, -1, 0.0, FRAME)
+    builder.add_place(0, -1, 0, 0, ZERO, 1.0)
+    builder.add_axis(0, False, 0, (0.0, 0.0, 1.0), 0, ZERO)
+    with pytest.raises(ValueError, match="unknown coordinate"):
+        builder.add_load(LoadCode.COORDINATE_SPRING, 0, 0, 0, ZERO, ZERO, ZERO)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"shift": 3}, "shift: 3 is not from 0 to 2"),
+        ({"demand": 64}, "demand: 64 is not from 0 to 63"),
+        ({"demand": 1}, "velocities need rates"),
+        ({"iterations": -1}, "iterations: -1"),
+        ({"lanes": 3}, "lanes: this width"),
+        ({"threads": 0}, "threads: 0"),
+        ({"tests": (1.0, float("nan"), 1.0)}, "tests: a limit is a number from 0 on"),
+        ({"guess": np.zeros((1, 4))}, "guess: 4 rows instead of 3"),
+        ({"guess": np.zeros((2, 3))}, "guess: 2 columns instead of 1"),
+        ({"guess": np.zeros(3)}, "guess: 1 dimensions instead of 2"),
+        ({"condition": np.zeros(3)}, "condition goes with its demand"),
+        ({"first": np.zeros((1, 3))}, "first derivatives are not demanded"),
+        ({"values": np.zeros((1, 3))}, "values: 1 columns instead of 0"),
+    ],
+)
+def test_a_run_says_which_argument_is_wrong(change: dict[str, Any], message: str) -> None:
+    plan = one_turn().finish()
+    with pytest.raises(ValueError, match=re.escape(message)):
+        plan.run(**(arguments(plan) | change))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"states": np.zeros((1, 3), np.float32)}, "states: not a writable C-contiguous array"),
+        ({"states": np.zeros((3, 2)).T[:1]}, "states: not a writable C-contiguous array"),
+        ({"inputs": [[0.0, 0.0, 0.0]]}, "inputs: not a C-contiguous array"),
+        ({"guess": None}, "guess: missing"),
+        ({"flags": np.zeros(3)}, "flags: not a writable array of uint8"),
+        ({"outputs": "all"}, "outputs: not Outputs of a plan"),
+        ({"shift": "one"}, "shift: not a whole number"),
+        ({"gess": np.zeros((1, 3))}, "gess: no such argument"),
+    ],
+)
+def test_a_run_says_which_argument_is_of_the_wrong_type(
+    change: dict[str, Any], message: str
+) -> None:
+    plan = one_turn().finish()
+    with pytest.raises(TypeError, match=re.escape(message)):
+        plan.run(**(arguments(plan) | change))
+
+
+def test_written_arrays_share_no_memory() -> None:
+    plan = one_turn().finish()
+    given = arguments(plan)
+    with pytest.raises(ValueError, match="shares memory with"):
+        plan.run(**(given | {"states": given["guess"]}))
+    both = np.zeros(4)
+    with pytest.raises(ValueError, match="shares memory with"):
+        plan.run(**(given | {"residual": both[:3], "correction": both[1:]}))
+
+
+def test_read_only_arrays_are_read_and_not_written() -> None:
+    plan = one_turn().finish()
+    given = arguments(plan)
+    given["guess"].setflags(write=False)
+    plan.run(**given)
+    given["states"].setflags(write=False)
+    with pytest.raises(TypeError, match="states: not a writable"):
+        plan.run(**given)
+
+
+def test_outputs_fit_plans_of_their_structure_only() -> None:
+    plan, other = one_turn().finish(), one_turn().finish()
+    outputs = hand_over_outputs(plan, [Output(OutputCode.STATE, 0, 0, 0, ZERO, 2.0)])
+    given = arguments(plan) | {"outputs": outputs, "values": np.zeros((1, 3))}
+    given["inputs"][:] = 0.25
+    plan.with_size(3.0).run(**given)
+    assert given["values"].tolist() == [[0.5, 0.5, 0.5]]
+    with pytest.raises(ValueError, match="another structure"):
+        other.run(**given)
+
+
+def test_what_an_output_demands_must_be_demanded() -> None:
+    plan = one_turn().finish()
+    outputs = hand_over_outputs(plan, [Output(OutputCode.ALPHA, 0, 0, 0, ZERO, 1.0)])
+    assert outputs.demand == Demand.VELOCITY | Demand.ACCELERATION
+    with pytest.raises(ValueError, match="outputs and values are given together"):
+        plan.run(**(arguments(plan) | {"outputs": outputs}))
+    given = arguments(plan) | {"outputs": outputs, "values": np.zeros((3, 3))}
+    with pytest.raises(ValueError, match="need more than is demanded"):
+        plan.run(**given)
+
+
+def test_the_generator_would_see_a_call_that_is_not_refused(tmp_path: Path) -> None:
+    """A builder that takes records after finish() ends the process with an error."""
+    patched = tmp_path / "patched.py"
+    source = Path(hostile.__file__).read_text(encoding="utf-8")
+    patched.write_text(source.replace("call(*arguments)\n", "None\n"), encoding="utf-8")
+    command = [sys.executable, str(patched), "0", "50"]
+    found = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert found.returncode == 1
+    assert "a spent builder took a record" in found.stderr
