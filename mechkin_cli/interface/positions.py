@@ -16,7 +16,7 @@ from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.solver.closing_turns import turn_slots
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
-from mechkin_cli.solver.inputs import kernel_units
+from mechkin_cli.solver.inputs import input_unit
 from mechkin_cli.solver.stepping import step_limits
 from mechkin_cli.status import Status
 from mechkin_cli.units import Conversion
@@ -75,7 +75,9 @@ class Solver:
         self.to_kernel = [
             (units.conversion(known[item.name].dimension), unit)
             for item, unit in zip(
-                problem.motion.inputs, kernel_units(problem, session.layout), strict=True
+                problem.motion.inputs,
+                [input_unit(session.layout, item) for item in problem.motion.inputs],
+                strict=True,
             )
         ]
         self.problem = problem

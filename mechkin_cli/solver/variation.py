@@ -7,7 +7,7 @@ the straight line in the parameters (kernel/src/variants.hpp).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -31,7 +31,6 @@ from mechkin_cli.tape.native import compiled, replay
 from mechkin_cli.tape.nested import filled, traced_in
 from mechkin_cli.tape.rows import is_traced
 from mechkin_cli.tape.scalars import next_power_of_two
-from mechkin_cli.tape.tape import Verdict
 from mechkin_cli.tape.traced import TraceLost, register
 
 if TYPE_CHECKING:
@@ -106,7 +105,9 @@ class Reading:
             start_row=start.row,
             demand=int(demand),
             iterations=tolerances.NEWTON_ITERATIONS,
-            continuation=step_limits(longest_step=tolerances.LONGEST_DIMENSION_STEP),
+            continuation=step_limits(
+                tolerances.LONGEST_DIMENSION_STEP, tolerances.LEAST_DIMENSION_STEP
+            ),
             following=step_limits(),
             angles=variation.closing_angles(self.slots, turns),
         )
@@ -247,6 +248,3 @@ def run_variants(
 def _flat(tables: Sequence[Any]) -> list[Any]:
     return [number for table in tables for number in table.flat]
 
-
-Started = Callable[[Floats], tuple[int, float, "Floats"]]
-SAME, OTHER_ADVICE, OTHER_WAY = Verdict

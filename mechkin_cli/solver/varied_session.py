@@ -9,8 +9,8 @@ import numpy as np
 
 from mechkin_cli.kernel._kernel import VariantEnd
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.same_structure import graph_of
 from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.same_structure import graph_of
 from mechkin_cli.solver.session import Continued, Readout, Session
 
 if TYPE_CHECKING:
@@ -58,6 +58,6 @@ class VariedSession(Session):
         if points or key in self._readouts:
             return super().readout(wanted, points)
         reading = self.variation.reading(wanted)
-        found = reading.readout._replace(plan=self.plan, outputs=reading.outputs(self.values))
+        found = reading.readout._replace(outputs=reading.outputs(self.values))
         self._readouts[key] = found
         return found

@@ -48,10 +48,7 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     known = session.problem.quantities()
     asked = [known[name] for name in dict.fromkeys(quantities)]
     session = _followed_part(session, asked)
-    start = choose_start(session)
-    if start.state is not None:
-        inputs = session.inputs.values[:, start.row]
-        session = session.sized(Probe.of(session).size(inputs, start.state))
+    session, start = first_assembly(session)
     asked += _held(session.problem, asked)
     result = _closed(session, start, asked, verdicts=verdicts)
     if result.row_states.has_failed:
@@ -60,6 +57,15 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     result.read(asked)
     result.row_states.diagnostics += _notes(result, asked)
     return result
+
+
+def first_assembly(session: Session) -> tuple[Session, Start]:
+    """The first assembly, and the session with residual and condition in parts of its size."""
+    start = choose_start(session)
+    if start.state is None or session.continued is not None:
+        return session, start
+    inputs = session.inputs.values[:, start.row]
+    return session.sized(Probe.of(session).size(inputs, start.state)), start
 
 
 def _followed_part(session: Session, asked: list[Wanted]) -> Session:
