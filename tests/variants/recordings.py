@@ -10,16 +10,16 @@ from typing import Any
 
 import numpy as np
 
+from mechkin_cli.arrays import Floats
 from mechkin_cli.building.build import Built, build
 from mechkin_cli.building.recording import record
 from mechkin_cli.building.source import open_file
 from mechkin_cli.expressions import Quantity
-from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.plan import describe
-from mechkin_cli.solver.plan_image import PlanImage
+from mechkin_cli.solver.plan import plan_records
+from mechkin_cli.solver.records import flatten
 from mechkin_cli.solver.same_structure import graph_of
 from mechkin_cli.tape.native import compiled
 from mechkin_cli.tape.tape import Tape
@@ -66,16 +66,13 @@ def numbers_in(value: Any) -> Iterator[Any]:
                 yield from numbers_in(getattr(value, field.name))
 
 
-def image_of(problem: Problem, graph: SolverGraph) -> PlanImage:
-    layout = Layout(problem.mechanism, graph)
-    image = PlanImage(layout.length, layout.origin, problem.mechanism.box_diagonal())
-    describe(layout, image)  # type: ignore[arg-type]
-    return image
+def constants_of(problem: Problem, graph: SolverGraph) -> list[Any]:
+    return flatten(plan_records(Layout(problem.mechanism, graph)))
 
 
 def everything(problem: Problem, graph: SolverGraph) -> list[Any]:
     """All numbers of the problem, then all constants of its plan."""
-    return [*numbers_in(problem), *image_of(problem, graph).constants]
+    return [*numbers_in(problem), *constants_of(problem, graph)]
 
 
 @cache
@@ -90,7 +87,7 @@ def tape_of(stem: str) -> tuple[Built, Tape, Any]:
     return base, tape, compiled(tape)
 
 
-def near(base: Built, count: int, seed: int, spread: float = 0.05) -> np.ndarray:
+def near(base: Built, count: int, seed: int, spread: float = 0.05) -> Floats:
     """Values (parameters, count) about the file's own, which stand in the first column."""
     own = np.array(list(parameters_of(base).values()))
     generator = np.random.default_rng(seed)
@@ -98,5 +95,3 @@ def near(base: Built, count: int, seed: int, spread: float = 0.05) -> np.ndarray
     values[:, 0] = own
     return values
 
-
-Native = _kernel.Tape
