@@ -85,11 +85,16 @@ def _one(name: str, value: Any, dimension: Dimension, units: UnitSystem) -> floa
 
 
 def _column(name: str, value: Any, dimension: Dimension, units: UnitSystem) -> Floats:
-    if isinstance(value, str) or np.ndim(value) == 0:
+    if isinstance(value, str | int | float | np.number):
         return np.array(_one(name, value, dimension, units))
-    if np.ndim(value) > 1:
+    try:
+        array = np.asarray(value)
+    except (ValueError, TypeError):
+        array = np.empty((0, 0))
+    if array.ndim == 0:
+        return np.array(_one(name, value, dimension, units))
+    if array.ndim > 1:
         raise UsageError(f"{name} takes one value a variant, an array of one dimension")
-    array = np.asarray(value)
     if array.dtype.kind not in "fiu":
         return np.array([_one(name, item, dimension, units) for item in value], dtype=np.float64)
     in_si = units.to_si(array.astype(np.float64), dimension)

@@ -28,7 +28,7 @@ from mechkin_cli.solver.records import flatten
 from mechkin_cli.solver.same_structure import graph_of
 from mechkin_cli.solver.stepping import step_limits
 from mechkin_cli.tape.native import compiled, replay
-from mechkin_cli.tape.nested import filled, traced_in
+from mechkin_cli.tape.nested import Filling
 from mechkin_cli.tape.rows import is_traced
 from mechkin_cli.tape.scalars import next_power_of_two
 from mechkin_cli.tape.traced import TraceLost, register
@@ -172,11 +172,11 @@ class Variation:
 
     @cached_property
     def _mechanism_tape(self) -> _kernel.Tape:
-        return self.tape(traced_in(self._mechanism))
+        return self.tape(self._mechanism.numbers)
 
-    @property
-    def _mechanism(self) -> tuple[Any, ...]:
-        return (self.recorded.mechanism, self.recorded.assembly, self.recorded.motion)
+    @cached_property
+    def _mechanism(self) -> Filling:
+        return Filling((self.recorded.mechanism, self.recorded.assembly, self.recorded.motion))
 
     def parameters(self, values: Floats) -> Floats:
         """All parameters of the file (parameters, variants) in SI, in the file's order."""
@@ -192,8 +192,8 @@ class Variation:
                 self.recorded.parameters.items(), numbers, strict=True
             )
         }
-        leaves = iter(replay(self._mechanism_tape, values[:, None])[0][0].tolist())
-        mechanism, assembly, motion = filled(self._mechanism, leaves)
+        leaves = replay(self._mechanism_tape, values[:, None])[0][0].tolist()
+        mechanism, assembly, motion = self._mechanism.fill(leaves)
         problem = replace(
             self.base.problem,
             mechanism=mechanism,

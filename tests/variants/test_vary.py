@@ -142,7 +142,7 @@ def test_variants_past_a_dead_centre():
     """Rows beyond are empty and say so; other variants are not touched."""
     text = text_of("rcsr").replace("to: 190", "to: 204").replace("count: 361", "count: 28")
     model = mk.loads(text, "rcsr")
-    values = np.array([0.5, 0.58, 0.5, 0.42])
+    values = np.array([0.5, 0.42, 0.5, 0.58])
     result = model.vary({"P1": values}, ["O4.theta"])
     assert "beyond-dead-centre" in result.status[1]
     assert not result.complete[1]
