@@ -103,8 +103,8 @@ LONGEST_STEP: Final = 0.5
 folds hides in one."""
 
 LONGEST_DIMENSION_STEP: Final = 1.0
-"""Longest step from the base variant (0) to another (1): variants are near each other as a rule, and
-the tests of a step shorten it where they are not."""
+"""Longest step from the base variant (0) to another (1): variants are near each other as a rule,
+and the tests of a step shorten it where they are not."""
 
 LEAST_DIMENSION_STEP: Final = 1e-6
 """Step on the way from the base variant to another (0 to 1) below which a branch that goes no

@@ -25,12 +25,12 @@ from mechkin_cli.tables.layout import TableLayout
 if TYPE_CHECKING:
     from typing import Any
 
-    from mechkin_cli.interface.positions import Position, Solver
-    from mechkin_cli.interface.varied import Base
-    from mechkin_cli.interface.variants import Reduce, Variants
     from mechkin_cli.analysis.mobility import Mobility
     from mechkin_cli.analysis.modes import Modes
     from mechkin_cli.analysis.ranges import Ranges
+    from mechkin_cli.interface.positions import Position, Solver
+    from mechkin_cli.interface.variants import Reduce, Variants
+    from mechkin_cli.interface.varied import Base
 
 
 class Model:
@@ -168,7 +168,7 @@ class Model:
             >>> from mechkin_cli import load
             >>> m = load("mechanisms/rcsr.yaml")
             >>> m.with_parameters({"P1": "0.52 in"}).analyze()["O4.theta"][:2].round(3).tolist()
-            [37.355, 36.914]
+            [36.504, 36.269]
         """
         from mechkin_cli.interface.varied import with_parameters
 
@@ -208,7 +208,7 @@ class Model:
             >>> m = load("mechanisms/rcsr.yaml")
             >>> r = m.vary({"P1": np.array([0.48, 0.5, 0.52])}, ["O1.effort"], reduce="peak")
             >>> r["O1.effort"].round(2).tolist()
-            [41.57, 42.74, 43.94]
+            [147.41, 135.04, 125.93]
 
             The crank that needs the least effort, by scipy:
 
@@ -249,7 +249,7 @@ class Model:
             >>> from mechkin_cli import load
             >>> place = load("mechanisms/rcsr.yaml").solve({"O1.theta": 161.5}, ["O4.theta"])
             >>> round(place["O4.theta"], 6), place.status
-            (32.297166, 'ok')
+            (28.438352, 'ok')
         """
         key = None if quantities is None else quantities
         if type(key) is list:
@@ -258,7 +258,9 @@ class Model:
         if solver is None:
             from mechkin_cli.interface.positions import solver_of
 
-            names = quantities if quantities is None or isinstance(quantities, str) else [*quantities]
+            names = (
+                quantities if quantities is None or isinstance(quantities, str) else [*quantities]
+            )
             solver = solver_of(self, names)
             self._solvers[None if names is None else tuple(names)] = solver
         return solver.solve(inputs)

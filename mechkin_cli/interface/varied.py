@@ -108,7 +108,7 @@ class VariedModel(Model):
         self._advised = verdict == Verdict.OTHER_ADVICE
 
     @cached_property
-    def problem(self) -> Problem:  # type: ignore[override]
+    def problem(self) -> Problem:
         """The mechanism, its motion and assembly in SI."""
         if self._variation is None:
             return self.built.problem
@@ -119,7 +119,7 @@ class VariedModel(Model):
         return problem
 
     @cached_property
-    def session(self) -> Session:  # type: ignore[override]
+    def session(self) -> Session:
         """The mechanism in the kernel."""
         if self._variation is None:
             return Session(self.problem, self.graph)

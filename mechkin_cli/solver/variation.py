@@ -247,4 +247,3 @@ def run_variants(
 
 def _flat(tables: Sequence[Any]) -> list[Any]:
     return [number for table in tables for number in table.flat]
-

@@ -1,4 +1,4 @@
-"""Times variants: `m.vary`, `m.with_parameters(...).analyze()` and `m.solve`, and the memory of many.
+"""Times `m.vary`, `m.with_parameters(...).analyze()` and `m.solve`, and the memory of variants.
 
     python tests/benchmark/variants.py [--variants 1000] [--quick]
 
@@ -36,9 +36,9 @@ SEVEN_R_POINTS = {
     "[2.3, 3, 1.2]": "[x3, y3, z3]",
     "[3.9, 3.2, 1.5]": "[x4, 3.2 in, 1.5 in]",
 }
-SEVEN_R_PARAMETERS = (
-    "parameters: {x2: 0.8 in, y2: 1.9 in, z2: 0.5 in, x3: 2.3 in, y3: 3 in, z3: 1.2 in, x4: 3.9 in}\n"
-)
+SEVEN_R_PARAMETERS = """\
+parameters: {x2: 0.8 in, y2: 1.9 in, z2: 0.5 in, x3: 2.3 in, y3: 3 in, z3: 1.2 in, x4: 3.9 in}
+"""
 
 
 def text_of(stem: str) -> str:
@@ -89,8 +89,10 @@ def measure(stem: str, count: int, times: int) -> None:
 
     seconds = best_of(study, times)
     complete = int(study().complete.sum())
-    print(f"{stem:7} vary      {1e3 * seconds / count:8.4f} ms a variant (limit {limit:.2f}), "
-          f"{complete} of {count} complete")
+    print(
+        f"{stem:7} vary      {1e3 * seconds / count:8.4f} ms a variant (limit {limit:.2f}), "
+        f"{complete} of {count} complete"
+    )
     one = {name: float(values[0]) for name, values in given.items()}
     whole = best_of(lambda: model.with_parameters(one).analyze(quantities, tables=[]), 5 * times)
     print(f"{stem:7} one       {1e3 * whole:8.4f} ms with_parameters(...).analyze(), {ROWS} rows")
@@ -108,7 +110,8 @@ def measure(stem: str, count: int, times: int) -> None:
 def peak_after(count: int) -> int:
     """Peak memory in MB of a process that runs so many variants of RCSR."""
     script = (
-        "import sys; sys.path.insert(0, sys.argv[1]); import variants, resource, mechkin_cli as mk\n"
+        "import sys; sys.path.insert(0, sys.argv[1])\n"
+        "import resource, variants, mechkin_cli as mk\n"
         "m = mk.loads(variants.text_of('rcsr'), 'rcsr')\n"
         "q, _ = variants.CASES['rcsr']\n"
         "m.vary(variants.arrays(m, int(sys.argv[2])), q, reduce=('min', 'max'), threads=1)\n"

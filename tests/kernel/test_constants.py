@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from mechkin_cli.analysis.probe import Probe
+from mechkin_cli.analysis.rows import kernel_inputs
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.analysis.assembly import choose_start
-from mechkin_cli.analysis.probe import Probe
-from mechkin_cli.analysis.rows import kernel_inputs
 from mechkin_cli.solver.batch import Batch, assembly_size, run
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import OutputPlan

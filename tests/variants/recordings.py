@@ -94,4 +94,3 @@ def near(base: Built, count: int, seed: int, spread: float = 0.05) -> Floats:
     values = own[:, None] * (1.0 + spread * generator.standard_normal((own.size, count)))
     values[:, 0] = own
     return values
-

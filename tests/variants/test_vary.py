@@ -7,7 +7,7 @@ import pytest
 from benchmark.variants import CASES, arrays, text_of
 
 import mechkin_cli as mk
-from mechkin_cli.interface import variants
+from mechkin_cli.interface import variant_runs
 from mechkin_cli.kernel.width import widths
 
 COUNT = 12
@@ -63,7 +63,7 @@ def test_lanes_threads_and_chunks(case, monkeypatch):
         assert bytes_of(model.vary(given, quantities, lanes=lanes), quantities) == expected
     for threads in (1, 2, 3):
         assert bytes_of(model.vary(given, quantities, threads=threads), quantities) == expected
-    monkeypatch.setattr(variants, "CHUNK_NUMBERS", 1)
+    monkeypatch.setattr(variant_runs, "CHUNK_NUMBERS", 1)
     assert bytes_of(model.vary(given, quantities), quantities) == expected
 
 
@@ -98,7 +98,7 @@ def test_one_parameter_or_several(case):
     first, second = list(given)[:2]
     values = given[first]
     alone = model.vary({first: values}, quantities)
-    units, known = model.problem.units, model.problem.parameters
+    known = model.problem.parameters
     own = f"{known[second].value!r} "
     label = {"length": "m", "angle": "rad"}
     dimension = known[second].dimension
