@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Diagnostic, InvalidFile, MechkinError, UsageError
+    from mechkin_cli.expressions import ExpressionError
     from mechkin_cli.interface import Analysis, Model, load, loads
     from mechkin_cli.status import Status
 
 _PLACES = {
     "Analysis": "interface",
     "Diagnostic": "diagnostics",
+    "ExpressionError": "expressions",
     "InvalidFile": "diagnostics",
     "MechkinError": "diagnostics",
     "Model": "interface",
@@ -31,6 +33,7 @@ _PLACES = {
 __all__ = [
     "Analysis",
     "Diagnostic",
+    "ExpressionError",
     "InvalidFile",
     "MechkinError",
     "Model",

@@ -10,6 +10,9 @@ from __future__ import annotations
 from math import isfinite
 from typing import Literal, NamedTuple
 
+LONGEST_NAME = 60
+"""Characters of an unknown name that a message repeats."""
+
 Severity = Literal["error", "warning", "note"]
 
 

@@ -7,6 +7,13 @@ values and its status; all its other cells stay empty.
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from mechkin_cli.arrays import Bools
 
 
 class Status(IntEnum):
@@ -53,3 +60,10 @@ _SENTENCES = {
         "the rank of the constraints could not be decided, so no reactions are given."
     ),
 }
+
+
+def has_solution(codes: NDArray[np.int8]) -> Bools:
+    """`Status.has_solution` of many rows, the same shape as the codes."""
+    import numpy as np
+
+    return np.isin(codes, [int(status) for status in _SOLVED])

@@ -292,6 +292,17 @@ LARGEST_NUMBER: Final = 1e100
 """SI value of a field above which it is a slip of the pen: products of three such values are the
 last that stay doubles (1.8e308); beyond, cells would be empty without a reason."""
 
+LARGEST_FACTOR: Final = 1e30
+"""Size in SI beyond which (or below whose inverse) a unit of a file is taken for a mistake."""
+
+LARGEST_CONVERSION: Final = 1e290
+"""Conversion factor beyond which (or below whose inverse) products with numbers of a file are no
+doubles any more."""
+
+UNIT_SQUARE: Final = 4e-16
+"""Distance of a vector's square from 1 up to which it counts as a unit vector and keeps its bits:
+its three products and two sums round to no more."""
+
 # --- mobility by rank (lengths in parts of the size) ------------------------------------------
 
 RANK_GAP: Final = 1e3
@@ -351,3 +362,16 @@ it drops, at a general one it is the least freedom seen."""
 THREAD_ROWS: Final = 512
 """Rows that make a thread worth waking: at 0.3 us a row or more, ten times the 15 us that it takes
 to wake and to wait for it."""
+# --- the Python interface -----------------------------------------------------------------------
+
+MOST_NAMES: Final = 100_000
+"""Names in one list that a caller gives: more come from an iterable without an end."""
+
+# --- text of tables ---------------------------------------------------------------------------
+
+CELLS_PER_THREAD: Final = 50_000
+"""Cells of a table that are worth a thread of their own: 2 ms of work against 0.05 ms to start
+one."""
+
+MOST_TEXT_THREADS: Final = 64
+"""Threads that write one table: beyond, the memory takes longer than the digits."""

@@ -13,7 +13,7 @@ from mechkin_cli.benchmark.kernel_case import (
 )
 from mechkin_cli.benchmark.report import Cell, Column, Table
 from mechkin_cli.benchmark.specimen import Specimen
-from mechkin_cli.benchmark.timing import in_turns
+from mechkin_cli.benchmark.timing import ROUNDS, in_turns
 from mechkin_cli.kernel.width import widths
 from mechkin_cli.solver.codes import Demand
 
@@ -34,7 +34,7 @@ def steps(specimen: Specimen) -> list[Step]:
     ]
 
 
-def table(specimen: Specimen) -> Table:
+def table(specimen: Specimen, rounds: int = ROUNDS) -> Table:
     """Microseconds per row for every step and width."""
     case = KernelCase(specimen, degree_rows(specimen))
     inputs, guesses = repeated(case.inputs), repeated(case.second_order_guesses())
@@ -44,7 +44,7 @@ def table(specimen: Specimen) -> Table:
         for name, run in planned.items()
         for lanes in widths()
     }
-    times = in_turns(calls)
+    times = in_turns(calls, rounds)
     rows: list[dict[str, Cell]] = []
     for name in planned:
         row: dict[str, Cell] = {"part": name}

@@ -2,53 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from pathlib import Path
-from subprocess import CalledProcessError
+from collections.abc import Iterator
 
-from mechkin_cli.benchmark import demand_steps, routes, stress, targets
+from mechkin_cli.benchmark import demand_steps, sweeps
 from mechkin_cli.benchmark.report import Table
 from mechkin_cli.benchmark.specimens import rcsr_specimen, sevenr_specimen
-from mechkin_cli.benchmark.yardstick import Yardstick, load
+from mechkin_cli.benchmark.timing import ROUNDS
 
-RCSR_FILE = Path("mechanisms") / "rcsr.yaml"
-
-
-def timing_tables(folder: Path | None, say: Callable[[str], None]) -> Iterator[Table]:
-    """Routes, demand plan, and the targets as far as their programs are there.
-
-    Args:
-        folder: the yardstick's folder, None to look for it.
-        say: told what is left out and why.
-
-    Raises:
-        UsageError: no yardstick in the folder given.
-    """
-    yardstick = load(folder)
-    specimens = (rcsr_specimen(), sevenr_specimen())
-    yield from routes.tables(*specimens)
-    yield from map(demand_steps.table, specimens)
-    if not isinstance(yardstick, Yardstick):
-        say(f"left out: {yardstick}")
-        return
-    with yardstick:
-        for specimen in specimens:
-            yield targets.table(specimen, yardstick)
-    yield from _process_table(yardstick.folder, say)
+QUICK_ROUNDS = 5
 
 
-def _process_table(folder: Path, say: Callable[[str], None]) -> Iterator[Table]:
-    """The whole process, if the program that does nothing and the mechanism's file are there."""
-    do_nothing, project = folder.parent / "do_nothing.py", folder.parents[2]
-    if not (do_nothing.is_file() and (project / RCSR_FILE).is_file()):
-        say(f"left out: no whole processes, {do_nothing} or {project / RCSR_FILE} is not there")
-        return
-    try:
-        yield targets.process_table(project / RCSR_FILE, do_nothing)
-    except CalledProcessError as error:
-        say(f"left out: no whole processes, {error}")
-
-
-def stress_tables() -> Iterator[Table]:
-    """Sizes and distances to the dead centre."""
-    return stress.tables()
+def timing_tables(*, quick: bool = False) -> Iterator[Table]:
+    """What a row costs, and what each part of the demand plan costs; `quick` in few rounds."""
+    rounds = QUICK_ROUNDS if quick else ROUNDS
+    for specimen in (rcsr_specimen(), sevenr_specimen()):
+        yield sweeps.table(specimen, rounds)
+        yield demand_steps.table(specimen, rounds)

@@ -1,12 +1,9 @@
-"""A mechanism that is measured: its file, how it is driven, what is asked of it, what is right."""
+"""A mechanism that is measured: its file, how it is driven, what is asked of it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
-
-from mechkin_cli.benchmark.arithmetic import Arithmetic
 
 ORDERS = ("", "_dot", "_ddot")
 Names = tuple[str, ...]
@@ -24,10 +21,6 @@ class Specimen:
         loads: the effort, and force and moment of every joint.
         rate, acceleration: of the input, rad/s and rad/s^2.
         span: the sweep, degrees.
-        solution: everything in extended precision for positions (rows) of the input and guesses
-            (coordinates, rows), independent of the package.
-        row_by_row: the same in any arithmetic.
-        zeros: what is zero by its nature; rounding there has no size to be compared with.
     """
 
     name: str
@@ -38,9 +31,6 @@ class Specimen:
     rate: float
     acceleration: float
     span: tuple[float, float]
-    solution: Callable[[Any, Any], dict[str, Any]]
-    row_by_row: Callable[[Any, Any, Arithmetic], dict[str, Any]]
-    zeros: frozenset[str] = frozenset()
 
     @property
     def motion(self) -> tuple[Names, Names, Names]:
@@ -52,7 +42,7 @@ class Specimen:
 
     @property
     def levels(self) -> tuple[Names, Names, Names]:
-        """Quantities of the yardstick's levels: positions; with their derivatives; everything."""
+        """Quantities of three levels: positions; with their derivatives; everything."""
         position, velocity, acceleration = self.motion
         moving = (*position, *velocity, *acceleration)
         return position, moving, (*moving, *self.loads)

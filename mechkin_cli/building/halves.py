@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from mechkin_cli.mechanism.frames import Frame, frame_about
-from mechkin_cli.mechanism.joint_table import Drawn
+from mechkin_cli.mechanism.joint_type import Drawn
 from mechkin_cli.mechanism.vectors import scale
 
 

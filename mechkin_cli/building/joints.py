@@ -16,7 +16,8 @@ from mechkin_cli.mechanism.frames import (
     turned_shortest,
     upright,
 )
-from mechkin_cli.mechanism.joint_table import Drawing, JointType, joint_type
+from mechkin_cli.mechanism.joint_table import joint_type
+from mechkin_cli.mechanism.joint_type import Drawing, JointType
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint
 from mechkin_cli.mechanism.vectors import Vector, cross, norm
 from mechkin_cli.nearest import nearest_hint

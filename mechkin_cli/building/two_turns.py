@@ -12,7 +12,7 @@ from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.halves import Halves
 from mechkin_cli.building.per_link import directions_of, place_of, points_of
 from mechkin_cli.mechanism.frames import frame_about, perpendicular
-from mechkin_cli.mechanism.joint_table import Drawing
+from mechkin_cli.mechanism.joint_type import Drawing
 from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale, subtract, unit
 from mechkin_cli.tolerances import AXES_SQUARE, PARALLEL
 

@@ -12,12 +12,12 @@ from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import Progress, Record, put, refusal, say, say_diagnostics
 from mechkin_cli.cli.options import Files, Json, Quiet, Set, parameters
 from mechkin_cli.diagnostics import InvalidFile, UsageError
+from mechkin_cli.tables.writers import USUAL_FORMATS, WRITERS, Results, written_files
 
 if TYPE_CHECKING:
     from mechkin_cli.interface import Analysis
 
-FORMATS = ("csv", "md", "json")
-DEFAULT_FORMATS = ("csv", "md")
+FORMATS = f"{', '.join(tuple(WRITERS)[:-1])} or {tuple(WRITERS)[-1]}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ def analyze(
     ] = None,
     format: Annotated[
         list[str] | None,
-        typer.Option("--format", metavar="FORMAT", help="csv, md or json; may be repeated."),
+        typer.Option("--format", metavar="FORMAT", help=f"{FORMATS}; may be repeated."),
     ] = None,
     set_: Set = None,
     mode: Annotated[
@@ -105,10 +105,10 @@ def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]
 
 
 def _formats(given: list[str] | None) -> tuple[str, ...]:
-    formats = tuple(dict.fromkeys(given or DEFAULT_FORMATS))
+    formats = tuple(dict.fromkeys(given or USUAL_FORMATS))
     for name in formats:
-        if name not in FORMATS:
-            raise UsageError(f"--format {name}: formats are {', '.join(FORMATS)}")
+        if name not in WRITERS:
+            raise UsageError(f"--format {name}: formats are {', '.join(WRITERS)}")
     return formats
 
 
@@ -133,24 +133,10 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
 
 def _write(folder: Path, analysis: Analysis, formats: tuple[str, ...]) -> list[Path]:
     """Writes the tables and rows.csv, all or none."""
-    from mechkin_cli.tables.csv_writer import csv_bytes
     from mechkin_cli.tables.files import write_files
-    from mechkin_cli.tables.rows_table import rows_table
 
-    content: dict[str, bytes] = {}
-    for table in analysis.tables:
-        if "csv" in formats:
-            content[f"{table.name}.csv"] = csv_bytes(table)
-        if "md" in formats:
-            from mechkin_cli.tables.markdown import markdown_text
-
-            content[f"{table.name}.md"] = markdown_text(table, analysis.result).encode()
-    if "json" in formats:
-        from mechkin_cli.tables.json_writer import json_text
-
-        content["analysis.json"] = json_text(_record(analysis)).encode()
-    content["rows.csv"] = csv_bytes(rows_table(analysis.result))
-    return write_files(folder, content)
+    results = Results(analysis.model.name, analysis.tables, analysis.result, analysis.diagnostics)
+    return write_files(folder, written_files(results, formats))
 
 
 def _record(analysis: Analysis) -> Record:

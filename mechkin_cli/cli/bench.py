@@ -1,15 +1,13 @@
-"""`mechkin bench`: run time against error, and extreme cases."""
+"""`mechkin bench`: what a row costs on this machine."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mechkin_cli.cli.messages import say
 from mechkin_cli.cli.options import Json
 
 if TYPE_CHECKING:
@@ -19,21 +17,17 @@ if TYPE_CHECKING:
 
 
 def bench(
-    yardstick: Annotated[
-        Path | None,
-        typer.Option("--yardstick", metavar="DIR", help="Folder of the C kernel to compare with."),
-    ] = None,
-    stress: Annotated[
-        bool, typer.Option("--stress", help="Extreme sizes and positions instead of timings.")
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Few rounds: seconds, and rougher.")
     ] = False,
     json: Json = False,
 ) -> None:
-    """Measure time and error on the RCSR mechanism and a general 7R."""
+    """Measure run times on the RCSR mechanism and a general 7R."""
     from mechkin_cli.benchmark.machine import machine
-    from mechkin_cli.benchmark.runs import stress_tables, timing_tables
+    from mechkin_cli.benchmark.runs import timing_tables
 
     described = machine()
-    tables = stress_tables() if stress else timing_tables(yardstick, say)
+    tables = timing_tables(quick=quick)
     if json:
         from mechkin_cli.tables.json_writer import json_text
 

@@ -61,8 +61,7 @@ def _chosen_rows(rows: int) -> list[int]:
 def _cells(column: Column, chosen: Sequence[int]) -> list[str]:
     """Label, unit and cells of a column, padded to one width."""
     if isinstance(column.values, Words):
-        every = column.values.texts()
-        texts = [every[i] for i in chosen]
+        texts = column.values.texts(chosen)
     else:
         texts = column_texts(column.values[list(chosen)], column.decimals)
     cells = [_one_line(column.label), f"[{column.unit}]" if column.unit else "", *texts]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.mechanism.legs import find_legs
-from mechkin_cli.status import Status
+from mechkin_cli.status import Status, has_solution
 
 if TYPE_CHECKING:
     from mechkin_cli.interface import Analysis
@@ -60,12 +60,14 @@ def _loops(analysis: Analysis) -> str:
 
 def _rows(analysis: Analysis) -> str:
     result = analysis.result
-    solved = sum(Status(int(code)).has_solution for code in result.status)
-    text = f"{solved} of {result.rows} solved"
-    others = Counter(Status(int(code)).label for code in result.status if code != Status.ok)
-    if others:
-        text += " (" + ", ".join(f"{count} {label}" for label, count in others.items()) + ")"
-    return text
+    text = f"{np.count_nonzero(has_solution(result.status))} of {result.rows} solved"
+    codes, first, counts = np.unique(result.status, return_index=True, return_counts=True)
+    others = [
+        f"{counts[k]} {Status(int(codes[k])).label}"
+        for k in np.argsort(first)
+        if codes[k] != Status.ok
+    ]
+    return f"{text} ({', '.join(others)})" if others else text
 
 
 def _worst(analysis: Analysis) -> str:

@@ -111,12 +111,12 @@ def _fresh_files(analysis: Analysis, printed: Sequence[PrintedTable]) -> dict[st
     """All that stands beside a mechanism file, by name: tables, and the errata page."""
     from mechkin_cli.tables.csv_writer import COMMITTED_DIGITS, csv_bytes
     from mechkin_cli.tables.errata import PAGE, errata_page
-    from mechkin_cli.tables.markdown import markdown_text
+    from mechkin_cli.tables.markdown import markdown_bytes
 
     fresh: dict[str, bytes] = {}
     for table in analysis.tables:
         fresh[f"{table.name}.csv"] = csv_bytes(table, COMMITTED_DIGITS)
-        fresh[f"{table.name}.md"] = markdown_text(table, analysis.result).encode()
+        fresh[f"{table.name}.md"] = markdown_bytes(table, analysis.result)
     if printed:
         model = analysis.model
         fresh[PAGE] = errata_page(model.name, model.source, printed).encode()

@@ -27,6 +27,8 @@ from mechkin_cli.expressions.quantity import Quantity, Scalar, Value, Vector
 from mechkin_cli.tape.scalars import is_finite, is_number, plain
 from mechkin_cli.units import UNITS, UnitError, UnitSystem, conversion
 
+_NAMED = "names are those of parameters and directions, and of quantities such as J.theta"
+
 _OPERATIONS: dict[str, Callable[..., Quantity]] = {
     "+": arithmetic.add_or_subtract,
     "-": arithmetic.add_or_subtract,
@@ -213,4 +215,4 @@ def _unknown(node: Name, error: KeyError) -> ExpressionError:
     if node.text in UNITS:
         hint = f"a unit stands right behind a number: 1 {node.text}, 10 N*m"
     name = node.text[:MAX_QUOTED]
-    return ExpressionError(f"there is nothing named {name}", node.offset, hint)
+    return ExpressionError(f"there is nothing named {name}", node.offset, hint or _NAMED)

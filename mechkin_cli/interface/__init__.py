@@ -12,8 +12,9 @@ from types import MappingProxyType
 from mechkin_cli.building.build import build
 from mechkin_cli.building.source import open_file, open_text
 from mechkin_cli.interface.analysis import Analysis
+from mechkin_cli.interface.arguments import Setting, a_path, a_text
 from mechkin_cli.interface.model import Model
-from mechkin_cli.interface.settings import Setting, parameter_texts
+from mechkin_cli.interface.settings import parameter_texts
 
 __all__ = ["Analysis", "Model", "load", "loads"]
 
@@ -36,11 +37,13 @@ def load(path: str | Path, parameters: Mapping[str, Setting] = _NO_PARAMETERS) -
         >>> load("mechanisms/rcsr.yaml").name
         'RCSR'
     """
-    return Model(build(open_file(path, parameter_texts(parameters))), Path(path).stem)
+    path = a_path("path", path)
+    return Model(build(open_file(path, parameter_texts(parameters))), path.stem)
 
 
 def loads(
     text: str, name: str = "text", parameters: Mapping[str, Setting] = _NO_PARAMETERS
 ) -> Model:
     """As `load`, for the text of a mechanism file; `name` stands for the file in messages."""
+    a_text("text", text, '"format: 1 ..."'), a_text("name", name, '"rcsr.yaml"')
     return Model(build(open_text(text, name, parameter_texts(parameters))), Path(name).stem)

@@ -11,6 +11,7 @@ import numpy as np
 from mechkin_cli.analysis.sweep import Result, analyze
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.expressions import Expression, Vector, parse
+from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.tables.columns import Columns, evaluate, mode_words, status_words
 from mechkin_cli.tables.layout import ROW_TEXTS, TableLayout
 from mechkin_cli.tables.uniqueness import unique_cells
@@ -62,9 +63,10 @@ class Analysis:
         Raises:
             ExpressionError: no such quantity, or dimensions that do not fit.
         """
+        a_text("a quantity or expression", text, '"O4.theta"')
         if text in ROW_TEXTS:
             words = mode_words if text == "row.mode" else status_words
-            return np.array(words(self.result).texts())
+            return words(self.result).array()
         for given in (self.result.inputs, self.result.input_rates):
             if text in given:
                 return given[text].copy()

@@ -9,16 +9,18 @@ from typing import TYPE_CHECKING
 
 from mechkin_cli.building.build import Built
 from mechkin_cli.building.columns import used_quantities
-from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError
 from mechkin_cli.interface.analysis import Analysis
-from mechkin_cli.interface.settings import Setting, input_values
-from mechkin_cli.kernel.width import check_width
+from mechkin_cli.interface.arguments import Setting, a_text, a_whole_number, texts
+from mechkin_cli.interface.settings import input_values
+from mechkin_cli.kernel.width import check_threads, check_width
 from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
-from mechkin_cli.solver.graph import SolverGraph
+from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph
 from mechkin_cli.solver.session import Packing, Session
 from mechkin_cli.tables.layout import TableLayout
 
@@ -31,6 +33,9 @@ if TYPE_CHECKING:
     from mechkin_cli.interface.positions import Position, Solver
     from mechkin_cli.interface.variants import Reduce, Variants
     from mechkin_cli.interface.varied import Base
+
+
+QUANTITIES = "quantities are such as J.theta, J.force of a joint J, or p.position of a point p"
 
 
 class Model:
@@ -100,6 +105,7 @@ class Model:
         mode: str | None = None,
         closed_at: Sequence[str] | None = None,
         lanes: int = 0,
+        threads: int = 0,
     ) -> Analysis:
         """Runs the sweep.
 
@@ -109,29 +115,48 @@ class Model:
             mode: assembly mode at the first row instead of the file's choice.
             closed_at: closing joints to use (the answers do not depend on them).
             lanes: width of the kernel's packs, 0 for the widest (nor on this).
+            threads: how many split the rows, 0 for all cores where that pays (nor on this).
 
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
             UsageError: an unknown table, quantity or mode, or a width that the machine lacks.
         """
-        check_width(lanes)
+        check_width(a_whole_number("lanes", lanes, "rows at a time"))
+        check_threads(a_whole_number("threads", threads, "how many split the rows"))
         session, problem = self.session, self.problem
-        if closed_at:
-            session = Session(problem, closed_at=closed_at)
+        if closed_at is not None:
+            session = self._closed_at(closed_at)
         if mode is not None:
+            a_text("mode", mode, '"A"')
             session = session.assembled(replace(problem.assembly, near={}, mode=mode))
         layouts = self._chosen_tables(tables)
-        names = [*used_quantities(layouts, problem.quantities()), *(quantities or ())]
+        asked = () if quantities is None else texts("quantities", quantities, '["O4.theta"]')
+        names = [*used_quantities(layouts, problem.quantities()), *asked]
         for name in names:
             if name not in self.quantities:
-                hint = hint_of(name)
-                raise UsageError(f"there is no quantity {name}" + (f"; {hint}" if hint else ""))
+                hint = hint_of(name) or nearest_hint(name, self.quantities) or QUANTITIES
+                raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
         self._refuse_loaded_spin(problem, names)
-        analysis = Analysis(self, layouts, session.packed(Packing(lanes)), names)
+        analysis = Analysis(self, layouts, session.packed(Packing(lanes, threads)), names)
         for diagnostic in analysis.diagnostics if mode is not None else ():
             if diagnostic.code == "no-such-mode":
                 raise UsageError(f"{diagnostic.message}: {diagnostic.measured}")
         return analysis
+
+    def _closed_at(self, names: Sequence[str]) -> Session:
+        """The session whose loops are closed at some joints."""
+        closings = list(texts("closed_at", names, '["O3"]'))
+        joints = self.problem.mechanism.joints
+        for name in closings:
+            if name not in joints:
+                known = ", ".join(joints)
+                raise UsageError(
+                    f"closed_at: there is no joint {name[:LONGEST_NAME]}; joints are {known}"
+                )
+        try:
+            return Session(self.problem, closed_at=closings)
+        except UnsolvableGraph as error:
+            raise UsageError(f"closed_at {', '.join(closings) or 'nothing'}: {error}") from None
 
     def _refuse_loaded_spin(self, problem: Problem, names: Iterable[str]) -> None:
         """Forces need what spins freely to have no cause to spin."""
@@ -301,7 +326,10 @@ class Model:
         """
         from mechkin_cli.analysis.ranges import find_ranges
 
-        return find_ranges(self.session, input, tuple(outputs))
+        if input is not None:
+            a_text("input", input, '"O1.theta"')
+        names = texts("outputs", outputs, '["O4.theta"]')
+        return find_ranges(self.session, input, names)
 
     def mobility(self) -> Mobility:
         """What can move: Kutzbach's count, the true mobility, idle freedoms, redundant constraints.
@@ -322,7 +350,10 @@ class Model:
         if names is None:
             return self.tables
         known = {table.name: table for table in self.tables}
+        names = texts("tables", names, '["table_03"]')
         for name in names:
             if name not in known:
-                raise UsageError(f"there is no table {name}; tables are {', '.join(known)}")
+                raise UsageError(
+                    f"there is no table {name[:LONGEST_NAME]}; tables are {', '.join(known)}"
+                )
         return tuple(known[name] for name in dict.fromkeys(names))

@@ -6,17 +6,21 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
+from mechkin_cli.interface.arguments import Setting, a_setting, settings, shown
 from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
 
-Setting = str | float
-
 
 def parameter_texts(parameters: Mapping[str, Setting]) -> dict[str, str]:
-    """Parameters as texts; a number stands for itself, without a unit."""
-    return {k: v if isinstance(v, str) else repr(float(v)) for k, v in parameters.items()}
+    """Parameters as texts; a number stands for itself, without a unit.
+
+    Raises:
+        UsageError: no mapping of names to numbers or texts.
+    """
+    given = settings("parameters", parameters, '{"P1": "0.6 in"}')
+    return {k: v if isinstance(v, str) else repr(v) for k, v in given.items()}
 
 
 def input_values(problem: Problem, at: Setting | Mapping[str, Setting]) -> dict[str, float]:
@@ -30,23 +34,25 @@ def input_values(problem: Problem, at: Setting | Mapping[str, Setting]) -> dict[
         swept = [name for name, item in inputs.items() if np.ptp(item.written) > 0.0]
         names = swept or list(inputs)
         if not names:
-            raise UsageError(f"{problem.mechanism.name} has no input to be put at {at}")
-        at = {names[0]: at}
+            raise UsageError(f"{problem.mechanism.name} has no input to be put at {shown(at)}")
+        at = {names[0]: a_setting("at", at)}
     places = {}
-    for name, value in at.items():
+    for name, value in settings("at", at, '{"O1.theta": 170}').items():
         if name not in inputs:
-            raise UsageError(f"{name} is no input; inputs are {', '.join(inputs) or 'none'}")
+            raise UsageError(
+                f"{name[:LONGEST_NAME]} is no input; inputs are {', '.join(inputs) or 'none'}"
+            )
         places[name] = _input_value(problem, name, value)
     return places
 
 
 def _input_value(problem: Problem, name: str, value: Setting) -> float:
     """A value of an input in the file's units."""
-    text = value if isinstance(value, str) else repr(float(value))
+    text = value if isinstance(value, str) else repr(value)
     dimension = dimension_of(name.partition(".")[2])
     resolve = lookup(problem.parameters)
     try:
         return constant_in_file_units(text, dimension, problem.units, resolve)
     except ExpressionError as error:
         hint = f"; {error.hint}" if error.hint else ""
-        raise UsageError(f"{name} at {text}: {error.message}{hint}") from None
+        raise UsageError(f"{name} at {text[:LONGEST_NAME]}: {error.message}{hint}") from None

@@ -13,7 +13,8 @@ from typing import Literal, NamedTuple
 
 from mechkin_cli.mechanism.elementary import Part, Screw
 from mechkin_cli.mechanism.frames import Frame
-from mechkin_cli.mechanism.joint_table import FIRST, SECOND, Drawn, JointType, joint_type
+from mechkin_cli.mechanism.joint_table import joint_type
+from mechkin_cli.mechanism.joint_type import FIRST, SECOND, Drawn, JointType
 from mechkin_cli.mechanism.vectors import ZERO, Vector, dot, scale
 from mechkin_cli.tape.scalars import largest, nonzero, smallest
 

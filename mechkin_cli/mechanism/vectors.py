@@ -4,6 +4,7 @@ everywhere."""
 from __future__ import annotations
 
 from mechkin_cli.tape.scalars import either, largest, nonzero, square_root
+from mechkin_cli.tolerances import UNIT_SQUARE
 
 Vector = tuple[float, float, float]
 
@@ -49,7 +50,7 @@ def unit(a: Vector) -> Vector:
         ZeroDivisionError: a is zero.
     """
     square = dot(a, a)
-    return either(abs(square - 1.0) <= 4e-16, lambda: a, lambda: _shortened(a))
+    return either(abs(square - 1.0) <= UNIT_SQUARE, lambda: a, lambda: _shortened(a))
 
 
 def _shortened(a: Vector) -> Vector:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from mechkin_cli.mechanism.joint_table import Coordinate
+from mechkin_cli.mechanism.joint_type import Coordinate
 from mechkin_cli.mechanism.model import Attached, Joint
 from mechkin_cli.mechanism.vectors import ZERO, dot, scale
 

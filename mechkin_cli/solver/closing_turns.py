@@ -2,8 +2,8 @@
 
 The kernel has the angle of a closing joint from an arctangent and its orientation from a rotation
 matrix: whole turns and the quaternion's sign are lost. Following carries both along from node to
-node by their derivatives (`follow(..., turns=True)`), so each row only has to take the value that is
-nearest to what following says.
+node by their derivatives (`follow(..., turns=True)`), so each row only has to take the value that
+is nearest to what following says.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ def continuous_angle(values: Floats, followed: Floats, first: int) -> Floats:
     for row in _unfollowed(followed):
         beside = row - 1 if row and not np.isnan(turns[row - 1]) else _next_known(turns, row)
         turns[row] = turns[beside] + np.rint((values[row] - values[beside]) / (2.0 * pi))
-    return values - (turns - turns[first]) * (2.0 * pi)
+    continuous: Floats = values - (turns - turns[first]) * (2.0 * pi)
+    return continuous
 
 
 def continuous_signs(q: Four, followed: Four, first: int) -> Floats:
@@ -66,7 +67,8 @@ def continuous_signs(q: Four, followed: Four, first: int) -> Floats:
         beside = row - 1 if row and not np.isnan(signs[row - 1]) else _next_known(signs, row)
         between = sum(float(part[row]) * float(part[beside]) for part in q)
         signs[row] = signs[beside] * (-1.0 if between < 0.0 else 1.0)
-    return signs * signs[first]
+    alike: Floats = signs * signs[first]
+    return alike
 
 
 def drawn_quaternion(joint: Joint, turns: Floats) -> Four:

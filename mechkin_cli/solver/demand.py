@@ -1,8 +1,8 @@
 """The demand plan: from the quantities asked for to what the kernel has to compute.
 
 Positions only read no mass; reactions need accelerations unless no link has mass, velocities only
-where something is damped or a load reads rates; an effort needs no joint reactions (design
-section 8).
+where something is damped or a load reads rates; an effort needs no joint reactions
+(docs/architecture.md, What a run skips).
 """
 
 from __future__ import annotations

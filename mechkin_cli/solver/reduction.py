@@ -2,7 +2,8 @@
 
 Legs become distance equations (legs.py). A body that only legs hold hangs from ground by a free
 pair of six unknowns. A loop without a joint to close it at is closed through a link: the link is
-cut in two halves that a weld joins (design section 4.3).
+cut in two halves that a weld joins (docs/numerics.md,
+Closing joints).
 """
 
 from __future__ import annotations

@@ -6,19 +6,18 @@ only inputs, `row.mode` and `row.status` keep their cells.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.expressions import ExpressionError, Quantity, Vector
-from mechkin_cli.status import Status
+from mechkin_cli.status import Status, has_solution
 from mechkin_cli.tables.layout import ROW_NUMBERS, ROW_TEXTS, ColumnLayout, TableLayout
 from mechkin_cli.tables.source import FloatArray, Source
 from mechkin_cli.tables.uniqueness import unique_cells
 from mechkin_cli.units import DIMENSIONLESS
-
-_HAS_SOLUTION = np.array([status.has_solution for status in Status])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,9 +27,18 @@ class Words:
     codes: NDArray[np.int32]
     words: tuple[str, ...]
 
-    def texts(self) -> list[str]:
-        """The text of every row."""
-        return [self.words[code] for code in self.codes.tolist()]
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return self.codes.size
+
+    def texts(self, rows: Sequence[int]) -> list[str]:
+        """The texts of some rows."""
+        return [self.words[self.codes[row]] for row in rows]
+
+    def array(self) -> NDArray[np.str_]:
+        """The text of every row, shape (rows,)."""
+        return np.array(self.words)[self.codes]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,6 +49,11 @@ class Column:
     unit: str
     values: FloatArray | Words
     decimals: int | None = None
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return self.values.rows if isinstance(self.values, Words) else self.values.size
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,7 +88,7 @@ def mode_words(source: Source) -> Words:
 
 def solved_rows(source: Source) -> NDArray[np.bool_]:
     """Which rows have a solution, shape (rows,)."""
-    return np.asarray(_HAS_SOLUTION[source.status])
+    return has_solution(source.status)
 
 
 def _column(layout: ColumnLayout, source: Source) -> Column:

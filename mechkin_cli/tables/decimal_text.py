@@ -8,50 +8,49 @@ ties to even, so it is the same on every machine; zero has no sign.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, NamedTuple
+
 import numpy as np
 
-from mechkin_cli.tables.source import FloatArray
+from mechkin_cli.tables.native_columns import number_column
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
 
 SIGNIFICANT_DIGITS = 6
 PLAIN_EXPONENTS = range(-6, 9)
 
 
-def column_texts(values: FloatArray, decimals: int | None = None) -> list[str]:
-    """One text per value of an array of shape (rows,); a value that is not finite has none."""
+class DecimalColumn(NamedTuple):
+    """A column with the layout of its numbers, in the kernel's order; `trimmed` leaves out the
+    zeros that end every one of them."""
+
+    values: Floats
+    scientific: bool
+    decimals: int
+    trimmed: bool = False
+
+
+def decimal_column(values: Floats, decimals: int | None = None) -> DecimalColumn:
+    """The layout of an array of shape (rows,); `decimals` as declared, None to choose them."""
+    values = number_column(values)
     if decimals is not None:
-        return _fixed(values, decimals)
-    magnitudes = np.abs(values[np.isfinite(values)])
-    exponent = _decimal_exponent(float(magnitudes.max(initial=0.0)))
+        return DecimalColumn(values, False, decimals)
+    largest = np.abs(values).max(initial=0.0, where=np.isfinite(values))
+    exponent = _decimal_exponent(float(largest))
     if exponent not in PLAIN_EXPONENTS:
-        return [_scientific(value) for value in values.tolist()]
-    decimals = max(0, SIGNIFICANT_DIGITS - 1 - exponent)
-    return _without_common_zeros(_fixed(values, decimals))
+        return DecimalColumn(values, True, SIGNIFICANT_DIGITS - 1)
+    return DecimalColumn(values, False, max(0, SIGNIFICANT_DIGITS - 1 - exponent), True)
 
 
-def _fixed(values: FloatArray, decimals: int) -> list[str]:
+def column_texts(values: Floats, decimals: int | None = None) -> list[str]:
+    """One text per value of an array of shape (rows,); a value that is not finite has none."""
     from mechkin_cli.kernel import _kernel
 
-    texts: list[str] = _kernel.fixed_texts(np.ascontiguousarray(values, np.float64), decimals)
+    texts: list[str] = _kernel.decimal_texts(decimal_column(values, decimals))
     return texts
-
-
-def _scientific(value: float) -> str:
-    if value == 0.0:
-        return "0"
-    return f"{value:.{SIGNIFICANT_DIGITS - 1}e}" if np.isfinite(value) else ""
 
 
 def _decimal_exponent(magnitude: float) -> int:
     """The exponent of ten in front of which the value, rounded, has one digit."""
     return int(f"{magnitude:.{SIGNIFICANT_DIGITS - 1}e}".partition("e")[2])
-
-
-def _without_common_zeros(texts: list[str]) -> list[str]:
-    """The texts, all of one number of decimals, without the zeros that end every one of them."""
-    fractions = [text.partition(".")[2] for text in texts if text]
-    decimals = max(map(len, fractions), default=0)
-    kept = max((len(fraction.rstrip("0")) for fraction in fractions), default=0)
-    if kept == decimals:
-        return texts
-    dropped = decimals - kept if kept else decimals + 1  # with the point
-    return [text[: len(text) - dropped] if text else "" for text in texts]

@@ -32,25 +32,17 @@ def footnotes(columns: Columns, source: Source) -> list[str]:
 
 def _where(chosen: NDArray[np.bool_], source: Source) -> str:
     """Rows in words, counted from 1: `Rows 3, 27-30 (O1.theta 202 to 208 deg)`."""
-    numbers = (np.flatnonzero(chosen) + 1).tolist()
-    ranges = _ranges(numbers)
+    rows = np.flatnonzero(chosen)
+    starts = np.flatnonzero(np.diff(rows, prepend=-2) != 1)
+    ends = np.append(starts[1:], rows.size)
     swept = _swept_input(source)
-    texts = [_range_text(first, last, swept) for first, last in ranges[:LISTED_RANGES]]
-    if len(ranges) > LISTED_RANGES:
-        rest = sum(last - first + 1 for first, last in ranges[LISTED_RANGES:])
-        texts.append(f"and {rest} more")
-    return f"{'Row' if len(numbers) == 1 else 'Rows'} {', '.join(texts)}"
-
-
-def _ranges(numbers: list[int]) -> list[tuple[int, int]]:
-    """Runs of consecutive numbers as (first, last)."""
-    ranges: list[tuple[int, int]] = []
-    for number in numbers:
-        if ranges and ranges[-1][1] == number - 1:
-            ranges[-1] = (ranges[-1][0], number)
-        else:
-            ranges.append((number, number))
-    return ranges
+    texts = [
+        _range_text(int(rows[start]) + 1, int(rows[end - 1]) + 1, swept)
+        for start, end in zip(starts[:LISTED_RANGES], ends[:LISTED_RANGES], strict=True)
+    ]
+    if starts.size > LISTED_RANGES:
+        texts.append(f"and {rows.size - ends[LISTED_RANGES - 1]} more")
+    return f"{'Row' if rows.size == 1 else 'Rows'} {', '.join(texts)}"
 
 
 def _swept_input(source: Source) -> tuple[str, FloatArray, str] | None:

@@ -7,15 +7,37 @@ each list stands on a line of its own.
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.tables.columns import Column, Columns, Words
+from mechkin_cli.tables.columns import Columns, Words
+from mechkin_cli.tables.native_columns import number_column, threads_for, word_column
 from mechkin_cli.tables.rows_table import rows_table
-from mechkin_cli.tables.source import Source
+from mechkin_cli.tables.source import FloatArray, Source
 
 Plain = dict[str, object]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cells:
+    """A list of cells as it stands in a record: numbers as in CSV (no `-0`, whole numbers without a
+    point, null for nan) or words."""
+
+    values: FloatArray | Words
+    threads: int = 1
+
+    def json_bytes(self) -> bytes:
+        """The list as JSON."""
+        from mechkin_cli.kernel import _kernel
+
+        text: bytes = _kernel.json_list(
+            word_column(self.values, _one_line_json)
+            if isinstance(self.values, Words)
+            else number_column(self.values),
+            self.threads,
+        )
+        return text
 
 
 def analysis_record(
@@ -23,61 +45,70 @@ def analysis_record(
     tables: Iterable[Columns],
     source: Source,
     diagnostics: Iterable[Diagnostic] = (),
+    threads: int = 0,
 ) -> Plain:
-    """The analysis as plain data; values are in file units, each column names its own."""
+    """The analysis as plain data and `Cells`; values are in file units, each column names its
+    own."""
     return {
         "name": name,
         "row_count": source.rows,
-        "tables": [table_record(table) for table in tables],
-        "rows": _column_records(rows_table(source)),
+        "tables": [table_record(table, threads) for table in tables],
+        "rows": _column_records(rows_table(source), threads),
         "diagnostics": [diagnostic.record() for diagnostic in diagnostics],
     }
 
 
-def table_record(columns: Columns) -> Plain:
-    """One table as plain data."""
+def table_record(columns: Columns, threads: int = 0) -> Plain:
+    """One table as plain data and `Cells`."""
     return {
         "name": columns.name,
         "title": columns.title,
-        "columns": _column_records(columns),
+        "columns": _column_records(columns, threads),
     }
 
 
-def json_text(record: object) -> str:
-    """Valid JSON with a newline at its end.
+def json_bytes(record: object) -> bytes:
+    """Valid JSON in UTF-8 with a newline at its end.
 
     Raises:
-        ValueError: the record holds a number that is not finite.
+        ValueError: the record holds a number that is not finite, outside of cells.
     """
-    return _text(record, "") + "\n"
+    return b"".join((*_parts(record, ""), b"\n"))
 
 
-def _column_records(columns: Columns) -> list[Plain]:
+def json_text(record: object) -> str:
+    """As `json_bytes`, decoded."""
+    return json_bytes(record).decode()
+
+
+def _column_records(columns: Columns, threads: int) -> list[Plain]:
     return [
-        {"label": column.label, "unit": column.unit, "values": _values(column)}
+        {
+            "label": column.label,
+            "unit": column.unit,
+            "values": Cells(column.values, threads_for([column], threads)),
+        }
         for column in columns.columns
     ]
 
 
-def _values(column: Column) -> list[object]:
-    if isinstance(column.values, Words):
-        return list(column.values.texts())
-    return [_number(value) for value in column.values.tolist()]
-
-
-def _number(value: float) -> int | float | None:
-    """The value as CSV cells hold it: no `-0`, whole numbers without a point, null for nan."""
-    if not math.isfinite(value):
-        return None
-    return int(value) if value.is_integer() and abs(value) < 1e16 else value
-
-
-def _text(value: object, indent: str) -> str:
-    inner = indent + "  "
-    if isinstance(value, dict) and value:
-        items = [f"{inner}{json.dumps(key)}: {_text(item, inner)}" for key, item in value.items()]
-        return "{\n" + ",\n".join(items) + f"\n{indent}}}"
-    if isinstance(value, list) and any(isinstance(item, dict | list) for item in value):
-        items = [inner + _text(item, inner) for item in value]
-        return "[\n" + ",\n".join(items) + f"\n{indent}]"
+def _one_line_json(value: object) -> str:
     return json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+
+def _parts(value: object, indent: str) -> Iterator[bytes]:
+    inner = indent + "  "
+    if isinstance(value, Cells):
+        yield value.json_bytes()
+    elif isinstance(value, dict) and value:
+        for number, (key, item) in enumerate(value.items()):
+            yield f"{',' if number else '{'}\n{inner}{json.dumps(key)}: ".encode()
+            yield from _parts(item, inner)
+        yield f"\n{indent}}}".encode()
+    elif isinstance(value, list) and any(isinstance(item, dict | list | Cells) for item in value):
+        for number, item in enumerate(value):
+            yield f"{',' if number else '['}\n{inner}".encode()
+            yield from _parts(item, inner)
+        yield f"\n{indent}]".encode()
+    else:
+        yield _one_line_json(value).encode()

@@ -1,4 +1,4 @@
-"""Markdown text of a table: title, labels with units, declared decimals, footnotes.
+"""Markdown of a table: title, labels with units, declared decimals, footnotes.
 
 Cells are padded so that the text reads as a table in a terminal as well. Undeclared decimals are
 chosen as `mechkin_cli.tables.decimal_text` says.
@@ -7,39 +7,32 @@ chosen as `mechkin_cli.tables.decimal_text` says.
 from __future__ import annotations
 
 from mechkin_cli.tables.columns import Column, Columns, Words
-from mechkin_cli.tables.decimal_text import column_texts
+from mechkin_cli.tables.decimal_text import decimal_column
 from mechkin_cli.tables.footnotes import footnotes
+from mechkin_cli.tables.native_columns import threads_for, word_column
 from mechkin_cli.tables.source import Source
 
-_NARROWEST = 4  # room for the alignment row's `---:`
+
+def markdown_bytes(columns: Columns, source: Source, threads: int = 0) -> bytes:
+    """The whole file as UTF-8, with a newline at its end and no trailing spaces; threads 0: as many
+    as the table is worth."""
+    from mechkin_cli.kernel import _kernel
+
+    headers = [_header(column) for column in columns.columns]
+    cells = [
+        word_column(column.values, _escaped)
+        if isinstance(column.values, Words)
+        else decimal_column(column.values, column.decimals)
+        for column in columns.columns
+    ]
+    title = f"# {_one_line(columns.title or columns.name)}\n\n"
+    table: bytes = _kernel.markdown_text(headers, cells, threads_for(columns, threads))
+    notes = "".join(f"- {_one_line(note)}\n" for note in footnotes(columns, source))
+    return b"".join((title.encode(), table, f"\n{notes}".encode() if notes else b""))
 
 
-def markdown_text(columns: Columns, source: Source) -> str:
-    """The whole file, with a newline at its end and no trailing spaces."""
-    padded = [_padded(column) for column in columns.columns]
-    lines = [f"# {_one_line(columns.title or columns.name)}", ""]
-    lines += [f"| {' | '.join(cells)} |" for cells in zip(*padded, strict=True)]
-    notes = footnotes(columns, source)
-    if notes:
-        lines += ["", *(f"- {_one_line(note)}" for note in notes)]
-    return "\n".join(lines) + "\n"
-
-
-def _padded(column: Column) -> list[str]:
-    """Header, alignment and cells of one column, all of one width."""
-    is_text = isinstance(column.values, Words)
-    header = _escaped(f"{column.label} [{column.unit}]" if column.unit else column.label)
-    cells = [header, *_cells(column)]
-    width = max(_NARROWEST, *map(len, cells))
-    cells = [cell.ljust(width) if is_text else cell.rjust(width) for cell in cells]
-    rule = ":" + "-" * (width - 1) if is_text else "-" * (width - 1) + ":"
-    return [cells[0], rule, *cells[1:]]
-
-
-def _cells(column: Column) -> list[str]:
-    if isinstance(column.values, Words):
-        return [_escaped(text) for text in column.values.texts()]
-    return column_texts(column.values, column.decimals)
+def _header(column: Column) -> str:
+    return _escaped(f"{column.label} [{column.unit}]" if column.unit else column.label)
 
 
 def _one_line(text: str) -> str:

@@ -13,6 +13,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from mechkin_cli.tolerances import LARGEST_CONVERSION
 from mechkin_cli.units.errors import UnitError
 
 Number = TypeVar("Number", float, NDArray[np.float64])
@@ -57,6 +58,6 @@ def _double(factor: Fraction) -> float:
         value = float(factor)
     except OverflowError:
         value = 0.0
-    if value < 1e-290 or value > 1e290:
+    if not 1.0 / LARGEST_CONVERSION <= value <= LARGEST_CONVERSION:
         raise UnitError("the conversion factor of this unit is outside the range of numbers")
     return value

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from mechkin_cli.tolerances import LARGEST_FACTOR
 from mechkin_cli.units.compound import CompoundUnit, parse_unit
 from mechkin_cli.units.conversion import Conversion, Number, conversion
 from mechkin_cli.units.dimension import (
@@ -28,9 +29,6 @@ from mechkin_cli.units.dimension import (
 )
 from mechkin_cli.units.errors import UnitError
 from mechkin_cli.units.table import UNITS
-
-LARGEST_FACTOR = 1e30
-"""Size in SI beyond which (or below whose inverse) a unit of a file is taken for a mistake."""
 
 FIELDS = {
     "length": LENGTH,

@@ -47,7 +47,7 @@ HOMES = {
     "typer": {"cli"},
     "click": {"cli"},
     "rich": {"cli"},
-    "scipy": {"benchmark"},
+    "scipy": set(),
 }
 """Libraries that only one room may import."""
 

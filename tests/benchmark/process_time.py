@@ -13,12 +13,15 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from mechkin_cli.benchmark import sevenr
-from mechkin_cli.benchmark.process import command
-from mechkin_cli.benchmark.report import plain_text
-from mechkin_cli.benchmark.targets import process_table
-
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+
+from benchmark.process import command
+from benchmark.targets import process_table
+
+from mechkin_cli.benchmark import sevenr
+from mechkin_cli.benchmark.report import plain_text
+
 RCSR = HERE.parents[1] / "mechanisms" / "rcsr.yaml"
 PINOCCHIO = HERE / "pinocchio_7r.py"
 

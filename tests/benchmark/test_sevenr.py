@@ -5,16 +5,16 @@ from math import pi
 
 import numpy as np
 import pytest
+from benchmark.arithmetic import best, extended
+from benchmark.exact import sevenr_specimen
+from benchmark.yardstick_kernel import Yardstick
 from oracle import document, mp, newton_euler, read, solve
 from properties.expected import expected
 
 import mechkin_cli as mk
 from mechkin_cli.benchmark import sevenr
-from mechkin_cli.benchmark.arithmetic import best, extended
 from mechkin_cli.benchmark.kernel_case import BATCH
 from mechkin_cli.benchmark.specimen import values
-from mechkin_cli.benchmark.specimens import sevenr_specimen
-from mechkin_cli.benchmark.yardstick import Yardstick, find
 
 SEVENR = sevenr_specimen()
 THETA1 = [0.75, 4.5]
@@ -68,7 +68,7 @@ def test_the_file_makes_a_full_turn_and_returns(analysis):
 def test_the_yardstick_runs_the_same_mechanism(analysis):
     if shutil.which("gcc") is None:
         pytest.skip("the yardstick needs gcc")
-    with Yardstick(find(None)) as yardstick:
+    with Yardstick() as yardstick:
         case = yardstick.case("sevenr")
         case.call(max(yardstick.widths), 2)()
     # its right-hand chain is walked from ground; angles are the same

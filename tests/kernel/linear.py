@@ -48,6 +48,12 @@ class Linear:
         self.library.least_singular_value(*a.shape[1:], _pointer(a), _pointer(sigma))
         return sigma
 
+    def largest_inverse(self, a: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        """Largest singular value of the inverse of diag(rows) A diag(columns), as estimated."""
+        norm = np.empty(LANES)
+        self.library.largest_inverse(a.shape[1], *map(_pointer, (a, rows, columns, norm)))
+        return norm
+
 
 def _pointer(array: np.ndarray) -> ctypes.c_void_p:
     assert array.flags.c_contiguous

@@ -1,4 +1,5 @@
 // The kernel's linear algebra for one pack, behind plain C functions for the tests.
+#include "condition_estimate.hpp"
 #include "factors.hpp"
 
 namespace {
@@ -56,4 +57,17 @@ EXPORTED void least_singular_value(int m, int n, const double* a, double* sigma)
   Pack squares[LARGEST];
   const Pack least = smallest_singular_value(matrix, m, n, squares);
   store(1, &least, sigma);
+}
+
+// a (n x n, row-major) with weights of its rows and columns -> the largest singular value of the weighted inverse.
+EXPORTED void largest_inverse(int n, const double* a, const double* rows, const double* columns, double* norm) {
+  Pack matrix[LARGEST * LARGEST], weight[LARGEST], scratch[3 * LARGEST * LARGEST];
+  Mask swap[LARGEST * LARGEST];
+  int unknown[LARGEST];
+  load(n * n, a, matrix);
+  for (int i = 0; i < n; ++i) weight[i] = 1.0 / rows[i], unknown[i] = i;
+  const Factors factors = {matrix, swap, n};
+  factor(factors);
+  const Pack found = inverse_norm(factors, weight, columns, unknown, scratch);
+  store(1, &found, norm);
 }

@@ -93,7 +93,8 @@ class Pair:
     `chain`: elementary letters with their frames at home, seen from the first link's frame, where
     the second link's frame stands at `home`. `nearest` is the displacement of the pair that comes
     nearest to any displacement: equal to it exactly where the pair is closed. `coordinates`: name
-    to freedom and value.
+    to freedom and value. `drives`: what works on a freedom and on no other, a force or not, its
+    parts in the first frame and in the second; none where the state is no list of scalars.
     """
 
     chain: tuple[tuple[str, Matrix], ...]
@@ -102,6 +103,7 @@ class Pair:
     home: Matrix = field(default_factory=lambda: mp.eye(4))
     point_on_first: bool = False
     parameter: float = 0.0
+    drives: Sequence[tuple[bool, Sequence[Any], Sequence[Any]]] = ()
 
     @property
     def parts(self) -> tuple[Elementary, ...]:
@@ -205,20 +207,34 @@ SQUARE = turned(X, mp.pi / 2)
 SLOTTED = turned(Z, -mp.asin(COSINE)) * ALONG_X
 """The frame along the cylinder of Sc: its z lies in the slot's plane x y, and the pin is -y."""
 CYLINDER = vector(SLOTTED, 2)
+DUAL, CROSSED = 1 / (1 - COSINE**2), -COSINE / (1 - COSINE**2)
+"""Dual basis of two oblique unit vectors: (a - (a.b) b) / (1 - (a.b)^2)."""
 THETA, S = (0, angle_about_z), (0, lambda m: m[2, 3])
 
 PAIRS = {
-    "R": Pair((("R", HERE),), lambda m: turned(Z, angle_about_z(m)), {"theta": THETA}),
-    "P": Pair((("P", HERE),), lambda m: shifted(0, 0, m[2, 3]), {"s": S}),
+    "R": Pair(
+        (("R", HERE),),
+        lambda m: turned(Z, angle_about_z(m)),
+        {"theta": THETA},
+        drives=[(False, O, Z)],
+    ),
+    "P": Pair(
+        (("P", HERE),),
+        lambda m: shifted(0, 0, m[2, 3]),
+        {"s": S},
+        drives=[(True, O, Z)],
+    ),
     "H": Pair(
         (("H", HERE),),
         lambda m: exponential(Z, (0, 0, PITCH), angle_about_z(m)),
         {"theta": THETA},
+        drives=[(False, O, Z)],
     ),
     "C": Pair(
         (("C", HERE),),
         lambda m: turned(Z, angle_about_z(m)) * shifted(0, 0, m[2, 3]),
         {"theta": THETA, "s": (1, S[1])},
+        drives=[(False, O, Z), (True, O, Z)],
     ),
     "S": Pair((("S", HERE),), rotation_only),
     "Sp": Pair(
@@ -238,17 +254,20 @@ PAIRS = {
         {"theta1": (0, first_angle), "theta2": (1, second_angle)},
         home=OBLIQUE,
         parameter=COSINE,
+        drives=[(False, (0, 0, DUAL), (0, 0, CROSSED)), (False, (0, 0, CROSSED), (0, 0, DUAL))],
     ),
     "E": Pair(
         (("P", ALONG_X), ("P", ALONG_Y), ("R", HERE)),
         lambda m: shifted(m[0, 3], m[1, 3], 0) * turned(Z, angle_about_z(m)),
         {"x": (0, lambda m: m[0, 3]), "y": (1, lambda m: m[1, 3]), "theta": (2, angle_about_z)},
+        drives=[(True, X, O), (True, Y, O), (False, O, Z)],
     ),
     "Ss": Pair(
         (("R", HERE), ("R", SQUARE)),
         lambda m: turned(Z, first_angle(m)) * SQUARE * turned(Z, second_angle(m)),
         {"theta1": (0, first_angle), "theta2": (1, second_angle)},
         home=SQUARE,
+        drives=[(False, Z, O), (False, O, Z)],
     ),
     "Sc": Pair(
         (("P", SLOTTED), ("R", HERE), ("R", SQUARE)),
@@ -265,6 +284,7 @@ PAIRS = {
         },
         home=SQUARE,
         parameter=COSINE,
+        drives=[(True, CYLINDER, O), (False, Z, O), (False, O, Z)],
     ),
     "Cp": Pair(
         (("R", HERE), ("R", SQUARE), ("P", SQUARE * ALONG_X), ("P", SQUARE * ALONG_Y)),
@@ -282,6 +302,7 @@ PAIRS = {
         },
         home=SQUARE,
         point_on_first=True,
+        drives=[(False, Z, O), (False, O, Z), (True, O, X), (True, O, Y)],
     ),
     "W": Pair((("W", HERE),), lambda m: mp.eye(4)),
 }

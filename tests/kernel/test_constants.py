@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechkin_cli.analysis.probe import Probe
-from mechkin_cli.analysis.rows import kernel_inputs
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.assembly import choose_start
+from mechkin_cli.analysis.assembly.probe import Probe
+from mechkin_cli.analysis.assembly.start import choose_start
 from mechkin_cli.solver.batch import Batch, assembly_size, run
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import OutputPlan
@@ -107,15 +106,13 @@ def test_the_size_is_that_of_the_box_of_the_joint_points(path: Any) -> None:
     problem = model.problem
     if not problem.motion.inputs or problem.follow is not None:
         pytest.skip("drives nothing, or follows a part")
-    layout = Layout(problem.mechanism, model.graph)
-    plan = layout.build()
-    inputs = kernel_inputs(problem, layout).values
-    probe = Probe(problem, layout)
-    start = choose_start(problem, layout, plan, inputs, probe)
+    session = model.session
+    plan, inputs = session.plan, session.inputs.values
+    start = choose_start(session)
     if start.state is None:
         pytest.skip("has no assembly")
     first = inputs[:, start.row]
-    _, moving = probe.read(first, start.state[:, None])
+    _, moving = Probe.of(session).read(first, start.state[:, None])
     points = [at.vector for _, at in problem.mechanism.joint_points() if at.link == "ground"]
     every = [*moving[:, :, 0].tolist(), *points]
     extent = [max(p[i] for p in every) - min(p[i] for p in every) for i in range(3)]

@@ -7,7 +7,7 @@ from decimal import ROUND_HALF_EVEN, Context, Decimal
 import numpy as np
 import pytest
 
-from mechkin_cli.kernel._kernel import csv_text, fixed_texts, number_text
+from mechkin_cli.kernel._kernel import csv_text, decimal_texts, number_text
 
 INFINITY, NAN = float("inf"), float("nan")
 
@@ -100,7 +100,11 @@ def test_refused_numbers_of_digits(digits):
         number_text(1.0, digits)
 
 
-@pytest.mark.parametrize("decimals", [0, 1, 3, 20])
+def fixed_texts(values, decimals):
+    return decimal_texts((values, False, decimals, False))
+
+
+@pytest.mark.parametrize("decimals", [0, 1, 3, 15, 20, 22, 23, 60])
 def test_fixed_rounds_the_exact_value(decimals):
     values = [v for v in random_doubles(500, seed=3) if 1e-9 < abs(v) < 1e30]
     step, context = Decimal(1).scaleb(-decimals), Context(prec=100)
@@ -114,6 +118,31 @@ def test_fixed_of_special_values():
     expected = ["0.000", "0.000", "0.000", "-0.001", "2.500", "", "", f"{-(10.0**300):.3f}"]
     assert fixed_texts(values, 3) == expected
     assert fixed_texts(np.array([0.5, 1.5, -0.5]), 0) == ["0", "2", "0"]
+
+
+def test_fixed_of_ties_and_of_the_bounds_of_whole_arithmetic():
+    """Halves of the last digit, 2^53 and 2^64 / 10^d, the least doubles: where paths change."""
+    edges = [2.0**53, 2.0**64, 2.0**64 / 1000, 2.0**-75, 2.0**-76, 5e-324, 2.0**-1022, 0.5]
+    near = [np.nextafter(v, way) for v in edges for way in (0.0, np.inf)]
+    ties = [k * 0.125 for k in range(-17, 18)]
+    values = np.array([*edges, *near, *ties])
+    for decimals in (0, 1, 2, 3, 22, 25):
+        step, context = Decimal(1).scaleb(-decimals), Context(prec=1200)
+        rounded = [Decimal(v).quantize(step, ROUND_HALF_EVEN, context) for v in values.tolist()]
+        expected = [f"{r if r else abs(r):f}" for r in rounded]
+        assert fixed_texts(values, decimals) == expected
+
+
+@pytest.mark.parametrize("decimals", [-1, 1001])
+def test_refused_decimals(decimals):
+    with pytest.raises(ValueError, match="decimals must be 0 to 1000"):
+        fixed_texts(np.zeros(1), decimals)
+
+
+@pytest.mark.parametrize("threads", [0, -1, 257])
+def test_refused_threads(threads):
+    with pytest.raises(ValueError, match="threads must be 1 to 256"):
+        csv_text(["a"], [np.zeros(1)], threads=threads)
 
 
 def test_csv():

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kernel.pairs import COSINE, CYLINDER, PAIRS, PITCH, O, X, Y, Z, derivative, mp, vector
+from kernel.pairs import PAIRS, PITCH, O, Z, derivative, mp, vector
 from kernel.plans import (
     EVERYTHING,
     LENGTH,
@@ -29,22 +29,6 @@ from mechkin_cli.solver.codes import LoadCode, OutputCode
 
 SEEDS = 3
 POINT, DIRECTION = (0.3, -0.7, 0.45), (0.6, 0.0, -0.8)
-DUAL, CROSSED = 1 / (1 - COSINE**2), -COSINE / (1 - COSINE**2)
-"""Dual basis of two oblique unit vectors: (a - (a.b) b) / (1 - (a.b)^2)."""
-DRIVES = {
-    "R": [(False, O, Z)],
-    "P": [(True, O, Z)],
-    "H": [(False, O, Z)],
-    "C": [(False, O, Z), (True, O, Z)],
-    "U": [(False, (0, 0, DUAL), (0, 0, CROSSED)), (False, (0, 0, CROSSED), (0, 0, DUAL))],
-    "E": [(True, X, O), (True, Y, O), (False, O, Z)],
-    "Ss": [(False, Z, O), (False, O, Z)],
-    "Sc": [(True, CYLINDER, O), (False, Z, O), (False, O, Z)],
-    "Cp": [(False, Z, O), (False, O, Z), (True, O, X), (True, O, Y)],
-    "W": [],
-}
-"""What works on a freedom and on no other: a force or not, its parts in the first link's frame of
-the pair and in the second's."""
 
 
 class Subject:
@@ -88,7 +72,7 @@ class Subject:
 
     def drive(self, letter: str, *, along_thread: bool) -> None:
         """Drives all freedoms of the pair."""
-        for freedom, (slide, one, two) in enumerate(DRIVES[letter]):
+        for freedom, (slide, one, two) in enumerate(PAIRS[letter].drives):
             on_first = vector(self.on_carrier * mp.matrix([*one, 0]), 0)
             on_second = vector(self.on_last * mp.matrix([*two, 0]), 0)
             axis = self.chain.builder.add_axis(

@@ -38,8 +38,8 @@ def test_an_input_is_printed_as_written_in_every_row(source, layout, expression)
 
 def test_mode_and_status_are_texts(source, layout):
     mode, status = evaluate(layout({"m": "row.mode", "v": "row.status"}), source).columns
-    assert mode.values.texts() == ["A", "A", "A", "A"]
-    assert status.values.texts() == ["ok", "ok", "near-singular", "beyond-dead-centre"]
+    assert mode.values.array().tolist() == ["A", "A", "A", "A"]
+    assert status.values.array().tolist() == ["ok", "ok", "near-singular", "beyond-dead-centre"]
 
 
 def test_labels_decimals_and_title_come_from_the_layout(source, layout):

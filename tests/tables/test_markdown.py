@@ -4,7 +4,7 @@ import numpy as np
 
 from mechkin_cli.status import Status
 from mechkin_cli.tables.columns import evaluate
-from mechkin_cli.tables.markdown import markdown_text
+from mechkin_cli.tables.markdown import markdown_bytes
 
 EXPECTED = """\
 # SLIDE OF THE RCSR
@@ -23,7 +23,7 @@ of rates and loads are reliable.
 
 
 def text(columns, source, layout, title=""):
-    return markdown_text(evaluate(layout(columns, title=title), source), source)
+    return markdown_bytes(evaluate(layout(columns, title=title), source), source).decode()
 
 
 def test_title_units_decimals_footnotes(source, layout):

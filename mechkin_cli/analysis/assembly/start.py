@@ -19,7 +19,7 @@ from mechkin_cli.analysis.assembly.home import (
 from mechkin_cli.analysis.assembly.named_modes import NamedModes, is_cyclic, name_modes, wrapped
 from mechkin_cli.analysis.assembly.near import Near, box_about, named_by, newton_from
 from mechkin_cli.analysis.assembly.probe import Probe
-from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.dead_centre import DeadCentre
@@ -248,7 +248,7 @@ def _by_name(modes: NamedModes, name: str) -> Start:
     diagnostic = Diagnostic(
         "no-such-mode",
         "error",
-        f"there is no mode {name} at the first row",
+        f"there is no mode {name[:LONGEST_NAME]} at the first row",
         measured=f"modes {', '.join(modes.letters.values())}",
         hint="take one of these",
     )

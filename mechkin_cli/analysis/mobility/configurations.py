@@ -1,129 +1,185 @@
-"""Assembled configurations as poses of the links, and the motion from one to the next.
+"""Assembled configurations of the opened mechanism, and the motion from one to the next.
 
-A configuration closes by least-squares Newton steps on all constraints (truncated singular values),
-so redundant constraints and free motions do no harm.
+The unknowns are the coordinates of all joints, loops and inputs alike; poses come from the kernel,
+columns from the joint table's screws. A configuration closes by least-squares Newton steps on all
+cuts (truncated singular values), so redundant constraints and free motions do no harm.
+Twists are (angular, linear at the centre), lengths in parts of the size.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.mobility.constraints import (
-    Axes,
-    Constraint,
-    carried,
-    constraints,
-    freedoms,
-    on_side,
-)
+from mechkin_cli.analysis.assembly.home import home_state
+from mechkin_cli.analysis.mobility.displacements import between, turned
+from mechkin_cli.analysis.mobility.opened import Pose, Poses, opened
+from mechkin_cli.mechanism.elementary import screws_at
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
+from mechkin_cli.mechanism.motion import Assembly, Motion
+from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.random_starts import RandomStarts
+from mechkin_cli.solver.session import Session
+from mechkin_cli.units import UnitSystem
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
 
 
-class Poses(NamedTuple):
-    """Poses of the moving links in the order of the mechanism: (links, 3, 3) and (links, 3)."""
+class Body:
+    """What all configurations share: the mechanism, its moving links, centre (m) and size (m), and
+    the mechanism opened to a tree."""
 
-    turns: Floats
-    places: Floats
+    def __init__(self, mechanism: Mechanism) -> None:
+        points = [at.vector for _, at in mechanism.joint_points()]
+        self.mechanism = mechanism
+        self.links = tuple(name for name in mechanism.links if name != GROUND_NAME)
+        self.centre: Floats = np.mean(np.array(points), axis=0) if points else np.zeros(3)
+        self.size = mechanism.box_diagonal()
+        self.opened = opened(mechanism)
+        tree = Problem(self.opened.mechanism, Motion((), 1), Assembly(), UnitSystem())
+        self.session = Session(tree, self.opened.graph)
+        self.layout = self.session.layout
+        bodies = self.opened.mechanism.links
+        self.poses = Poses(self.session, bodies, self.centre, self.size)
 
-    def moved(self, twists: Floats) -> Poses:
-        """Displaced by finite twists (6 links,) at the origin."""
-        turns, places = self.turns.copy(), self.places.copy()
-        for k, twist in enumerate(twists.reshape(-1, 6)):
-            turn = _turned(twist[:3])
-            turns[k], places[k] = turn @ turns[k], turn @ places[k] + twist[3:]
-        return Poses(turns, places)
+    @cached_property
+    def columns(self) -> dict[str, list[int]]:
+        """Columns of each joint's freedoms."""
+        starts = [carrier.column for carrier in self.layout.carriers]
+        ends = [*starts[1:], self.count]
+        return {
+            name: [column for k in edges for column in range(starts[k], ends[k])]
+            for name, edges in self.opened.elements.items()
+        }
 
-    def distance(self, other: Poses) -> float:
-        """Root of the sum of squares of all differences."""
-        turned, moved = self.turns - other.turns, self.places - other.places
-        return float(np.sqrt(np.sum(turned * turned) + np.sum(moved * moved)))
+    @cached_property
+    def count(self) -> int:
+        """Number of all joints' freedoms."""
+        return sum(len(carrier.part.type.freedoms) for carrier in self.layout.carriers)
 
+    @cached_property
+    def signs(self) -> dict[str, Floats]:
+        """How the loop of each cut (cuts,) passes each joint: outward +1, back to ground -1."""
+        edges, opened = self.opened.graph.edges, self.opened
+        passed = {GROUND_NAME: np.zeros(len(edges))}
+        for k, edge in enumerate(edges):
+            passed[edge.child] = passed[edge.parent].copy()
+            passed[edge.child][k] = 1.0
+        loops = [passed[cut.copy] - passed[cut.link] for cut in opened.cuts]
+        table = np.array(loops).reshape(len(loops), len(edges))
+        return {name: table[:, elements[0]] for name, elements in opened.elements.items()}
 
-class Body(NamedTuple):
-    """What all configurations share: the mechanism, its moving links, centre (m) and size (m)."""
-
-    mechanism: Mechanism
-    links: tuple[str, ...]
-    centre: Floats
-    size: float
+    def column(self, joint: str, coordinate: str) -> int:
+        """Column of a coordinate."""
+        freedom = self.mechanism.joints[joint].type.freedom_of[coordinate]
+        return self.columns[joint][freedom]
 
 
 class Configuration:
-    """The mechanism with its links at given poses."""
+    """The opened mechanism at a state of the kernel."""
 
-    def __init__(self, body: Body, poses: Poses) -> None:
+    def __init__(self, body: Body, state: Floats) -> None:
         self.body = body
-        self.poses = poses
+        self.state = state
 
     @cached_property
-    def frames(self) -> dict[str, tuple[Axes, Axes]]:
-        """Frames of every joint on its first and second link."""
-        joints = self.body.mechanism.joints
-        return {
-            name: (self._frame(joint, 0), self._frame(joint, 1)) for name, joint in joints.items()
-        }
-
-    def _frame(self, joint: Joint, side: int) -> Axes:
-        link, frame = ((joint.first, joint.on_first), (joint.second, joint.on_second))[side]
-        turn, place = np.eye(3), np.zeros(3)
-        if link != GROUND_NAME:
-            k = self.body.links.index(link)
-            turn, place = self.poses.turns[k], self.poses.places[k]
-        return carried(frame, turn, place, self.body.centre, self.body.size)
+    def poses(self) -> dict[str, Pose]:
+        """Poses of all bodies, copies of links at cuts among them."""
+        return self.body.poses.at(np.empty(0), self.state)
 
     @cached_property
-    def rows(self) -> list[tuple[Joint, Constraint]]:
-        """All constraints, joint by joint."""
-        joints, size = self.body.mechanism.joints, self.body.size
-        return [
-            (joint, row)
-            for name, joint in joints.items()
-            for row in constraints(joint, *self.frames[name], size)
-        ]
+    def twists(self) -> dict[str, Floats]:
+        """Twists (6, freedoms) of all bodies for unit rates of the joints' freedoms."""
+        found = {GROUND_NAME: np.zeros((6, self.body.count))}
+        for edge, carrier in zip(
+            self.body.opened.graph.edges, self.body.layout.carriers, strict=True
+        ):
+            own = self._screws(carrier.edge, carrier.part.letter)
+            twists = found[edge.parent].copy()
+            twists[:, carrier.column : carrier.column + len(own)] += own.T
+            found[edge.child] = twists
+        return found
 
     @cached_property
-    def gradient(self) -> Floats:
-        """The wrenches of all constraints: (rows, 6 links)."""
-        matrix = np.zeros((len(self.rows), 6 * len(self.body.links)))
-        for i, (joint, row) in enumerate(self.rows):
-            for link, part in ((joint.first, row.on_first), (joint.second, row.on_second)):
-                if link != GROUND_NAME:
-                    k = self.body.links.index(link)
-                    matrix[i, 6 * k : 6 * k + 6] += part
-        return matrix
+    def jacobian(self) -> Floats:
+        """Twists of the copies against their links: (6 cuts, freedoms)."""
+        cuts = self.body.opened.cuts
+        rows = [self.twists[cut.copy] - self.twists[cut.link] for cut in cuts]
+        return np.concatenate([np.zeros((0, self.body.count)), *rows])
 
     @cached_property
+    def misses(self) -> Floats:
+        """Displacements of the copies against their links (6 cuts,): rad, parts of the size."""
+        cuts = self.body.opened.cuts
+        rows = [between(self.poses[cut.copy], self.poses[cut.link]) for cut in cuts]
+        return np.concatenate([np.zeros(0), *rows])
+
+    @property
     def miss(self) -> float:
-        """Largest equation: lengths in parts of the size, cosines."""
-        return max((abs(row.miss) for _, row in self.rows), default=0.0)
+        """Largest part of `misses`."""
+        return float(np.abs(self.misses).max(initial=0.0))
 
     @property
     def assembled(self) -> bool:
-        """Whether all equations and their side conditions hold."""
-        joints = self.body.mechanism.joints.items()
-        return self.miss < tolerances.MOBILITY_CLOSED and all(
-            on_side(joint, *self.frames[name]) for name, joint in joints
-        )
+        """Whether all loops close."""
+        return self.miss < tolerances.MOBILITY_CLOSED
 
-    def rates(self, joint: Joint, twists: Floats) -> Floats:
-        """Rates of the joint's freedoms (freedoms, motions) for link twists (6 links, motions)."""
-        relative = self._twist(joint.second, twists) - self._twist(joint.first, twists)
-        screws = freedoms(joint, *self.frames[joint.name], self.body.size)
-        return np.asarray(np.linalg.lstsq(screws.T, relative, rcond=None)[0], dtype=np.float64)
+    def point(self, joint: Joint) -> Floats:
+        """Where the joint's point on its first link is."""
+        pose = self.poses[joint.first]
+        at = (np.array(joint.on_first.o) - self.body.centre) / self.body.size
+        return np.asarray(pose.turn @ at + pose.place, dtype=np.float64)
 
-    def _twist(self, link: str, twists: Floats) -> Floats:
-        if link == GROUND_NAME:
-            return np.zeros((6, twists.shape[1]))
-        k = self.body.links.index(link)
-        return twists[6 * k : 6 * k + 6]
+    def wider(self, joint: Joint, letter: str) -> Floats:
+        """The Jacobian's columns of a softer joint of one part, on the frames of a joint of one
+        part."""
+        (edge,) = self.body.opened.elements[joint.name]
+        signs = self.body.signs[joint.name]
+        found = self._screws(edge, letter)
+        return np.array([np.outer(signs, screw).ravel() for screw in found]).T
+
+    def _screws(self, edge: int, letter: str) -> Floats:
+        """Unit screws (freedoms, 6) of a displacement `letter` in place of that of an edge: of the
+        body it carries against the one before, whose place it is drawn on."""
+        body = self.body
+        before, joint = body.layout.carriers[edge].part.before, body.opened.graph.edges[edge].joint
+        pose = self.poses[body.opened.graph.edges[edge].parent]
+        origin = (np.array(before.o) - body.centre) / body.size
+        frame = before._replace(o=tuple(origin.tolist()))
+        found = [np.zeros((0, 6))]
+        for angular, linear in screws_at(letter, frame, joint.pitch / body.size):
+            spin = pose.turn @ np.array(angular)
+            found.append(np.array([[*spin, *(pose.turn @ linear + np.cross(pose.place, spin))]]))
+        return np.concatenate(found)
+
+    def distance(self, other: Configuration) -> float:
+        """Root of the sum of squares of all differences of the links' poses."""
+        total = 0.0
+        for link in self.body.links:
+            here, there = self.poses[link], other.poses[link]
+            for one, two in zip(here, there, strict=True):
+                total += float(np.sum((one - two) ** 2))
+        return float(np.sqrt(total))
+
+    def moved(self, steps: Floats) -> Configuration:
+        """Displaced by steps (freedoms,) of the joints' freedoms."""
+        state = self.state.copy()
+        for carrier in self.body.layout.carriers:
+            freedoms = carrier.part.type.freedoms
+            own = steps[carrier.column : carrier.column + len(freedoms)]
+            if carrier.part.type.is_ball:
+                place = slice(carrier.state, carrier.state + 4)
+                state[place] = turned(state[place], own)
+                continue
+            for k, freedom in enumerate(freedoms):
+                unit = self.body.size / self.body.layout.length if freedom.is_slide else 1.0
+                state[carrier.state + k] += own[k] * unit
+        return Configuration(self.body, state)
 
     def closed(self) -> Configuration:
         """The configuration that Newton's method reaches from here."""
@@ -133,49 +189,68 @@ class Configuration:
             least = min(least, here.miss)
             if here.miss < tolerances.MOBILITY_TIGHT or stuck > tolerances.MOBILITY_STUCK:
                 break
-            misses = np.array([row.miss for _, row in here.rows])
-            step = -np.linalg.lstsq(here.gradient, misses, rcond=tolerances.MOBILITY_RANK)[0]
-            largest = float(np.max(np.abs(step)))
+            step = -least_squares(here.jacobian, here.misses)
+            largest = float(np.abs(step).max(initial=0.0))
             if not largest < np.inf:
                 break
-            here = Configuration(
-                here.body, here.poses.moved(step * min(1.0, tolerances.MOBILITY_STRIDE / largest))
-            )
+            here = here.moved(step * min(1.0, tolerances.MOBILITY_STRIDE / max(largest, 1e-300)))
         return here
 
 
-def body_of(mechanism: Mechanism) -> Body:
-    """The mechanism about the centre of its joint points."""
-    links = tuple(name for name in mechanism.links if name != GROUND_NAME)
-    points = [at.vector for _, at in mechanism.joint_points()]
-    centre = np.mean(np.array(points), axis=0) if points else np.zeros(3)
-    return Body(mechanism, links, centre, mechanism.box_diagonal())
+def least_squares(matrix: Floats, right: Floats) -> Floats:
+    """The shortest of the best solutions."""
+    found = np.linalg.lstsq(matrix, right, rcond=tolerances.MOBILITY_RANK)[0]
+    return np.asarray(found, dtype=np.float64)
 
 
 def home(body: Body) -> Configuration:
     """The drawing, assembled or not."""
-    count = len(body.links)
-    return Configuration(body, Poses(np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3))))
+    return Configuration(body, home_state(body.layout))
+
+
+def with_links_at(start: Configuration, target: Mapping[str, Pose]) -> Configuration:
+    """The configuration next to `start` whose links, and copies of them, have given poses."""
+    body = start.body
+    bodies = {link: link for link in body.links} | {c.copy: c.link for c in body.opened.cuts}
+    here = start
+    for _ in range(tolerances.MOBILITY_STUCK):
+        misses = [between(here.poses[name], target[link]) for name, link in bodies.items()]
+        miss = np.concatenate(misses)
+        if np.abs(miss).max() < tolerances.MOBILITY_TIGHT:
+            break
+        matrix = np.concatenate([here.twists[name] for name in bodies])
+        here = here.moved(-least_squares(matrix, miss))
+    return here
 
 
 def assembled(body: Body) -> Configuration | None:
-    """An assembled configuration: the home drawing, next to it, or from random poses."""
+    """An assembled configuration: the home drawing, next to it, or from random coordinates."""
     found = home(body).closed()
     random = RandomStarts()
     tries = 0
     while not found.assembled and tries < tolerances.MOBILITY_STARTS:
         tries += 1
-        poses = home(body).poses
-        twists = np.stack([random.between(np.pi, len(body.links)) for _ in range(6)], axis=1)
-        twists[:, 3:] /= np.pi
-        found = Configuration(body, poses.moved(twists.ravel())).closed()
+        found = _scattered(body, random).closed()
     return found if found.assembled else None
+
+
+def _scattered(body: Body, random: RandomStarts) -> Configuration:
+    """Turns and orientations anywhere, slides within the size."""
+    state = np.zeros(body.layout.states)
+    for carrier in body.layout.carriers:
+        if carrier.part.type.is_ball:
+            state[carrier.state : carrier.state + 4] = random.quaternions(1)[:, 0]
+            continue
+        for k, freedom in enumerate(carrier.part.type.freedoms):
+            half = body.size / body.layout.length if freedom.is_slide else np.pi
+            state[carrier.state + k] = random.between(half, 1)[0]
+    return Configuration(body, state)
 
 
 def along_motion(
     start: Configuration, motions: Floats, random: RandomStarts
 ) -> Configuration | None:
-    """A configuration a finite step away along one of the first-order `motions` (6 links, count).
+    """A configuration a finite step away along one of the first-order `motions` (freedoms, count).
 
     None where every step closes back to the start: the motion exists to first order only.
     """
@@ -185,18 +260,7 @@ def along_motion(
     for _ in range(tolerances.MOBILITY_TRIES):
         direction = motions @ random.between(1.0, motions.shape[1])
         direction *= step / np.max(np.abs(direction))
-        there = Configuration(start.body, start.poses.moved(direction)).closed()
-        if there.assembled and there.poses.distance(start.poses) > step / 4:
+        there = start.moved(direction).closed()
+        if there.assembled and there.distance(start) > step / 4:
             return there
     return None
-
-
-def _turned(vector: Floats) -> Floats:
-    """Rotation by a rotation vector."""
-    angle = float(np.sqrt(vector @ vector))
-    if angle == 0.0:
-        return np.eye(3)
-    x, y, z = vector / angle
-    k = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    turn: Floats = np.eye(3) + np.sin(angle) * k + (1.0 - np.cos(angle)) * (k @ k)
-    return turn

@@ -32,18 +32,23 @@ def idle_freedoms(
     """Freedoms that move no input and nothing but a link between two or more joints."""
     found: list[IdleFreedom] = []
     taken: list[tuple[set[str], Floats]] = []
+    columns = [configuration.body.column(*each) for each in driven]
     for links, border in _groups(configuration):
         if any(known <= links for known, _ in taken):
             continue
-        twists = _common_twists(configuration, links)
-        for twist in twists.T if twists.shape[1] == 1 else ():
-            if not _moves_input(configuration, links, twist, driven):
-                names = tuple(n for n in configuration.body.links if n in links)
-                verb, how = _words(border, twist)
-                verb = f"{verb} together" if len(names) > 1 else f"{verb}s"
-                sentence = f"{' and '.join(names)} {verb} freely {how}"
-                found.append(IdleFreedom(names, sentence))
-                taken.append((links, twist))
+        motions = _common_motions(configuration, links, border)
+        if motions.shape[1] != 1:
+            continue
+        twist = configuration.twists[min(links)] @ motions[:, 0]
+        rates = motions[:, 0] / np.sqrt(twist @ twist)
+        twist = twist / np.sqrt(twist @ twist)
+        if not np.abs(rates[columns]).max(initial=0.0) > tolerances.RANK_ZERO:
+            names = tuple(n for n in configuration.body.links if n in links)
+            verb, how = _words(border, twist)
+            verb = f"{verb} together" if len(names) > 1 else f"{verb}s"
+            sentence = f"{' and '.join(names)} {verb} freely {how}"
+            found.append(IdleFreedom(names, sentence))
+            taken.append((links, twist))
     return tuple(found)
 
 
@@ -60,36 +65,19 @@ def _groups(configuration: Configuration) -> Iterator[tuple[set[str], list[Joint
                 yield group, border
 
 
-def _common_twists(configuration: Configuration, links: set[str]) -> Floats:
-    """Twists (6, count) of the links as one body that all constraints allow."""
-    gradient = configuration.gradient
-    parts = [
-        gradient[:, 6 * k : 6 * k + 6]
-        for k, name in enumerate(configuration.body.links)
-        if name in links
-    ]
-    together = np.add.reduce(parts)
-    _, values, right = np.linalg.svd(together)
-    return right[int(np.count_nonzero(values > tolerances.RANK_ZERO * values[0])) :].T
-
-
-def _moves_input(
-    configuration: Configuration,
-    links: set[str],
-    twist: Floats,
-    driven: Sequence[tuple[str, str]],
-) -> bool:
-    body = configuration.body
-    twists = np.zeros((6 * len(body.links), 1))
-    for k, name in enumerate(body.links):
-        if name in links:
-            twists[6 * k : 6 * k + 6, 0] = twist
-    for name, coordinate in driven:
-        joint = body.mechanism.joints[name]
-        rate = configuration.rates(joint, twists)[joint.type.freedom_of[coordinate], 0]
-        if abs(rate) > tolerances.RANK_ZERO:
-            return True
-    return False
+def _common_motions(configuration: Configuration, links: set[str], border: list[Joint]) -> Floats:
+    """Motions (freedoms, count) of the links as one body that leave the others at rest: nothing but
+    the joints around them moves."""
+    body, twists = configuration.body, configuration.twists
+    moving = [column for joint in border for column in body.columns[joint.name]]
+    one = twists[min(links)]
+    rest = [twists[n] if n not in links else twists[n] - one for n in body.links]
+    matrix = np.concatenate([configuration.jacobian, *rest])[:, moving]
+    _, values, right = np.linalg.svd(matrix, full_matrices=len(matrix) < len(moving))
+    least = tolerances.RANK_ZERO * values[0]
+    found = np.zeros((body.count, len(moving) - int(np.count_nonzero(values > least))))
+    found[moving] = right[len(moving) - found.shape[1] :].T
+    return found
 
 
 def _words(border: list[Joint], twist: Floats) -> tuple[str, str]:

@@ -19,15 +19,10 @@ def input_notes(
     problem: Problem, configuration: Configuration, motions: Floats, idle: int
 ) -> list[Diagnostic]:
     """Inputs that are locked, depend on each other, or leave freedoms undriven."""
-    driven, joints = problem.motion.driven, problem.mechanism.joints
+    driven = problem.motion.driven
     if not driven:
         return []
-    rates = np.array(
-        [
-            configuration.rates(joints[name], motions)[joints[name].type.freedom_of[coordinate]]
-            for name, coordinate in driven
-        ]
-    ).reshape(len(driven), motions.shape[1])
+    rates = motions[[configuration.body.column(*each) for each in driven]]
     notes = []
     names = [f"{name}.{coordinate}" for name, coordinate in driven]
     locked = [n for n, row in zip(names, rates, strict=True) if _is_still(row)]

@@ -1,9 +1,9 @@
 """Mobility: Kutzbach's count against the true freedom by rank, and what makes them differ.
 
-With n links (ground too), j joints and freedoms f, the count is 6 (n - 1 - j) + sum f. The true
-mobility is 6 (n - 1) less the rank of all constraint wrenches, taken at several configurations that
-finite steps along the motion reach: what moves to first order only does not move. Their difference
-is the number of redundant constraints.
+With n links (ground too), j joints and freedoms f, the count is 6 (n - 1 - j) + sum f: all freedoms
+less six for every loop. The true mobility is sum f less the rank of the loops' screws, taken at
+several configurations that finite steps along the motion reach: what moves to first order only does
+not move. Their difference is the number of redundant constraints.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ from mechkin_cli.analysis.mobility.configurations import (
     Configuration,
     along_motion,
     assembled,
-    body_of,
     home,
 )
 from mechkin_cli.analysis.mobility.first_row import first_row
@@ -37,9 +36,9 @@ if TYPE_CHECKING:
 
 
 class Rank(NamedTuple):
-    """Rank of the constraints: `motions` (6 links, freedom) span what they allow, `stresses`
-    (rows, redundant) what they carry without load; `gap` is the ratio of singular values at the
-    rank."""
+    """Rank of the loops' closing: `motions` (freedoms, count) are what it allows, `stresses`
+    (6 cuts, redundant) the wrenches at the cuts that hold each other; `gap` is the ratio of
+    singular values at the rank."""
 
     motions: Floats
     stresses: Floats
@@ -112,7 +111,7 @@ def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
     """The mobility of a mechanism; its inputs count as free. `session` of the problem, where it can
     be solved as it is driven, gives the first row's assembly."""
     mechanism = problem.mechanism
-    body = body_of(mechanism)
+    body = Body(mechanism)
     start = (session and first_row(session, body)) or assembled(body)
     if start is None:
         return _unknown(problem, [_not_assembled(body)])
@@ -151,15 +150,15 @@ def kutzbach(mechanism: Mechanism) -> int:
 
 def loops(mechanism: Mechanism) -> int:
     """Number of independent loops."""
-    return len(mechanism.joints) - len(body_of(mechanism).links)
+    return mechanism.loops
 
 
 def rank_of(configuration: Configuration) -> Rank:
     """Rank, motions and stresses by singular values with the gap rule."""
-    matrix = configuration.gradient
+    matrix = configuration.jacobian
     rows, columns = matrix.shape
-    if rows == 0:
-        return Rank(np.eye(columns), np.empty((0, 0)), np.inf)
+    if rows == 0 or columns == 0:
+        return Rank(np.eye(columns), np.eye(rows), np.inf)
     left, values, right = np.linalg.svd(matrix)
     least = tolerances.RANK_ROUNDING * values[0]
     values = np.maximum(values, least)
@@ -187,8 +186,8 @@ def _fixed(reached: list[Configuration], ranks: list[Rank], finite: bool) -> tup
         largest = np.zeros(joint.type.freedoms)
         for configuration, rank in zip(reached, ranks, strict=True):
             if finite and rank.motions.size:
-                rates = np.abs(configuration.rates(joint, rank.motions)).max(axis=1)
-                largest = np.maximum(largest, rates)
+                rates = np.abs(rank.motions[configuration.body.columns[joint.name]])
+                largest = np.maximum(largest, rates.max(axis=1))
         for name, freedom in joint.type.freedom_of.items():
             if largest[freedom] < tolerances.RANK_ZERO:
                 names.append(f"{joint.name}.{name}")

@@ -1,8 +1,8 @@
 """Redundant constraints: which joints carry them, as which forces and moments, and a cure.
 
 A stress is a set of joint wrenches in equilibrium without load: a null vector of the transposed
-constraints. In a single loop every joint carries the same wrench, which no joint of the loop gives
-way to.
+screws of the loops. In a single loop every joint carries the same wrench, which no joint of the
+loop gives way to.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.mobility.configurations import Configuration
+from mechkin_cli.mechanism.joint_table import joint_type
 from mechkin_cli.mechanism.model import Joint
 
 if TYPE_CHECKING:
@@ -23,10 +24,6 @@ if TYPE_CHECKING:
 
 MOST_CHANGES = 3
 """Joints changed by one cure."""
-
-SOFTER = {"R": (("S", "moment", 2), ("C", "force", 1)), "P": (("C", "moment", 1),)}
-"""Softer joints: the freedom they add is of one kind; its count; R to C frees the axis, R to S the
-tilting moments, P to C the turn."""
 
 
 class Redundancy(NamedTuple):
@@ -57,21 +54,29 @@ def redundancies(
     """
     if stresses.shape[1] == 0:
         return ()
-    rows = configuration.rows
     joints = list(configuration.body.mechanism.joints.values())
-    places = {j.name: [i for i, (owner, _) in enumerate(rows) if owner is j] for j in joints}
-    shares = stresses @ stresses.T
+    places = {joint.name: list(range(6 * k, 6 * k + 6)) for k, joint in enumerate(joints)}
+    carried = _carried(configuration, joints, stresses)
+    shares = carried @ carried.T
     found = []
-    for group in _groups([j for j in joints if places[j.name]], places, shares):
+    for group in _groups(joints, places, shares):
         every = [i for joint in group for i in places[joint.name]]
         number = round(float(np.trace(shares[np.ix_(every, every)])))
         if number:
-            words = _wrenches(configuration, group, places, stresses, number)
+            words = _wrenches(configuration, group, places, carried, number)
             names = tuple(joint.name for joint in group)
             softer = [joint for joint in group if joint.name not in driven]
             cure = _cure(configuration, softer, number)
             found.append(Redundancy(number, names, words, cure))
     return tuple(found)
+
+
+def _carried(configuration: Configuration, joints: list[Joint], stresses: Floats) -> Floats:
+    """An orthonormal basis (6 joints, count) of the wrenches that the joints carry."""
+    cuts = stresses.reshape(-1, 6, stresses.shape[1])
+    signs = configuration.body.signs
+    rows = [np.add.reduce(signs[joint.name][:, None, None] * cuts) for joint in joints]
+    return np.asarray(np.linalg.qr(np.concatenate(rows))[0], dtype=np.float64)
 
 
 def _groups(
@@ -101,16 +106,14 @@ def _wrenches(
     configuration: Configuration,
     group: list[Joint],
     places: dict[str, list[int]],
-    stresses: Floats,
+    carried: Floats,
     number: int,
 ) -> str:
     """The stress of a single loop in words; empty for several loops."""
     links = {link for joint in group for link in (joint.first, joint.second)}
     if len(links) != len(group):
         return ""
-    mine = places[group[0].name]
-    own = np.array([configuration.rows[i][1].on_second for i in mine]).T @ stresses[mine]
-    left, _, _ = np.linalg.svd(own)
+    left, _, _ = np.linalg.svd(carried[places[group[0].name]])
     return describe(left[:, :number], configuration)
 
 
@@ -166,8 +169,11 @@ def _point(wrenches: Floats, configuration: Configuration) -> str:
     point = np.linalg.lstsq(rows, moments, rcond=None)[0]
     if np.abs(rows @ point - moments).max() > tolerances.MOBILITY_NO_WRENCH:
         return ", each with a moment of its own"
-    joints = configuration.frames.items()
-    near = [n for n, (a, _) in joints if np.abs(a.o - point).max() < tolerances.MOBILITY_NO_WRENCH]
+    near = [
+        joint.name
+        for joint in configuration.body.mechanism.joints.values()
+        if np.abs(configuration.point(joint) - point).max() < tolerances.MOBILITY_NO_WRENCH
+    ]
     return f" through {near[0]}" if near else " through one point"
 
 
@@ -182,40 +188,37 @@ def _axis(direction: Floats) -> str:
         if abs(part) > 1.0 - tolerances.MOBILITY_NO_WRENCH:
             return name
     sign = 1.0 if direction[np.argmax(np.abs(direction))] > 0.0 else -1.0
-    return "(" + ", ".join(f"{sign * part + 0.0:.4g}" for part in direction) + ")"
+    parts = np.where(np.abs(direction) > tolerances.MOBILITY_NO_WRENCH, sign * direction, 0.0)
+    return "(" + ", ".join(f"{part:.4g}" for part in parts) + ")"
 
 
 def _cure(configuration: Configuration, group: list[Joint], number: int) -> str | None:
     """The fewest softer joints that take away all redundancy and free no motion."""
-    options = [
-        (joint, letter, rows)
-        for joint in group
-        for letter, kind, count in SOFTER.get(joint.letter, ())
-        for rows in [_rows_of(configuration, joint, kind, count)]
-    ]
-    rank = _rank(configuration.gradient)
+    options = [(joint, letter) for joint in group for letter in joint.type.softer]
+    rank = _rank(configuration.jacobian)
     for count in range(1, MOST_CHANGES + 1):
         for changes in combinations(options, count):
-            rows = [i for _, _, own in changes for i in own]
-            names = {joint.name for joint, _, _ in changes}
-            if len(rows) != number or len(names) < count:
+            freed = sum(
+                joint_type(letter).freedoms - joint.type.freedoms for joint, letter in changes
+            )
+            if freed != number or len({joint.name for joint, _ in changes}) < count:
                 continue
-            if _rank(np.delete(configuration.gradient, rows, axis=0)) == rank:
+            if _rank(_softened(configuration, changes)) == rank + number:
                 return "none is left with " + _list(
-                    f"{j.name} as {letter}" for j, letter, _ in changes
+                    f"{j.name} as {letter}" for j, letter in changes
                 )
     return None
 
 
+def _softened(configuration: Configuration, changes: Iterable[tuple[Joint, str]]) -> Floats:
+    """The Jacobian with the freedoms of softer joints beside all others."""
+    columns = [configuration.jacobian]
+    columns += [configuration.wider(joint, letter) for joint, letter in changes]
+    return np.concatenate(columns, axis=1)
+
+
 def _list(words: Iterable[str]) -> str:
     return " and ".join(words)
-
-
-def _rows_of(configuration: Configuration, joint: Joint, kind: str, count: int) -> list[int]:
-    """The last `count` rows of a kind: of R the force along its axis or both moments, of P the
-    moment about its axis."""
-    rows = [i for i, (j, row) in enumerate(configuration.rows) if j is joint and row.kind == kind]
-    return rows[-count:]
 
 
 def _rank(matrix: Floats) -> int:

@@ -13,7 +13,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.home import is_home_assembled, nearest_to_home
 from mechkin_cli.analysis.assembly.named_modes import NamedModes, name_modes
 from mechkin_cli.analysis.assembly.start import nothing_found
-from mechkin_cli.diagnostics import Diagnostic, UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
@@ -91,7 +91,7 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
     for output in outputs:
         if output not in problem.mechanism.coordinates:
             raise UsageError(
-                f"there is no coordinate {output}; coordinates are "
+                f"there is no coordinate {output[:LONGEST_NAME]}; coordinates are "
                 f"{', '.join(problem.mechanism.coordinates)}"
             )
     path = session.inputs.values
@@ -120,7 +120,7 @@ def _input_number(problem: Problem, name: str | None) -> int:
         swept = [k for k, item in enumerate(inputs) if item.values.min() < item.values.max()]
         return swept[0] if swept else 0
     if name not in names:
-        raise UsageError(f"there is no input {name}; inputs are {', '.join(names)}")
+        raise UsageError(f"there is no input {name[:LONGEST_NAME]}; inputs are {', '.join(names)}")
     return names.index(name)
 
 

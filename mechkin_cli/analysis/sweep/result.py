@@ -17,7 +17,7 @@ from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
-from mechkin_cli.status import Status
+from mechkin_cli.status import Status, has_solution
 from mechkin_cli.units import DIMENSIONLESS, UnitSystem
 
 if TYPE_CHECKING:
@@ -41,8 +41,6 @@ Columns = dict[str, "Floats"]
 SHIFTS = (1, 2)
 """Parts of the null space by which other reactions in equilibrium differ, where constraints are
 redundant. Two: one alone may leave a cell unchanged by chance."""
-
-_SOLVED = np.array([status.has_solution for status in Status])
 
 
 class Result:
@@ -152,8 +150,7 @@ class Result:
     @cached_property
     def solved(self) -> Bools:
         """Rows that have a position (rows,)."""
-        found: Bools = _SOLVED[self.status]
-        return found
+        return has_solution(self.status)
 
     @property
     def complete(self) -> bool:

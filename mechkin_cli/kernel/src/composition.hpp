@@ -74,11 +74,10 @@ struct Coordinates {
     ((mask |= has_name<All> << next++), ...);
     return mask;
   }
-
-  // bit f: freedom f is an angle
-  static constexpr int angles() {
+  // bit f: freedom f is an angle with a name
+  static constexpr int turns() {
     int mask = 0, next = 0;
-    ((mask |= is_angle<All> << next++), ...);
+    ((mask |= is_turn<All> << next++), ...);
     return mask;
   }
 

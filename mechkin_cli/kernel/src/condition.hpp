@@ -1,134 +1,37 @@
 // The condition of a block: 1 / smallest singular value of its Jacobian with lengths in parts of the size.
 //
-// From the factors that Newton or the velocities need anyway: with B the inverse of the scaled Jacobian and G = B^T B,
-// the sixteenth power of G (by repeated squaring) is nearly the projector on its dominant directions, and the largest
-// eigenvalue follows from its traces to 1 %, for every spectrum: no starting vector that could miss a direction, and
-// clusters do no harm. A lane where that is not enough (a block near singular, or factors of a place too far from
-// the closed one) is computed by Jacobi rotations to rounding; so is every overconstrained block.
+// It is estimated to 1 % from the factors that Newton or the velocities need anyway. A lane where that is not enough (a
+// block near singular, or factors of a place too far from the closed one) is computed by Jacobi rotations to rounding;
+// so is every overconstrained block.
 #pragma once
 
+#include "condition_estimate.hpp"
 #include "position.hpp"
 
 namespace {
 
-constexpr double ESTIMATED_CONDITION = 1e6;  // largest condition that the estimate stands for
-constexpr double FACTORS_OFF = 5e-4;  // largest product of the condition and the way from the factored to the closed place
+// The largest condition that the estimate stands for: well below 1e7, where rows count as near singular.
+constexpr double ESTIMATED_CONDITION = 1e6;
+// The largest product of the condition and the way from the factored to the closed place, which is about the relative
+// error of the smallest singular value that it causes.
+constexpr double FACTORS_OFF = 5e-4;
 
-// Weights of a block's equations: lengths in parts of the size.
-inline void row_weights(const Plan& p, const Block& b, Pack* weight) {
+// A number for each equation of a block, `length` for those that are lengths, else 1.
+inline void per_row(const Plan& p, const Block& b, double length, Pack* weight) {
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
     with_closing_joint(j.type, [&](auto entry) {
-      for (int i = 0; i < entry.equations; ++i) weight[j.row + i] = i < entry.lengths ? p.row_weight : 1.0;
+      for (int i = 0; i < entry.equations; ++i) weight[j.row + i] = i < entry.lengths ? length : 1.0;
     });
   }
-}
-
-// C = U^-1 L^-1 D for the factors P A = L U, D the weights (per equation) in the order of the pivots, inverted; row i
-// of C over the weight of unknown i. Its singular values are those of the inverse of the weighted matrix.
-template <int N>
-MECHKIN_INLINE void weighted_inverse(Factors f, int runtime, Pack* weight, const double* column_weight,
-                                     const int* unknown, Pack* c) {
-  const int n = N ? N : runtime;
-  int s = 0;
-  for (int k = 0; k < n; ++k)
-    for (int i = k + 1; i < n; ++i) {
-      const Mask swapped = f.swap[s++];
-      const Pack x = weight[k], y = weight[i];
-      weight[k] = select(swapped, y, x);
-      weight[i] = select(swapped, x, y);
-    }
-  for (int j = 0; j < n; ++j) {
-    c[j * n + j] = Pack(1.0) / weight[j];
-    for (int i = 0; i < j; ++i) c[i * n + j] = 0.0;
-    for (int i = j + 1; i < n; ++i) {
-      Pack sum = 0.0;
-      for (int k = j; k < i; ++k) sum -= f.a[i * n + k] * c[k * n + j];
-      c[i * n + j] = sum;
-    }
-  }
-  for (int i = n - 1; i >= 0; --i)
-    for (int j = 0; j < n; ++j) {
-      Pack sum = c[i * n + j];
-      for (int k = i + 1; k < n; ++k) sum -= f.a[i * n + k] * c[k * n + j];
-      c[i * n + j] = sum * f.a[i * n + i];
-    }
-  for (int i = 0; i < n; ++i) {
-    const Pack scale = 1.0 / column_weight[unknown[i]];
-    for (int j = 0; j < n; ++j) c[i * n + j] *= scale;
-  }
-}
-
-// out = a^T a, symmetric (n x n); returns its trace.
-template <int N>
-MECHKIN_INLINE Pack gram(const Pack* a, int runtime, Pack* out) {
-  const int n = N ? N : runtime;
-  Pack trace = 0.0;
-  for (int i = 0; i < n; ++i)
-    for (int j = i; j < n; ++j) {
-      Pack sum = a[i] * a[j];
-      for (int k = 1; k < n; ++k) sum += a[k * n + i] * a[k * n + j];
-      out[i * n + j] = sum, out[j * n + i] = sum;
-      if (i == j) trace += sum;
-    }
-  return trace;
-}
-
-// The largest eigenvalue over the trace of a symmetric matrix, from the traces T1 and T2 of its powers p and 2 p
-// (eigenvalues over the trace): T2 = l^2p t with 1 <= t, and r = T1^2 / T2 counts the eigenvalues that matter. For a
-// given r the factor t lies between r, r equal eigenvalues, and 1 + (n - 1) y^2, one above n - 1 equal ones; the
-// middle is off by at most a factor of 1.7 for n = 6, whose root of order 2 p is the error.
-MECHKIN_INLINE Pack multiplicity(Pack t1, Pack t2, int n) {
-  const Pack others = n - 1.0, r = max(Pack(1.0), min(Pack(double(n)), t1 * t1 / t2));
-  if (n == 1) return 1.0;
-  const Pack root = sqrt(max(Pack(0.0), others * others + (r - Pack(1.0)) * others * (others - r)));
-  const Pack y = (r - Pack(1.0)) / (others + root);
-  return sqrt(r * (Pack(1.0) + others * y * y));
-}
-
-template <int N>
-MECHKIN_INLINE Pack largest_singular_value(Pack* c, int runtime, Pack* g) {
-  const int n = N ? N : runtime;
-  const int squarings = n > 6 ? 5 : 4;
-  const Pack trace = gram<N>(c, runtime, g), inverse = Pack(1.0) / trace;
-  for (int e = 0; e < n * n; ++e) g[e] *= inverse;
-  Pack *from = g, *to = c, t1 = 0.0, t2 = 0.0;
-  for (int s = 0; s < squarings; ++s) {
-    t1 = gram<N>(from, runtime, to);
-    Pack* const other = from;
-    from = to, to = other;
-  }
-  for (int e = 0; e < n * n; ++e) t2 += from[e] * from[e];
-  Pack value = t2 / multiplicity(t1, t2, n);
-  for (int s = 0; s <= squarings; ++s) value = sqrt(value);
-  return sqrt(value * trace);
-}
-
-template <int N>
-MECHKIN_INLINE void estimate_condition(Factors f, int runtime, Pack* weight, const double* column_weight,
-                                       const int* unknown, Pack* scratch, Pack* result) {
-  const int n = N ? N : runtime;
-  weighted_inverse<N>(f, runtime, weight, column_weight, unknown, scratch);
-  *result = largest_singular_value<N>(scratch, runtime, scratch + n * n);
 }
 
 // To 1 % from the block's factors.
 inline Pack estimated_condition(const Plan& p, Workspace& w, int index) {
   const Block& b = p.block[index];
   const Factors f = matrices_of(p, w, index).lu();
-  const int* unknown = p.unknown + b.column_begin;
-  Pack result;
-  row_weights(p, b, w.right);
-  switch (f.n) {
-    case 1: estimate_condition<1>(f, 1, w.right, p.column_weight, unknown, w.scratch, &result); break;
-    case 2: estimate_condition<2>(f, 2, w.right, p.column_weight, unknown, w.scratch, &result); break;
-    case 3: estimate_condition<3>(f, 3, w.right, p.column_weight, unknown, w.scratch, &result); break;
-    case 4: estimate_condition<4>(f, 4, w.right, p.column_weight, unknown, w.scratch, &result); break;
-    case 5: estimate_condition<5>(f, 5, w.right, p.column_weight, unknown, w.scratch, &result); break;
-    case 6: estimate_condition<6>(f, 6, w.right, p.column_weight, unknown, w.scratch, &result); break;
-    default: estimate_condition<0>(f, f.n, w.right, p.column_weight, unknown, w.scratch, &result);
-  }
-  return result;
+  per_row(p, b, 1.0 / p.row_weight, w.right);
+  return inverse_norm(f, w.right, p.column_weight, p.unknown + b.column_begin, w.scratch);
 }
 
 // To rounding, from the screws at the closed place.
@@ -136,7 +39,7 @@ inline Pack exact_condition(const Plan& p, Workspace& w, int index) {
   const Block& b = p.block[index];
   const int m = b.rows, n = b.size;
   block_jacobian(p, w, index, w.scratch);
-  row_weights(p, b, w.right);
+  per_row(p, b, p.row_weight, w.right);
   for (int u = 0; u < n; ++u) {
     const Pack weight = p.column_weight[p.unknown[b.column_begin + u]];
     for (int i = 0; i < m; ++i) w.scratch[i * n + u] = w.scratch[i * n + u] * w.right[i] * weight;

@@ -1,5 +1,5 @@
 // Velocities and accelerations: the closing equations once and twice differentiated, solved with the
-// factors of the converged position (design: influence coefficients from the same factorisation).
+// factors of the converged position (docs/numerics.md, Rates).
 //
 // The third derivatives follow the same way, where they are asked for.
 // With input rates 1 and accelerations 0 the results are the first and second influence coefficients.

@@ -1,4 +1,4 @@
-// Numbers as text, the same on every machine, and whole tables of them as CSV.
+// Numbers as text, the same on every machine.
 //
 // Shortest digits that read back as the same double. Plain notation for 1e-5 <= |x| < 1e16, integers
 // without a point; otherwise an exponent of at least two digits, as C and Python write it: `1e-06`,
@@ -6,10 +6,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace nanobind {
 class module_;
@@ -27,22 +23,17 @@ std::size_t number_text(double x, char* out);
 // The same for x rounded (the exact binary value, ties to even) to 1 ... MOST_SIGNIFICANT_DIGITS digits.
 std::size_t number_text(double x, int significant_digits, char* out);
 
+// The same as Python's repr, with an exponent below 1e-4 already, but whole numbers without a point as in
+// JSON; `null` for what is not finite.
+std::size_t json_text(double x, char* out);
+
+// Room for fixed_text and scientific_text: the 309 digits of the largest double, sign, point, decimals.
+constexpr std::size_t decimal_text_size(int decimals) { return (std::size_t)decimals + 320; }
+
 // x rounded likewise to a number of decimals >= 0, all of them printed; no `-0.00`.
-std::string fixed_text(double x, int decimals);
+std::size_t fixed_text(double x, int decimals, char* out);
 
-// A field of RFC 4180: in quotes where it holds a comma, a quote or a line break.
-std::string csv_field(std::string_view text);
-
-// One column of a table: `numbers`, or, where that is nullptr, fields[codes[row]].
-struct CsvColumn {
-  const double* numbers = nullptr;
-  const std::int32_t* codes = nullptr;
-  std::vector<std::string> fields;
-};
-
-// Header line (fields already as `csv_field`) and one line per row, LF endings. `missing`, row-major rows x
-// columns, or nullptr, empties cells. significant_digits: 0 for shortest round trip.
-std::string csv_text(const char* header, std::size_t header_size, const std::vector<CsvColumn>& columns,
-                     std::size_t rows, const unsigned char* missing, int significant_digits);
+// x with one digit, `decimals` decimals and an exponent: `-1.50000e+09`; zero is `0`.
+std::size_t scientific_text(double x, int decimals, char* out);
 
 void bind_text(nanobind::module_& m);

@@ -58,6 +58,10 @@ constexpr bool has_name = true;
 template <>
 constexpr bool has_name<Nameless> = false;
 
+// Whether a coordinate is an angle; slides specialise it below.
+template <class Coordinate>
+constexpr bool is_turn = has_name<Coordinate>;
+
 struct About {
   static MECHKIN_INLINE void of(const Closure& k, const PairMotion& p, Pack* out) { about(k, p, out); }
 };
@@ -67,6 +71,9 @@ struct Along {
     along(U::vector(k), U::of(p.a, p.b), k, p, out);
   }
 };
+template <class U>
+constexpr bool is_turn<Along<U>> = false;
+
 template <class Cosine>
 struct FirstTurn {
   static MECHKIN_INLINE void of(const Closure& k, const PairMotion& p, Pack* out) {
@@ -79,13 +86,5 @@ struct SecondTurn {
     of_two_turns(k, Cosine::value(k), p, 1, out);
   }
 };
-template <class Coordinate>
-constexpr bool is_angle = false;
-template <>
-constexpr bool is_angle<About> = true;
-template <class Cosine>
-constexpr bool is_angle<FirstTurn<Cosine>> = true;
-template <class Cosine>
-constexpr bool is_angle<SecondTurn<Cosine>> = true;
 
 }  // namespace

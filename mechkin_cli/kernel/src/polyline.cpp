@@ -138,13 +138,16 @@ class RowFollower {
       sigma[row - first - 1] = std::fabs(rows_.at(leading, row) - origin[leading]);
     const Track track = follow_line(plan_, unit_, origin.data(), result_.direction.data(), last - first, sigma.data(),
                                     result_.state.data(), result_.turn, limits_, out_, first + 1);
-    result_.end = track.end, result_.steps += track.steps, result_.rejected += track.rejected;
+    // a row that is no number ends nothing, and is not reached either
+    const bool missed = track.end == TrackEnd::finished && track.reached < last - first;
+    result_.end = missed ? TrackEnd::stalled : track.end;
+    result_.steps += track.steps, result_.rejected += track.rejected;
     result_.reached = first + 1 + track.reached;
     if (track.end == TrackEnd::start_not_closed)
       result_.inputs = origin;
     else
       take(track.last);
-    return track.end == TrackEnd::finished;
+    return result_.end == TrackEnd::finished;
   }
   void take(const Node& node) {
     result_.inputs = node.inputs, result_.state = node.state, result_.turn = node.turn;

@@ -28,13 +28,14 @@ struct Workspace {
   Pack* reflector;                // per block 2 x size: pivots and betas of a QR
   Pack* multiplier;               // closing rows
   Pack* right;                    // largest block
-  Pack* scratch;                  // twice the largest block squared
+  Pack* scratch;                  // three times the largest block squared
   Pack* effort;                   // inputs
   Vec3* across;                   // legs: what its end needs across its line
   Pack* holding;                  // legs: couple about its line
   Pack* saved;                    // states before a trial step
   Pack* kept;                     // largest block squared: factors of lanes that are done
   Mask* kept_swap;
+  bool* moves;                    // links: whether Newton on the link's block moves it (find_moving)
 };
 
 // Gives the arrays of a workspace their places from `at` on; returns the bytes used.
@@ -67,9 +68,10 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->reflector = (Pack*)take(2 * unknowns * pack);
   w->multiplier = (Pack*)take(rows * pack);
   w->right = (Pack*)take((largest + MAX_CLOSING_ROWS) * pack);
-  w->scratch = (Pack*)take(2 * largest * largest * pack);
+  w->scratch = (Pack*)take(3 * largest * largest * pack);
   w->kept = (Pack*)take(largest * largest * pack);
   w->kept_swap = (Mask*)take(largest * largest * sizeof(Mask));
+  w->moves = (bool*)take(p.links * sizeof(bool));
   w->effort = (Pack*)take((p.inputs + 1) * pack);
   w->across = (Vec3*)take((p.legs + 1) * sizeof(Vec3));
   w->holding = (Pack*)take((p.legs + 1) * pack);
@@ -222,10 +224,13 @@ inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
       for (int i = 0; i < equations; ++i) a[(j.row + i) * n + u] = 0.0;
     for (int l = j.loop_begin; l < j.loop_end; ++l) {
       const TreeJoint& t = p.joints[p.loop[l].joint];
-      Pack entry[3 * MAX_CLOSING_ROWS];
-      closing_columns(p, w, c, p.loop[l], entry);
       int freedoms = 0;
       with_tree_joint(t.type, [&](auto tree) { freedoms = tree.freedoms; });
+      bool needed = false;
+      for (int f = 0; f < freedoms; ++f) needed = needed || unknown_index(p, index, t.column + f) >= 0;
+      if (!needed) continue;
+      Pack entry[3 * MAX_CLOSING_ROWS];
+      closing_columns(p, w, c, p.loop[l], entry);
       for (int f = 0; f < freedoms; ++f) {
         const int u = unknown_index(p, index, t.column + f);
         if (u < 0) continue;
@@ -237,6 +242,29 @@ inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
 
 inline void place_block(const Plan& p, Workspace& w, const Block& b) {
   for (int o = b.joint_begin; o < b.joint_end; ++o) place_joint(p, w, p.order[o]);
+}
+// The joints that Newton moves, which are placed anew in each of its steps; inputs and what they carry stand still.
+inline void find_moving(const Plan& p, Workspace& w) {
+  for (int k = 0; k < p.links; ++k) w.moves[k] = false;
+  for (int b = 0; b < p.blocks; ++b)
+    for (int o = p.block[b].joint_begin; o < p.block[b].joint_end; ++o) {
+      const int k = p.order[o];
+      const TreeJoint& j = p.joints[k];
+      bool moves = j.type == TREE_L;
+      for (int e = p.block[b].joint_begin; e < o; ++e) moves = moves || (p.order[e] == j.parent && w.moves[j.parent]);
+      with_tree_joint(j.type, [&](auto entry) {
+        for (int f = 0; f < entry.freedoms; ++f) moves = moves || unknown_index(p, b, j.column + f) >= 0;
+      });
+      w.moves[k] = moves;
+    }
+}
+inline void place_moving(const Plan& p, Workspace& w, const Block& b) {
+  for (int o = b.joint_begin; o < b.joint_end; ++o)
+    if (w.moves[p.order[o]]) place_joint(p, w, p.order[o]);
+}
+inline void moving_screws(const Plan& p, Workspace& w, const Block& b) {
+  for (int o = b.joint_begin; o < b.joint_end; ++o)
+    if (w.moves[p.order[o]]) find_screws(p, w, p.order[o]);
 }
 inline void block_screws(const Plan& p, Workspace& w, const Block& b) {
   for (int o = b.joint_begin; o < b.joint_end; ++o) find_screws(p, w, p.order[o]);
@@ -286,12 +314,12 @@ inline Closed close_block(const Plan& p, Workspace& w, int index, const Request&
   // a lane's factors must not depend on how long its neighbours go on
   const bool keeps_factors = at.m == at.n && r.demand == DEMAND_CONDITION;
   for (int iteration = 0;; ++iteration) {
-    place_block(p, w, b);
+    iteration ? place_moving(p, w, b) : place_block(p, w, b);
     residual = block_residual(p, w, b);
     done = done | polished | (residual.test <= Pack(r.tight));
-    if (all(done) || iteration == r.iterations) break;
-    block_screws(p, w, b);
-    const bool keep = keeps_factors && any(done);
+    if ((all(done) && !(keeps_factors && iteration == 0)) || iteration == r.iterations) break;
+    moving_screws(p, w, b);
+    const bool keep = keeps_factors && iteration > 0 && any(done);
     if (keep) keep_factors(w, at);
     block_jacobian(p, w, index, at.jacobian);
     at.factor_jacobian();
@@ -302,7 +330,7 @@ inline Closed close_block(const Plan& p, Workspace& w, int index, const Request&
       w.right[u] = -w.right[u];
       length = select(abs(w.right[u]) <= length, length, abs(w.right[u]));  // a NaN wins
     }
-    last_step = select(done, last_step, length);
+    last_step = select(done, iteration ? last_step : Pack(0.0), length);
     polished = length <= Pack(r.coarse);
     // where the Jacobian is singular there is no step: the lane stays where it is
     done = done | ~(length < Pack(1e100));

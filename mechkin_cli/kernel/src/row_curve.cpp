@@ -13,11 +13,12 @@ double InputRows::turn_cosine(long row) const {
   double product = 0.0;
   for (int i = 0; i < inputs; ++i) product += (at(i, row) - at(i, row - 1)) * (at(i, row + 1) - at(i, row));
   const double lengths = distance(row - 1, row) * distance(row, row + 1);
-  return lengths > 0.0 ? product / lengths : 1.0;
+  return lengths == 0.0 ? 1.0 : product / lengths;
 }
 
 RowCurve::RowCurve(const Plan& plan, const InputRows& rows, long first, long last, double knot)
-    : plan_(plan), rows_(rows), first_(first), last_(last), largest_knot_(knot), knot_(knot), length_(last - first + 1, 0.0) {
+    : plan_(plan), rows_(rows), first_(first), last_(last), largest_knot_(knot), knot_(knot),
+      length_(last - first + 1, 0.0) {
   for (long row = first + 1; row <= last; ++row)
     length_[row - first] = length_[row - 1 - first] + rows.distance(row - 1, row);
 }

@@ -12,12 +12,13 @@ struct InputRows {
   long rows;
   double at(int input, long row) const { return values[input * rows + row]; }
   double distance(long one, long other) const;
-  // Cosine of the turn of the path at a row between two others; 1 where it rests.
+  // Cosine of the turn of the path at a row between two others; 1 where it rests, NaN beside a row that is no number.
   double turn_cosine(long row) const;
 };
 
-// Three rows at least. At a row the curve has the row's inputs; its derivatives are those of the parabola through the row and two others,
-// at least `knot` away, so that rounding of the inputs does not count; where the curve bends sharply less.
+// Three rows at least. At a row the curve has the row's inputs; its derivatives are those of the parabola through it
+// and two others, at least `knot` away, so that rounding of the inputs does not count; nearer where the curve bends
+// sharply.
 class RowCurve : public Path {
  public:
   RowCurve(const Plan& plan, const InputRows& rows, long first, long last, double knot);

@@ -25,10 +25,10 @@ std::vector<ClosingTurn> closing_turns(const Plan& plan, const KernelUnit& unit)
   for (int c = 0; c < plan.closings; ++c) {
     if (plan.closing[c].type == PAIR_LEG) continue;
     const PairType& pair = unit.pair_types[plan.closing[c].type];
-    const bool oriented = !(pair.coordinates & 1) && pair.equations < 6;  // a ball; a weld has no freedom
-    if (oriented) add(c, -1, 4);
-    for (int freedom = 0; pair.angles >> freedom; ++freedom)
-      if (pair.angles >> freedom & 1) add(c, freedom, 1);
+    // without conditions on directions an orientation is free, and has no coordinates of its own
+    if (pair.equations == pair.lengths) add(c, -1, 4);
+    for (int freedom = 0; freedom < 6; ++freedom)
+      if (pair.turns >> freedom & 1) add(c, freedom, 1);
   }
   return turns;
 }
@@ -56,8 +56,8 @@ bool Stepper::close(double sigma, const double* guess, Node* node) {
 }
 
 bool Stepper::solve(double sigma, const double* guess, bool moving, Node* node) {
-  const Plan& plan = path_.plan(sigma);
   path_.at(sigma, &point_);
+  const Plan& plan = path_.plan(sigma);
   node->sigma = sigma;
   node->inputs = point_.inputs;
   node->state.resize(plan.states);
@@ -178,7 +178,7 @@ void Stepper::differentiate_states(Node* n) const {
   n->state_second.assign(plan_.states, 0.0);
   for (int k = 0; k < plan_.links; ++k) {
     const TreeJoint& j = plan_.joints[k];
-    const double *first = &n->first[j.column], *second = &n->second[j.column];
+    const double *first = n->first.data() + j.column, *second = n->second.data() + j.column;
     if (j.type == TREE_S) {
       differentiate_quaternion(&n->state[j.state], first, second, &n->state_first[j.state], &n->state_second[j.state]);
       continue;

@@ -39,7 +39,8 @@ class Path {
  public:
   virtual ~Path() = default;
   virtual void at(double sigma, PathPoint* point) const = 0;
-  // The plan at sigma, valid until the next call. Its structure (joints, blocks, unknowns) is the same everywhere.
+  // The plan at sigma, valid until the next call. Its structure (joints, blocks, unknowns) is the same everywhere; the
+  // plan of the first call must outlive the path, for its structure is read later, too.
   virtual const Plan& plan(double sigma) const = 0;
   // Whether the plan's constants change along the path: its derivatives are then read from places nearby,
   // in 0 <= sigma <= 1.

@@ -5,6 +5,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
+#include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
 #include <cmath>
@@ -52,7 +53,7 @@ class GivenPath : public Path {
       : at_(std::move(at)), plan_(std::move(plan)), varies_(varies) {}
   void at(double sigma, PathPoint* point) const override {
     std::tie(point->inputs, point->first, point->second) = at_(sigma);
-    const long n = plan(sigma).inputs;
+    const long n = nb::cast<const FrozenPlan&>(varies_ ? first_ : plan_).view().inputs;
     need_length(point->inputs, n, "the path's inputs");
     need_length(point->first, n, "the path's first derivatives");
     need_length(point->second, n, "the path's second derivatives");
@@ -61,7 +62,10 @@ class GivenPath : public Path {
     if (!varies_) return nb::cast<const FrozenPlan&>(plan_).view();
     current_ = plan_(sigma);
     const Plan& p = nb::cast<const FrozenPlan&>(current_).view();
-    if (states_ < 0) states_ = p.states, blocks_ = p.blocks, columns_ = p.columns, closings_ = p.closings;
+    if (states_ < 0) {
+      first_ = current_;
+      states_ = p.states, blocks_ = p.blocks, columns_ = p.columns, closings_ = p.closings;
+    }
     need(p.states == states_ && p.blocks == blocks_ && p.columns == columns_ && p.closings == closings_,
          "the plans of a path must have one structure");
     return p;
@@ -72,7 +76,7 @@ class GivenPath : public Path {
   std::function<Point(double)> at_;
   nb::object plan_;
   bool varies_;
-  mutable nb::object current_;
+  mutable nb::object first_, current_;
   mutable int states_ = -1, blocks_ = 0, columns_ = 0, closings_ = 0;
 };
 

@@ -142,6 +142,7 @@ long workspace_size(const Plan& p) {
 Workspace workspace_at(const Plan& p, char* memory) {
   Workspace w;
   lay_out(p, memory + (64 - (std::uintptr_t)memory % 64) % 64, &w);
+  find_moving(p, w);
   return w;
 }
 
@@ -184,7 +185,7 @@ template <class... All>
 struct PairTypes;
 template <class... All>
 struct PairTypes<Entries<All...>> {
-  static constexpr PairType table[] = {{All::letter, All::equations, All::lengths, All::coordinates(), All::angles()}...};
+  static constexpr PairType table[] = {{All::letter, All::equations, All::lengths, All::coordinates(), All::turns()}...};
 };
 
 const KernelUnit unit = {LANES, tree_types, PairTypes<Pairs>::table, Pairs::count, workspace_size, run, run_rows, search_rows,

@@ -12,8 +12,7 @@ struct TreeType {
 struct PairType {
   const char* letter;
   int equations, lengths;  // how many close it, and how many of them, the first ones, are lengths
-  int coordinates;         // bit f: freedom f is one
-  int angles;              // bit f: freedom f is one that is an angle
+  int coordinates, turns;  // bit f: freedom f is a coordinate; is one and an angle
 };
 
 struct KernelUnit {

@@ -7,7 +7,7 @@
 namespace {
 
 const KernelUnit* widest() {
-#if MECHKIN_X86
+#if MECHKIN_WIDE
   // these builtins ask both cpuid and XCR0: the operating system must save the wide registers
   __builtin_cpu_init();
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
@@ -23,7 +23,7 @@ const KernelUnit* kernel_unit(int lanes) {
   static const KernelUnit* const best = widest();
   if (lanes == 0 || lanes == best->lanes) return best;
   if (lanes == 2) return mechkin_unit_sse2();
-#if MECHKIN_X86
+#if MECHKIN_WIDE
   if (lanes == 4 && best->lanes > 4) return mechkin_unit_avx2();
 #endif
   return nullptr;

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-
-from mechkin_cli.benchmark.matrices import Vector
+from benchmark.matrices import Vector
 
 
 def eliminate(matrix: Any, right: Any) -> Any:

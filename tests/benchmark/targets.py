@@ -8,6 +8,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Literal
 
+from benchmark.process import nothing, process_times
+from benchmark.yardstick_kernel import LEVELS, Yardstick
+
 from mechkin_cli.benchmark import sevenr
 from mechkin_cli.benchmark.kernel_case import (
     BATCH,
@@ -18,11 +21,9 @@ from mechkin_cli.benchmark.kernel_case import (
     repeated,
     sweep_rows,
 )
-from mechkin_cli.benchmark.process import nothing, process_times
 from mechkin_cli.benchmark.report import Cell, Column, Table
 from mechkin_cli.benchmark.specimen import Specimen
 from mechkin_cli.benchmark.timing import Timing, in_turns
-from mechkin_cli.benchmark.yardstick import LEVELS, Yardstick
 from mechkin_cli.kernel.width import widths
 
 KERNEL_LIMIT = 2.5

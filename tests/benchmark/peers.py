@@ -7,9 +7,9 @@ from math import cos, sin
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from benchmark.closure import Drawing, Kinematics
+from benchmark.dense_forces import equations, wrenches
 
-from mechkin_cli.benchmark.closure import Drawing, Kinematics
-from mechkin_cli.benchmark.dense_forces import equations, wrenches
 from mechkin_cli.benchmark.rcsr import ACCELERATION, COORDINATES, RATE, Dimensions
 
 if TYPE_CHECKING:

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-
-from mechkin_cli.benchmark.specimen import Specimen
+from benchmark.exact import ExactSpecimen
 
 
 @dataclass(frozen=True)
@@ -21,7 +20,7 @@ class Errors:
     loads: float | None
 
 
-def errors(specimen: Specimen, found: Mapping[str, Any], exact: Mapping[str, Any]) -> Errors:
+def errors(specimen: ExactSpecimen, found: Mapping[str, Any], exact: Mapping[str, Any]) -> Errors:
     """Errors of the quantities that were found."""
     groups = (*specimen.motion, [name for name in specimen.loads if name not in specimen.zeros])
     return Errors(*(_largest(found, exact, names) for names in groups))

@@ -11,6 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
 
+import mechkin_cli
 from mechkin_cli.benchmark.timing import Timing, in_turns
 
 RUNS = 21
@@ -56,7 +57,7 @@ def _environment() -> dict[str, str]:
     """The caller's, but with compiled bytecode as an installed package has it, and this package."""
     settings = ("PYTHONDONTWRITEBYTECODE", "PYTHONUNBUFFERED", "PYTHONPATH")
     kept = {name: value for name, value in os.environ.items() if name not in settings}
-    package = str(Path(__file__).resolve().parents[2])
+    package = str(Path(mechkin_cli.__file__).resolve().parents[1])
     paths = [package, os.environ.get("PYTHONPATH", "")]
     return kept | {"PYTHONPATH": os.pathsep.join(path for path in paths if path)}
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from benchmark.arithmetic import Arithmetic, extended
+from benchmark.closure import Drawing, Kinematics, drawing, kinematics
+from benchmark.dense_forces import equations, wrenches
+from benchmark.elimination import eliminate
 
-from mechkin_cli.benchmark.arithmetic import Arithmetic, extended
-from mechkin_cli.benchmark.closure import Drawing, Kinematics, drawing, kinematics
-from mechkin_cli.benchmark.dense_forces import equations, wrenches
-from mechkin_cli.benchmark.elimination import eliminate
 from mechkin_cli.benchmark.rcsr import COORDINATES, Dimensions
 
 POSITIONS = COORDINATES

@@ -11,10 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from mechkin_cli.benchmark.arithmetic import Arithmetic
-from mechkin_cli.benchmark.closure import Motion, moved
-from mechkin_cli.benchmark.elimination import solve_columns
-from mechkin_cli.benchmark.matrices import (
+from benchmark.arithmetic import Arithmetic
+from benchmark.closure import Motion, moved
+from benchmark.elimination import solve_columns
+from benchmark.matrices import (
     Matrix,
     Vector,
     displacement,
@@ -24,6 +24,7 @@ from mechkin_cli.benchmark.matrices import (
     times,
     turning,
 )
+
 from mechkin_cli.benchmark.sevenr import ACCELERATION, RATE, Loop
 
 NEWTON_STEPS = 4

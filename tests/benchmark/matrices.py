@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from mechkin_cli.benchmark.arithmetic import Arithmetic
+from benchmark.arithmetic import Arithmetic
 
 Matrix = list[list[Any]]
 Vector = list[Any]

@@ -1,7 +1,6 @@
 """The yardstick: a throw-away C kernel with no error handling that marks what the machine can do.
 
-Its folder holds `run.py` (which compiles `kern.c`), `prep.py` and `mechs.py`; it is no part of the
-package.
+Its folder holds `run.py` (which compiles `kern.c`), `prep.py` and `mechs.py`.
 """
 
 from __future__ import annotations
@@ -17,39 +16,22 @@ from typing import Any
 import numpy as np
 
 from mechkin_cli.benchmark.kernel_case import BATCH
-from mechkin_cli.diagnostics import UsageError
 
-DEFAULT = Path("tests") / "benchmark" / "yardstick"
+FOLDER = Path(__file__).resolve().parent / "yardstick"
 MODULES = ("run", "prep", "mechs")
 LEVELS = ("position", "+ velocity, acceleration", "+ effort, wrenches")
-
-
-def find(folder: Path | None) -> Path | None:
-    """The yardstick's folder: the one given, else below the current folder or the source tree.
-
-    Raises:
-        UsageError: no yardstick in the folder given.
-    """
-    source_tree = Path(__file__).resolve().parents[2]
-    for place in (folder,) if folder else (DEFAULT, source_tree / DEFAULT):
-        if (place / "run.py").is_file() and (place / "kern.c").is_file():
-            return place.resolve()
-    if folder is not None:
-        raise UsageError(f"--yardstick {folder}: no run.py and kern.c there")
-    return None
 
 
 class Yardstick:
     """Its builds without contraction, by lane width."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path = FOLDER) -> None:
         """Compiles it.
 
         Raises:
             OSError: no C compiler.
             CalledProcessError: the compiler failed.
         """
-        self.folder = folder
         self._run = _import(folder)
         self._files = TemporaryDirectory(prefix="mechkin-yardstick-")
         builds = {
@@ -104,15 +86,12 @@ class YardstickCase:
         return float(miss.max())
 
 
-def load(folder: Path | None) -> Yardstick | str:
+def load() -> Yardstick | str:
     """The compiled yardstick, or why it is left out."""
-    place = find(folder)
-    if place is None:
-        return f"no yardstick: {DEFAULT} is not here (--yardstick DIR names its folder)"
     try:
-        return Yardstick(place)
+        return Yardstick()
     except (OSError, subprocess.CalledProcessError) as error:
-        return f"no yardstick: {place / 'kern.c'} could not be compiled ({error})"
+        return f"no yardstick: kern.c could not be compiled ({error})"
 
 
 def _import(folder: Path) -> Any:

@@ -12,10 +12,9 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-
-from mechkin_cli.benchmark.arithmetic import Arithmetic
-from mechkin_cli.benchmark.closure import Drawing, Kinematics, Motion
-from mechkin_cli.benchmark.matrices import (
+from benchmark.arithmetic import Arithmetic
+from benchmark.closure import Drawing, Kinematics, Motion
+from benchmark.matrices import (
     Matrix,
     Vector,
     cross,
@@ -25,6 +24,7 @@ from mechkin_cli.benchmark.matrices import (
     rotation,
     transpose,
 )
+
 from mechkin_cli.benchmark.rcsr import MASSES, Dimensions
 
 UNKNOWNS = 24

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from mechkin_cli.benchmark.arithmetic import Arithmetic
-from mechkin_cli.benchmark.matrices import (
+from benchmark.arithmetic import Arithmetic
+from benchmark.matrices import (
     Matrix,
     Vector,
     displacement,
@@ -23,6 +23,7 @@ from mechkin_cli.benchmark.matrices import (
     times,
     turning,
 )
+
 from mechkin_cli.benchmark.rcsr import ACCELERATION, ALPHA1, ALPHA4, RATE, Dimensions
 
 NEWTON_STEPS = 8

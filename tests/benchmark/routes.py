@@ -8,10 +8,13 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from benchmark.accuracy import errors
+from benchmark.arithmetic import Arithmetic, extended
+from benchmark.closure import drawing, kinematics
+from benchmark.exact import ExactSpecimen
+from benchmark.peers import Closure, dense_loads, differences, fsolve_positions
+from benchmark.reference import POSITIONS
 
-from mechkin_cli.benchmark.accuracy import errors
-from mechkin_cli.benchmark.arithmetic import Arithmetic, extended
-from mechkin_cli.benchmark.closure import drawing, kinematics
 from mechkin_cli.benchmark.kernel_case import (
     BATCH,
     SWEEP_ROWS,
@@ -21,11 +24,8 @@ from mechkin_cli.benchmark.kernel_case import (
     repeated,
     sweep_rows,
 )
-from mechkin_cli.benchmark.peers import Closure, dense_loads, differences, fsolve_positions
 from mechkin_cli.benchmark.rcsr import Dimensions, dimensions
-from mechkin_cli.benchmark.reference import POSITIONS
 from mechkin_cli.benchmark.report import Cell, Column, Table
-from mechkin_cli.benchmark.specimen import Specimen
 from mechkin_cli.benchmark.timing import Timing, in_turns
 
 if TYPE_CHECKING:
@@ -67,15 +67,15 @@ BY_HAND_NOTES = (
 )
 
 
-def tables(rcsr: Specimen, sevenr: Specimen) -> Iterator[Table]:
+def tables(rcsr: ExactSpecimen, sevenr: ExactSpecimen) -> Iterator[Table]:
     """Times and errors of all routes: RCSR with what is done by hand, 7R without."""
     yield _table(rcsr, partial(_rcsr_routes, dimensions()), BY_HAND_NOTES)
     yield _table(sevenr, lambda specimen, case: [], ())
 
 
 def _table(
-    specimen: Specimen,
-    peers: Callable[[Specimen, KernelCase], list[Route]],
+    specimen: ExactSpecimen,
+    peers: Callable[[ExactSpecimen, KernelCase], list[Route]],
     notes: tuple[str, ...],
 ) -> Table:
     coarse = KernelCase(specimen, degree_rows(specimen))
@@ -94,13 +94,13 @@ def _table(
     return Table(name, f"{title}, one thread", COLUMNS, rows, (*NATIVE_NOTES, *notes, measure))
 
 
-def exact_solution(specimen: Specimen, case: KernelCase) -> dict[str, Any]:
+def exact_solution(specimen: ExactSpecimen, case: KernelCase) -> dict[str, Any]:
     """The independent solution at a case's rows."""
     return specimen.solution(case.positions, [case.found[name] for name in specimen.coordinates])
 
 
 def _row(
-    specimen: Specimen, route: Route, time: Timing, unit: Timing, unit_rows: int
+    specimen: ExactSpecimen, route: Route, time: Timing, unit: Timing, unit_rows: int
 ) -> dict[str, Cell]:
     found = errors(specimen, route.found, route.exact)
     return {
@@ -112,7 +112,7 @@ def _row(
     }
 
 
-def _kernel_routes(specimen: Specimen, case: KernelCase) -> list[Route]:
+def _kernel_routes(specimen: ExactSpecimen, case: KernelCase) -> list[Route]:
     exact, guess = exact_solution(specimen, case), case.second_order_guesses()
     inputs, guesses = repeated(case.inputs), repeated(guess)
     everything, positions = (PlannedRun(case, specimen.levels[level]) for level in (2, 0))
@@ -130,7 +130,7 @@ def _kernel_routes(specimen: Specimen, case: KernelCase) -> list[Route]:
     ]
 
 
-def _sweep_routes(specimen: Specimen, case: KernelCase) -> list[Route]:
+def _sweep_routes(specimen: ExactSpecimen, case: KernelCase) -> list[Route]:
     names = specimen.levels[2]
     exact, everything = exact_solution(specimen, case), PlannedRun(case, names)
 
@@ -145,7 +145,7 @@ def _sweep_routes(specimen: Specimen, case: KernelCase) -> list[Route]:
     ]
 
 
-def _rcsr_routes(size: Dimensions, specimen: Specimen, case: KernelCase) -> list[Route]:
+def _rcsr_routes(size: Dimensions, specimen: ExactSpecimen, case: KernelCase) -> list[Route]:
     """Differences of the kernel's positions, and what engineers do by hand."""
     exact, theta1 = exact_solution(specimen, case), case.positions
     d = drawing(size, _double())

@@ -12,15 +12,15 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from benchmark.accuracy import errors
+from benchmark.arithmetic import Arithmetic, best
+from benchmark.closure import dead_centre, drawing
+from benchmark.exact import ExactSpecimen, rcsr_specimen, sevenr_specimen
 
-from mechkin_cli.benchmark.accuracy import errors
-from mechkin_cli.benchmark.arithmetic import Arithmetic, best
-from mechkin_cli.benchmark.closure import dead_centre, drawing
 from mechkin_cli.benchmark.kernel_case import sweep_rows
 from mechkin_cli.benchmark.rcsr import SPAN, dimensions
 from mechkin_cli.benchmark.report import Cell, Column, Table
-from mechkin_cli.benchmark.specimen import Specimen, values
-from mechkin_cli.benchmark.specimens import rcsr_specimen, sevenr_specimen
+from mechkin_cli.benchmark.specimen import values
 from mechkin_cli.interface import Analysis, loads
 from mechkin_cli.status import Status
 
@@ -62,7 +62,7 @@ def tables() -> Iterator[Table]:
 
 
 def size_table(
-    scaled: Callable[[float], Specimen], sizes: Sequence[float], arithmetic: Arithmetic
+    scaled: Callable[[float], ExactSpecimen], sizes: Sequence[float], arithmetic: Arithmetic
 ) -> Table:
     """One row per size: worst errors of a sweep in parts of the columns' largest values."""
     rows: list[dict[str, Cell]] = []
@@ -118,7 +118,7 @@ def dead_centre_table(arithmetic: Arithmetic) -> Table:
 
 
 def _position_row(
-    specimen: Specimen,
+    specimen: ExactSpecimen,
     analysis: Analysis,
     i: int,
     theta1: float,
@@ -144,5 +144,5 @@ def _position_row(
     }
 
 
-def _coordinates(specimen: Specimen, analysis: Analysis, rows: NDArray[np.intp]) -> list[Any]:
+def _coordinates(specimen: ExactSpecimen, analysis: Analysis, rows: NDArray[np.intp]) -> list[Any]:
     return [analysis[name][rows] for name in specimen.coordinates]

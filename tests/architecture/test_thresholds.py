@@ -1,0 +1,65 @@
+"""Thresholds stand in `tolerances.py`, where each has a name, a unit and a reason."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+from architecture.package import FILES, ROOT, tree
+
+SMALL, LARGE = 1e-3, 1e6
+"""Floats nearer to zero, or larger, are limits of something; others are numbers of a formula."""
+
+ACCEPTED = {
+    ("expressions/scalar_functions.py", 1.2556659146019252e-06): "the lower part of 2 pi",
+    ("benchmark/demand_steps.py", 1e6): "microseconds",
+    ("benchmark/sweeps.py", 1e6): "microseconds",
+    ("benchmark/timing.py", 2e-4): "seconds of a timed call",
+    ("benchmark/timing.py", 1e-9): "seconds, against a division by zero",
+    ("benchmark/sevenr.py", 0.0009): "a tensor's entry",
+    ("benchmark/sevenr.py", 0.0006): "a tensor's entry",
+    ("benchmark/sevenr.py", 0.0004): "a tensor's entry",
+    ("benchmark/sevenr.py", 0.0001): "a tensor's entry",
+}
+"""(file, number) -> what it is."""
+
+DEFINED = ROOT / "tolerances.py"
+
+
+def extreme_numbers(source: ast.AST) -> set[float]:
+    return {
+        abs(node.value)
+        for node in ast.walk(source)
+        if isinstance(node, ast.Constant)
+        and isinstance(node.value, float)
+        and (0.0 < abs(node.value) < SMALL or abs(node.value) >= LARGE)
+    }
+
+
+@pytest.mark.parametrize("path", FILES, ids=[str(path.relative_to(ROOT)) for path in FILES])
+def test_no_threshold_stands_alone(path: Path) -> None:
+    if path != DEFINED:
+        name = str(path.relative_to(ROOT))
+        assert {x for x in extreme_numbers(tree(path)) if (name, x) not in ACCEPTED} == set()
+
+
+def test_accepted_numbers_exist() -> None:
+    found = {(str(p.relative_to(ROOT)), x) for p in FILES for x in extreme_numbers(tree(p))}
+    assert set(ACCEPTED) <= found
+
+
+@pytest.mark.parametrize(
+    "source", ["x < 1e-9", "abs(x) <= -4e-16", "LIMIT = 1e30", "f(eps=2.5e-4)"]
+)
+def test_a_threshold_is_seen(source: str) -> None:
+    assert extreme_numbers(ast.parse(source))
+
+
+def test_every_limit_has_a_reason() -> None:
+    body = tree(DEFINED).body
+    for node, after in zip(body, [*body[1:], None], strict=True):
+        if isinstance(node, ast.AnnAssign):
+            text = after.value if isinstance(after, ast.Expr) else None
+            assert isinstance(text, ast.Constant), f"line {node.lineno} has no reason"
+            assert len(text.value) > 20, f"line {node.lineno}"

@@ -1,0 +1,246 @@
+"""Figures of large runs, each as a ratio within one run or against its limit; medians, in turns.
+
+    python tests/benchmark/figures.py [NAME ...] [--rounds N] [--rows N] [--json]
+
+NAMEs: platform, million, verdicts, threads, chains; without any, all of them. Times are by the
+clock on the wall, as threads and files count; run it on an otherwise idle machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import perf_counter
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+
+from benchmark.chains import chain_text
+from benchmark.process import command
+
+import mechkin_cli as mk
+from mechkin_cli.benchmark.kernel_case import (
+    BATCH,
+    KernelCase,
+    PlannedRun,
+    degree_rows,
+    repeated,
+)
+from mechkin_cli.benchmark.machine import machine
+from mechkin_cli.benchmark.report import Cell, Column, Table, plain_text
+from mechkin_cli.benchmark.specimens import sevenr_specimen
+from mechkin_cli.benchmark.timing import Timing, in_turns
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.tables.json_writer import json_text
+
+MECHANISMS = HERE.parents[1] / "mechanisms"
+ROWS = 100_000
+MILLION = 1_000_000
+LOOPS = (10, 20, 40, 100)
+ROUNDS = 5
+
+COLUMNS = (
+    Column("case", "case"),
+    Column("value", "value", "time"),
+    Column("unit", "unit"),
+    Column("spread", "+-\n%", "percent"),
+    Column("limit", "limit", "time"),
+    Column("met", "met", "verdict"),
+)
+
+
+def row(
+    case: str,
+    value: float,
+    unit: str,
+    spread: float | None = None,
+    limit: float | None = None,
+    least: float | None = None,
+) -> dict[str, Cell]:
+    """A line of a table; `limit` is the most that the value may be, `least` the least."""
+    met = None if limit is None and least is None else value <= (limit or value)
+    if least is not None:
+        met = value >= least
+    return {
+        "case": case,
+        "value": value,
+        "unit": unit,
+        "spread": spread,
+        "limit": limit if least is None else least,
+        "met": met,
+    }
+
+
+def timed(calls: Mapping[str, Callable[[], object]], rounds: int) -> dict[str, Timing]:
+    return in_turns(calls, rounds, perf_counter)
+
+
+def with_rows(file: str, pattern: str, replacement: str) -> str:
+    """A mechanism's text with another number of rows."""
+    text = (MECHANISMS / file).read_text(encoding="utf-8")
+    changed, count = re.subn(pattern, replacement, text)
+    assert count == 1, f"{file}: {pattern} is there {count} times"
+    return changed
+
+
+def platform_text(rows: int) -> str:
+    """The Stewart platform whose legs move by laws of time, along a curved path."""
+    text = (MECHANISMS / "stewart.yaml").read_text(encoding="utf-8")
+    laws = {"1": "harmonic", "0": "cycloidal"}
+    text, legs = re.subn(
+        r"L(\d)\.s: \{from: 0, to: (\S+), count: 21, rate: \S+\}",
+        lambda m: f"L{m[1]}.s: {{law: {laws[str(int(m[1]) % 2)]}, from: 0, to: {m[2]}}}",
+        text,
+    )
+    assert legs == 6
+    return text.replace("motion:\n", f"motion:\n  time: {{from: 0, to: 1, count: {rows}}}\n")
+
+
+def platform(rounds: int, rows: int) -> Table:
+    """A platform on six legs whose inputs have laws of time, with all that its tables read."""
+    model = mk.loads(platform_text(rows), "stewart.yaml")
+    motion = partial(model.analyze, ["tool.position"], tables=[])
+    calls = {"all of its tables": model.analyze, "position alone": motion}
+    times = timed(calls, rounds)
+    lines = [
+        row(name, 1e6 * t.median / rows, "us a row", t.spread, 2.0) for name, t in times.items()
+    ]
+    return Table("platform", f"platform with laws of time, {rows} rows", COLUMNS, lines, ())
+
+
+def million(rounds: int, _: int) -> Table:
+    """RCSR from its file to CSV with a million rows; the file has no tables: nine columns."""
+    text = with_rows(
+        "rcsr.yaml", "from: 150, to: 202, step: 2", f"from: 150, to: 200, count: {MILLION}"
+    )
+    with TemporaryDirectory(prefix="mechkin-million-") as folder:
+        file = Path(folder) / "rcsr.yaml"
+        file.write_text(text[: text.index("\ntables:")], encoding="utf-8")
+        line = [*command(), "analyze", str(file), "--format", "csv", "--quiet", "--out", folder]
+        short = [*command(), "analyze", str(MECHANISMS / "rcsr.yaml"), *line[3:]]
+
+        run = partial(subprocess.run, check=True, capture_output=True)
+        write_again = (Path(folder) / "copy").write_bytes
+        run(line)
+        content = (Path(folder) / "sweep.csv").read_bytes() + (
+            Path(folder) / "rows.csv"
+        ).read_bytes()
+        calls = {
+            "mechkin analyze, 10^6 rows": partial(run, line),
+            "mechkin analyze, 27 rows": partial(run, short),
+            "as many bytes written": partial(write_again, content),
+        }
+        times = timed(calls, rounds)
+    rows = [row(name, t.median, "s", t.spread) for name, t in times.items()]
+    rows[0] = row("mechkin analyze, 10^6 rows", rows[0]["value"], "s", rows[0]["spread"], 1.5)
+    return Table("million", "RCSR from file to CSV", COLUMNS, rows, ())
+
+
+def verdicts(_: int, __: int) -> Table:
+    """What the condition costs a general 7R of which only positions are asked."""
+    specimen = sevenr_specimen()
+    case = KernelCase(specimen, degree_rows(specimen))
+    inputs, guesses = repeated(case.inputs), repeated(case.second_order_guesses())
+    names = specimen.levels[0]
+    bare, judged = (PlannedRun(case, names, more) for more in (Demand.POSITION, Demand.CONDITION))
+    times = in_turns(
+        {"positions": partial(bare, inputs, guesses), "judged": partial(judged, inputs, guesses)}
+    )
+    ratio = times["judged"].ratio(times["positions"])
+    rows = [
+        row(
+            "positions",
+            1e6 * times["positions"].median / BATCH,
+            "us a row",
+            times["positions"].spread,
+        ),
+        row(
+            "positions and condition",
+            1e6 * times["judged"].median / BATCH,
+            "us a row",
+            times["judged"].spread,
+        ),
+        row("ratio", ratio, "", None, 1.25),
+    ]
+    return Table("verdicts", "general 7R, positions only", COLUMNS, rows, ())
+
+
+def threads(rounds: int, count: int) -> Table:
+    """One thread against two, for everything that RCSR and the 7R can be asked."""
+    sources = {
+        "RCSR": with_rows(
+            "rcsr.yaml", "from: 150, to: 202, step: 2", f"from: 150, to: 200, count: {count}"
+        ),
+        "7R": sevenr_specimen().text(f"from: 0 deg, to: 360 deg, count: {count}"),
+    }
+    rows = []
+    for name, text in sources.items():
+        model = mk.loads(text, name)
+        try:
+            model.analyze(threads=2)
+        except TypeError:
+            rows.append(row(f"{name}: analyze() has no threads", float("nan"), ""))
+            continue
+        times = timed({str(n): partial(model.analyze, threads=n) for n in (1, 2)}, rounds)
+        one, two = times["1"], times["2"]
+        rows.append(row(f"{name}, one thread", 1e6 * one.median / count, "us a row", one.spread))
+        rows.append(row(f"{name}, two threads", 1e6 * two.median / count, "us a row", two.spread))
+        rows.append(row(f"{name}, one over two", one.ratio(two), "times", None, least=1.8))
+    return Table("threads", f"threads over {count} rows", COLUMNS, rows, ())
+
+
+def graph_of(text: str) -> object:
+    """What a model needs before it can be analyzed."""
+    return mk.loads(text).graph
+
+
+def chains(rounds: int, _: int) -> Table:
+    """Reading, building and the solver graph of four-bars in a chain."""
+    calls: dict[str, Callable[[], object]] = {}
+    rows = []
+    for loops in LOOPS:
+        text = chain_text(loops)
+        try:
+            graph_of(text)
+        except mk.MechkinError as error:
+            rows.append(row(f"{loops} loops: {str(error)[:40]}", float("nan"), ""))
+            continue
+        calls[str(loops)] = partial(graph_of, text)
+    for name, t in timed(calls, rounds).items():
+        rows.append(row(f"{name} loops", 1e3 * t.median / int(name), "ms a loop", t.spread, 1.0))
+    return Table("chains", "load and graph of chains of four-bars", COLUMNS, rows, ())
+
+
+FIGURES = {f.__name__: f for f in (platform, million, verdicts, threads, chains)}
+
+
+def tables(names: list[str], rounds: int, count: int) -> Iterator[Table]:
+    for name in names or FIGURES:
+        yield FIGURES[name](rounds, count)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("names", nargs="*", choices=[[], *FIGURES], metavar="NAME")
+    parser.add_argument("--rounds", type=int, default=ROUNDS)
+    parser.add_argument("--rows", type=int, default=ROWS, help="of platform and threads")
+    parser.add_argument("--json", action="store_true", help="one JSON object")
+    options = parser.parse_args()
+    found = tables(options.names, options.rounds, options.rows)
+    if options.json:
+        record = {"machine": machine()} | {table.name: table.record() for table in found}
+        print(json_text(record), end="")
+        return
+    print(", ".join(f"{name} {value}" for name, value in machine().items()))
+    for table in found:
+        print(f"\n{plain_text(table)}", end="", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,89 @@
+"""What a new pair takes: a pin in a straight slot, which the joint table lacks.
+
+The pin of the second link slides by s along `slot` of the first and turns by theta about `axis`,
+which is square to the slot: the pair of slotted links and quick-return mechanisms. Every file that
+has to be touched, with the text before which something is put.
+"""
+
+from __future__ import annotations
+
+LETTER = "Ps"
+
+KERNEL = """\
+// A pin z_B of the second link in a slot of the first along x_A.
+struct PinInSlot
+    : Pair<Conditions<InPlane<AY>, InPlane<AZ>, ParallelAxes>, Coordinates<Along<AX>, About>> {
+  static constexpr char letter[] = "Ps";
+};
+
+"""
+
+TABLE = """\
+    JointType(
+        "Ps",
+        (Step("P", _X1), Step("R")),
+        (_length("s", 0, _X1), _angle("theta", 1)),
+        Drawing("plane", ("axis", "slot")),
+        axis=_Z2,
+        closing="Ps",
+    ),
+"""
+
+SCHEMA = '''\
+class PinSlotJoint(PointJoint):
+    """Ps: a pin of the second link slides by s along `slot` of the first, turns by theta about
+    `axis`."""
+
+    type: Literal["Ps"]
+    axis: Direction
+    """Axis of the pin, square to the slot."""
+    slot: Direction
+    """Direction of the slot, fixed in the first link."""
+
+
+'''
+
+TEXTBOOK = """\
+    "Ps": Pair(
+        (("P", ALONG_X), ("R", HERE)),
+        lambda m: shifted(m[0, 3], 0, 0) * turned(Z, angle_about_z(m)),
+        {"s": (0, lambda m: m[0, 3]), "theta": (1, angle_about_z)},
+        drives=[(True, X, O), (False, O, Z)],
+    ),
+"""
+
+README = (
+    "| `Ps` | s, theta | pin of the second link in a `slot` of the first; `axis` of the pin |\n"
+)
+
+ADDITIONS = {
+    "mechkin_cli/kernel/src/pairs.hpp": (
+        ("// Two spheres with a leg between them: no pair of the file format.\n", KERNEL),
+        ("CylinderOnPlane>;", "PinInSlot, "),
+    ),
+    "mechkin_cli/mechanism/joint_table.py": ((")\n\nJOINT_TYPES = {entry.letter", TABLE),),
+    "mechkin_cli/schema/joints.py": (
+        ("class WeldJoint(JointBase):\n", SCHEMA),
+        ('"W")\n_PER_LINK', '"Ps", '),
+        ('    | Annotated[WeldJoint, Tag("(W)")]', '    | Annotated[PinSlotJoint, Tag("(Ps)")]\n'),
+    ),
+    "tests/kernel/pairs.py": (('    "W": Pair(', TEXTBOOK),),
+    "README.md": (("| `W` | none | weld |\n", README),),
+}
+"""The files that a new pair touches: its entry in the kernel, in the table, in the file format, in
+the identity test, and its row in the README."""
+
+GENERATED = ("schemas/mechanism.schema.json",)
+"""Written by `mechkin schema`."""
+
+MECHANISM = """\
+format: 1
+name: quick return
+units: {length: m, angle: rad, mass: kg, force: N}
+links: {crank: {}, arm: {}}
+joints:
+  O: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}
+  Q: {type: R, links: [ground, arm], point: [0, -2, 0], axis: [0, 0, 1]}
+  A: {type: Ps, links: [arm, crank], point: [1, 0, 0], axis: [0, 0, 1], slot: [1, 2, 0]}
+motion: {inputs: {DRIVEN}}
+"""

@@ -1,0 +1,235 @@
+"""Following rows on any path: the same branch however the rows are cut, ordered, doubled or filled
+up, linear work, and turns of closing joints that are never lost."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import process_time
+
+import numpy as np
+import pytest
+from mechkin_cli.analysis.home import home_state
+from mechkin_cli.analysis.setup import Setup, prepare
+
+import mechkin_cli as mk
+from mechkin_cli.solver.batch import run
+from mechkin_cli.solver.closing_turns import (
+    ORIENTATION,
+    continuous_angle,
+    continuous_signs,
+    drawn_quaternion,
+    turn_slots,
+)
+from mechkin_cli.solver.codes import OutputCode
+from mechkin_cli.solver.follow import Followed, TrackEnd, follow
+from mechkin_cli.solver.layout import Layout
+
+MECHANISMS = Path(__file__).parents[2] / "mechanisms"
+
+
+class Platform:
+    """The Stewart platform, driven along Lissajous paths of its six legs."""
+
+    def __init__(self) -> None:
+        model = mk.load(MECHANISMS / "stewart.yaml")
+        self.layout = Layout(model.problem.mechanism, model.graph)
+        self.plan = self.layout.build()
+        self.start = home_state(self.layout)
+
+    def path(self, rows: int, turns: float = 3.0) -> np.ndarray:
+        """(6, rows), zero at the first row."""
+        t = 2.0 * np.pi * turns * np.linspace(0.0, 1.0, rows)
+        legs = [
+            (0.1 if k % 2 else -0.07) * (1.0 - np.cos(t * (1.0 + 0.1 * k)))
+            + 0.03 * np.sin(0.7 * k * t)
+            for k in range(6)
+        ]
+        return np.ascontiguousarray(np.stack(legs)) / self.layout.length
+
+    def closed(self, path: np.ndarray, followed: Followed) -> np.ndarray:
+        """States at all rows; every row closes near its guess."""
+        assert followed.end == TrackEnd.FINISHED
+        assert followed.reached == path.shape[1]
+        batch = run(self.plan, path, followed.guess)
+        assert batch.good.all()
+        assert np.all(batch.correction <= followed.limit)
+        return batch.states
+
+    def states(self, path: np.ndarray, **options: bool) -> np.ndarray:
+        return self.closed(path, follow(self.plan, path, self.start, **options))
+
+
+@pytest.fixture(scope="module")
+def platform() -> Platform:
+    return Platform()
+
+
+def near(a: np.ndarray, b: np.ndarray) -> bool:
+    return bool(np.max(np.abs(a - b)) <= 1e-12)
+
+
+@pytest.mark.parametrize("rows", [2, 3, 4, 25, 60, 400, 5000])
+def test_a_curved_path_is_followed_as_row_by_row(platform: Platform, rows: int) -> None:
+    path = platform.path(rows)
+    assert near(platform.states(path), platform.states(path, every_row=True))
+
+
+def test_the_nodes_do_not_grow_with_the_rows(platform: Platform) -> None:
+    steps, seconds = [], []
+    for rows in (4000, 40000):
+        path = platform.path(rows)
+        begin = process_time()
+        steps.append(follow(platform.plan, path, platform.start).steps)
+        seconds.append(process_time() - begin)
+    assert steps[1] <= 1.2 * steps[0] < 300
+    # ten times the rows; a rescan of all rows at each would take a hundred times as long
+    assert seconds[1] <= 30.0 * seconds[0]
+
+
+def test_in_two_parts(platform: Platform) -> None:
+    path = platform.path(700)
+    whole = platform.states(path)
+    cut = 311
+    first = follow(platform.plan, path[:, : cut + 1], platform.start)
+    second = follow(platform.plan, path[:, cut:], first.state)
+    parts = [
+        platform.closed(path[:, : cut + 1].copy(), first),
+        platform.closed(path[:, cut:].copy(), second),
+    ]
+    assert near(np.concatenate([parts[0][:, :-1], parts[1]], axis=1), whole)
+
+
+def test_there_and_back(platform: Platform) -> None:
+    path = platform.path(500)
+    both = np.concatenate([path, path[:, -2::-1]], axis=1)
+    states = platform.states(np.ascontiguousarray(both))
+    assert near(states[:, 500:], states[:, 498::-1])
+    assert near(states[:, :500], platform.states(path))
+
+
+def test_every_row_twice(platform: Platform) -> None:
+    path = platform.path(300)
+    doubled = platform.states(np.repeat(path, 2, axis=1))
+    assert near(doubled[:, ::2], platform.states(path))
+    assert near(doubled[:, 1::2], doubled[:, ::2])
+
+
+def test_more_rows_between(platform: Platform) -> None:
+    assert near(platform.states(platform.path(1201))[:, ::4], platform.states(platform.path(301)))
+
+
+def test_corners_rests_and_straight_runs(platform: Platform) -> None:
+    curve = platform.path(200)
+    corner = curve[:, -1:] * np.linspace(1.0, 0.0, 50)
+    rest = np.repeat(corner[:, -1:], 5, axis=1)
+    zigzag = 0.02 * np.array([[(-1.0) ** k * (i + 1) / 6 for k in range(20)] for i in range(6)])
+    path = np.ascontiguousarray(np.concatenate([curve, corner, rest, zigzag], axis=1))
+    assert near(platform.states(path), platform.states(path, every_row=True))
+
+
+@pytest.mark.parametrize("size", [1e-13, 1e-9, 1e-5, 1e-3])
+def test_noise_on_the_rows(platform: Platform, size: float) -> None:
+    noise = np.random.default_rng(1).uniform(-size, size, (6, 900))
+    noise[:, 0] = 0.0
+    path = platform.path(900) + noise
+    assert near(platform.states(path), platform.states(path, every_row=True))
+
+
+def test_the_inputs_in_another_order(platform: Platform) -> None:
+    """The path's length, not one of its inputs, measures the steps."""
+    model = mk.load(MECHANISMS / "stewart.yaml")
+    text = (MECHANISMS / "stewart.yaml").read_text(encoding="utf-8")
+    lines = text.splitlines()
+    first = next(k for k, line in enumerate(lines) if line.strip().startswith("L1.s: {from"))
+    lines[first : first + 6] = lines[first : first + 6][::-1]
+    other = mk.loads("\n".join(lines))
+    layout = Layout(other.problem.mechanism, other.graph)
+    assert model.problem.motion.driven[0] == other.problem.motion.driven[5]
+    path = platform.path(400)
+    here, there = (
+        follow(platform.plan, path, platform.start),
+        follow(layout.build(), path[::-1].copy(), home_state(layout)),
+    )
+    assert here.steps == there.steps
+
+
+# --- turns of closing joints ------------------------------------------------------------------
+
+
+def closing_case(name: str) -> Setup:
+    problem = mk.load(MECHANISMS / f"{name}.yaml").problem
+    return prepare(problem, [], verdicts=False, closed_at=None, lanes=0)
+
+
+def dense(path: np.ndarray, parts: int) -> np.ndarray:
+    """The path with `parts` steps for each."""
+    rows = np.arange(parts * (path.shape[1] - 1) + 1) / parts
+    return np.stack([np.interp(rows, np.arange(path.shape[1]), values) for values in path])
+
+
+@pytest.mark.parametrize("name", ["slider_crank", "rchch", "hooke", "double_hooke", "rccc"])
+@pytest.mark.parametrize("coarse", [1, 2, 5])
+def test_angles_against_small_steps(name: str, coarse: int) -> None:
+    """Brute force: an arctangent unwrapped over steps too small for half a turn."""
+    setup = closing_case(name)
+    values = setup.inputs.values[:, setup.start.row :]
+    path = np.ascontiguousarray(values[:, ::coarse])
+    plan = setup.layout.build()
+    slots = {place: slot for place, slot in turn_slots(plan).items() if place[1] != ORIENTATION}
+    assert slots
+    outputs = {
+        place: plan.add_output(int(OutputCode.CLOSING), place[0], place[1], 0, (0.0, 0.0, 0.0), 1.0)
+        for place in slots
+    }
+    fine = dense(path, 400)
+    way = follow(plan, fine, setup.start.state)
+    brute = run(plan, fine, way.guess, outputs=True).outputs
+    followed = follow(plan, path, setup.start.state, turns=True)
+    assert followed.end == way.end == TrackEnd.FINISHED
+    rows = run(plan, path, followed.guess, outputs=True).outputs
+    for place, slot in slots.items():
+        wanted = np.unwrap(brute[outputs[place]])[::400]
+        found = continuous_angle(rows[outputs[place]], followed.turns[slot], 0)
+        assert np.max(np.abs(found - wanted)) <= 1e-9
+
+
+@pytest.mark.parametrize("name", ["rcsr", "rspp", "rspr", "swash_plate"])
+def test_signs_against_small_steps(name: str) -> None:
+    """Quaternions of coarse rows against those of small steps, component by component."""
+    setup = closing_case(name)
+    (closing,) = setup.graph.closings
+    joint, plan = closing.joint, setup.layout.build()
+    slot = turn_slots(plan)[0, ORIENTATION]
+    path = np.ascontiguousarray(setup.inputs.values[:, setup.start.row :])
+    fine = dense(path, 100)
+    coarse = follow(plan, path, setup.start.state, turns=True)
+    small = follow(plan, fine, setup.start.state, turns=True)
+    q = drawn_quaternion(joint, coarse.turns[slot : slot + 4])
+    wanted = drawn_quaternion(joint, small.turns[slot : slot + 4, ::100])
+    side = np.sign(sum(a[0] * b[0] for a, b in zip(q, wanted, strict=True)))
+    for a, b in zip(q, wanted, strict=True):
+        assert np.max(np.abs(side * a - b)) <= 1e-2
+    steps = np.stack(drawn_quaternion(joint, small.turns[slot : slot + 4]))
+    assert np.max(np.abs(np.diff(steps, axis=1))) <= 0.1
+    signs = continuous_signs(tuple(-part for part in wanted), q, 0)
+    assert np.all(signs == 1.0)
+    flipped = tuple(part * (-1.0) ** np.arange(part.size) for part in wanted)
+    assert np.array_equal(continuous_signs(flipped, q, 0), (-1.0) ** np.arange(path.shape[1]))
+
+
+def test_rows_that_were_not_filled_in_take_their_neighbours_turn() -> None:
+    angle = np.linspace(0.0, 20.0, 60)
+    wrapped = np.arctan2(np.sin(angle), np.cos(angle))
+    followed = angle + 0.3
+    followed[[0, 20, 21, 59]] = np.nan
+    assert np.max(np.abs(continuous_angle(wrapped, followed, 0) - angle)) <= 1e-12
+
+
+@pytest.mark.parametrize("row", [1, 57, 99])
+@pytest.mark.parametrize("value", [np.nan, np.inf, 1e200])
+def test_a_row_that_is_no_place_ends_the_way(platform: Platform, row: int, value: float) -> None:
+    path = platform.path(100)
+    path[3, row] = value
+    followed = follow(platform.plan, path, platform.start)
+    assert followed.end != TrackEnd.FINISHED
+    assert followed.reached == row

@@ -1,0 +1,49 @@
+"""The table of output formats: one entry is all that a new one needs."""
+
+import pytest
+
+from mechkin_cli.cli import analyze
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.tables import writers
+from mechkin_cli.tables.columns import evaluate
+from mechkin_cli.tables.csv_writer import csv_bytes
+from mechkin_cli.tables.rows_table import rows_table
+
+
+@pytest.fixture
+def results(source, layout):
+    return writers.Results("RCSR", (evaluate(layout({"s2": "O2.s"}), source),), source)
+
+
+def test_each_format_writes_its_files(results):
+    kinds = {"csv": ["table.csv"], "md": ["table.md"], "json": ["analysis.json"]}
+    assert list(writers.WRITERS) == list(kinds)
+    for name, files in kinds.items():
+        assert list(writers.written_files(results, [name])) == [*files, "rows.csv"]
+
+
+def test_rows_come_with_every_format_and_alone(results):
+    found = writers.written_files(results, [])
+    assert found == {"rows.csv": csv_bytes(rows_table(results.source))}
+
+
+def test_a_new_format_is_one_entry(results, monkeypatch):
+    """Tabs between cells: known to the command, and written."""
+
+    def tsv(results):
+        for table in results.tables:
+            yield f"{table.name}.tsv", csv_bytes(table).replace(b",", b"\t")
+
+    monkeypatch.setattr(analyze, "WRITERS", {**writers.WRITERS, "tsv": tsv})
+    monkeypatch.setattr(writers, "WRITERS", {**writers.WRITERS, "tsv": tsv})
+    assert analyze._formats(["tsv", "csv"]) == ("tsv", "csv")
+    assert list(writers.written_files(results, ["tsv", "csv"])) == [
+        "table.tsv",
+        "table.csv",
+        "rows.csv",
+    ]
+
+
+def test_an_unknown_format_is_refused_with_the_list():
+    with pytest.raises(UsageError, match="--format xml: formats are csv, md, json"):
+        analyze._formats(["xml"])
