@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from math import isfinite
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -10,7 +11,8 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.sweep import analyze
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.interface.settings import Setting, input_values
+from mechkin_cli.interface.arguments import Setting
+from mechkin_cli.interface.settings import input_values
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.solver.closing_turns import turn_slots
@@ -109,7 +111,7 @@ def _plain(inputs: object, known: Mapping[str, float]) -> dict[str, float] | Non
     if type(inputs) is not dict:
         return None
     for name, value in inputs.items():
-        if name not in known or type(value) is not float or not abs(value) < 1e100:
+        if name not in known or type(value) is not float or not isfinite(value):
             return None
     return inputs
 
