@@ -14,7 +14,7 @@ from mechkin_cli.building.fields import Fields, Path, read_parameters, read_unit
 from mechkin_cli.building.linkage import build_linkage, is_link
 from mechkin_cli.building.loads import LoadBuilder
 from mechkin_cli.building.motion import build_motion
-from mechkin_cli.building.sizes import check_loops, check_memory
+from mechkin_cli.building.sizes import check_blocks, check_memory
 from mechkin_cli.building.source import Source
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
@@ -148,10 +148,11 @@ def _graph(
     fields: Fields, file: MechanismFile, mechanism: Mechanism, motion: Motion
 ) -> SolverGraph | Diagnostic | None:
     """The solver graph; only asked for when the parts are sound, to avoid follow-up errors."""
-    if fields.error_count or not check_loops(fields, mechanism):
+    if fields.error_count:
         return None
     try:
-        return build_graph(mechanism, motion.driven)
+        graph = build_graph(mechanism, motion.driven)
     except UnsolvableGraph as error:
         path = ("motion", "inputs") if motion.inputs else _place_of(file, error.joints)
         return error.diagnostic._replace(place=fields.document.place(path))
+    return graph if check_blocks(fields, graph) else None

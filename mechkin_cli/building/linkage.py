@@ -57,15 +57,17 @@ def _check_connected(
     fields: Fields, links: Mapping[str, object], pairs: Sequence[tuple[str, str]]
 ) -> None:
     """Every link must be joined, by way of others, to ground."""
-    reached, grown = {GROUND_NAME}, True
     if any(name not in links and name != GROUND_NAME for pair in pairs for name in pair):
         return  # a misspelt link, reported at its joint
-    while grown:
-        before = len(reached)
-        for first, second in pairs:
-            if first in reached or second in reached:
-                reached |= {first, second}
-        grown = len(reached) > before
+    joined: dict[str, list[str]] = {}
+    for first, second in pairs:
+        joined.setdefault(first, []).append(second)
+        joined.setdefault(second, []).append(first)
+    reached, front = {GROUND_NAME}, [GROUND_NAME]
+    for link in front:
+        more = [other for other in joined.get(link, ()) if other not in reached]
+        reached.update(more)
+        front += more
     for name in links:
         if name not in reached:
             fields.key_error(

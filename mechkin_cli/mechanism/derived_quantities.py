@@ -83,11 +83,7 @@ def driving_joint(mechanism: Mechanism, joint: Joint) -> Joint | None:
     if not joint.type.is_guide or GROUND_NAME not in (joint.first, joint.second):
         return None
     link = output_link(joint)
-    others = [
-        other
-        for other in mechanism.joints.values()
-        if other is not joint and link in (other.first, other.second)
-    ]
+    others = [other for other in mechanism.joints_of[link] if other is not joint]
     return others[0] if len(others) == 1 and others[0].type.is_oriented else None
 
 

@@ -94,17 +94,22 @@ def frame_on(joint: Joint, link: str) -> Frame:
 
 
 def find_legs(mechanism: Mechanism) -> tuple[Leg, ...]:
-    """The legs of a mechanism; no leg ends on another leg's links."""
-    joints_of: dict[str, list[Joint]] = {name: [] for name in mechanism.links}
-    joints_of[GROUND_NAME] = []
-    for joint in mechanism.joints.values():
-        joints_of[joint.first].append(joint)
-        joints_of[joint.second].append(joint)
+    """The legs of a mechanism, looked for once; no leg ends on another leg's links."""
+    found: tuple[Leg, ...] | None = mechanism.__dict__.get("legs")
+    if found is None:
+        # a frozen mechanism keeps what follows from it, as its cached properties do
+        found = mechanism.__dict__["legs"] = _find_legs(mechanism)
+    return found
+
+
+def _find_legs(mechanism: Mechanism) -> tuple[Leg, ...]:
+    joints_of = mechanism.joints_of
+    size = largest(0.0, *(norm(joint.on_first.o) for joint in mechanism.joints.values()))
     legs: list[Leg] = []
     taken: set[str] = set()
     ends: set[str] = set()
     for name in mechanism.links:
-        leg = _leg_at(name, joints_of, taken)
+        leg = _leg_at(name, joints_of, taken, size)
         if leg is None or ends & set(leg.links) or taken & {leg.first, leg.second}:
             continue
         legs.append(leg)
@@ -113,8 +118,10 @@ def find_legs(mechanism: Mechanism) -> tuple[Leg, ...]:
     return tuple(legs)
 
 
-def _leg_at(name: str, joints_of: Mapping[str, list[Joint]], taken: Collection[str]) -> Leg | None:
-    """The leg whose first own link is `name`, if there is one."""
+def _leg_at(
+    name: str, joints_of: Mapping[str, tuple[Joint, ...]], taken: Collection[str], size: float
+) -> Leg | None:
+    """The leg whose first own link is `name`, if there is one; `size` is that of the drawing."""
     if name == GROUND_NAME or name in taken or len(joints_of[name]) != 2:
         return None
     start, other = joints_of[name]
@@ -125,7 +132,8 @@ def _leg_at(name: str, joints_of: Mapping[str, list[Joint]], taken: Collection[s
     first = _far(start, name)
     if other.type.is_ball:
         leg = Leg(start, other, first, _far(other, name), name)
-        return leg if leg.first != leg.second and _spread(leg.span, joints_of) else None
+        apart = norm(leg.span) > tolerances.PARALLEL * size
+        return leg if leg.first != leg.second and apart else None
     rod = _far(other, name)
     if not other.type.is_slider or rod == GROUND_NAME or len(joints_of[rod]) != 2 or rod in taken:
         return None
@@ -138,12 +146,6 @@ def _leg_at(name: str, joints_of: Mapping[str, list[Joint]], taken: Collection[s
 
 def _far(joint: Joint, link: str) -> str:
     return joint.second if joint.first == link else joint.first
-
-
-def _spread(span: Vector, joints_of: Mapping[str, list[Joint]]) -> bool:
-    """Whether the spheres of a link are apart."""
-    size = largest(*(norm(joint.on_first.o) for joints in joints_of.values() for joint in joints))
-    return norm(span) > tolerances.PARALLEL * size
 
 
 def _is_straight(leg: Leg) -> bool:

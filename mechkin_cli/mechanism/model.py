@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import pi
 from typing import Literal, NamedTuple
 
@@ -211,6 +212,15 @@ class Mechanism:
     def coordinates(self) -> tuple[str, ...]:
         """All coordinates in joint order."""
         return tuple(name for joint in self.joints.values() for name in joint.coordinates)
+
+    @cached_property
+    def joints_of(self) -> Mapping[str, tuple[Joint, ...]]:
+        """The joints at each link, in order."""
+        found: dict[str, list[Joint]] = {name: [] for name in (GROUND_NAME, *self.links)}
+        for joint in self.joints.values():
+            found[joint.first].append(joint)
+            found[joint.second].append(joint)
+        return {name: tuple(joints) for name, joints in found.items()}
 
     @property
     def loops(self) -> int:

@@ -131,11 +131,20 @@ class Layout:
         ]
         return {pair: k for k, pair in enumerate(pairs)}
 
+    @cached_property
+    def parts_of(self) -> tuple[tuple[int, ...], ...]:
+        """The kernel joints of each tree edge, outward."""
+        found: list[list[int]] = [[] for _ in self.graph.edges]
+        for k, carrier in enumerate(self.carriers):
+            found[carrier.edge].append(k)
+        return tuple(tuple(parts) for parts in found)
+
     def carrier_of(self, edge: int, freedom: int) -> tuple[int, int]:
         """The kernel joint that has a user's freedom of a tree edge, and its freedom there."""
-        for k, carrier in enumerate(self.carriers):
+        for k in self.parts_of[edge]:
+            carrier = self.carriers[k]
             count = len(carrier.part.type.freedoms)
-            if carrier.edge == edge and 0 <= freedom - carrier.first_freedom < count:
+            if 0 <= freedom - carrier.first_freedom < count:
                 return k, freedom - carrier.first_freedom
         raise IndexError(f"edge {edge} has no freedom {freedom}")
 

@@ -3,6 +3,7 @@ inertias, loads and the points that tell the size."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from mechkin_cli.mechanism.frames import turned_tensor
@@ -78,7 +79,7 @@ def _tree_joints(layout: Layout) -> Iterator[TreeJoint]:
 
 def _closing(layout: Layout, closing: Closing) -> ClosingJoint | Leg:
     joint, leg = closing.joint, closing.leg
-    loop = [(k, float(s)) for e, s in closing.loop for k in _parts_of(layout, e)]
+    loop = [(k, float(s)) for e, s in closing.loop for k in layout.parts_of[e]]
     if leg is None:
         first, second = layout.link_number[joint.first], layout.link_number[joint.second]
         frames = layout.frame_on(first, joint.on_first), layout.frame_on(second, joint.on_second)
@@ -97,10 +98,6 @@ def _closing(layout: Layout, closing: Closing) -> ClosingJoint | Leg:
         leg.slide_sign,
         loop,
     )
-
-
-def _parts_of(layout: Layout, edge: int) -> list[int]:
-    return [k for k, carrier in enumerate(layout.carriers) if carrier.edge == edge]
 
 
 def _places(layout: Layout) -> Iterator[Place]:
@@ -140,19 +137,22 @@ def _blocks(layout: Layout) -> Iterator[Block | Rest]:
     placed: set[int] = set()
     for block in layout.graph.blocks:
         joints = [layout.graph.closings[c].joint for c in block.closings]
-        needed = {k for joint in joints for k in _ways(layout, joint)}
+        needed = _new_on_ways(layout, joints, placed)
         unknown = [layout.column(k, f) for k, f in block.unknowns]
-        yield Block(len(block.closings), sorted(needed - placed), unknown)
+        yield Block(len(block.closings), sorted(needed), unknown)
         placed |= needed
     yield Rest([k for k in range(len(layout.carriers)) if k not in placed])
 
 
-def _ways(layout: Layout, joint: Joint) -> set[int]:
-    """Kernel joints on the ways from ground to both links of a joint."""
-    found = set()
-    for link in (joint.first, joint.second):
+def _new_on_ways(layout: Layout, joints: Iterable[Joint], placed: set[int]) -> set[int]:
+    """Kernel joints on the ways from ground to both links of some joints that are not placed yet.
+
+    What carries a placed one is placed too.
+    """
+    found: set[int] = set()
+    for link in (link for joint in joints for link in (joint.first, joint.second)):
         k = layout.link_number[link]
-        while k >= 0:
+        while k >= 0 and k not in placed and k not in found:
             found.add(k)
             k = layout.carriers[k].parent
     return found

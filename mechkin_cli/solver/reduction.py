@@ -8,7 +8,7 @@ Closing joints).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from mechkin_cli.mechanism.elementary import Part
@@ -40,28 +40,36 @@ def reduce(mechanism: Mechanism) -> Reduction:
     bodies = {name for leg in legs for name in leg.links}
     links = tuple(n for n in mechanism.links if n != GROUND_NAME and n not in bodies)
     joints = {name: joint for name, joint in mechanism.joints.items() if name not in of_legs}
-    ends = [(link, _end_point(leg, link)) for leg in legs for link in (leg.first, leg.second)]
-    while True:
-        loose = [link for link, _ in ends if link not in _reached(joints)]
-        if not loose:
-            return Reduction(joints, links, legs)
-        # the link that most legs hold
-        body = max(loose, key=loose.count)
-        points = [point for link, point in ends if link == body]
-        joints[f"{body} (free)"] = _free_pair(body, points)
+    held: dict[str, list[Vector]] = {}
+    for leg in legs:
+        for link in (leg.first, leg.second):
+            held.setdefault(link, []).append(_end_point(leg, link))
+    at: dict[str, list[str]] = {}
+    for joint in joints.values():
+        at.setdefault(joint.first, []).append(joint.second)
+        at.setdefault(joint.second, []).append(joint.first)
+    reached = {GROUND_NAME}
+    _reach(at, reached, GROUND_NAME)
+    # of bodies that joints hold together the one that most legs hold
+    for body in sorted(held, key=lambda link: -len(held[link])):
+        if body not in reached:
+            joints[f"{body} (free)"] = _free_pair(body, held[body])
+            _reach(at, reached, body)
+    return Reduction(joints, links, legs)
 
 
-def cut_links(reduction: Reduction) -> Iterator[Reduction]:
-    """The same with one link cut in two halves, for every link that can be."""
-    for link in reduction.links:
-        own = [joint for joint in reduction.joints.values() if link in (joint.first, joint.second)]
-        if len(own) < 2:
-            continue
-        half = f"{link} (cut)"
-        joints = dict(reduction.joints)
-        joints[own[-1].name] = _moved(own[-1], link, half)
-        joints[half] = Joint(half, "W", link, half, GROUND, GROUND, (Part("W", GROUND, GROUND),))
-        yield Reduction(joints, (*reduction.links, half), reduction.legs)
+def cut_link(reduction: Reduction, link: str, loop: Sequence[str]) -> Reduction:
+    """The same with a link cut in two halves between its joints in a loop."""
+    own = [
+        reduction.joints[name]
+        for name in loop
+        if link in (reduction.joints[name].first, reduction.joints[name].second)
+    ]
+    half = f"{link} (cut)"
+    joints = dict(reduction.joints)
+    joints[own[-1].name] = _moved(own[-1], link, half)
+    joints[half] = Joint(half, "W", link, half, GROUND, GROUND, (Part("W", GROUND, GROUND),))
+    return Reduction(joints, (*reduction.links, half), reduction.legs)
 
 
 def _moved(joint: Joint, link: str, half: str) -> Joint:
@@ -70,15 +78,15 @@ def _moved(joint: Joint, link: str, half: str) -> Joint:
     return joint._replace(second=half)
 
 
-def _reached(joints: Mapping[str, Joint]) -> set[str]:
-    reached, grown = {GROUND_NAME}, True
-    while grown:
-        before = len(reached)
-        for joint in joints.values():
-            if joint.first in reached or joint.second in reached:
-                reached |= {joint.first, joint.second}
-        grown = len(reached) > before
-    return reached
+def _reach(at: Mapping[str, list[str]], reached: set[str], start: str) -> None:
+    """Adds to the reached links those that joints lead to from one more."""
+    reached.add(start)
+    front = [start]
+    for link in front:
+        for other in at.get(link, ()):
+            if other not in reached:
+                reached.add(other)
+                front.append(other)
 
 
 def _end_point(leg: Leg, link: str) -> Vector:

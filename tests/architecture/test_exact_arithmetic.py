@@ -63,7 +63,6 @@ INEXACT_METHODS |= {"standard_normal", "normal", "standard_exponential", "expone
 FRACTIONS = "exact fractions and whole exponents"
 ACCEPTED = {
     ("building/links.py", "np.linalg"): "eigenvalues for a warning",
-    ("solver/graph.py", "n ** 3"): "whole numbers",
     (
         "building/sequences.py",
         "10 ** max(0, *(-exponent for exponent in exponents))",

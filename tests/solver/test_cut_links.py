@@ -39,7 +39,28 @@ def rocker_angle(theta: float) -> float:
 
 def test_it_is_closed_through_a_link() -> None:
     (closing,) = mk.loads(FOUR_HELICAL).graph.closings
-    assert (closing.joint.letter, closing.equations) == ("W", 6)
+    assert (closing.joint.name, closing.equations) == ("coupler (cut)", 6)
+    assert closing.joint.letter == "W"
+
+
+TWO_LOOPS = FOUR_HELICAL.replace("rocker: {}}", "rocker: {}, rod: {}, arm: {}}").replace(
+    "motion:",
+    """\
+  E: {type: H, links: [rocker, rod], point: [65, 20, 0], axis: [0, 0, 1], lead: 10}
+  F: {type: H, links: [rod, arm], point: [120, 50, 0], axis: [0, 0, 1], lead: 10}
+  G: {type: H, links: [arm, ground], point: [110, 0, 0], axis: [0, 0, 1], lead: 10}
+motion:""",
+)
+
+
+def test_every_loop_of_helical_joints_has_its_own_cut() -> None:
+    model = mk.loads(TWO_LOOPS)
+    cuts = [closing.joint.name for closing in model.graph.closings]
+    assert cuts == ["coupler (cut)", "rod (cut)"]
+    result = model.analyze(["D.theta", "G.theta", "G.s"])
+    one = mk.loads(FOUR_HELICAL).analyze(["D.theta"])
+    assert np.abs(result["D.theta"] - one["D.theta"]).max() < 1e-11
+    assert np.abs(result["G.s"] - 10 * result["G.theta"] / 360).max() < 1e-12
 
 
 def test_four_helical_joints_with_equal_leads() -> None:

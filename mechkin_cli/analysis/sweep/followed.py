@@ -53,6 +53,7 @@ def _needed_blocks(problem: Problem, graph: SolverGraph, wanted: list[Wanted]) -
     """Blocks that place something asked for, and those that they depend on."""
     owner = {f: b for b, block in enumerate(graph.blocks) for f in block.unknowns}
     carrier = {edge.child: k for k, edge in enumerate(graph.edges)}
+    hangs = _hanging_blocks(graph)
 
     def blocks_of(link: str) -> set[int]:
         found = set()
@@ -61,7 +62,7 @@ def _needed_blocks(problem: Problem, graph: SolverGraph, wanted: list[Wanted]) -
             edge = graph.edges[k]
             found |= {owner[k, f] for f in range(edge.freedoms) if (k, f) in owner}
             if edge.hung:
-                found |= {b for b, block in enumerate(graph.blocks) if _hangs(graph, b, link)}
+                found.add(hangs[link])
             link = edge.parent
         return found
 
@@ -74,21 +75,24 @@ def _needed_blocks(problem: Problem, graph: SolverGraph, wanted: list[Wanted]) -
         joints |= {graph.closings[c].joint.name for c in block.closings}
         if joints & set(problem.follow or ()):
             needed.add(b)
-    grown = True
-    while grown:
-        before = len(needed)
-        for b in list(needed):
-            for c in graph.blocks[b].closings:
-                joint = graph.closings[c].joint
-                needed |= blocks_of(joint.first) | blocks_of(joint.second)
-        grown = len(needed) > before
+    front = list(needed)
+    for b in front:
+        for c in graph.blocks[b].closings:
+            joint = graph.closings[c].joint
+            more = (blocks_of(joint.first) | blocks_of(joint.second)) - needed
+            needed |= more
+            front += more
     return needed
 
 
-def _hangs(graph: SolverGraph, block: int, body: str) -> bool:
-    """Whether a leg with this body is closed in a block."""
-    legs = [graph.closings[c].leg for c in graph.blocks[block].closings]
-    return any(leg is not None and leg.body == body for leg in legs)
+def _hanging_blocks(graph: SolverGraph) -> dict[str, int]:
+    """The block in which the leg of each hung body is closed."""
+    return {
+        leg.body: b
+        for b, block in enumerate(graph.blocks)
+        for c in block.closings
+        if (leg := graph.closings[c].leg) is not None
+    }
 
 
 def _links_of(mechanism: Mechanism, quantity: Wanted) -> tuple[str, ...]:
@@ -107,8 +111,9 @@ def _without(mechanism: Mechanism, graph: SolverGraph, left_out: Sequence[int]) 
     unknown = {k for b in left_out for k, _ in graph.blocks[b].unknowns}
     gone_joints = {graph.closings[c].joint.name for b in left_out for c in graph.blocks[b].closings}
     gone_links: set[str] = set()
+    hangs, gone_blocks = _hanging_blocks(graph), set(left_out)
     for k, edge in enumerate(graph.edges):
-        leg_gone = edge.hung and any(_hangs(graph, b, edge.child) for b in left_out)
+        leg_gone = edge.hung and hangs[edge.child] in gone_blocks
         if k in unknown or leg_gone or edge.parent in gone_links:
             gone_links.add(edge.child)
             gone_joints.add(edge.joint.name)
