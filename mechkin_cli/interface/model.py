@@ -276,18 +276,12 @@ class Model:
             >>> round(place["O4.theta"], 6), place.status
             (28.438352, 'ok')
         """
-        key = None if quantities is None else quantities
-        if type(key) is list:
-            key = tuple(key)
-        solver = self._solvers.get(key) if key is None or type(key) is tuple else None
+        names = None if quantities is None else texts("quantities", quantities, '["O4.theta"]')
+        solver = self._solvers.get(names)
         if solver is None:
             from mechkin_cli.interface.positions import solver_of
 
-            names = (
-                quantities if quantities is None or isinstance(quantities, str) else [*quantities]
-            )
-            solver = solver_of(self, names)
-            self._solvers[None if names is None else tuple(names)] = solver
+            solver = self._solvers[names] = solver_of(self, names)
         return solver.solve(inputs)
 
     def modes(self, at: Setting | Mapping[str, Setting] | None = None) -> Modes:

@@ -10,11 +10,12 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.sweep import analyze
-from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.interface.arguments import Setting
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
+from mechkin_cli.interface.arguments import Setting, texts
 from mechkin_cli.interface.settings import input_values
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
+from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.solver.closing_turns import turn_slots
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
@@ -122,8 +123,9 @@ def _wanted(model: Model, names: tuple[str, ...]) -> list[Wanted]:
     found = []
     for name in names:
         if name not in known:
-            hint = "quantities are listed in .quantities; expressions are for analyze"
-            raise UsageError(f"there is no quantity {name}; {hint}")
+            hint = hint_of(name) or nearest_hint(name, known)
+            hint = hint or "quantities are names such as J.theta; analyze takes expressions"
+            raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
         quantity = known[name]
         forces = demand_of(problem.mechanism, [quantity]) & Demand.FORCES
         unsure = quantity.kind in WRENCH_KINDS and model.session.is_redundant
@@ -183,7 +185,6 @@ def _native(
 
 def solver_of(model: Model, quantities: Iterable[str] | None) -> Solver:
     """The solver of some quantities; of all joint coordinates if None."""
-    if isinstance(quantities, str):
-        raise UsageError(f'quantities are a list of names, such as ["{quantities}"]')
-    names = model.problem.mechanism.coordinates if quantities is None else tuple(quantities)
-    return Solver(model, names)
+    if quantities is None:
+        return Solver(model, model.problem.mechanism.coordinates)
+    return Solver(model, texts("quantities", quantities, '["O4.theta"]'))

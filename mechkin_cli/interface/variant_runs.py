@@ -9,7 +9,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.reductions import Reduction
-from mechkin_cli.diagnostics import MechkinError, UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
 from mechkin_cli.expressions import Expression, Quantity, UnknownName, Vector
 from mechkin_cli.interface.varied import Base, VariedModel
 from mechkin_cli.kernel._kernel import VariantEnd
@@ -239,7 +239,13 @@ class Study:
         if values.ndim == 3:
             parts = [self._by(reduction, text, values[:, :, k]) for k in range(3)]
             return np.stack(parts, axis=1)
-        found = np.asarray(reduction(values), dtype=np.float64)
+        try:
+            found = np.asarray(reduction(values), dtype=np.float64)
+        except Exception as error:
+            raise UsageError(
+                f"the reduction of {text} failed with {type(error).__name__}: "
+                f"{str(error)[:LONGEST_NAME]}; it takes (variants, rows) = {values.shape}"
+            ) from error
         if found.shape[:1] != values.shape[:1]:
             raise UsageError(
                 f"the reduction of {text} gives an array of shape {found.shape}; it takes "

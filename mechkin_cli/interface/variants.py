@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.analysis.reductions import REDUCTIONS
-from mechkin_cli.diagnostics import MechkinError, UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
 from mechkin_cli.expressions import Expression, ExpressionError, parse
+from mechkin_cli.interface.arguments import a_whole_number, shown, texts
 from mechkin_cli.interface.given import parameter_arrays
 from mechkin_cli.interface.variant_runs import Reductions, Study, sample_of
 from mechkin_cli.interface.varied import Base, file_values
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 
     from mechkin_cli.arrays import Floats
     from mechkin_cli.interface.model import Model
+
+LONGEST_MESSAGE = 400
+"""Characters of an expression's error that a message repeats."""
 
 Reduce = str | Callable[["Floats"], "Floats"]
 
@@ -95,8 +99,8 @@ def vary(
     threads: int,
 ) -> Variants:
     """`Model.vary`, whose arguments these are; `held` are values (SI) that are set already."""
-    check_width(lanes)
-    check_threads(threads)
+    check_width(a_whole_number("lanes", lanes, "rows at a time"))
+    check_threads(a_whole_number("threads", threads, "how many split the variants"))
     problem = base.model.problem
     names, values = parameter_arrays(problem, parameters)
     given = file_values(values, problem, names)
@@ -117,20 +121,17 @@ def _with_held(
 
 
 def _parsed(quantities: Iterable[str], model: Model) -> dict[str, Expression]:
-    if isinstance(quantities, str):
-        raise UsageError(f'quantities are a list of texts, such as ["{quantities}"]')
     found = {}
-    for text in quantities:
-        if not isinstance(text, str):
-            raise UsageError(f"a quantity is a text such as O1.theta, not {type(text).__name__}")
+    for text in texts("quantities", quantities, '["O4.theta"]'):
         if text.strip() in ROW_TEXTS:
-            raise UsageError(f"{text} is a text, no number: read .status of the result")
+            raise UsageError(f"{text} is a text, no number; read .status of the result")
         try:
             found[text] = parse(text)
             found[text].evaluate(sample_of(model.problem), model.problem.units)
         except ExpressionError as error:
-            hint = f"; {error.hint}" if error.hint else ""
-            raise UsageError(f"{text}: {error.message}{hint}") from None
+            hint = error.hint or "write an expression of quantities and parameters"
+            shortened = text[:LONGEST_NAME]
+            raise UsageError(f"{shortened}: {error.message[:LONGEST_MESSAGE]}; {hint}") from None
     return found
 
 
@@ -139,7 +140,10 @@ def _reductions(asked: Iterable[str], reduce: Any) -> dict[str, Reductions]:
     if isinstance(reduce, Mapping):
         for text in reduce:
             if text not in asked:
-                raise UsageError(f"reduce names {text}, which is not among the quantities")
+                asked_for = ", ".join(asked)
+                raise UsageError(
+                    f"reduce: {shown(text)} was not asked for; quantities are {asked_for}"
+                )
         return {text: _reduction(reduce.get(text)) for text in asked}
     return dict.fromkeys(asked, _reduction(reduce))
 
@@ -149,12 +153,15 @@ def _reduction(reduce: Any) -> Reductions:
         return None
     if isinstance(reduce, str):
         if reduce not in REDUCTIONS:
-            raise UsageError(f"there is no reduction {reduce}; they are {', '.join(REDUCTIONS)}")
+            known = ", ".join(REDUCTIONS)
+            raise UsageError(f"there is no reduction {reduce[:LONGEST_NAME]}; they are {known}")
         return REDUCTIONS[reduce]
     if callable(reduce):
         return reduce  # type: ignore[no-any-return]
     if isinstance(reduce, Sequence) and reduce:
         return tuple(_reduction(each) for each in reduce)  # type: ignore[misc]
+    known = ", ".join(REDUCTIONS)
     raise UsageError(
-        f"reduce is one of {', '.join(REDUCTIONS)}, a function, several of these, or by quantity"
+        f"reduce: expected one of {known}, a function, several of these or a mapping by quantity, "
+        f"not {shown(reduce)}"
     )
