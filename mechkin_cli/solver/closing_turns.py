@@ -33,6 +33,11 @@ def turn_slots(plan: Plan) -> dict[tuple[int, int], int]:
     return {(joint, freedom): slot for joint, freedom, slot, _ in _kernel.closing_turns(plan)}
 
 
+def turn_count(plan: Plan) -> int:
+    """Number of rows of `Followed.turns`."""
+    return sum(width for _, _, _, width in _kernel.closing_turns(plan))
+
+
 def continuous_angle(values: Floats, followed: Floats, first: int) -> Floats:
     """An angle without jumps by whole turns; as given at row `first`.
 

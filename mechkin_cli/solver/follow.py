@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.solver.closing_turns import turn_count
 from mechkin_cli.solver.codes import TrackEnd as TrackEnd
 from mechkin_cli.solver.stepping import step_limits
 
@@ -62,8 +63,7 @@ def follow(
     """
     rows = inputs.shape[1]
     guess, limit = np.empty((start.size, rows)), np.empty(rows)
-    slots = sum(width for _, _, _, width in _kernel.closing_turns(plan)) if turns else 0
-    along = np.empty((slots, rows)) if turns else None
+    along = np.empty((turn_count(plan), rows)) if turns else None
     given = [] if turn is None else turn.tolist()
     end, reached, steps, _, place, state, last_turn, direction = _kernel.follow_rows(
         plan,

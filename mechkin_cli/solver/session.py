@@ -167,9 +167,18 @@ class Session:
         """Closes the loops at some inputs (inputs, places) from guesses (states, places)."""
         return self.run(inputs, guess, demand=demand)
 
-    def follow(self, path: Floats, start: Floats, *, every_row: bool = False) -> Followed:
-        """Follows the branch through `start` (states,) along a path (inputs, rows)."""
-        return follow_path(self.plan, path, start, every_row=every_row)
+    def follow(
+        self,
+        path: Floats,
+        start: Floats,
+        *,
+        every_row: bool = False,
+        turns: bool = False,
+        turn: Floats | None = None,
+    ) -> Followed:
+        """Follows the branch through `start` (states,) along a path (inputs, rows); arguments as
+        those of `solver.follow.follow`."""
+        return follow_path(self.plan, path, start, every_row=every_row, turns=turns, turn=turn)
 
     def search(self, inputs: Floats, within: Within | None = None) -> Found:
         """All assemblies at some inputs (inputs,) that random starts find, or those `within` a

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mechkin_cli.analysis.setup import Setup, prepare
+from prepared import Setup, prepared
 
 import mechkin_cli as mk
 from mechkin_cli.kernel._kernel import Node, Stepper
@@ -17,8 +17,7 @@ MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 
 
 def setup_of(name: str) -> Setup:
-    problem = mk.load(MECHANISMS / f"{name}.yaml").problem
-    return prepare(problem, [], verdicts=False, closed_at=None, lanes=0)
+    return prepared(mk.load(MECHANISMS / f"{name}.yaml").problem)
 
 
 def straight(name: str) -> tuple[Stepper, Node]:
@@ -81,7 +80,7 @@ def test_two_blocks_that_turn_over_together_are_another_branch() -> None:
     """Both loops of two equal four-bars on the other side: the product of the signs is the same."""
     text = four_bars(2)
     problem = mk.loads(text).problem
-    setup = prepare(problem, [], verdicts=False, closed_at=None, lanes=0)
+    setup = prepared(problem)
     inputs = setup.inputs.values[:, 0]
     stepper = Stepper.straight(setup.layout.build(), inputs.tolist(), [1.0, 1.0], step_limits())
     node = stepper.close(0.0, setup.start.state.tolist())
@@ -128,7 +127,7 @@ def test_a_path_of_changing_dimensions() -> None:
     """RCSR from its own P1 to another one: every place is an assembly of its own mechanism, and
     halving the step leaves an eighth of the prediction's error."""
     base = mk.load(MECHANISMS / "rcsr.yaml")
-    setup = prepare(base.problem, [], verdicts=False, closed_at=None, lanes=0)
+    setup = prepared(base.problem)
     length = setup.layout.length
 
     def plan(sigma: float):

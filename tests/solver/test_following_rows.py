@@ -8,10 +8,10 @@ from time import process_time
 
 import numpy as np
 import pytest
-from mechkin_cli.analysis.home import home_state
-from mechkin_cli.analysis.setup import Setup, prepare
+from prepared import Setup, prepared
 
 import mechkin_cli as mk
+from mechkin_cli.analysis.assembly.home import home_state
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.closing_turns import (
     ORIENTATION,
@@ -23,6 +23,7 @@ from mechkin_cli.solver.closing_turns import (
 from mechkin_cli.solver.codes import OutputCode
 from mechkin_cli.solver.follow import Followed, TrackEnd, follow
 from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.records import Output, hand_over_outputs
 
 MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 
@@ -158,7 +159,7 @@ def test_the_inputs_in_another_order(platform: Platform) -> None:
 
 def closing_case(name: str) -> Setup:
     problem = mk.load(MECHANISMS / f"{name}.yaml").problem
-    return prepare(problem, [], verdicts=False, closed_at=None, lanes=0)
+    return prepared(problem)
 
 
 def dense(path: np.ndarray, parts: int) -> np.ndarray:
@@ -177,16 +178,16 @@ def test_angles_against_small_steps(name: str, coarse: int) -> None:
     plan = setup.layout.build()
     slots = {place: slot for place, slot in turn_slots(plan).items() if place[1] != ORIENTATION}
     assert slots
-    outputs = {
-        place: plan.add_output(int(OutputCode.CLOSING), place[0], place[1], 0, (0.0, 0.0, 0.0), 1.0)
-        for place in slots
-    }
+    code = int(OutputCode.CLOSING)
+    records = [Output(code, *place, 0, (0.0, 0.0, 0.0), 1.0) for place in slots]
+    angles = hand_over_outputs(plan, records)
+    outputs = {place: number for number, place in enumerate(slots)}
     fine = dense(path, 400)
     way = follow(plan, fine, setup.start.state)
-    brute = run(plan, fine, way.guess, outputs=True).outputs
+    brute = run(plan, fine, way.guess, outputs=angles).outputs
     followed = follow(plan, path, setup.start.state, turns=True)
     assert followed.end == way.end == TrackEnd.FINISHED
-    rows = run(plan, path, followed.guess, outputs=True).outputs
+    rows = run(plan, path, followed.guess, outputs=angles).outputs
     for place, slot in slots.items():
         wanted = np.unwrap(brute[outputs[place]])[::400]
         found = continuous_angle(rows[outputs[place]], followed.turns[slot], 0)
@@ -197,7 +198,7 @@ def test_angles_against_small_steps(name: str, coarse: int) -> None:
 def test_signs_against_small_steps(name: str) -> None:
     """Quaternions of coarse rows against those of small steps, component by component."""
     setup = closing_case(name)
-    (closing,) = setup.graph.closings
+    (closing,) = setup.layout.graph.closings
     joint, plan = closing.joint, setup.layout.build()
     slot = turn_slots(plan)[0, ORIENTATION]
     path = np.ascontiguousarray(setup.inputs.values[:, setup.start.row :])

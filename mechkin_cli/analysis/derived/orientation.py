@@ -1,8 +1,8 @@
 """Orientation of a joint's second link against its first, relative to the drawing.
 
 R = R1^T R2, so that axes and components are along the ground axes as drawn on the first link. A
-quaternion and its opposite are one rotation; the sign is followed along a refined path between the
-rows, on which no turn changes by half a turn from one place to the next.
+quaternion and its opposite are one rotation; the sign is that of what following carried along: the
+quaternion of a closing joint (`solver.closing_turns`), or the state of one in the tree.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.analysis.derived.basis import Reading, directions, rotation_of
+from mechkin_cli.analysis.derived.basis import Reading
 from mechkin_cli.analysis.derived.rotations import (
     inner,
     quaternion,
@@ -19,9 +19,16 @@ from mechkin_cli.analysis.derived.rotations import (
     rotation_vector,
     times,
 )
-from mechkin_cli.analysis.sweep.closing_angles import leading_rows, outputs_between
+from mechkin_cli.solver.closing_turns import (
+    ORIENTATION,
+    continuous_signs,
+    drawn_quaternion,
+    turn_slots,
+)
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.analysis.derived.rotations import Quaternion
     from mechkin_cli.analysis.derived.row_vectors import RowVector
     from mechkin_cli.arrays import Floats
@@ -35,16 +42,17 @@ def turn(run: Reading, joint: str) -> RowVector:
 def continuous_quaternion(run: Reading, joint: str) -> Quaternion:
     """The unit quaternion, scalar first; continuous from the first row, where q0 >= 0."""
     q = _upright(run, joint)
-    reached, start = run.result.row_states.reached, run.result.start
-    if start.state is None or not reached[start.row]:
+    reached = np.flatnonzero(run.result.row_states.reached)
+    if not reached.size:
         return q
-    signs = np.ones(reached.size)
-    for way in (slice(start.row, None), slice(start.row, None, -1)):
-        count = leading_rows(reached[way])
-        part = (q[0][way][:count], q[1][way][:count], q[2][way][:count], q[3][way][:count])
-        followed = _followed_signs(run, joint, part, run.session.inputs.values[:, way][:, :count])
-        signs[way][: followed.size] = followed
-    return times(signs * signs[int(np.argmax(reached))], q)
+    part = _part(q, reached)
+    followed = _followed(run, joint, reached)
+    # a joint of a leg turns with the leg's line, less than half a turn from row to row
+    signs = _alike(part) if followed is None else continuous_signs(part, followed, 0)
+    first = -1.0 if part[0][0] < 0.0 else 1.0
+    every = np.ones(run.result.row_states.reached.size)
+    every[reached] = signs * first
+    return times(every, q)
 
 
 def _upright(run: Reading, joint: str) -> Quaternion:
@@ -52,25 +60,33 @@ def _upright(run: Reading, joint: str) -> Quaternion:
     return quaternion(relative(run.rotation(links.first), run.rotation(links.second)))
 
 
-def _followed_signs(run: Reading, joint: str, q: Quaternion, inputs: Floats) -> Floats:
-    """Signs that make the quaternions of some rows continuous, +1 at the first."""
-    state = run.result.start.state
-    if inputs.shape[1] < 2 or state is None:
-        return np.ones(inputs.shape[1])
-    session = run.session
-    links = session.problem.mechanism.joints[joint]
-    wanted = (*directions(links.first), *directions(links.second))
-    readout = session.readout(wanted)
-    values, places = outputs_between(session, readout, inputs, state)
-    columns = {name: values[slot.first : slot.first + 3] for name, slot in readout.slots.items()}
-    ends = (rotation_of(columns, link) for link in (links.first, links.second))
-    path = quaternion(relative(*ends))
-    back = inner(_part(path, slice(1, None)), _part(path, slice(None, -1))) < 0.0
-    signs = np.cumprod(np.concatenate((np.ones(1), np.where(back, -1.0, 1.0))))
-    rows = _part(q, slice(places.size))
-    there = (path[0][places], path[1][places], path[2][places], path[3][places])
-    return signs[places] * np.where(inner(rows, there) < 0.0, -1.0, 1.0)
+def _followed(run: Reading, name: str, reached: NDArray[np.intp]) -> Quaternion | None:
+    """The orientation in some rows as it was followed, of either sign as a whole; None for the
+    spheres of a leg."""
+    layout, rows = run.session.layout, run.result.row_states
+    joint = layout.mechanism.joints[name]
+    reference = layout.joint_reference[name]
+    if reference < 0:
+        slot = turn_slots(run.session.plan).get((-1 - reference, ORIENTATION))
+        if slot is None:
+            return None
+        return drawn_quaternion(joint, rows.turns[slot : slot + 4, reached])
+    edge = layout.edge_number[name]
+    for k in layout.parts_of[edge]:
+        carrier = layout.carriers[k]
+        if carrier.part.type.is_ball:
+            w, x, y, z = rows.states[carrier.state : carrier.state + 4, reached]
+            forward = 1.0 if layout.graph.edges[edge].forward else -1.0
+            return (w, forward * x, forward * y, forward * z)
+    return None
 
 
-def _part(q: Quaternion, rows: slice) -> Quaternion:
+def _alike(q: Quaternion) -> Floats:
+    """Signs with which each quaternion is alike to the one before it, +1 at the first."""
+    back = inner(_part(q, slice(1, None)), _part(q, slice(None, -1))) < 0.0
+    signs: Floats = np.cumprod(np.concatenate((np.ones(1), np.where(back, -1.0, 1.0))))
+    return signs
+
+
+def _part(q: Quaternion, rows: slice | NDArray[np.intp]) -> Quaternion:
     return (q[0][rows], q[1][rows], q[2][rows], q[3][rows])

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.analysis.sweep.rows import Rows
+from mechkin_cli.solver.closing_turns import turn_count
 from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.search import wrap_angles
 
@@ -23,7 +24,7 @@ def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> R
     With `every_row` each row is a careful step instead of a place filled in between two.
     """
     values = session.inputs.values
-    rows = Rows.without_guesses(session.layout.states, values.shape[1])
+    rows = Rows.without_guesses(session.layout.states, turn_count(session.plan), values.shape[1])
     if start.state is None:
         rows.status[:] = start.status
         return rows
@@ -38,11 +39,15 @@ def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> R
 def _follow_way(session: Session, path: Floats, state: Floats, rows: Rows, every_row: bool) -> int:
     """Follows rows from the first of them, back from dead centres, too; returns the steps taken."""
     steps = first = 0
+    turn: Floats | None = None
     while True:
-        followed = session.follow(path, state, every_row=every_row)
+        followed = session.follow(path, state, every_row=every_row, turns=True, turn=turn)
         steps += followed.steps
         rows.states[:, first:] = followed.guess[:, first:]
         rows.limit[first:] = followed.limit[first:]
+        if followed.turns is not None:
+            known = slice(first, followed.reached)
+            rows.turns[:, known] = followed.turns[:, known]
         rows.reached[first:] = np.arange(first, rows.reached.size) < followed.reached
         if followed.end == TrackEnd.FINISHED:
             return steps
@@ -53,7 +58,8 @@ def _follow_way(session: Session, path: Floats, state: Floats, rows: Rows, every
             return steps
         # the row before is near the dead centre: go on from the last regular place of the branch
         path = np.column_stack((followed.inputs, path[:, back:]))
-        state, rows, first = followed.state, rows.part(slice(back - 1, None)), 1
+        state, turn = followed.state, followed.turn
+        rows, first = rows.part(slice(back - 1, None)), 1
 
 
 def _wrap_from_first(layout: Layout, rows: Rows) -> None:

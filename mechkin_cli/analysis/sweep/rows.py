@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 class Rows:
     """States (states, rows), guesses until they are closed, and what is known about rows that have
     none; `limit` is the largest correction that a guess may still need, `numbers` counts the rows
-    from 0 as the file does, `nodes` the steps with which they were followed."""
+    from 0 as the file does, `nodes` the steps with which they were followed. `turns` (turn slots,
+    rows) are angles and quaternions of closing joints as following carried them along
+    (`solver.closing_turns`), nan where a row was filled in from a dead centre.
+    """
 
     states: Floats
     limit: Floats
@@ -29,9 +32,10 @@ class Rows:
     nodes: int
     diagnostics: list[Diagnostic]
     numbers: NDArray[np.int64]
+    turns: Floats
 
     @classmethod
-    def without_guesses(cls, states: int, rows: int) -> Rows:
+    def without_guesses(cls, states: int, turns: int, rows: int) -> Rows:
         """Rows of which nothing is known yet; none is reached."""
         return cls(
             states=np.zeros((states, rows)),
@@ -41,12 +45,14 @@ class Rows:
             nodes=0,
             diagnostics=[],
             numbers=np.arange(rows),
+            turns=np.full((turns, rows), np.nan),
         )
 
     def part(self, rows: slice) -> Rows:
         """Some of the rows, in the slice's order: views of the same arrays."""
         arrays = (self.states[:, rows], self.limit[rows], self.reached[rows], self.status[rows])
-        return Rows(*arrays, self.nodes, self.diagnostics, self.numbers[rows])
+        more = (self.nodes, self.diagnostics, self.numbers[rows], self.turns[:, rows])
+        return Rows(*arrays, *more)
 
     @property
     def has_failed(self) -> bool:
