@@ -97,6 +97,7 @@ def _fill_before(
         if guess is None:
             return None
         rows.states[:, row] = guess
+        rows.turns[:, row] = np.nan
         rows.limit[row] = tolerances.JUMP_LIMIT
         rows.reached[row] = True
         before = value

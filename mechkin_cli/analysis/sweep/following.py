@@ -14,6 +14,7 @@ from mechkin_cli.solver.search import wrap_angles
 if TYPE_CHECKING:
     from mechkin_cli.analysis.assembly.start import Start
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.solver.follow import Followed
     from mechkin_cli.solver.layout import Layout
     from mechkin_cli.solver.session import Session
 
@@ -24,42 +25,45 @@ def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> R
     With `every_row` each row is a careful step instead of a place filled in between two.
     """
     values = session.inputs.values
-    rows = Rows.without_guesses(session.layout.states, turn_count(session.plan), values.shape[1])
+    count = values.shape[1]
     if start.state is None:
+        rows = Rows.without_guesses(session.layout.states, turn_count(session.plan), count)
         rows.status[:] = start.status
         return rows
-    onward, backward = slice(start.row, None), slice(start.row, None, -1)
-    for way in (backward, onward) if start.row else (onward,):
-        path = np.ascontiguousarray(values[:, way])
-        rows.nodes += _follow_way(session, path, start.state, rows.part(way), every_row)
+    if start.row == 0:
+        followed = session.follow(values, start.state, every_row=every_row, turns=True)
+        rows = Rows.followed(followed)
+        rows.nodes = _go_on(session, values, followed, rows, every_row)
+    else:
+        rows = Rows.without_guesses(session.layout.states, turn_count(session.plan), count)
+        for way in (slice(start.row, None, -1), slice(start.row, None)):
+            path = np.ascontiguousarray(values[:, way])
+            followed = session.follow(path, start.state, every_row=every_row, turns=True)
+            part = rows.part(way)
+            part.take(followed, 0)
+            rows.nodes += _go_on(session, path, followed, part, every_row)
     _wrap_from_first(session.layout, rows)
     return rows
 
 
-def _follow_way(session: Session, path: Floats, state: Floats, rows: Rows, every_row: bool) -> int:
-    """Follows rows from the first of them, back from dead centres, too; returns the steps taken."""
-    steps = first = 0
-    turn: Floats | None = None
-    while True:
-        followed = session.follow(path, state, every_row=every_row, turns=True, turn=turn)
-        steps += followed.steps
-        rows.states[:, first:] = followed.guess[:, first:]
-        rows.limit[first:] = followed.limit[first:]
-        if followed.turns is not None:
-            known = slice(first, followed.reached)
-            rows.turns[:, known] = followed.turns[:, known]
-        rows.reached[first:] = np.arange(first, rows.reached.size) < followed.reached
-        if followed.end == TrackEnd.FINISHED:
-            return steps
+def _go_on(session: Session, path: Floats, followed: Followed, rows: Rows, every_row: bool) -> int:
+    """Finds out what ended a way, and follows it on, back from dead centres; returns the steps
+    taken in all."""
+    steps = followed.steps
+    while followed.end != TrackEnd.FINISHED:
         from mechkin_cli.analysis.sweep.branch_end import explain_end
 
         back = explain_end(session, path, followed, rows)
         if back is None:
-            return steps
+            break
         # the row before is near the dead centre: go on from the last regular place of the branch
         path = np.column_stack((followed.inputs, path[:, back:]))
+        rows = rows.part(slice(back - 1, None))
         state, turn = followed.state, followed.turn
-        rows, first = rows.part(slice(back - 1, None)), 1
+        followed = session.follow(path, state, every_row=every_row, turns=True, turn=turn)
+        rows.take(followed, 1)
+        steps += followed.steps
+    return steps
 
 
 def _wrap_from_first(layout: Layout, rows: Rows) -> None:

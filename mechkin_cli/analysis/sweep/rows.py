@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.solver.follow import Followed
 
 
 @dataclass
@@ -47,6 +48,31 @@ class Rows:
             numbers=np.arange(rows),
             turns=np.full((turns, rows), np.nan),
         )
+
+    @classmethod
+    def followed(cls, found: Followed) -> Rows:
+        """The rows of one way from the first, whose arrays become theirs."""
+        count = found.limit.size
+        turns = np.empty((0, count)) if found.turns is None else found.turns
+        return cls(
+            states=found.guess,
+            limit=found.limit,
+            reached=np.arange(count) < found.reached,
+            status=np.zeros(count, dtype=np.int8),
+            nodes=found.steps,
+            diagnostics=[],
+            numbers=np.arange(count),
+            turns=turns,
+        )
+
+    def take(self, found: Followed, first: int) -> None:
+        """Takes what a way found from its row `first` on."""
+        known = slice(first, found.reached)
+        self.states[:, first:] = found.guess[:, first:]
+        self.limit[first:] = found.limit[first:]
+        if found.turns is not None:
+            self.turns[:, known] = found.turns[:, known]
+        self.reached[first:] = np.arange(first, self.reached.size) < found.reached
 
     def part(self, rows: slice) -> Rows:
         """Some of the rows, in the slice's order: views of the same arrays."""

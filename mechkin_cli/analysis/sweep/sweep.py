@@ -108,7 +108,10 @@ def _closed(
         rows.diagnostics.append(not_converged_note(rows, batch.residual))
         rows.reached &= ~failed
     if rows.reached.any():
-        rows.states[:, rows.reached] = batch.states[:, rows.reached]
+        if rows.reached.all():
+            rows.states = batch.states
+        else:
+            rows.states[:, rows.reached] = batch.states[:, rows.reached]
         _judge_condition(rows, batch)
     result.keep(batch, wanted, demand)
     return result
