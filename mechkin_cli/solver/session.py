@@ -239,6 +239,9 @@ class Session:
                 found = Session(
                     self.problem, driven=driven, closed_at=closed_at, packing=self.packing
                 )
+                # states go from one session to the other: lengths in the same unit
+                unit = self.layout.length
+                found.__dict__["layout"] = Layout(self.problem.mechanism, found.graph, unit)
             except UnsolvableGraph:
                 found = None
             self._exchanged[key] = found

@@ -94,3 +94,27 @@ def test_rows_that_follow_a_parameter() -> None:
 def test_bad_use(given, match) -> None:
     with pytest.raises(mk.UsageError, match=match):
         mk.load(MECHANISMS / "rcsr.yaml").with_parameters(given)
+
+
+@pytest.mark.parametrize("scale", [0.7, 1.3, 1.6])
+def test_questions_beside_the_sweep(scale: float) -> None:
+    """Whether the size leads to the length unit of the file's own drawing or not."""
+    model = mk.load(MECHANISMS / "rcsr.yaml")
+    units, known = model.problem.units, model.problem.parameters
+    lengths = [name for name in known if not name.startswith("alpha")]
+    texts = {
+        name: f"{scale * float(units.from_si(known[name].value, known[name].dimension))!r} in"
+        for name in lengths
+    }
+    varied = model.with_parameters(texts)
+    fresh = mk.load(MECHANISMS / "rcsr.yaml", texts)
+    ranges = [each.ranges(outputs=["O4.theta"]).ranges for each in (varied, fresh)]
+    for one, other in zip(*ranges, strict=True):
+        for a, b in ((one.lower, other.lower), (one.upper, other.upper)):
+            assert a is not None
+            assert b is not None
+            assert abs(a.value - b.value) < 1e-9
+    assert str(varied.mobility().mobility) == str(fresh.mobility().mobility)
+    one, other = varied.analyze(tables=[]), fresh.analyze(tables=[])
+    assert np.abs(one["O4.theta"] - other["O4.theta"]).max() < 1e-11
+    assert varied.analyze(tables=[], mode="B").result.mode == "B"

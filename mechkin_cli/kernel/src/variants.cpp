@@ -221,6 +221,11 @@ Variants::Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputLi
   require(!(outputs.demand() & ~base_.demand), "the outputs need more than is demanded");
   require(!(base_.demand & DEMAND_FORCES) || p.load_values == 0, "loads that vary by row have no place here");
   require(!(base_.demand & DEMAND_POWER), "no place for the power error");
+  const unsigned demand = base_.demand;
+  require(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
+  require(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");
+  require(!(demand & DEMAND_JERK) || demand & DEMAND_ACCELERATION, "jerks need accelerations");
+  require(base_.iterations >= 0 && base_.iterations <= 10000, "iterations: 0 to 10000");
   int turns = 0;
   for (const ClosingTurn& turn : closing_turns(p, *kernel_unit(2))) turns += turn.width;
   for (const ClosingAngle& a : base_.angles)
