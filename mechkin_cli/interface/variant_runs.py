@@ -211,6 +211,11 @@ class Study:
         try:
             model = VariedModel(self.base, named)
             analysis = model.analyze(self.read, tables=[], lanes=self.lanes)
+            if analysis.rows != self.rows:
+                raise UsageError(
+                    f"variant {number} has {analysis.rows} rows, the file has {self.rows}; vary "
+                    "parameters that keep their number, or take with_parameters for each"
+                )
             codes[number] = analysis.result.status
             for text in self.asked:
                 found[text] = _writable(found[text])

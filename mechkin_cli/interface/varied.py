@@ -70,7 +70,8 @@ class Base:
         try:
             recording = record(self.model.built, names)
             return Variation(self._assembled[0], recording.recorder, recording.problem)
-        except TraceLost:
+        except (TraceLost, TypeError, ValueError):
+            # numpy refuses recorded numbers in words of its own
             return None
 
     def built(self, values: Mapping[str, float]) -> Built:

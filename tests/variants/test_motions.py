@@ -42,6 +42,11 @@ def arm(motion: str, value: str = "n*L", type: str = "R", more: str = "") -> str
         (arm(HELD), True),
         (arm(SLIDING, "n*k", "P"), True),
         (arm(ALONG, "n*L", "H", ", lead: L"), False),
+        (arm(HARMONIC.replace("to: 90", "to: k * 30 deg")), False),
+        (arm(HARMONIC.replace("to: 90", "to: 90, start: 0.1, duration: k * 0.2 s")), False),
+        (arm(TIMED.replace("LAW", "polynomial, coefficients: [0, k * 1 rad/s]")), False),
+        (arm(SWEPT.replace("from: 0, to: 90, step: 30", "values: [0, 30, k * 20 deg]")), True),
+        (arm(SWEPT.replace("to: 90, step: 30", "to: k * 20 deg, count: 4")), False),
     ],
 )
 def test_as_fresh_files(text: str, taped: bool) -> None:
@@ -60,6 +65,14 @@ def test_as_fresh_files(text: str, taped: bool) -> None:
         for name in texts:
             assert varied[name].tobytes() == result[name][number].tobytes(), name
             assert np.allclose(analysis[name], varied[name], rtol=1e-13, atol=1e-13), name
+
+
+def test_variants_with_other_rows() -> None:
+    model = mk.loads(arm(SWEPT.replace("to: 90, step: 30", "to: 40, step: k * 5 deg")), "arm")
+    result = model.vary({"k": [2, 4]}, ["A.theta"])
+    assert result["A.theta"][0].tolist() == [0.0, 10.0, 20.0, 30.0, 40.0]
+    assert "has 3 rows, the file has 5" in str(result.errors[1])
+    assert set(result.status[1]) == {"not-assembled"}
 
 
 WELDED = """
