@@ -1,8 +1,9 @@
 """The joints at which the loops of a group are closed, and the tree that is left.
 
-What is placed before a group counts as one vertex. Joints with most freedoms close (design section
-4.3): least equations, a minimum spanning tree by freedoms (Kruskal 1956). Among equals the loops
-are split evenly at their closing joints; then the first joints as written close.
+What is placed before a group counts as one vertex. Joints with most freedoms close
+(docs/numerics.md, Closing joints): least equations, a minimum spanning tree by freedoms (Kruskal
+1956). Among equals the loops are split evenly at their closing joints; then the first joints as
+written close.
 """
 
 from __future__ import annotations
