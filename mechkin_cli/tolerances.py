@@ -102,6 +102,14 @@ LONGEST_STEP: Final = 0.5
 """Longest step along the path (rad, length units): 13 nodes a turn at least, so that no pair of
 folds hides in one."""
 
+LONGEST_DIMENSION_STEP: Final = 1.0
+"""Longest step from the base variant (0) to another (1): variants are near each other as a rule,
+and the tests of a step shorten it where they are not."""
+
+LEAST_DIMENSION_STEP: Final = 1e-6
+"""Step on the way from the base variant to another (0 to 1) below which a branch that goes no
+farther is lost: a fold is met to this part of the way."""
+
 LEAST_STEP: Final = 1e-15
 """Step (in parts of max(1, |path|)) below which a branch cannot be followed in double precision."""
 

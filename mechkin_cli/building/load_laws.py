@@ -7,6 +7,7 @@ that it can be evaluated before any force is.
 from __future__ import annotations
 
 from collections.abc import Mapping, Set
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from mechkin_cli.expressions.fields import scalar
 from mechkin_cli.mechanism.load_laws import LoadLaw
 from mechkin_cli.mechanism.model import Varying
 from mechkin_cli.mechanism.quantities import Wanted
+from mechkin_cli.tape.rows import is_traced
 from mechkin_cli.units import Dimension
 
 _KINDS = {"coordinate", "point", "direction", "omega", "axis", "joint_point", "slip", "time"}
@@ -78,7 +80,9 @@ class LoadLaws:
     def _sample(self, name: str) -> Quantity:
         """One row of a quantity, of its dimension."""
         if name in self.fields.parameters:
-            return self.fields.parameters[name]
+            parameter = self.fields.parameters[name]
+            # a recorded number stands for itself only where the law is evaluated
+            return replace(parameter, value=np.ones(1)) if is_traced(parameter.value) else parameter
         if self.fields.is_refused(name):
             raise AlreadyRefused(name)
         if name == "time" and name not in self.quantities:

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.expressions import ExpressionError, Quantity, constant
+from mechkin_cli.interface.arguments import Setting, a_setting, a_text, settings, shown
 from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.tolerances import LARGEST_NUMBER
 
@@ -24,9 +25,10 @@ def parameter_values(problem: Problem, given: Mapping[str, Any]) -> dict[str, fl
     Raises:
         UsageError: no mapping, an unknown parameter, or a value that is none.
     """
+    values = settings("parameters", given, '{"P1": "0.6 in"}')
     return {
-        name: _one(name, value, known.dimension, problem.units)
-        for name, value, known in _known(problem, given)
+        name: _one(name, values[name], known.dimension, problem.units)
+        for name, known in _known(problem, values)
     }
 
 
@@ -37,14 +39,17 @@ def parameter_arrays(problem: Problem, given: Mapping[str, Any]) -> tuple[tuple[
     Raises:
         UsageError: as `parameter_values`; arrays of more than one dimension or different lengths.
     """
-    columns: dict[str, Floats] = {}
-    lengths: dict[str, int] = {}
-    for name, value, known in _known(problem, given):
-        columns[name] = _column(name, value, known.dimension, problem.units)
-        if columns[name].ndim:
-            lengths[name] = columns[name].size
+    if not isinstance(given, Mapping):
+        settings("parameters", given, '{"P1": [0.5, 0.6]}')
+    for name in given:
+        a_text("a key of parameters", name, '"P1"')
+    columns = {
+        name: _column(name, given[name], known.dimension, problem.units)
+        for name, known in _known(problem, given)
+    }
     if not columns:
-        raise UsageError('vary takes values of at least one parameter, such as {"P1": [1, 2]}')
+        raise UsageError('vary takes values of at least one parameter, such as {"P1": [0.5, 0.6]}')
+    lengths = {name: column.size for name, column in columns.items() if column.ndim}
     if len(set(lengths.values())) > 1:
         words = ", ".join(f"{name} {n}" for name, n in lengths.items())
         raise UsageError(f"values of parameters need equally many variants, found {words}")
@@ -53,45 +58,45 @@ def parameter_arrays(problem: Problem, given: Mapping[str, Any]) -> tuple[tuple[
     return tuple(columns), np.stack(rows)
 
 
-def _known(problem: Problem, given: Mapping[str, Any]) -> list[tuple[str, Any, Quantity]]:
-    """Name, value and quantity, in the file's order."""
-    if not isinstance(given, Mapping):
-        raise UsageError(
-            f'parameters are a mapping such as {{"P1": 0.5}}, not {type(given).__name__}'
-        )
+def _known(problem: Problem, given: Mapping[str, Any]) -> list[tuple[str, Quantity]]:
+    """Names and quantities, in the file's order."""
     known = problem.parameters
     for name in given:
         if name not in known:
-            hint = nearest_hint(str(name), list(known)) or (
-                f"parameters are {', '.join(known)}" if known else "the file has none"
+            listed = ", ".join(list(known)[:10])
+            hint = nearest_hint(name, list(known)) or (
+                f"parameters are {listed}" if known else "write parameters: into the file"
             )
-            raise UsageError(f"there is no parameter {name}; {hint}")
-    return [(name, given[name], known[name]) for name in known if name in given]
+            raise UsageError(f"there is no parameter {name[:LONGEST_NAME]}; {hint}")
+    return [(name, known[name]) for name in known if name in given]
 
 
-def _one(name: str, value: Any, dimension: Dimension, units: UnitSystem) -> float:
-    if isinstance(value, str):
-        try:
-            return _bounded(name, constant(value, dimension, units), value)
-        except ExpressionError as error:
-            hint = error.hint or f"write a number with its unit, such as 1 {units.label(dimension)}"
-            raise UsageError(f"{name} = {value!r}: {error.message}; {hint.rstrip()}") from None
-    if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.number):
-        raise UsageError(
-            f"{name} takes a number in {_unit(units, dimension)} or a text with its unit, "
-            f"not {type(value).__name__}"
-        )
-    return _bounded(name, units.to_si(float(value), dimension), value)
+def _one(name: str, value: Setting, dimension: Dimension, units: UnitSystem) -> float:
+    if not isinstance(value, str):
+        return _bounded(name, units.to_si(float(value), dimension), value)
+    try:
+        return _bounded(name, constant(value, dimension, units), value)
+    except ExpressionError as error:
+        unit = units.label(dimension)
+        hint = error.hint or f"write a number with its unit, such as 1 {unit}".rstrip()
+        raise UsageError(f"{name} = {value[:LONGEST_NAME]}: {error.message}; {hint}") from None
 
 
 def _column(name: str, value: Any, dimension: Dimension, units: UnitSystem) -> Floats:
-    if isinstance(value, str) or np.ndim(value) == 0:
-        return np.array(_one(name, value, dimension, units))
-    if np.ndim(value) > 1:
-        raise UsageError(f"{name} takes one value a variant, an array of one dimension")
-    array = np.asarray(value)
+    try:
+        array = np.asarray(value)
+    except Exception:
+        # whatever a foreign object's conversion raises
+        array = np.empty((0, 0))
+    if isinstance(value, str) or array.ndim == 0:
+        return np.array(_one(name, a_setting(name, value), dimension, units))
+    if array.ndim > 1:
+        raise UsageError(
+            f"{name}: expected a value a variant, an array of one dimension, not {shown(value)}"
+        )
     if array.dtype.kind not in "fiu":
-        return np.array([_one(name, item, dimension, units) for item in value], dtype=np.float64)
+        items = [a_setting(f"{name}[{k}]", item) for k, item in enumerate(value)]
+        return np.array([_one(name, item, dimension, units) for item in items], dtype=np.float64)
     in_si = units.to_si(array.astype(np.float64), dimension)
     wrong = np.flatnonzero(~(np.abs(in_si) <= LARGEST_NUMBER))
     if wrong.size:
@@ -102,11 +107,7 @@ def _column(name: str, value: Any, dimension: Dimension, units: UnitSystem) -> F
 def _bounded(name: str, in_si: float, value: object) -> float:
     if not abs(in_si) <= LARGEST_NUMBER:
         raise UsageError(
-            f"{name} = {value} is no finite number below {LARGEST_NUMBER:g} in SI units; "
-            "check the value and its unit"
+            f"{name} = {str(value)[:LONGEST_NAME]} is no finite number below {LARGEST_NUMBER:g} in "
+            "SI units; write another value or unit"
         )
     return in_si
-
-
-def _unit(units: UnitSystem, dimension: Dimension) -> str:
-    return units.label(dimension) or "no unit"

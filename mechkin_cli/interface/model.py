@@ -25,9 +25,14 @@ from mechkin_cli.solver.session import Packing, Session
 from mechkin_cli.tables.layout import TableLayout
 
 if TYPE_CHECKING:
+    from typing import Any
+
     from mechkin_cli.analysis.mobility import Mobility
     from mechkin_cli.analysis.modes import Modes
     from mechkin_cli.analysis.ranges import Ranges
+    from mechkin_cli.interface.positions import Position, Solver
+    from mechkin_cli.interface.variants import Reduce, Variants
+    from mechkin_cli.interface.varied import Base
 
 
 QUANTITIES = "quantities are such as J.theta, J.force of a joint J, or p.position of a point p"
@@ -37,8 +42,9 @@ class Model:
     """A checked mechanism file."""
 
     def __init__(self, built: Built, stem: str) -> None:
-        self._built = built
+        self.built = built
         self.stem = stem
+        self._solvers: dict[tuple[str, ...] | None, Solver] = {}
 
     @property
     def name(self) -> str:
@@ -48,12 +54,12 @@ class Model:
     @property
     def source(self) -> str:
         """Where the mechanism comes from, as its file says; "" where it does not."""
-        return self._built.source
+        return self.built.source
 
     @property
     def problem(self) -> Problem:
         """The mechanism, its motion and assembly in SI."""
-        return self._built.problem
+        return self.built.problem
 
     @property
     def graph(self) -> SolverGraph:
@@ -62,7 +68,7 @@ class Model:
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
         """
-        graph = self._built.graph
+        graph = self.built.graph
         if isinstance(graph, Diagnostic):
             raise InvalidFile([*self.diagnostics, graph])
         return graph
@@ -79,7 +85,7 @@ class Model:
     @property
     def tables(self) -> tuple[TableLayout, ...]:
         """Layouts of the file's tables; without any, the one table `sweep`."""
-        return self._built.tables
+        return self.built.tables
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
@@ -163,6 +169,121 @@ class Model:
             for _, diagnostic in spin_errors(problem):
                 raise UsageError(str(diagnostic))
 
+    @cached_property
+    def _variants(self) -> Base:
+        from mechkin_cli.interface.varied import Base
+
+        return Base(self)
+
+    def with_parameters(self, parameters: Mapping[str, Setting]) -> Model:
+        """The model with other values of some parameters: nothing is read, checked or built anew.
+
+        The file's own assembly is continued to that of the new parameters, along the straight line
+        between them; where it ends before, rows are `branch-lost`.
+
+        Args:
+            parameters: values by name; a number is in the unit that the parameter has in the file's
+                units, a text carries its own.
+
+        Raises:
+            UsageError: an unknown parameter, or a value that is none.
+            InvalidFile: what the file says does not hold for these values.
+
+        Example:
+            >>> from mechkin_cli import load
+            >>> m = load("mechanisms/rcsr.yaml")
+            >>> m.with_parameters({"P1": "0.52 in"}).analyze()["O4.theta"][:2].round(3).tolist()
+            [36.504, 36.269]
+        """
+        from mechkin_cli.interface.varied import with_parameters
+
+        return with_parameters(self._variants, parameters)
+
+    def vary(
+        self,
+        parameters: Mapping[str, Any],
+        quantities: Iterable[str] | None = None,
+        reduce: Reduce | Sequence[Reduce] | Mapping[str, Any] | None = None,
+        *,
+        lanes: int = 0,
+        threads: int = 0,
+    ) -> Variants:
+        """Many variants at once: what `with_parameters(...).analyze()` gives of each, in one array.
+
+        Every variant starts from the file's own parameters, never from a neighbour, so that the
+        bytes do not depend on the other variants, their order, lanes or threads.
+
+        Args:
+            parameters: by name, arrays of one dimension and one length, or one value for all
+                variants; numbers and texts as in `with_parameters`.
+            quantities: quantities or expressions; None: all joint coordinates.
+            reduce: what is kept of the rows: "max", "min", "peak" (largest magnitude), "range",
+                "mean", "rms", a function from (variants, rows) to (variants,), several of these, or
+                any of it by quantity. Rows without a solution (nan) do not count.
+            lanes: width of the kernel's packs, 0 for the widest.
+            threads: how many threads split the variants, 0 for as many as pay.
+
+        Raises:
+            UsageError: unknown names, values that are none, lengths that differ, a width that the
+                machine lacks.
+
+        Example:
+            >>> import numpy as np
+            >>> from mechkin_cli import load
+            >>> m = load("mechanisms/rcsr.yaml")
+            >>> r = m.vary({"P1": np.array([0.48, 0.5, 0.52])}, ["O1.effort"], reduce="peak")
+            >>> r["O1.effort"].round(2).tolist()
+            [147.41, 135.04, 125.93]
+
+            The crank that needs the least effort, by scipy:
+
+            >>> from scipy.optimize import minimize_scalar
+            >>> def effort(crank):
+            ...     varied = m.with_parameters({"P1": crank}).analyze(["O1.effort"], tables=[])
+            ...     return np.abs(varied["O1.effort"]).max()
+            >>> found = minimize_scalar(effort, bounds=(0.4, 0.55), method="bounded")
+            >>> bool(found.fun <= effort(0.5))
+            True
+        """
+        from mechkin_cli.interface.variants import vary
+
+        return vary(self._variants, {}, parameters, quantities, reduce, lanes, threads)
+
+    def solve(
+        self,
+        inputs: Setting | Mapping[str, Setting],
+        quantities: Iterable[str] | None = None,
+    ) -> Position:
+        """One position, continued from the nearest row of the file's sweep, straight in the inputs.
+
+        The answer does not depend on what was asked before. Rates, accelerations and forces are
+        those at the rates of the nearest row.
+
+        Args:
+            inputs: values by name as in `modes`; those left out keep their value of the first row.
+            quantities: names; None: all joint coordinates.
+
+        Returns:
+            Values by name in the file's units; nan, and `status` not ok, where the branch ends
+            before.
+
+        Raises:
+            UsageError: an unknown input or quantity, or a value that is none.
+
+        Example:
+            >>> from mechkin_cli import load
+            >>> place = load("mechanisms/rcsr.yaml").solve({"O1.theta": 161.5}, ["O4.theta"])
+            >>> round(place["O4.theta"], 6), place.status
+            (28.438352, 'ok')
+        """
+        names = None if quantities is None else texts("quantities", quantities, '["O4.theta"]')
+        solver = self._solvers.get(names)
+        if solver is None:
+            from mechkin_cli.interface.positions import solver_of
+
+            solver = self._solvers[names] = solver_of(self, names)
+        return solver.solve(inputs)
+
     def modes(self, at: Setting | Mapping[str, Setting] | None = None) -> Modes:
         """All assembly modes at the first row, or at another place.
 
@@ -216,7 +337,7 @@ class Model:
         """
         from mechkin_cli.analysis.mobility import find_mobility
 
-        solvable = not isinstance(self._built.graph, Diagnostic)
+        solvable = not isinstance(self.built.graph, Diagnostic)
         return find_mobility(self.problem, self.session if solvable else None)
 
     def _chosen_tables(self, names: Sequence[str] | None) -> tuple[TableLayout, ...]:

@@ -1,4 +1,4 @@
-"""Many variants of a model at once, and one position at a time."""
+"""Many variants of a model at once: what a caller asks for, and what comes back."""
 
 from __future__ import annotations
 
@@ -8,25 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli import tolerances
-from mechkin_cli.analysis.reductions import REDUCTIONS, Reduction
-from mechkin_cli.diagnostics import MechkinError, UsageError
-from mechkin_cli.expressions import (
-    Expression,
-    ExpressionError,
-    Quantity,
-    UnknownName,
-    Vector,
-    parse,
-)
+from mechkin_cli.analysis.reductions import REDUCTIONS
+from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
+from mechkin_cli.expressions import Expression, ExpressionError, parse
+from mechkin_cli.interface.arguments import a_whole_number, shown, texts
 from mechkin_cli.interface.given import parameter_arrays
-from mechkin_cli.interface.varied import Base, VariedModel, file_values
-from mechkin_cli.kernel._kernel import VariantEnd
-from mechkin_cli.kernel.width import check_threads, check_width, threads_for
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
-from mechkin_cli.solver.variation import Reading, Runs, Variation, run_variants
+from mechkin_cli.interface.variant_runs import Reductions, Study, sample_of
+from mechkin_cli.interface.varied import Base, file_values
+from mechkin_cli.kernel.width import check_threads, check_width
 from mechkin_cli.status import Status
 from mechkin_cli.tables.layout import ROW_TEXTS
 
@@ -35,11 +24,9 @@ if TYPE_CHECKING:
 
     from mechkin_cli.arrays import Floats
     from mechkin_cli.interface.model import Model
-    from mechkin_cli.mechanism.quantities import Wanted
 
-CHUNK_NUMBERS = 2_000_000
-"""Numbers that a chunk of variants holds at most: memory stays flat, and below a processor's
-caches."""
+LONGEST_MESSAGE = 400
+"""Characters of an expression's error that a message repeats."""
 
 Reduce = str | Callable[["Floats"], "Floats"]
 
@@ -98,7 +85,7 @@ class Variants:
     def complete(self) -> NDArray[np.bool_]:
         """Which variants have a solution in every row (variants,)."""
         solved = np.array([status.has_solution for status in Status])
-        found: NDArray[np.bool_] = solved[self._codes].all(axis=1)
+        found: NDArray[np.bool_] = np.logical_and.reduce(solved[self._codes], axis=1)
         return found
 
 
@@ -112,14 +99,14 @@ def vary(
     threads: int,
 ) -> Variants:
     """`Model.vary`, whose arguments these are; `held` are values (SI) that are set already."""
-    check_width(lanes)
-    check_threads(threads)
+    check_width(a_whole_number("lanes", lanes, "rows at a time"))
+    check_threads(a_whole_number("threads", threads, "how many split the variants"))
     problem = base.model.problem
     names, values = parameter_arrays(problem, parameters)
     given = file_values(values, problem, names)
     names, values = _with_held(list(problem.parameters), names, values, held)
     asked = _parsed(problem.mechanism.coordinates if quantities is None else quantities, base.model)
-    study = _Study(base, names, asked, _reductions(asked, reduce), lanes, threads)
+    study = Study(base, names, asked, _reductions(asked, reduce), lanes, threads)
     return Variants(given, *study.run(values))
 
 
@@ -134,41 +121,18 @@ def _with_held(
 
 
 def _parsed(quantities: Iterable[str], model: Model) -> dict[str, Expression]:
-    if isinstance(quantities, str):
-        raise UsageError(f'quantities are a list of texts, such as ["{quantities}"]')
     found = {}
-    for text in quantities:
-        if not isinstance(text, str):
-            raise UsageError(f"a quantity is a text such as O1.theta, not {type(text).__name__}")
+    for text in texts("quantities", quantities, '["O4.theta"]'):
         if text.strip() in ROW_TEXTS:
-            raise UsageError(f"{text} is a text, no number: read .status of the result")
+            raise UsageError(f"{text} is a text, no number; read .status of the result")
         try:
             found[text] = parse(text)
-            found[text].evaluate(_Sample(model), model.problem.units)
+            found[text].evaluate(sample_of(model.problem), model.problem.units)
         except ExpressionError as error:
-            hint = f"; {error.hint}" if error.hint else ""
-            raise UsageError(f"{text}: {error.message}{hint}") from None
+            hint = error.hint or "write an expression of quantities and parameters"
+            shortened = text[:LONGEST_NAME]
+            raise UsageError(f"{shortened}: {error.message[:LONGEST_MESSAGE]}; {hint}") from None
     return found
-
-
-class _Sample:
-    """Resolves names to one-row stand-ins of the right dimension."""
-
-    def __init__(self, model: Model) -> None:
-        self.problem = model.problem
-
-    def __call__(self, name: str) -> Quantity:
-        if name in self.problem.parameters:
-            return Quantity(np.ones(1), self.problem.parameters[name].dimension)
-        known = self.problem.quantities()
-        if name not in known:
-            raise UnknownName(name, [*self.problem.parameters, *known])
-        one = np.ones(1)
-        wanted = known[name]
-        return Quantity(Vector(one, one, one) if wanted.vector else one, wanted.dimension)
-
-
-Reductions = tuple[Reduction, ...] | Reduction | None
 
 
 def _reductions(asked: Iterable[str], reduce: Any) -> dict[str, Reductions]:
@@ -176,7 +140,10 @@ def _reductions(asked: Iterable[str], reduce: Any) -> dict[str, Reductions]:
     if isinstance(reduce, Mapping):
         for text in reduce:
             if text not in asked:
-                raise UsageError(f"reduce names {text}, which is not among the quantities")
+                asked_for = ", ".join(asked)
+                raise UsageError(
+                    f"reduce: {shown(text)} was not asked for; quantities are {asked_for}"
+                )
         return {text: _reduction(reduce.get(text)) for text in asked}
     return dict.fromkeys(asked, _reduction(reduce))
 
@@ -186,276 +153,15 @@ def _reduction(reduce: Any) -> Reductions:
         return None
     if isinstance(reduce, str):
         if reduce not in REDUCTIONS:
-            raise UsageError(f"there is no reduction {reduce}; they are {', '.join(REDUCTIONS)}")
+            known = ", ".join(REDUCTIONS)
+            raise UsageError(f"there is no reduction {reduce[:LONGEST_NAME]}; they are {known}")
         return REDUCTIONS[reduce]
     if callable(reduce):
         return reduce  # type: ignore[no-any-return]
     if isinstance(reduce, Sequence) and reduce:
         return tuple(_reduction(each) for each in reduce)  # type: ignore[misc]
+    known = ", ".join(REDUCTIONS)
     raise UsageError(
-        f"reduce is one of {', '.join(REDUCTIONS)}, a function, several of these, or by quantity"
+        f"reduce: expected one of {known}, a function, several of these or a mapping by quantity, "
+        f"not {shown(reduce)}"
     )
-
-
-class _Study:
-    """One call of `vary`."""
-
-    def __init__(
-        self,
-        base: Base,
-        names: tuple[str, ...],
-        asked: Mapping[str, Expression],
-        reductions: Mapping[str, Reductions],
-        lanes: int,
-        threads: int,
-    ) -> None:
-        self.base, self.names, self.asked, self.reductions = base, names, asked, reductions
-        self.lanes, self.threads = lanes, threads
-        self.problem = base.model.problem
-        self.rows = self.problem.motion.rows
-        known = self.problem.quantities()
-        used = (name for expression in asked.values() for name in sorted(expression.names))
-        self.read = tuple(dict.fromkeys(n for n in map(self._quantity_of, used) if n is not None))
-        self.wanted = tuple(known[name] for name in self.read)
-        self.errors: dict[int, MechkinError] = {}
-
-    def _quantity_of(self, name: str) -> str | None:
-        if name in self.problem.parameters:
-            return None
-        return name if name in self.problem.quantities() else name.rpartition(".")[0]
-
-    def run(
-        self, values: Floats
-    ) -> tuple[dict[str, Floats], NDArray[np.int8], dict[int, MechkinError]]:
-        """All variants, chunk by chunk: what was asked for, the verdicts, the errors."""
-        count = values.shape[1]
-        codes = np.empty((count, self.rows), dtype=np.int8)
-        parts: dict[str, list[Floats]] = {text: [] for text in self.asked}
-        variation = self.base.variation(self.names)
-        native = self._native(variation) if variation is not None else None
-        chunk = self._chunk()
-        for begin in range(0, max(count, 1), chunk):
-            part = values[:, begin : begin + chunk]
-            found = self._chunk_values(variation, native, part, begin, codes)
-            for text, array in found.items():
-                parts[text].append(array)
-        return {text: np.concatenate(arrays) for text, arrays in parts.items()}, codes, self.errors
-
-    def _chunk(self) -> int:
-        width = 2 + sum(3 if quantity.vector else 1 for quantity in self.wanted)
-        return max(1, CHUNK_NUMBERS // (self.rows * width))
-
-    # --- by the kernel --------------------------------------------------------------------
-
-    def _native(self, variation: Variation) -> tuple[Reading, Any] | None:
-        """The kernel's variants of what is read; None where the rows take more than its run."""
-        problem = self.problem
-        given = {driven.name for driven in problem.motion.inputs}
-        given |= {name for driven in problem.motion.inputs for name in driven.orders}
-        forces = demand_of(problem.mechanism, self.wanted) & Demand.FORCES
-        session = variation.base
-        if (
-            any(q.kind in DERIVED_KINDS or q.kind == "power_error" for q in self.wanted)
-            or (problem.load_laws and forces)
-            or (session.is_redundant and any(q.kind in WRENCH_KINDS for q in self.wanted))
-            or (variation.moving_inputs and given & {q.name for q in self.wanted})
-        ):
-            return None
-        reading = variation.reading(self._computed())
-        demand = demand_of(problem.mechanism, self._computed())
-        if session.graph.blocks:
-            demand |= Demand.CONDITION
-        return reading, reading.runs(demand, self.base.start)
-
-    def _computed(self) -> list[Wanted]:
-        """What the kernel computes: no verdicts, and nothing that is given."""
-        given = self._given()
-        return [q for q in self.wanted if q.owner != "row" and q.name not in given]
-
-    def _given(self) -> dict[str, Floats]:
-        """Time, inputs and their rates over the rows, in SI."""
-        motion = self.problem.motion
-        found = {} if motion.time is None else {"time": motion.time.values}
-        for driven in motion.inputs:
-            found |= {name: in_si for name, (in_si, _) in driven.orders.items()}
-        return found
-
-    def _chunk_values(
-        self,
-        variation: Variation | None,
-        native: tuple[Reading, Any] | None,
-        values: Floats,
-        begin: int,
-        codes: NDArray[np.int8],
-    ) -> dict[str, Floats]:
-        count = values.shape[1]
-        if native is None or variation is None:
-            found = {t: self._empty(e, count) for t, e in self.asked.items()}
-            alone = np.arange(count)
-        else:
-            reading, kernel = native
-            threads = threads_for(count * self.rows, self.threads)
-            runs = run_variants(kernel, values, self.lanes, threads)
-            codes[begin : begin + count] = _verdicts(runs)
-            found = self._evaluated(variation, reading, runs, values, codes[begin : begin + count])
-            alone = np.flatnonzero(runs.end != int(VariantEnd.COMPLETE))
-        for number in alone:
-            self._alone(values[:, number], int(begin + number), int(number), found, codes)
-        return {text: self._reduced(text, array) for text, array in found.items()}
-
-    def _evaluated(
-        self,
-        variation: Variation,
-        reading: Reading,
-        runs: Runs,
-        values: Floats,
-        codes: NDArray[np.int8],
-    ) -> dict[str, Floats]:
-        """The expressions in the file's units, (variants, rows) or (variants, rows, 3)."""
-        units, count = self.problem.units, values.shape[1]
-        resolve = _Resolve(self, variation, reading, runs, values, codes)
-        found = {}
-        for text, expression in self.asked.items():
-            written = self._written(text)
-            if written is not None:
-                found[text] = np.broadcast_to(written, (count, self.rows))
-                continue
-            result = expression.evaluate(resolve, units)
-            value = result.value
-            parts = value.components if isinstance(value, Vector) else (value,)
-            columns = [
-                np.asarray(
-                    units.from_si(
-                        np.array(np.broadcast_to(part, (count * self.rows,))), result.dimension
-                    )
-                ).reshape(count, self.rows)
-                for part in parts
-            ]
-            found[text] = np.stack(columns, axis=2) if len(columns) > 1 else columns[0]
-        return found
-
-    def _written(self, text: str) -> Floats | None:
-        """An input's values, or time, exactly as written."""
-        motion = self.problem.motion
-        if text == "time" and motion.time is not None:
-            return motion.time.written
-        for driven in motion.inputs:
-            if text == driven.name:
-                return driven.written
-        return None
-
-    # --- one at a time --------------------------------------------------------------------
-
-    def _alone(
-        self,
-        values: Floats,
-        number: int,
-        place: int,
-        found: dict[str, Floats],
-        codes: NDArray[np.int8],
-    ) -> None:
-        """One variant as `with_parameters(...).analyze()` gives it."""
-        named = dict(zip(self.names, values.tolist(), strict=True))
-        try:
-            model = VariedModel(self.base, named)
-            analysis = model.analyze(self.read, tables=[], lanes=self.lanes)
-            codes[number] = analysis.result.status
-            for text in self.asked:
-                found[text] = _writable(found[text])
-                found[text][place] = analysis[text]
-        except MechkinError as error:
-            self.errors[number] = error
-            codes[number] = int(Status.not_assembled)
-            for text in self.asked:
-                found[text] = _writable(found[text])
-                found[text][place] = np.nan
-
-    def _empty(self, expression: Expression, count: int) -> Floats:
-        value = expression.evaluate(_Sample(self.base.model), self.problem.units).value
-        shape = (count, self.rows, 3) if isinstance(value, Vector) else (count, self.rows)
-        return np.full(shape, np.nan)
-
-    def _reduced(self, text: str, values: Floats) -> Floats:
-        reduction = self.reductions[text]
-        if reduction is None:
-            return values
-        if isinstance(reduction, tuple):
-            return np.stack([self._by(each, text, values) for each in reduction], axis=-1)
-        return self._by(reduction, text, values)
-
-    def _by(self, reduction: Reduction, text: str, values: Floats) -> Floats:
-        if values.ndim == 3:
-            parts = [self._by(reduction, text, values[:, :, k]) for k in range(3)]
-            return np.stack(parts, axis=1)
-        found = np.asarray(reduction(values), dtype=np.float64)
-        if found.shape[:1] != values.shape[:1]:
-            raise UsageError(
-                f"the reduction of {text} gives an array of shape {found.shape}; it takes "
-                f"(variants, rows) = {values.shape} and gives one value a variant"
-            )
-        return found
-
-
-class _Resolve:
-    """Names of expressions over a chunk: (variants * rows,) in SI."""
-
-    def __init__(
-        self,
-        study: _Study,
-        variation: Variation,
-        reading: Reading,
-        runs: Runs,
-        values: Floats,
-        codes: NDArray[np.int8],
-    ) -> None:
-        self.study, self.reading, self.runs = study, reading, runs
-        self.count, self.rows = values.shape[1], study.rows
-        self.known = study.problem.quantities()
-        self.given = study._given()
-        self.unclear = codes == int(Status.rank_unclear)
-        self.solved = runs.end == int(VariantEnd.COMPLETE)
-        parameters = variation.parameters(values)
-        self.parameters = dict(zip(study.problem.parameters, parameters, strict=True))
-
-    def __call__(self, name: str) -> Quantity:
-        if name in self.parameters:
-            dimension = self.study.problem.parameters[name].dimension
-            return Quantity(np.repeat(self.parameters[name], self.rows), dimension)
-        if name not in self.known:
-            raise UnknownName(name, list(self.known))
-        wanted = self.known[name]
-        if wanted.owner == "row" and name != "time":
-            array = self.runs.residual if wanted.kind == "residual" else self.runs.condition
-            return Quantity(array.reshape(-1), wanted.dimension)
-        if name in self.given:
-            return Quantity(self._over_rows(name), wanted.dimension)
-        slot = self.reading.slots[name]
-        columns = [self._column(wanted, slot.first + k) for k in range(slot.width)]
-        return Quantity(Vector(*columns) if wanted.vector else columns[0], wanted.dimension)
-
-    def _over_rows(self, name: str) -> Floats:
-        rows = np.broadcast_to(self.given[name], (self.count, self.rows))
-        values = {driven.name for driven in self.study.problem.motion.inputs} | {"time"}
-        if name not in values:
-            rows = np.where(self.solved[:, None], rows, np.nan)
-        return rows.reshape(-1)
-
-    def _column(self, wanted: Wanted, slot: int) -> Floats:
-        column = self.runs.outputs[:, slot, :]
-        if self.unclear.any() and demand_of(self.study.problem.mechanism, [wanted]):
-            column = np.where(self.unclear, np.nan, column)
-        return column.reshape(-1)
-
-
-def _verdicts(runs: Runs) -> NDArray[np.int8]:
-    """Codes of `Status` (variants, rows) of those that are complete; others are not read."""
-    codes = np.full(runs.condition.shape, int(Status.ok), dtype=np.int8)
-    if np.isnan(runs.condition).all():
-        return codes
-    codes[~(runs.condition <= tolerances.CONDITION_NEAR_SINGULAR)] = int(Status.near_singular)
-    codes[~(runs.condition <= tolerances.CONDITION_RANK_UNCLEAR)] = int(Status.rank_unclear)
-    return codes
-
-
-def _writable(array: Floats) -> Floats:
-    return array if array.flags.writeable else array.copy()

@@ -7,7 +7,7 @@ the same errors, only slower.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -32,6 +32,7 @@ from mechkin_cli.tape.traced import TraceLost
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.building.build import Built
+    from mechkin_cli.interface.variants import Reduce, Variants
 
 
 class Base:
@@ -69,7 +70,8 @@ class Base:
         try:
             recording = record(self.model.built, names)
             return Variation(self._assembled[0], recording.recorder, recording.problem)
-        except TraceLost:
+        except (TraceLost, TypeError, ValueError):
+            # numpy refuses recorded numbers in words of its own
             return None
 
     def built(self, values: Mapping[str, float]) -> Built:
@@ -107,7 +109,7 @@ class VariedModel(Model):
         self._advised = verdict == Verdict.OTHER_ADVICE
 
     @cached_property
-    def problem(self) -> Problem:  # type: ignore[override]
+    def problem(self) -> Problem:
         """The mechanism, its motion and assembly in SI."""
         if self._variation is None:
             return self.built.problem
@@ -118,7 +120,7 @@ class VariedModel(Model):
         return problem
 
     @cached_property
-    def session(self) -> Session:  # type: ignore[override]
+    def session(self) -> Session:
         """The mechanism in the kernel."""
         if self._variation is None:
             return Session(self.problem, self.graph)
@@ -141,9 +143,22 @@ class VariedModel(Model):
         """As `Model.with_parameters`; values of before stay unless they are given anew."""
         root = self._base.model
         values = {**self._values, **parameter_values(root.problem, parameters)}
-        return VariedModel(
-            self._base, {n: values[n] for n in root.problem.parameters if n in values}
-        )
+        ordered = {name: values[name] for name in root.problem.parameters if name in values}
+        return VariedModel(self._base, ordered) if parameters else self
+
+    def vary(
+        self,
+        parameters: Mapping[str, Any],
+        quantities: Iterable[str] | None = None,
+        reduce: Reduce | Sequence[Reduce] | Mapping[str, Any] | None = None,
+        *,
+        lanes: int = 0,
+        threads: int = 0,
+    ) -> Variants:
+        """As `Model.vary`; values of before stay unless they are given anew."""
+        from mechkin_cli.interface.variants import vary
+
+        return vary(self._base, self._values, parameters, quantities, reduce, lanes, threads)
 
 
 def structure_of(graph: SolverGraph) -> object:

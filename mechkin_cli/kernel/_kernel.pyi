@@ -275,6 +275,67 @@ class Plan:
         threads: int = 1,
     ) -> None: ...
 
+class VariantEnd(IntEnum):
+    COMPLETE = 0
+    OTHER_WAY = 1
+    LOST = 2
+    INCOMPLETE = 3
+
+class Variants:
+    """Many variants of one plan; see src/variants.hpp. Tables are (inputs, rows)."""
+
+    def __init__(
+        self,
+        *,
+        tape: Tape,
+        plan: Plan,
+        outputs: Outputs,
+        parameters: Floats,
+        inputs: Floats,
+        rates: Floats,
+        accelerations: Floats,
+        jerks: Floats,
+        state: Floats,
+        size: float,
+        start_row: int,
+        demand: int,
+        iterations: int,
+        continuation: StepLimits,
+        following: StepLimits,
+        angles: Sequence[tuple[int, int]],
+    ) -> None: ...
+    def run(
+        self, parameters: Floats, lanes: int = 0, threads: int = 1
+    ) -> tuple[Floats, Floats, Floats, NDArray[np.int32]]:
+        """Outputs (variants, slots, rows), residual and condition (variants, rows), ends.
+
+        `parameters` (parameters, variants); nan where a variant is not complete.
+        """
+    def start(self, parameters: Floats) -> tuple[int, float, Floats]:
+        """How the continuation ended, size (m) and states of one variant's first assembly."""
+
+class Positions:
+    """Single positions near known rows; see src/positions.hpp. Tables are (columns, rows)."""
+
+    def __init__(
+        self,
+        *,
+        plan: Plan,
+        outputs: Outputs,
+        inputs: Floats,
+        rates: Floats,
+        accelerations: Floats,
+        jerks: Floats,
+        states: Floats,
+        turns: Floats,
+        demand: int,
+        iterations: int,
+        limits: StepLimits,
+        angles: Sequence[tuple[int, int]],
+    ) -> None: ...
+    def solve(self, inputs: Sequence[float]) -> list[float] | None:
+        """The outputs' slots in SI; None where the branch does not lead there."""
+
 class StepLimits:
     """What a step along a path may do; see StepLimits in src/stepper.hpp."""
 

@@ -47,10 +47,7 @@ def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
     def table(name: str) -> Floats:
         if not inputs:
             return np.empty((0, rows))
-        found: Floats = np.empty((len(inputs), rows))
-        for number, (item, unit) in enumerate(zip(inputs, units, strict=True)):
-            found[number] = getattr(item, name) / unit
-        return found
+        return np.stack([getattr(i, name) / unit for i, unit in zip(inputs, units, strict=True)])
 
     return KernelInputs(table("values"), table("rates"), table("accelerations"), table("jerks"))
 

@@ -48,10 +48,13 @@ class Layout:
 
     mechanism: Mechanism
     graph: SolverGraph
+    unit: float | None = None
 
     @cached_property
     def length(self) -> float:
-        """The length unit in m: the power of two next to the size of the home drawing."""
+        """The length unit in m: `unit`, or the power of two next to the size of the drawing."""
+        if self.unit is not None:
+            return self.unit
         return next_power_of_two(self.mechanism.box_diagonal())
 
     @cached_property

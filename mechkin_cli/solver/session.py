@@ -55,6 +55,14 @@ class Readout(NamedTuple):
     points: Sequence[int]
 
 
+class Continued(NamedTuple):
+    """A first assembly that is not to be chosen: continued from that of another variant. Without
+    states (states,) the branch was lost on the way; `row` is the one where it stands."""
+
+    state: Floats | None
+    row: int
+
+
 class Session:
     """A problem in the kernel.
 
@@ -83,6 +91,7 @@ class Session:
         self.closed_at = closed_at
         self.packing = packing
         self.size: float | None = None
+        self.continued: Continued | None = None
         self.graph = graph or build_graph(problem.mechanism, self.driven, closed_at)
         self._exchanged: dict[tuple[int, Coordinate], Session | None] = {}
         self._readouts: dict[object, Readout] = {}
@@ -126,12 +135,12 @@ class Session:
 
     def assembled(self, assembly: Assembly) -> Session:
         """The same session with another choice of the first assembly."""
-        return self._changed(problem=replace(self.problem, assembly=assembly))
+        return self._changed(problem=replace(self.problem, assembly=assembly), continued=None)
 
     def _changed(self, **changes: object) -> Session:
         """A session that shares graph, layout, plan, inputs and what was found."""
         _ = self.plan  # made before it is shared: outputs belong to one structure
-        other = object.__new__(Session)
+        other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         other.__dict__.update(changes)
         return other
@@ -230,6 +239,9 @@ class Session:
                 found = Session(
                     self.problem, driven=driven, closed_at=closed_at, packing=self.packing
                 )
+                # states go from one session to the other: lengths in the same unit
+                unit = self.layout.length
+                found.__dict__["layout"] = Layout(self.problem.mechanism, found.graph, unit)
             except UnsolvableGraph:
                 found = None
             self._exchanged[key] = found

@@ -9,7 +9,9 @@ from mechkin_cli.kernel._kernel import StepLimits
 
 
 @cache
-def step_limits() -> StepLimits:
+def step_limits(
+    longest_step: float = tolerances.LONGEST_STEP, least_step: float = tolerances.LEAST_STEP
+) -> StepLimits:
     """What a step may do, from `tolerances`."""
     return StepLimits(
         turn_cosine=tolerances.TURN_LIMIT_COSINE,
@@ -17,8 +19,8 @@ def step_limits() -> StepLimits:
         bend=tolerances.BEND_WANTED,
         jump=tolerances.JUMP_LIMIT,
         infill=tolerances.INFILL_LIMIT,
-        longest_step=tolerances.LONGEST_STEP,
-        least_step=tolerances.LEAST_STEP,
+        longest_step=longest_step,
+        least_step=least_step,
         most_steps=tolerances.MOST_STEPS,
         tight=tolerances.RESIDUAL_TIGHT,
         coarse=tolerances.STEP_COARSE,

@@ -7,7 +7,7 @@ the straight line in the parameters (kernel/src/variants.hpp).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -28,10 +28,9 @@ from mechkin_cli.solver.records import flatten
 from mechkin_cli.solver.same_structure import graph_of
 from mechkin_cli.solver.stepping import step_limits
 from mechkin_cli.tape.native import compiled, replay
-from mechkin_cli.tape.nested import filled, traced_in
+from mechkin_cli.tape.nested import Filling
 from mechkin_cli.tape.rows import is_traced
 from mechkin_cli.tape.scalars import next_power_of_two
-from mechkin_cli.tape.tape import Verdict
 from mechkin_cli.tape.traced import TraceLost, register
 
 if TYPE_CHECKING:
@@ -106,7 +105,9 @@ class Reading:
             start_row=start.row,
             demand=int(demand),
             iterations=tolerances.NEWTON_ITERATIONS,
-            continuation=step_limits(longest_step=tolerances.LONGEST_DIMENSION_STEP),
+            continuation=step_limits(
+                tolerances.LONGEST_DIMENSION_STEP, tolerances.LEAST_DIMENSION_STEP
+            ),
             following=step_limits(),
             angles=variation.closing_angles(self.slots, turns),
         )
@@ -171,11 +172,11 @@ class Variation:
 
     @cached_property
     def _mechanism_tape(self) -> _kernel.Tape:
-        return self.tape(traced_in(self._mechanism))
+        return self.tape(self._mechanism.numbers)
 
-    @property
-    def _mechanism(self) -> tuple[Any, ...]:
-        return (self.recorded.mechanism, self.recorded.assembly, self.recorded.motion)
+    @cached_property
+    def _mechanism(self) -> Filling:
+        return Filling((self.recorded.mechanism, self.recorded.assembly, self.recorded.motion))
 
     def parameters(self, values: Floats) -> Floats:
         """All parameters of the file (parameters, variants) in SI, in the file's order."""
@@ -191,8 +192,8 @@ class Variation:
                 self.recorded.parameters.items(), numbers, strict=True
             )
         }
-        leaves = iter(replay(self._mechanism_tape, values[:, None])[0][0].tolist())
-        mechanism, assembly, motion = filled(self._mechanism, leaves)
+        leaves = replay(self._mechanism_tape, values[:, None])[0][0].tolist()
+        mechanism, assembly, motion = self._mechanism.fill(leaves)
         problem = replace(
             self.base.problem,
             mechanism=mechanism,
@@ -246,7 +247,3 @@ def run_variants(
 
 def _flat(tables: Sequence[Any]) -> list[Any]:
     return [number for table in tables for number in table.flat]
-
-
-Started = Callable[[Floats], tuple[int, float, "Floats"]]
-SAME, OTHER_ADVICE, OTHER_WAY = Verdict

@@ -58,6 +58,6 @@ class VariedSession(Session):
         if points or key in self._readouts:
             return super().readout(wanted, points)
         reading = self.variation.reading(wanted)
-        found = reading.readout._replace(plan=self.plan, outputs=reading.outputs(self.values))
+        found = reading.readout._replace(outputs=reading.outputs(self.values))
         self._readouts[key] = found
         return found

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from mechkin_cli.tape.operations import Operation
 
-_ROUNDER = 6755399441055744.0
+_ROUNDER = float(3 * 2**51)
 """1.5 * 2^52: adding it rounds to the nearest whole number."""
 
 _LARGEST_HALF = math.ldexp(0.7, 1024)

@@ -7,6 +7,7 @@ annotations a `float` is either.
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from typing import Any, TypeGuard, TypeVar
 
@@ -14,7 +15,7 @@ from mechkin_cli.tape.floats import meaning, power_of_two
 from mechkin_cli.tape.operations import Operation
 from mechkin_cli.tape.traced import Condition, Traced, TraceLost
 
-LARGEST_FLOAT = 1.7976931348623157e308
+LARGEST_FLOAT = sys.float_info.max
 Result = TypeVar("Result", bound=tuple[Any, ...])
 
 
@@ -128,6 +129,6 @@ def cos(angle: Any) -> Any:
 
 def whole(value: Traced) -> Traced:
     """The nearest whole number of a recorded one that is smaller than 2^51."""
-    if not abs(value) < 2251799813685248.0:
+    if not abs(value) < float(2**51):
         raise TraceLost("a varied number is too large to be rounded")
     return value.apply(Operation.WHOLE)

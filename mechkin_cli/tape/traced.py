@@ -145,7 +145,7 @@ class Traced:
 
     __float__ = __int__ = __index__ = __bool__ = __complex__ = _lost
     __round__ = __trunc__ = __floor__ = __ceil__ = _lost
-    __format__ = __str__ = __array__ = _lost
+    __format__ = __str__ = _lost
     __pow__ = __rpow__ = __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = _lost
     __copy__ = __deepcopy__ = __reduce__ = _lost
 

@@ -64,6 +64,20 @@ def calls(model, analysis) -> dict[str, Callable[[Any], object]]:
         "ranges outputs": lambda x: model.ranges(outputs=x),
         "ranges one output": lambda x: model.ranges(outputs=[x]),
         "read": lambda x: analysis[x],
+        "with_parameters": lambda x: model.with_parameters(x),
+        "with_parameters P1": lambda x: model.with_parameters({"P1": x}),
+        "vary parameters": lambda x: model.vary(x, ["O4.theta"]),
+        "vary P1": lambda x: model.vary({"P1": x}, ["O4.theta"]),
+        "vary one P1": lambda x: model.vary({"P1": [0.5, x]}, ["O4.theta"]),
+        "vary quantities": lambda x: model.vary({"P1": 0.5}, x),
+        "vary one quantity": lambda x: model.vary({"P1": 0.5}, [x]),
+        "vary reduce": lambda x: model.vary({"P1": 0.5}, ["O4.theta"], x),
+        "vary lanes": lambda x: model.vary({"P1": 0.5}, ["O4.theta"], lanes=x),
+        "vary threads": lambda x: model.vary({"P1": 0.5}, ["O4.theta"], threads=x),
+        "solve inputs": lambda x: model.solve(x),
+        "solve one input": lambda x: model.solve({"O1.theta": x}),
+        "solve quantities": lambda x: model.solve(160.0, x),
+        "solve one quantity": lambda x: model.solve(160.0, [x]),
     }
 
 

@@ -10,16 +10,16 @@ from typing import Any
 
 import numpy as np
 
+from mechkin_cli.arrays import Floats
 from mechkin_cli.building.build import Built, build
 from mechkin_cli.building.recording import record
 from mechkin_cli.building.source import open_file
 from mechkin_cli.expressions import Quantity
-from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.plan import plan_records
-from mechkin_cli.solver.records import _CONSTANTS, flatten
+from mechkin_cli.solver.records import flatten
 from mechkin_cli.solver.same_structure import graph_of
 from mechkin_cli.tape.native import compiled
 from mechkin_cli.tape.tape import Tape
@@ -67,23 +67,7 @@ def numbers_in(value: Any) -> Iterator[Any]:
 
 
 def constants_of(problem: Problem, graph: SolverGraph) -> list[Any]:
-    """All constants of the plan, in the kernel's order."""
     return flatten(plan_records(Layout(problem.mechanism, graph)))
-
-
-def structure_of(problem: Problem, graph: SolverGraph) -> list[Any]:
-    """What of the plan is no constant, record by record."""
-    return [
-        (
-            type(record),
-            {
-                k: v
-                for k, v in record._asdict().items()
-                if k not in _CONSTANTS.get(type(record), ())
-            },
-        )
-        for record in plan_records(Layout(problem.mechanism, graph))
-    ]
 
 
 def everything(problem: Problem, graph: SolverGraph) -> list[Any]:
@@ -103,13 +87,10 @@ def tape_of(stem: str) -> tuple[Built, Tape, Any]:
     return base, tape, compiled(tape)
 
 
-def near(base: Built, count: int, seed: int, spread: float = 0.05) -> np.ndarray:
+def near(base: Built, count: int, seed: int, spread: float = 0.05) -> Floats:
     """Values (parameters, count) about the file's own, which stand in the first column."""
     own = np.array(list(parameters_of(base).values()))
     generator = np.random.default_rng(seed)
     values = own[:, None] * (1.0 + spread * generator.standard_normal((own.size, count)))
     values[:, 0] = own
     return values
-
-
-Native = _kernel.Tape

@@ -31,7 +31,7 @@ from mechkin_cli.status import Status
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.mechanism.problem import Problem
-    from mechkin_cli.solver.session import Session
+    from mechkin_cli.solver.session import Continued, Session
 
 NEAR = "near"
 """Stands for the letter of an assembly that was found without all others."""
@@ -57,9 +57,24 @@ class Start:
 
 
 def choose_start(session: Session) -> Start:
-    """The assembly that the file means, found once."""
+    """The assembly that the file means, found once; or the one that is continued."""
+    if session.continued is not None:
+        return _continued(session.continued)
     key = ("start", str(session.problem.assembly))
     return session.once(key, lambda: _choose_start(session))
+
+
+def _continued(continued: Continued) -> Start:
+    """From the variant of the file's own parameters."""
+    if continued.state is not None:
+        return Start(continued.state, NEAR, "continued in the parameters", row=continued.row)
+    diagnostic = Diagnostic(
+        "variant-lost",
+        "error",
+        "the assembly of the file's own parameters ends before it comes to these",
+        hint="take parameters nearer to the file's, or choose the assembly in the file itself",
+    )
+    return Start(None, NEAR, "", [diagnostic], Status.branch_lost, continued.row)
 
 
 def _choose_start(session: Session) -> Start:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.assembly.probe import Probe
 from mechkin_cli.analysis.assembly.start import choose_start
 from mechkin_cli.analysis.sweep.following import follow_rows
 from mechkin_cli.analysis.sweep.notes import not_converged_note, open_turn_note, redundancy_note
@@ -16,6 +15,7 @@ from mechkin_cli.analysis.sweep.result import Result
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.load_laws import quantities_read
+from mechkin_cli.solver.batch import assembly_size
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
 from mechkin_cli.status import Status
@@ -48,10 +48,7 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     known = session.problem.quantities()
     asked = [known[name] for name in dict.fromkeys(quantities)]
     session = _followed_part(session, asked)
-    start = choose_start(session)
-    if start.state is not None:
-        inputs = session.inputs.values[:, start.row]
-        session = session.sized(Probe.of(session).size(inputs, start.state))
+    session, start = first_assembly(session)
     asked += _held(session.problem, asked)
     result = _closed(session, start, asked, verdicts=verdicts)
     if result.row_states.has_failed:
@@ -60,6 +57,15 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     result.read(asked)
     result.row_states.diagnostics += _notes(result, asked)
     return result
+
+
+def first_assembly(session: Session) -> tuple[Session, Start]:
+    """The first assembly, and the session with residual and condition in parts of its size."""
+    start = choose_start(session)
+    if start.state is None or session.continued is not None:
+        return session, start
+    inputs = session.inputs.values[:, start.row]
+    return session.sized(assembly_size(session.plan, inputs, start.state)), start
 
 
 def _followed_part(session: Session, asked: list[Wanted]) -> Session:

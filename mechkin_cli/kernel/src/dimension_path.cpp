@@ -42,11 +42,12 @@ void DimensionPath::at(double sigma, PathPoint* point) const {
   const double* const from = inputs_ ? inputs_ : outputs(sigma) + moving_;
   const long stride = inputs_ ? 1 : stride_;
   for (int i = 0; i < n; ++i) point->inputs[i] = from[i * stride];
+  // nothing closes where there is no plan
+  if (!is_plan_) point->inputs.assign(n, __builtin_nan(""));
 }
 
-// Constants that are no plan's leave the plan as it was, so that what is closed there is judged by its neighbours.
 const Plan& DimensionPath::plan(double sigma) const {
-  plan_->assign(outputs(sigma));
+  is_plan_ = plan_->assign(outputs(sigma));
   return plan_->view();
 }
 

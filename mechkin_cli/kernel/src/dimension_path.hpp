@@ -35,6 +35,7 @@ class DimensionPath : public Path {
   mutable std::vector<double> places_, outputs_, values_;  // places, places x outputs, inputs x new places
   mutable std::vector<std::uint8_t> verdict_;
   mutable std::vector<char> memory_;
+  mutable bool is_plan_ = true;  // whether the constants of the place asked for last are a plan's
 };
 
 // Follows the branch from `start` at sigma 0 to sigma 1; false where it ends before.

@@ -42,6 +42,10 @@ Positions::Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRow
   require(!(outputs.demand() & ~demand), "the outputs need more than is demanded");
   require(!(demand & DEMAND_FORCES) || p.load_values == 0, "loads that vary by row have no place here");
   require(!(demand & (DEMAND_POWER | DEMAND_CONDITION)), "no place for condition and power error");
+  require(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
+  require(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");
+  require(!(demand & DEMAND_JERK) || demand & DEMAND_ACCELERATION, "jerks need accelerations");
+  require(iterations >= 0 && iterations <= 10000, "iterations: 0 to 10000");
   for (const TurningOutput& a : angles_)
     require(a.slot >= 0 && a.slot < outputs.view().slots && a.turn >= 0 && a.turn < turn_slots_, "angles: no slot");
   memory_.resize(kernel_unit(2)->workspace_size(p));

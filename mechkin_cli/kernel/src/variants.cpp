@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "assembly_size.hpp"
 #include "dimension_path.hpp"
 #include "threads.hpp"
 #include "units.hpp"
@@ -31,7 +32,7 @@ class Worker {
         path_(tape, wide, base.parameters.data(), &plan_, moves_ ? nullptr : first_inputs(), moving_ + base.start_row,
               base.rows),
         memory_(std::max(wide.workspace_size(plan.view()), narrow_.workspace_size(plan.view()))),
-        replay_memory_(wide.replay_size(tape)), guess_(plan.view().states * base.rows), way_(guess_.size()),
+        replay_memory_(wide.replay_size(tape)), size_memory_(plan.view(), narrow_), guess_(plan.view().states * base.rows), way_(guess_.size()),
         limit_(base.rows), way_limit_(base.rows), correction_(base.rows), orientation_(base.rows), flags_(base.rows),
         way_inputs_(plan.view().inputs * base.rows) {
     for (const ClosingTurn& t : closing_turns(plan.view(), narrow_)) turn_slots_ += t.width;
@@ -126,38 +127,10 @@ class Worker {
     Node node;
     if (!follow_to_target(stepper, base_.state.data(), &node)) return false;
     state_ = node.state;
-    return plan_.assign(replayed) && plan_.assign_size(size_at_start(replayed));
-  }
-
-  // Diagonal of the box of all joint points, in m; 1 if they coincide.
-  double size_at_start(const double* replayed) {
-    const Plan& p = plan_.view();
-    std::vector<double> points(3 * p.size_points), inputs(p.inputs);
-    for (int i = 0; i < p.inputs; ++i)
-      inputs[i] = moves_ ? replayed[moving_ + i * base_.rows + base_.start_row] : start_inputs_[i];
-    double residual, correction;
-    unsigned char flags;
-    Request r = {};
-    r.rows = 1;
-    r.inputs = inputs.data(), r.guess = state_.data();
-    r.wanted = {p.size_points, 3 * p.size_points, p.size_point};
-    r.outputs = points.data();
-    r.residual = &residual, r.correction = &correction, r.flags = &flags;
-    r.iterations = base_.iterations;
-    r.tight = base_.following.tight, r.coarse = base_.following.coarse, r.accept = base_.following.accept;
-    narrow_.run(p, r, memory_.data());
-    double square = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      double low = HUGE_VAL, high = -HUGE_VAL;
-      for (int k = 0; k < p.size_points; ++k) {
-        // a point of ground is given in m
-        const double x = p.size_point[k].index < 0 ? p.size_point[k].data[axis] : points[3 * k + axis];
-        low = std::fmin(low, x), high = std::fmax(high, x);
-      }
-      if (p.size_points) square += (high - low) * (high - low);
-    }
-    const double size = std::sqrt(square);
-    return size > 0.0 ? size : 1.0;
+    if (!plan_.assign(replayed)) return false;
+    const StepLimits& l = base_.following;
+    const NewtonLimits limits = {l.tight, l.coarse, l.accept, base_.iterations};
+    return plan_.assign_size(assembly_size(plan_.view(), narrow_, node.inputs.data(), state_.data(), limits, size_memory_));
   }
 
   // Guesses of all rows, both ways from the start's.
@@ -219,6 +192,7 @@ class Worker {
   const bool moves_;
   DimensionPath path_;
   std::vector<char> memory_, replay_memory_;
+  SizeMemory size_memory_;
   std::vector<double> guess_, way_, limit_, way_limit_, correction_, orientation_;
   std::vector<unsigned char> flags_;
   std::vector<double> way_inputs_, turn_, way_turn_, state_;
@@ -247,6 +221,11 @@ Variants::Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputLi
   require(!(outputs.demand() & ~base_.demand), "the outputs need more than is demanded");
   require(!(base_.demand & DEMAND_FORCES) || p.load_values == 0, "loads that vary by row have no place here");
   require(!(base_.demand & DEMAND_POWER), "no place for the power error");
+  const unsigned demand = base_.demand;
+  require(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
+  require(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");
+  require(!(demand & DEMAND_JERK) || demand & DEMAND_ACCELERATION, "jerks need accelerations");
+  require(base_.iterations >= 0 && base_.iterations <= 10000, "iterations: 0 to 10000");
   int turns = 0;
   for (const ClosingTurn& turn : closing_turns(p, *kernel_unit(2))) turns += turn.width;
   for (const ClosingAngle& a : base_.angles)

@@ -1,0 +1,190 @@
+"""One position at a time: `Model.solve`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from math import isfinite
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.sweep import analyze
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
+from mechkin_cli.interface.arguments import Setting, texts
+from mechkin_cli.interface.settings import input_values
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
+from mechkin_cli.nearest import nearest_hint
+from mechkin_cli.solver.closing_turns import turn_slots
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
+from mechkin_cli.solver.inputs import input_unit
+from mechkin_cli.solver.stepping import step_limits
+from mechkin_cli.status import Status
+from mechkin_cli.units import Conversion
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.analysis.sweep import Result
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.interface.model import Model
+    from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.solver.session import Session
+
+Cell = "float | NDArray[np.float64]"
+
+
+class Position(dict[str, "float | NDArray[np.float64]"]):
+    """Quantities by name in the file's units, vectors as arrays (3,); nan without a solution.
+
+    Attributes:
+        status: `ok`, or `branch-lost` where the branch does not lead to the inputs.
+    """
+
+    __slots__ = ("status",)
+
+    def __init__(self, values: Mapping[str, float | NDArray[np.float64]], status: str) -> None:
+        super().__init__(values)
+        self.status = status
+
+
+class _Column(NamedTuple):
+    name: str
+    first: int
+    width: int
+    conversion: Conversion
+
+
+class Solver:
+    """Positions of a model, each continued from the nearest row of its sweep."""
+
+    def __init__(self, model: Model, names: tuple[str, ...]) -> None:
+        problem = model.problem
+        wanted = _wanted(model, names)
+        result = analyze(model.session, verdicts=False)
+        known = problem.quantities()
+        session = result.session
+        units = problem.units
+        readout = session.readout(wanted)
+        self.columns = [
+            _Column(q.name, slot.first, slot.width, units.conversion(known[q.name].dimension))
+            for q in wanted
+            for slot in (readout.slots[q.name],)
+        ]
+        self.inputs = [item.name for item in problem.motion.inputs]
+        self.first = [float(item.written[0]) for item in problem.motion.inputs]
+        self.to_kernel = [
+            (units.conversion(known[item.name].dimension), unit)
+            for item, unit in zip(
+                problem.motion.inputs,
+                [input_unit(session.layout, item) for item in problem.motion.inputs],
+                strict=True,
+            )
+        ]
+        self.problem = problem
+        self.native = _native(result, session, readout.outputs, wanted, self.columns)
+
+    def solve(self, inputs: Setting | Mapping[str, Setting]) -> Position:
+        """The position at some inputs."""
+        places = dict(zip(self.inputs, self.first, strict=True))
+        places.update(_plain(inputs, places) or input_values(self.problem, inputs))
+        values = [
+            conversion.apply(places[name]) / unit
+            for name, (conversion, unit) in zip(self.inputs, self.to_kernel, strict=True)
+        ]
+        found = None if self.native is None else self.native.solve(values)
+        if found is None:
+            nothing = {c.name: np.nan if c.width == 1 else np.full(3, np.nan) for c in self.columns}
+            return Position(nothing, Status.branch_lost.label)
+        cells: dict[str, float | NDArray[np.float64]] = {}
+        for name, first, width, conversion in self.columns:
+            if width == 1:
+                cells[name] = conversion.reverse(found[first])
+            else:
+                cells[name] = conversion.reverse(np.array(found[first : first + width]))
+        return Position(cells, "ok")
+
+
+def _plain(inputs: object, known: Mapping[str, float]) -> dict[str, float] | None:
+    """Finite numbers of known inputs; None for what has to be looked at more closely."""
+    if type(inputs) is not dict:
+        return None
+    for name, value in inputs.items():
+        if name not in known or type(value) is not float or not isfinite(value):
+            return None
+    return inputs
+
+
+def _wanted(model: Model, names: tuple[str, ...]) -> list[Wanted]:
+    problem = model.problem
+    known = problem.quantities()
+    found = []
+    for name in names:
+        if name not in known:
+            hint = hint_of(name) or nearest_hint(name, known)
+            hint = hint or "quantities are names such as J.theta; analyze takes expressions"
+            raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
+        quantity = known[name]
+        forces = demand_of(problem.mechanism, [quantity]) & Demand.FORCES
+        unsure = quantity.kind in WRENCH_KINDS and model.session.is_redundant
+        if quantity.owner == "row" or quantity.kind in DERIVED_KINDS or unsure:
+            raise UsageError(f"solve does not give {name}; analyze does, at the rows of the file")
+        if forces and problem.load_laws:
+            raise UsageError(f"{name} depends on loads that vary; analyze gives it")
+        found.append(quantity)
+    return found
+
+
+def _native(
+    result: Result,
+    session: Session,
+    outputs: _kernel.Outputs,
+    wanted: list[Wanted],
+    columns: list[_Column],
+) -> _kernel.Positions | None:
+    """The kernel's rows to start from; None where no row has a solution."""
+    solved = np.flatnonzero(result.solved)
+    if not solved.size:
+        return None
+    plan, inputs = session.plan, session.inputs
+    slots = turn_slots(plan)
+    widths = _kernel.closing_turns(plan)
+    turns = np.zeros((sum(width for *_, width in widths), solved.size))
+    angles = []
+    layout = session.layout
+    for quantity, column in zip(wanted, columns, strict=True):
+        place = layout.joint_reference.get(quantity.owner, 0)
+        if quantity.kind != "coordinate" or quantity.order or place >= 0:
+            continue
+        joint = layout.mechanism.joints[quantity.owner]
+        slot = slots.get((-1 - place, joint.type.freedom_of[quantity.coordinate]))
+        if slot is not None:
+            angles.append((column.first, slot))
+            turns[slot] = np.asarray(result.quantity(quantity.name).value)[solved]
+
+    def rows(table: Floats) -> Floats:
+        return np.ascontiguousarray(table[:, solved])
+
+    return _kernel.Positions(
+        plan=plan,
+        outputs=outputs,
+        inputs=rows(inputs.values),
+        rates=rows(inputs.rates),
+        accelerations=rows(inputs.accelerations),
+        jerks=rows(inputs.jerks),
+        states=rows(result.row_states.states),
+        turns=turns,
+        demand=int(demand_of(session.problem.mechanism, wanted)),
+        iterations=tolerances.NEWTON_ITERATIONS,
+        limits=step_limits(),
+        angles=angles,
+    )
+
+
+def solver_of(model: Model, quantities: Iterable[str] | None) -> Solver:
+    """The solver of some quantities; of all joint coordinates if None."""
+    if quantities is None:
+        return Solver(model, model.problem.mechanism.coordinates)
+    return Solver(model, texts("quantities", quantities, '["O4.theta"]'))

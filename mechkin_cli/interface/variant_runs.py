@@ -1,0 +1,324 @@
+"""The runs behind `Model.vary`: chunks through the kernel, what takes more one at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.reductions import Reduction
+from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
+from mechkin_cli.expressions import Expression, Quantity, UnknownName, Vector
+from mechkin_cli.interface.varied import Base, VariedModel
+from mechkin_cli.kernel._kernel import VariantEnd
+from mechkin_cli.kernel.width import threads_for
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
+from mechkin_cli.solver.variation import Reading, Runs, Variation, run_variants
+from mechkin_cli.status import Status
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.mechanism.problem import Problem
+    from mechkin_cli.mechanism.quantities import Wanted
+
+CHUNK_NUMBERS = 2_000_000
+"""Numbers that a chunk of variants holds at most: memory stays flat."""
+
+Reductions = tuple[Reduction, ...] | Reduction | None
+
+
+def sample_of(problem: Problem) -> Any:
+    """A resolver of names to one-row stand-ins of the right dimension."""
+
+    def resolve(name: str) -> Quantity:
+        one = np.ones(1)
+        if name in problem.parameters:
+            return Quantity(one, problem.parameters[name].dimension)
+        known = problem.quantities()
+        if name not in known:
+            raise UnknownName(name, [*problem.parameters, *known])
+        wanted = known[name]
+        return Quantity(Vector(one, one, one) if wanted.vector else one, wanted.dimension)
+
+    return resolve
+
+
+class Study:
+    """One call of `vary`."""
+
+    def __init__(
+        self,
+        base: Base,
+        names: tuple[str, ...],
+        asked: Mapping[str, Expression],
+        reductions: Mapping[str, Reductions],
+        lanes: int,
+        threads: int,
+    ) -> None:
+        self.base, self.names, self.asked, self.reductions = base, names, asked, reductions
+        self.lanes, self.threads = lanes, threads
+        self.problem = base.model.problem
+        self.rows = self.problem.motion.rows
+        known = self.problem.quantities()
+        used = (name for expression in asked.values() for name in sorted(expression.names))
+        self.read = tuple(dict.fromkeys(n for n in map(self._quantity_of, used) if n is not None))
+        self.wanted = tuple(known[name] for name in self.read)
+        self.errors: dict[int, MechkinError] = {}
+
+    def _quantity_of(self, name: str) -> str | None:
+        if name in self.problem.parameters:
+            return None
+        return name if name in self.problem.quantities() else name.rpartition(".")[0]
+
+    def run(
+        self, values: Floats
+    ) -> tuple[dict[str, Floats], NDArray[np.int8], dict[int, MechkinError]]:
+        """All variants, chunk by chunk: what was asked for, the verdicts, the errors."""
+        count = values.shape[1]
+        codes = np.empty((count, self.rows), dtype=np.int8)
+        parts: dict[str, list[Floats]] = {text: [] for text in self.asked}
+        variation = self.base.variation(self.names)
+        native = self._native(variation) if variation is not None else None
+        chunk = self._chunk()
+        for begin in range(0, max(count, 1), chunk):
+            part = values[:, begin : begin + chunk]
+            found = self._chunk_values(variation, native, part, begin, codes)
+            for text, array in found.items():
+                parts[text].append(array)
+        return {text: np.concatenate(arrays) for text, arrays in parts.items()}, codes, self.errors
+
+    def _chunk(self) -> int:
+        width = 2 + sum(3 if quantity.vector else 1 for quantity in self.wanted)
+        return max(1, CHUNK_NUMBERS // (self.rows * width))
+
+    # --- by the kernel --------------------------------------------------------------------
+
+    def _native(self, variation: Variation) -> tuple[Reading, Any] | None:
+        """The kernel's variants of what is read; None where the rows take more than its run."""
+        problem = self.problem
+        given = {driven.name for driven in problem.motion.inputs}
+        given |= {name for driven in problem.motion.inputs for name in driven.orders}
+        forces = demand_of(problem.mechanism, self.wanted) & Demand.FORCES
+        session = variation.base
+        if (
+            any(q.kind in DERIVED_KINDS or q.kind == "power_error" for q in self.wanted)
+            or (problem.load_laws and forces)
+            or (session.is_redundant and any(q.kind in WRENCH_KINDS for q in self.wanted))
+            or (variation.moving_inputs and given & {q.name for q in self.wanted})
+        ):
+            return None
+        reading = variation.reading(self._computed())
+        demand = demand_of(problem.mechanism, self._computed())
+        if session.graph.blocks:
+            demand |= Demand.CONDITION
+        return reading, reading.runs(demand, self.base.start)
+
+    def _computed(self) -> list[Wanted]:
+        """What the kernel computes: no verdicts, and nothing that is given."""
+        given = self._given()
+        return [q for q in self.wanted if q.owner != "row" and q.name not in given]
+
+    def _given(self) -> dict[str, Floats]:
+        """Time, inputs and their rates over the rows, in SI."""
+        motion = self.problem.motion
+        found = {} if motion.time is None else {"time": motion.time.values}
+        for driven in motion.inputs:
+            found |= {name: in_si for name, (in_si, _) in driven.orders.items()}
+        return found
+
+    def _chunk_values(
+        self,
+        variation: Variation | None,
+        native: tuple[Reading, Any] | None,
+        values: Floats,
+        begin: int,
+        codes: NDArray[np.int8],
+    ) -> dict[str, Floats]:
+        count = values.shape[1]
+        if native is None or variation is None:
+            found = {t: self._empty(e, count) for t, e in self.asked.items()}
+            alone = np.arange(count)
+        else:
+            reading, kernel = native
+            threads = threads_for(count * self.rows, self.threads)
+            runs = run_variants(kernel, values, self.lanes, threads)
+            codes[begin : begin + count] = _verdicts(runs)
+            found = self._evaluated(variation, reading, runs, values, codes[begin : begin + count])
+            alone = np.flatnonzero(runs.end != int(VariantEnd.COMPLETE))
+        for number in alone:
+            self._alone(values[:, number], int(begin + number), int(number), found, codes)
+        return {text: self._reduced(text, array) for text, array in found.items()}
+
+    def _evaluated(
+        self,
+        variation: Variation,
+        reading: Reading,
+        runs: Runs,
+        values: Floats,
+        codes: NDArray[np.int8],
+    ) -> dict[str, Floats]:
+        """The expressions in the file's units, (variants, rows) or (variants, rows, 3)."""
+        units, count = self.problem.units, values.shape[1]
+        resolve = _Resolve(self, variation, reading, runs, values, codes)
+        found = {}
+        for text, expression in self.asked.items():
+            written = self._written(text)
+            if written is not None:
+                found[text] = np.broadcast_to(written, (count, self.rows))
+                continue
+            result = expression.evaluate(resolve, units)
+            value = result.value
+            parts = value.components if isinstance(value, Vector) else (value,)
+            columns = [
+                np.asarray(
+                    units.from_si(
+                        np.array(np.broadcast_to(part, (count * self.rows,))), result.dimension
+                    )
+                ).reshape(count, self.rows)
+                for part in parts
+            ]
+            found[text] = np.stack(columns, axis=2) if len(columns) > 1 else columns[0]
+        return found
+
+    def _written(self, text: str) -> Floats | None:
+        """An input's values, or time, exactly as written."""
+        motion = self.problem.motion
+        if text == "time" and motion.time is not None:
+            return motion.time.written
+        for driven in motion.inputs:
+            if text == driven.name:
+                return driven.written
+        return None
+
+    # --- one at a time --------------------------------------------------------------------
+
+    def _alone(
+        self,
+        values: Floats,
+        number: int,
+        place: int,
+        found: dict[str, Floats],
+        codes: NDArray[np.int8],
+    ) -> None:
+        """One variant as `with_parameters(...).analyze()` gives it."""
+        named = dict(zip(self.names, values.tolist(), strict=True))
+        try:
+            model = VariedModel(self.base, named)
+            analysis = model.analyze(self.read, tables=[], lanes=self.lanes)
+            if analysis.rows != self.rows:
+                raise UsageError(
+                    f"variant {number} has {analysis.rows} rows, the file has {self.rows}; vary "
+                    "parameters that keep their number, or take with_parameters for each"
+                )
+            codes[number] = analysis.result.status
+            for text in self.asked:
+                found[text] = _writable(found[text])
+                found[text][place] = analysis[text]
+        except MechkinError as error:
+            self.errors[number] = error
+            codes[number] = int(Status.not_assembled)
+            for text in self.asked:
+                found[text] = _writable(found[text])
+                found[text][place] = np.nan
+
+    def _empty(self, expression: Expression, count: int) -> Floats:
+        value = expression.evaluate(sample_of(self.problem), self.problem.units).value
+        shape = (count, self.rows, 3) if isinstance(value, Vector) else (count, self.rows)
+        return np.full(shape, np.nan)
+
+    def _reduced(self, text: str, values: Floats) -> Floats:
+        reduction = self.reductions[text]
+        if reduction is None:
+            return values
+        if isinstance(reduction, tuple):
+            return np.stack([self._by(each, text, values) for each in reduction], axis=-1)
+        return self._by(reduction, text, values)
+
+    def _by(self, reduction: Reduction, text: str, values: Floats) -> Floats:
+        if values.ndim == 3:
+            parts = [self._by(reduction, text, values[:, :, k]) for k in range(3)]
+            return np.stack(parts, axis=1)
+        try:
+            found = np.asarray(reduction(values), dtype=np.float64)
+        except Exception as error:
+            raise UsageError(
+                f"the reduction of {text} failed with {type(error).__name__}: "
+                f"{str(error)[:LONGEST_NAME]}; it takes (variants, rows) = {values.shape}"
+            ) from error
+        if found.shape[:1] != values.shape[:1]:
+            raise UsageError(
+                f"the reduction of {text} gives an array of shape {found.shape}; it takes "
+                f"(variants, rows) = {values.shape} and gives one value a variant"
+            )
+        return found
+
+
+class _Resolve:
+    """Names of expressions over a chunk: (variants * rows,) in SI."""
+
+    def __init__(
+        self,
+        study: Study,
+        variation: Variation,
+        reading: Reading,
+        runs: Runs,
+        values: Floats,
+        codes: NDArray[np.int8],
+    ) -> None:
+        self.study, self.reading, self.runs = study, reading, runs
+        self.count, self.rows = values.shape[1], study.rows
+        self.known = study.problem.quantities()
+        self.given = study._given()
+        self.unclear = codes == int(Status.rank_unclear)
+        self.solved = runs.end == int(VariantEnd.COMPLETE)
+        parameters = variation.parameters(values)
+        self.parameters = dict(zip(study.problem.parameters, parameters, strict=True))
+
+    def __call__(self, name: str) -> Quantity:
+        if name in self.parameters:
+            dimension = self.study.problem.parameters[name].dimension
+            return Quantity(np.repeat(self.parameters[name], self.rows), dimension)
+        if name not in self.known:
+            raise UnknownName(name, list(self.known))
+        wanted = self.known[name]
+        if wanted.owner == "row" and name != "time":
+            array = self.runs.residual if wanted.kind == "residual" else self.runs.condition
+            return Quantity(array.reshape(-1), wanted.dimension)
+        if name in self.given:
+            return Quantity(self._over_rows(name), wanted.dimension)
+        slot = self.reading.slots[name]
+        columns = [self._column(wanted, slot.first + k) for k in range(slot.width)]
+        return Quantity(Vector(*columns) if wanted.vector else columns[0], wanted.dimension)
+
+    def _over_rows(self, name: str) -> Floats:
+        rows = np.broadcast_to(self.given[name], (self.count, self.rows))
+        values = {driven.name for driven in self.study.problem.motion.inputs} | {"time"}
+        if name not in values:
+            rows = np.where(self.solved[:, None], rows, np.nan)
+        return rows.reshape(-1)
+
+    def _column(self, wanted: Wanted, slot: int) -> Floats:
+        column = self.runs.outputs[:, slot, :]
+        if self.unclear.any() and demand_of(self.study.problem.mechanism, [wanted]):
+            column = np.where(self.unclear, np.nan, column)
+        return column.reshape(-1)
+
+
+def _verdicts(runs: Runs) -> NDArray[np.int8]:
+    """Codes of `Status` (variants, rows) of those that are complete; others are not read."""
+    codes = np.full(runs.condition.shape, int(Status.ok), dtype=np.int8)
+    if np.isnan(runs.condition).all():
+        return codes
+    codes[~(runs.condition <= tolerances.CONDITION_NEAR_SINGULAR)] = int(Status.near_singular)
+    codes[~(runs.condition <= tolerances.CONDITION_RANK_UNCLEAR)] = int(Status.rank_unclear)
+    return codes
+
+
+def _writable(array: Floats) -> Floats:
+    return array if array.flags.writeable else array.copy()
