@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from architecture.package import FILES, NAMES, imports, room
+from architecture.package import FILES, NAMES, ROOT, imports, room
 
 BASE = {"arrays", "diagnostics", "nearest", "status", "tolerances"}
 KERNEL = BASE | {"kernel"}
@@ -76,6 +76,30 @@ def test_libraries_stay_in_their_rooms(path: Path) -> None:
         if room(path) not in HOMES.get(module.split(".")[0], {room(path)})
     ]
     assert wrong == []
+
+
+WITHIN_ANALYSIS = {
+    "assembly": set(),
+    "derived": set(),
+    "mobility": {"assembly"},
+    "modes": {"assembly"},
+    "ranges": {"assembly"},
+    "sweep": {"assembly", "derived", "mobility"},
+}
+"""What each room of `analysis/` knows of the others: no circles."""
+
+
+@pytest.mark.parametrize("path", [p for p in FILES if room(p) == "analysis"], ids=str)
+def test_rooms_of_analysis_have_no_circles(path: Path) -> None:
+    own = path.relative_to(ROOT).parts[1].removesuffix(".py")
+    known = WITHIN_ANALYSIS.get(own, set()) | {own}
+    others = [module.split(".")[2:3] for _, module in imports(path)]
+    asked = {
+        name[0]
+        for name, (_, module) in zip(others, imports(path), strict=True)
+        if module.startswith("mechkin_cli.analysis.") and name
+    }
+    assert asked <= known
 
 
 def test_every_room_has_its_arrows() -> None:

@@ -6,8 +6,8 @@ of its joint points (`link_point`). The names have a space, so that no file can 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from mechkin_cli.mechanism.derived_quantities import (
     FINITE_KINDS,
@@ -16,26 +16,64 @@ from mechkin_cli.mechanism.derived_quantities import (
 )
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.quantities import Wanted
+from mechkin_cli.solver.codes import Demand
 from mechkin_cli.units import ANGULAR_RATE, DIMENSIONLESS, LENGTH, VELOCITY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from mechkin_cli.analysis.derived.rotations import Rotation
     from mechkin_cli.analysis.derived.row_vectors import RowVector
-    from mechkin_cli.analysis.sweep.result import Result
-    from mechkin_cli.arrays import Floats
+    from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.solver.inputs import KernelInputs
     from mechkin_cli.solver.session import Session
 
 AXES = ("x", "y", "z")
 
 
+class RowStates(Protocol):
+    """The rows of a run: which have a position (rows,), verdicts, states and closing turns."""
+
+    @property
+    def reached(self) -> Bools: ...
+    @property
+    def status(self) -> NDArray[np.int8]: ...
+    @property
+    def states(self) -> Floats: ...
+    @property
+    def turns(self) -> Floats: ...
+
+
+class Evaluated(Protocol):
+    """A finished run on whose states quantities are evaluated (`analysis.sweep.Result`)."""
+
+    @property
+    def session(self) -> Session: ...
+    @property
+    def row_states(self) -> RowStates: ...
+    @property
+    def shifts(self) -> tuple[int, ...]: ...
+    def evaluated(
+        self,
+        wanted: Sequence[Wanted],
+        *,
+        session: Session | None = None,
+        inputs: KernelInputs | None = None,
+        demand: Demand = Demand.POSITION,
+        shift: int = 0,
+    ) -> dict[str, Floats]:
+        """Quantities on the states, not kept."""
+        ...
+
+
 class Reading(NamedTuple):
     """Basis quantities of a result at the rates of `inputs`: `columns` by name, (1, rows) or
     (3, rows) in SI, nan where a row has none."""
 
-    result: Result
+    result: Evaluated
     columns: Mapping[str, Floats]
     inputs: KernelInputs
 

@@ -18,13 +18,11 @@ from mechkin_cli.mechanism.derived_quantities import FINITE_KINDS, INSTANT_KINDS
 from mechkin_cli.mechanism.quantities import Wanted
 
 if TYPE_CHECKING:
-    from mechkin_cli.analysis.sweep.result import Result
     from mechkin_cli.arrays import Floats
 
 
-def derived_columns(result: Result, wanted: Sequence[Wanted]) -> dict[str, Floats]:
-    """Some derived quantities by name, (1, rows) or (3, rows) in SI."""
-    run = Reading(result, result.columns, result.session.inputs)
+def derived_columns(run: Reading, wanted: Sequence[Wanted]) -> dict[str, Floats]:
+    """Some derived quantities of a run by name, (1, rows) or (3, rows) in SI."""
     with np.errstate(all="ignore"):
         parts = _computed(run, wanted)
         return {q.name: np.stack(own) for q, own in zip(wanted, parts, strict=True)}

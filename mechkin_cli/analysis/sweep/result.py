@@ -61,7 +61,7 @@ class Result:
         self.row_states = rows
         self.demand = Demand.POSITION
         self.residual = np.full(rows.reached.size, np.nan)
-        self.shifts = SHIFTS if session.is_redundant else ()
+        self.shifts: tuple[int, ...] = SHIFTS if session.is_redundant else ()
         self._columns: Columns = {}
         self._shifted: tuple[Columns, ...] = tuple({} for _ in self.shifts)
         self._alternative: int | None = None
@@ -271,9 +271,10 @@ class Result:
         if plain:
             self._read_plain(plain)
         if derived:
-            from mechkin_cli.analysis.derived import derived_columns
+            from mechkin_cli.analysis.derived import Reading, derived_columns
 
-            self._columns |= derived_columns(self, derived)
+            run = Reading(self, self._columns, self.session.inputs)
+            self._columns |= derived_columns(run, derived)
 
     def _read_plain(self, wanted: list[Wanted]) -> None:
         demand = demand_of(self.problem.mechanism, wanted)
