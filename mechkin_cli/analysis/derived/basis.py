@@ -38,24 +38,44 @@ class RowStates(Protocol):
     """The rows of a run: which have a position (rows,), verdicts, states and closing turns."""
 
     @property
-    def reached(self) -> Bools: ...
+    def reached(self) -> Bools:
+        """Rows that have a position (rows,)."""
+        ...
+
     @property
-    def status(self) -> NDArray[np.int8]: ...
+    def status(self) -> NDArray[np.int8]:
+        """Codes of `Status` (rows,)."""
+        ...
+
     @property
-    def states(self) -> Floats: ...
+    def states(self) -> Floats:
+        """States of the plan (states, rows)."""
+        ...
+
     @property
-    def turns(self) -> Floats: ...
+    def turns(self) -> Floats:
+        """Turns of closing joints (turn slots, rows)."""
+        ...
 
 
 class Evaluated(Protocol):
     """A finished run on whose states quantities are evaluated (`analysis.sweep.Result`)."""
 
     @property
-    def session(self) -> Session: ...
+    def session(self) -> Session:
+        """The mechanism in the kernel."""
+        ...
+
     @property
-    def row_states(self) -> RowStates: ...
+    def row_states(self) -> RowStates:
+        """The rows."""
+        ...
+
     @property
-    def shifts(self) -> tuple[int, ...]: ...
+    def shifts(self) -> tuple[int, ...]:
+        """Other reactions in equilibrium, where constraints are redundant."""
+        ...
+
     def evaluated(
         self,
         wanted: Sequence[Wanted],
