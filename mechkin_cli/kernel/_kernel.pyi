@@ -250,7 +250,7 @@ class Plan:
         second: Floats | None = None,
         residual: Floats,
         correction: Floats,
-        orientation: Floats | None = None,
+        side: Floats | None = None,
         condition: Floats | None = None,
         power_error: Floats | None = None,
         flags: NDArray[np.uint8],

@@ -28,7 +28,8 @@ class Batch(NamedTuple):
 
     `states` and `outputs` as planned; `first` and `second` are the derivatives of the columns
     (lengths in the kernel's unit); `correction` is the largest change of an unknown against its
-    guess; `flags` are `RowFlag`s; what was not asked for is None.
+    guess; `side` (blocks, rows) are the signs of the square blocks' determinants where more than
+    positions was demanded; `flags` are `RowFlag`s; what was not asked for is None.
     """
 
     states: Floats
@@ -37,7 +38,7 @@ class Batch(NamedTuple):
     second: Floats | None
     residual: Floats
     correction: Floats
-    orientation: Floats
+    side: Floats
     condition: Floats | None
     power_error: Floats | None
     flags: NDArray[np.uint8]
@@ -95,7 +96,7 @@ def run(
     moving, second_order = demand & Demand.VELOCITY, demand & Demand.ACCELERATION
     first = np.empty((plan.columns, rows)) if derivatives and moving else None
     second = np.empty((plan.columns, rows)) if derivatives and second_order else None
-    residual, correction, orientation = np.empty(rows), np.empty(rows), np.ones(rows)
+    residual, correction, side = np.empty(rows), np.empty(rows), np.ones((plan.blocks, rows))
     condition = np.empty(rows) if demand & Demand.CONDITION else None
     power_error = np.empty(rows) if demand & Demand.POWER else None
     flags = np.empty(rows, dtype=np.uint8)
@@ -113,7 +114,7 @@ def run(
         second=second,
         residual=residual,
         correction=correction,
-        orientation=orientation,
+        side=side,
         condition=condition,
         power_error=power_error,
         flags=flags,
@@ -124,7 +125,7 @@ def run(
         lanes=width(lanes),
         threads=threads_for(rows, threads),
     )
-    measured = (residual, correction, orientation, condition, power_error)
+    measured = (residual, correction, side, condition, power_error)
     return Batch(states, values, first, second, *measured, flags)
 
 

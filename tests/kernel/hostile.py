@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.solver.stepping import step_limits
 
 REFUSALS = (TypeError, ValueError, OverflowError, MemoryError)
 INDICES = [-(2**40), -(2**31), -1000, -3, -2, -1, 0, 1, 2, 3, 4, 7, 1000, 2**31 - 1, 2**31, 2**40]
@@ -210,7 +211,7 @@ class Hostile:
         named["values"] = None if outputs is None else self.array(outputs.slots, rows)
         named["first"] = self.array(plan.columns, rows) if demand & 1 else None
         named["second"] = self.array(plan.columns, rows) if demand & 2 else None
-        for name in ("residual", "correction", "orientation"):
+        for name in ("residual", "correction"):
             named[name] = self.per_row(rows)
         named["condition"] = self.per_row(rows) if demand & 8 else None
         named["power_error"] = self.per_row(rows) if demand & 16 else None
@@ -233,17 +234,27 @@ class Hostile:
         chosen = {name: named.get(name) for name in ("inputs", "states", "residual", "flags")}
         tests = (1e-12,) if not self.bad() else self.random.choice(WRONG)
         self.attempt(plan.search, block=block, **chosen, iterations=self.index(0, 9), tests=tests)
+        self.follow(plan)
+
+    def follow(self, plan: Any) -> None:
+        """Rows on a path, and single steps."""
         count = self.random.randint(0, 5)
-        sigma = np.sort(np.array([self.random.uniform(0, 1) for _ in range(count)]))
-        if count and self.bad():
-            sigma[0] = self.random.choice(NUMBERS)
-        limits = [0.9, 0.1, 0.1, 0.1, 0.1, 0.5, 1e-9, 50, 1e-15, 1e-8, 1e-12, 0.0]
+        path = self.array(plan.inputs, count)
+        guess, limit = self.array(plan.states, count), self.per_row(count)
+        start = [self.number() for _ in range(plan.states + self.bad())]
+        limits = step_limits()
+        every_row = self.random.choice([True, False])
+        arguments = [plan, path, start, [], every_row, limits, guess, limit, None]
         if self.bad():
-            limits[self.random.randrange(12)] = self.random.choice(NUMBERS)
-        start, last = np.zeros(plan.states), np.zeros(plan.states + self.bad())
-        path = [[self.number() for _ in range(plan.inputs)] for _ in range(2)]
-        arrays = self.array(plan.states, count), self.per_row(count), last
-        self.attempt(plan.track, *path, sigma, start, *arrays, limits)
+            arguments[self.random.randrange(len(arguments))] = self.random.choice(WRONG)
+        self.attempt(_kernel.follow_rows, *arguments)
+        inputs = [self.number() for _ in range(plan.inputs + self.bad())]
+        stepper = self.attempt(_kernel.Stepper.straight, plan, inputs, inputs, limits)
+        if stepper is not None:
+            node = self.attempt(stepper.close, self.number(), start)
+            if node is not None:
+                self.attempt(stepper.step, node, self.number())
+                self.attempt(stepper.judge, node, node)
 
     def constants(self, plan: Any) -> Any:
         values = plan.constants

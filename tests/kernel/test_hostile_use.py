@@ -72,14 +72,16 @@ def test_a_spent_builder_takes_nothing() -> None:
 
 def test_a_builder_that_cannot_finish_may_be_mended() -> None:
     builder = _kernel.PlanBuilder(1.0, ZERO, 1.0)
-    builder.add_tree_joint(_kernel.TreeCode.R, -1, 0.0, FRAME)
+    for parent in (-1, 0):
+        builder.add_tree_joint(_kernel.TreeCode.R, parent, 0.0, FRAME)
+    builder.add_input(0, -1, 1.0)
     with pytest.raises(ValueError, match="every column must be an input or an unknown"):
         builder.finish()
-    builder.add_input(0, -1, 1.0)
+    builder.add_input(1, -1, 1.0)
     with pytest.raises(ValueError, match="every tree joint must be placed"):
         builder.finish()
-    builder.set_rest([0])
-    assert builder.finish().inputs == 1
+    builder.set_rest([0, 1])
+    assert builder.finish().inputs == 2
 
 
 @pytest.mark.parametrize("bad", [float("nan"), float("inf"), -float("inf")])
@@ -116,7 +118,7 @@ def test_a_sphere_has_no_coordinate_to_read_or_to_load() -> None:
     ("change", "message"),
     [
         ({"shift": 3}, "shift: 3 is not from 0 to 2"),
-        ({"demand": 64}, "demand: 64 is not from 0 to 63"),
+        ({"demand": 128}, "demand: 128 is not from 0 to 127"),
         ({"demand": 1}, "velocities need rates"),
         ({"iterations": -1}, "iterations: -1"),
         ({"lanes": 3}, "lanes: this width"),

@@ -83,7 +83,7 @@ def answers(source: str | Document, **options: Any) -> Values:
     assert not analysis.result.status.any()
     radian = float(np.asarray(analysis.result.units.from_si(np.ones(1), ANGLE))[0])
     found = {}
-    for name in analysis.result.slots:
+    for name in names:
         if name.endswith(".effort") and name.count(".") == 1:
             continue
         angle = name.endswith((".theta", ".theta1", ".theta2"))

@@ -16,7 +16,7 @@ from mechkin_cli.analysis.sweep.closing_angles import make_continuous
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
+from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of, forces_demand
 from mechkin_cli.status import Status, has_solution
 from mechkin_cli.units import DIMENSIONLESS, UnitSystem
 
@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 
 Columns = dict[str, "Floats"]
 """Quantities by name: (1, rows), vectors (3, rows); SI, nan where a row has none."""
+
+ROW_NUMBERS = {f"row.{name}": name for name in ("residual", "condition", "power_error")}
+"""Verdicts that are numbers, by the names of their quantities."""
 
 SHIFTS = (1, 2)
 """Parts of the null space by which other reactions in equilibrium differ, where constraints are
@@ -162,32 +165,28 @@ class Result:
 
     @property
     def condition(self) -> Floats:
-        """1 / smallest singular value of every row's scaled blocks (rows,)."""
-        if self._condition is None:
-            if self.graph.blocks:
-                self._store_verdicts(self._evaluated(Demand.CONDITION))
-            else:
-                self._condition = np.full(self.rows, np.nan)
-        assert self._condition is not None
-        return self._condition
+        """1 / smallest singular value of every row's scaled blocks (rows,); nan where it was not
+        computed."""
+        return self._nothing if self._condition is None else self._condition
 
     @property
     def power_error(self) -> Floats:
-        """|sum of powers| / sum of |powers| of every row (rows,); nan where nothing can move."""
-        if self._power_error is None:
-            from mechkin_cli.solver.demand import forces_demand
+        """|sum of powers| / sum of |powers| of every row (rows,); nan where it was not computed."""
+        return self._nothing if self._power_error is None else self._power_error
 
-            demand = forces_demand(self.problem.mechanism)
-            if not demand & Demand.VELOCITY:
-                return np.full(self.rows, np.nan)
-            self._store_verdicts(self._evaluated(demand | Demand.POWER))
-        assert self._power_error is not None
-        return self._power_error
+    @cached_property
+    def _nothing(self) -> Floats:
+        return np.full(self.rows, np.nan)
 
-    @property
-    def has_power_error(self) -> bool:
-        """Whether the run has read forces of moving rows, so that powers balance."""
-        return self._power_error is not None
+    def _verdict(self, name: str) -> Floats:
+        """A number of the row by its name, computed now if it was not."""
+        if name == "condition" and self._condition is None and self.graph.blocks:
+            self._store_verdicts(self._evaluated(Demand.CONDITION))
+        if name == "power_error" and self._power_error is None:
+            demand = forces_demand(self.problem.mechanism) | Demand.VELOCITY | Demand.POWER
+            self._store_verdicts(self._evaluated(demand))
+        found: Floats = getattr(self, name)
+        return found
 
     @property
     def columns(self) -> Mapping[str, Floats]:
@@ -225,8 +224,8 @@ class Result:
         problem = self.problem
         if name in problem.parameters:
             return problem.parameters[name]
-        if name in ("row.residual", "row.condition", "row.power_error"):
-            return Quantity(getattr(self, name[4:]), DIMENSIONLESS)
+        if name in ROW_NUMBERS:
+            return Quantity(self._verdict(ROW_NUMBERS[name]), DIMENSIONLESS)
         wanted = problem.quantities().get(name)
         if wanted is None:
             raise UnknownName(name, sorted(self._columns), hint_of(name))
@@ -258,7 +257,10 @@ class Result:
 
     def read(self, wanted: Iterable[Wanted]) -> None:
         """Evaluates the quantities that have not been read yet."""
-        new = [q for q in dict.fromkeys(wanted) if q.name not in self._columns and q.owner != "row"]
+        wanted = list(dict.fromkeys(wanted))
+        for name in (ROW_NUMBERS[q.name] for q in wanted if q.name in ROW_NUMBERS):
+            self._verdict(name)
+        new = [q for q in wanted if q.name not in self._columns and q.owner != "row"]
         derived = [quantity for quantity in new if quantity.kind in DERIVED_KINDS]
         plain = [quantity for quantity in new if quantity.kind not in DERIVED_KINDS]
         if derived:

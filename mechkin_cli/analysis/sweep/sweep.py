@@ -142,9 +142,10 @@ def _at_once(session: Session, asked: list[Wanted], verdicts: bool) -> tuple[lis
 def _failed(batch: Batch, rows: Rows) -> Bools:
     """Rows with a guess that did not close near it, on its side of every fold.
 
-    Orientations are there where the run demanded more than positions.
+    Sides are there where the run demanded more than positions.
     """
-    turned = batch.orientation != batch.orientation[int(np.argmax(rows.reached))]
+    first = int(np.argmax(rows.reached))
+    turned = (batch.side != batch.side[:, first : first + 1]).any(axis=0)
     failed: Bools = ~batch.good | turned | ~(batch.correction <= rows.limit)
     return rows.reached & failed
 

@@ -234,8 +234,6 @@ struct Request {
   double* second;               // columns x rows, may be null
   double* residual;             // rows
   double* correction;           // rows: largest change of an unknown against its guess, lengths in units
-  double* orientation;          // rows, may be null: product of the signs of the square blocks' determinants;
-                                // it changes where a fold lies between two places. Needs a demand.
   double* side;                 // blocks x rows, may be null: sign of a square block's determinant, else 1. Needs a
                                 // demand.
   double* pivot;                // blocks x rows, may be null: least pivot of each block's Jacobian. Needs a demand.

@@ -141,7 +141,7 @@ void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.second = given.write("second", p.columns);
   r.residual = given.write_required("residual", Arguments::ONE_PER_ROW);
   r.correction = given.write_required("correction", Arguments::ONE_PER_ROW);
-  r.orientation = given.write("orientation", Arguments::ONE_PER_ROW);
+  r.side = given.write("side", p.blocks);
   r.condition = given.write("condition", Arguments::ONE_PER_ROW);
   r.power_error = given.write("power_error", Arguments::ONE_PER_ROW);
   r.flags = given.write_flags("flags");

@@ -61,7 +61,7 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
   for (int s = 0; s < p.states; ++s) w.q[s] = in.get(r.guess, s);
   for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
 
-  Pack residual = 0.0, correction = 0.0, condition = 0.0, orientation = 1.0;
+  Pack residual = 0.0, correction = 0.0, condition = 0.0;
   Mask converged = all_lanes(true), side = all_lanes(true);
   for (int b = 0; b < p.blocks; ++b) {
     const Closed closed = close_block(p, w, b, r);
@@ -76,7 +76,6 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
       if (!r.jacobian) return;
       for (long e = 0; e < at.m * at.n; ++e) out.to(r.jacobian).put(at.jacobian - w.jacobian + e, at.jacobian[e]);
     });
-    orientation *= verdict.side;
     condition = max(verdict.condition, condition);
     if (r.side) out.to(r.side).put(b, verdict.side);
     if (r.pivot) out.to(r.pivot).put(b, matrices_of(p, w, b).least());
@@ -111,7 +110,6 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int c = 0; c < p.columns; ++c) writer(r.second).put(c, w.acceleration[c]);
   writer(r.residual).put(0, residual);
   writer(r.correction).put(0, correction);
-  if (r.orientation) writer(r.orientation).put(0, orientation);
   if (r.turn_count) write_turns(p, w, r, in);
   if (r.demand & DEMAND_CONDITION) writer(r.condition).put(0, condition);
 

@@ -33,7 +33,7 @@ class Worker {
               base.rows),
         memory_(std::max(wide.workspace_size(plan.view()), narrow_.workspace_size(plan.view()))),
         replay_memory_(wide.replay_size(tape)), size_memory_(plan.view(), narrow_), guess_(plan.view().states * base.rows), way_(guess_.size()),
-        limit_(base.rows), way_limit_(base.rows), correction_(base.rows), orientation_(base.rows), flags_(base.rows),
+        limit_(base.rows), way_limit_(base.rows), correction_(base.rows), side_(plan.view().blocks * base.rows), flags_(base.rows),
         way_inputs_(plan.view().inputs * base.rows) {
     for (const ClosingTurn& t : closing_turns(plan.view(), narrow_)) turn_slots_ += t.width;
     if (!base.angles.empty()) turn_.resize(turn_slots_ * base.rows), way_turn_.resize(turn_.size());
@@ -101,15 +101,17 @@ class Worker {
     r.wanted = outputs_.view();
     r.outputs = out.outputs + number * (long)r.wanted.slots * rows;
     r.residual = out.residual + number * rows, r.condition = out.condition + number * rows;
-    r.correction = correction_.data(), r.orientation = orientation_.data(), r.flags = flags_.data();
+    r.correction = correction_.data(), r.side = side_.data(), r.flags = flags_.data();
     r.demand = base_.demand;
     r.iterations = base_.iterations;
     r.tight = base_.following.tight, r.coarse = base_.following.coarse, r.accept = base_.following.accept;
-    std::fill(orientation_.begin(), orientation_.end(), 1.0);
+    std::fill(side_.begin(), side_.end(), 1.0);
     wide_.run(plan_.view(), r, memory_.data());
     for (long row = 0; row < rows; ++row)
-      if (flags_[row] || orientation_[row] != orientation_[0] || !(correction_[row] <= limit_[row]))
-        return VariantEnd::incomplete;
+      if (flags_[row] || !(correction_[row] <= limit_[row])) return VariantEnd::incomplete;
+    for (int b = 0; b < plan_.view().blocks; ++b)
+      for (long row = 1; row < rows; ++row)
+        if (side_[b * rows + row] != side_[b * rows]) return VariantEnd::incomplete;
     unwrap_angles(r.outputs);
     if (!(r.demand & DEMAND_CONDITION)) std::fill_n(r.condition, rows, __builtin_nan(""));
     return VariantEnd::complete;
@@ -193,7 +195,7 @@ class Worker {
   DimensionPath path_;
   std::vector<char> memory_, replay_memory_;
   SizeMemory size_memory_;
-  std::vector<double> guess_, way_, limit_, way_limit_, correction_, orientation_;
+  std::vector<double> guess_, way_, limit_, way_limit_, correction_, side_;
   std::vector<unsigned char> flags_;
   std::vector<double> way_inputs_, turn_, way_turn_, state_;
   std::vector<double> parameters_, by_tape_, replayed_;
