@@ -11,8 +11,7 @@ from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism.model import Link, Tensor
 from mechkin_cli.mechanism.vectors import ZERO, Vector, cross, dot
 from mechkin_cli.schema import links as written
-from mechkin_cli.tape.scalars import advice, largest
-from mechkin_cli.tape.traced import Traced, TraceLost
+from mechkin_cli.tape.scalars import Recorded, advice, largest
 from mechkin_cli.units import INERTIA, LENGTH, MASS
 
 NO_INERTIA: Tensor = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -102,8 +101,10 @@ def _is_surely_physical(tensor: tuple[float, ...]) -> bool:
 
 def _check_physical(fields: Fields, path: Path, name: str, tensor: tuple[float, ...]) -> None:
     """Principal moments of a real body are not negative and none exceeds the sum of the others."""
-    if any(isinstance(entry, Traced) for entry in tensor):
+    if any(isinstance(entry, Recorded) for entry in tensor):
         if not _is_surely_physical(tensor):
+            from mechkin_cli.tape.traced import TraceLost
+
             raise TraceLost(f"the inertia of {name} belongs to no real body")
         return
     import numpy as np

@@ -16,7 +16,6 @@ from mechkin_cli.expressions import scalar_functions
 from mechkin_cli.expressions.arithmetic import common_dimension, raise_to_power
 from mechkin_cli.expressions.operand import Operand, Site
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Vector
-from mechkin_cli.tape.operations import Operation
 from mechkin_cli.tape.scalars import of_one
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, Dimension
 
@@ -55,7 +54,7 @@ def cross_product(a: Vector, b: Vector) -> Vector:
 
 
 def _elementary(
-    operation: Operation, takes: Dimension, gives: Dimension
+    operation: str, takes: Dimension, gives: Dimension
 ) -> Callable[[Site, Operand], Quantity]:
     def apply(site: Site, operand: Operand) -> Quantity:
         value = site.scalar(operand)
@@ -131,16 +130,16 @@ def _norm(site: Site, operand: Operand) -> Quantity:
 
 
 FUNCTIONS: dict[str, Function] = {
-    "sin": Function("sin(angle)", 1, _elementary(Operation.SIN, ANGLE, DIMENSIONLESS)),
-    "cos": Function("cos(angle)", 1, _elementary(Operation.COS, ANGLE, DIMENSIONLESS)),
-    "tan": Function("tan(angle)", 1, _elementary(Operation.TAN, ANGLE, DIMENSIONLESS)),
-    "asin": Function("asin(x)", 1, _elementary(Operation.ASIN, DIMENSIONLESS, ANGLE)),
-    "acos": Function("acos(x)", 1, _elementary(Operation.ACOS, DIMENSIONLESS, ANGLE)),
-    "atan": Function("atan(x)", 1, _elementary(Operation.ATAN, DIMENSIONLESS, ANGLE)),
+    "sin": Function("sin(angle)", 1, _elementary("SIN", ANGLE, DIMENSIONLESS)),
+    "cos": Function("cos(angle)", 1, _elementary("COS", ANGLE, DIMENSIONLESS)),
+    "tan": Function("tan(angle)", 1, _elementary("TAN", ANGLE, DIMENSIONLESS)),
+    "asin": Function("asin(x)", 1, _elementary("ASIN", DIMENSIONLESS, ANGLE)),
+    "acos": Function("acos(x)", 1, _elementary("ACOS", DIMENSIONLESS, ANGLE)),
+    "atan": Function("atan(x)", 1, _elementary("ATAN", DIMENSIONLESS, ANGLE)),
     "atan2": Function("atan2(y, x)", 2, _arctangent),
     "sqrt": Function("sqrt(x)", 1, _square_root),
-    "exp": Function("exp(x)", 1, _elementary(Operation.EXP, DIMENSIONLESS, DIMENSIONLESS)),
-    "log": Function("log(x)", 1, _elementary(Operation.LOG, DIMENSIONLESS, DIMENSIONLESS)),
+    "exp": Function("exp(x)", 1, _elementary("EXP", DIMENSIONLESS, DIMENSIONLESS)),
+    "log": Function("log(x)", 1, _elementary("LOG", DIMENSIONLESS, DIMENSIONLESS)),
     "pow": Function("pow(x, n)", 2, raise_to_power),
     "abs": Function("abs(x)", 1, _absolute),
     "min": Function("min(a, b)", 2, _extreme(scalar_functions.smaller), variadic=True),

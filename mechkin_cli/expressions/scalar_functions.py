@@ -7,14 +7,14 @@ zero and nan rules of numpy's own minimum and maximum depend on the processor.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.expressions.quantity import Scalar
 from mechkin_cli.tape import scalars
-from mechkin_cli.tape.operations import Operation
-from mechkin_cli.tape.traced import Traced
+from mechkin_cli.tape.scalars import Recorded
 
 Condition = NDArray[np.bool_] | np.bool_
 
@@ -36,12 +36,12 @@ def magnitude(value: Scalar) -> Scalar:
 
 def power(base: Scalar, exponent: Scalar) -> Scalar:
     """The base to the exponent."""
-    return _paired(Operation.POWER, base, exponent)
+    return _paired("POWER", base, exponent)
 
 
 def angle_of(y: Scalar, x: Scalar) -> Scalar:
     """The angle of the point (x, y) from the x axis, in [-pi, pi]."""
-    return _paired(Operation.ATAN2, y, x)
+    return _paired("ATAN2", y, x)
 
 
 def smaller(left: Scalar, right: Scalar) -> Scalar:
@@ -60,8 +60,9 @@ def larger(left: Scalar, right: Scalar) -> Scalar:
 
 def wrap(angle: Scalar) -> Scalar:
     """The angle in (-pi, pi] that differs by whole turns; an angle already there is unchanged."""
-    if isinstance(angle, Traced):
-        return _wrapped(angle)
+    if isinstance(angle, Recorded):
+        wrapped: Scalar = _wrapped(angle)
+        return wrapped
     turns = np.rint(np.divide(angle, math.tau))
     turned = (angle - turns * _TURN_HIGH) - turns * _TURN_LOW
     turned = np.where(turned > math.pi, turned - math.tau, turned)
@@ -70,7 +71,7 @@ def wrap(angle: Scalar) -> Scalar:
     return _select(inside, angle, turned)
 
 
-def _wrapped(angle: Traced) -> Traced:
+def _wrapped(angle: Any) -> Any:
     """As `wrap`, for a recorded number."""
     turns = scalars.whole(angle / math.tau)
     turned = (angle - turns * _TURN_HIGH) - turns * _TURN_LOW
@@ -84,7 +85,7 @@ def _select(condition: Condition, chosen: Scalar, other: Scalar) -> Scalar:
     return selected if selected.ndim else float(selected)
 
 
-def _paired(operation: Operation, left: Scalar, right: Scalar) -> Scalar:
+def _paired(operation: str, left: Scalar, right: Scalar) -> Scalar:
     """A kernel function of two arguments, which takes two floats or two arrays of one length."""
     if isinstance(left, np.ndarray) and not isinstance(right, np.ndarray):
         right = np.full(left.shape, right)

@@ -6,23 +6,13 @@ import math
 from collections.abc import Callable
 
 from mechkin_cli.tape.operations import Operation
+from mechkin_cli.tape.scalars import next_power_of_two
 
 _ROUNDER = float(3 * 2**51)
 """1.5 * 2^52: adding it rounds to the nearest whole number."""
 
 _LARGEST_HALF = math.ldexp(0.7, 1024)
 """The power of two next to a larger number is beyond the range of floats."""
-
-
-def power_of_two(x: float) -> float:
-    """The power of two next to a positive number: 2^n with x / 2^n in (0.7, 1.4].
-
-    Example:
-        >>> [power_of_two(x) for x in (1.0, 1.4, 1.5, 0.3)]
-        [1.0, 1.0, 2.0, 0.25]
-    """
-    mantissa, exponent = math.frexp(x)
-    return math.ldexp(1.0, exponent if mantissa > 0.7 else exponent - 1)
 
 
 def _divide(a: float, b: float) -> float:
@@ -45,7 +35,7 @@ def _whole(a: float) -> float:
 def _power_of_two_or_nan(a: float) -> float:
     if not 0.0 < a < math.inf:
         return math.nan
-    return power_of_two(a) if a <= _LARGEST_HALF else math.inf
+    return next_power_of_two(a) if a <= _LARGEST_HALF else math.inf
 
 
 MEANING: dict[Operation, Callable[..., float]] = {

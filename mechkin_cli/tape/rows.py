@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from mechkin_cli.arrays import Floats
-from mechkin_cli.tape.traced import Traced
+from mechkin_cli.tape.scalars import Recorded
 
 _OBJECTS = np.dtype(object)
 
 
 def is_traced(values: Any) -> bool:
     """Whether some of the numbers are recorded."""
-    return isinstance(values, Traced) or getattr(values, "dtype", None) is _OBJECTS
+    return isinstance(values, Recorded) or getattr(values, "dtype", None) is _OBJECTS
 
 
 def of_numbers(values: Iterable[Any]) -> Floats:

@@ -1,7 +1,7 @@
 """What code does with scalars that may be recorded: the same bits for a float as ever.
 
 For a float every function is what its name says; for a `Traced` number it goes on the tape. In
-annotations a `float` is either.
+annotations a `float` is either. The recorder itself is only loaded where something is recorded.
 """
 
 from __future__ import annotations
@@ -11,43 +11,70 @@ import sys
 from collections.abc import Callable
 from typing import Any, TypeGuard, TypeVar
 
-from mechkin_cli.tape.floats import meaning, power_of_two
-from mechkin_cli.tape.operations import Operation
-from mechkin_cli.tape.traced import Condition, Traced, TraceLost
-
 LARGEST_FLOAT = sys.float_info.max
+
+
+class Recorded:
+    """What `Traced` numbers are, for code that must tell them from floats."""
+
+    __slots__ = ()
+
+    def apply(self, operation: str, *others: Any) -> Any:
+        """The operation of a name on this number first, then on others."""
+        raise NotImplementedError
+
+    def apply_after(self, operation: str, first: Any) -> Any:
+        """The operation of a name on a float first, then on this number."""
+        raise NotImplementedError
+
+
+class Undecided:
+    """What a comparison of recorded numbers is before it becomes a truth value."""
+
+    __slots__ = ()
+
+    def choose(self, chosen: Any, other: Any) -> Any:
+        """`chosen` where the condition holds, else `other`."""
+        raise NotImplementedError
+
+    def advised(self) -> bool:
+        """The truth value, where no more than a warning hangs on it."""
+        raise NotImplementedError
+
+
 Result = TypeVar("Result", bound=tuple[Any, ...])
 
 
 def is_number(value: object) -> TypeGuard[float]:
     """Whether a value is one number, not rows or a vector."""
-    return isinstance(value, float | Traced)
+    return isinstance(value, float | Recorded)
 
 
 def plain(value: Any) -> Any:
     """The value as a float, or as the recorded number it is."""
-    return value if isinstance(value, Traced) else float(value)
+    return value if isinstance(value, Recorded) else float(value)
 
 
 def is_finite(value: float) -> bool:
     """Whether a number is neither infinite nor nan."""
-    if isinstance(value, Traced):
+    if isinstance(value, Recorded):
         return bool(abs(value) <= LARGEST_FLOAT)
     return math.isfinite(value)
 
 
 def square_root(value: float) -> float:
     """The square root of a number that is not negative."""
-    if isinstance(value, Traced):
-        return value.apply(Operation.SQUARE_ROOT)
+    if isinstance(value, Recorded):
+        root: float = value.apply("SQUARE_ROOT")
+        return root
     return math.sqrt(value)
 
 
 def largest(first: float, *others: float) -> float:
     """The largest; of equal ones the first."""
     for other in others:
-        if isinstance(first, Traced) or isinstance(other, Traced):
-            first = of_two(Operation.LARGER, first, other)
+        if isinstance(first, Recorded) or isinstance(other, Recorded):
+            first = of_two("LARGER", first, other)
         elif other > first:
             first = other
     return first
@@ -56,8 +83,8 @@ def largest(first: float, *others: float) -> float:
 def smallest(first: float, *others: float) -> float:
     """The smallest; of equal ones the first."""
     for other in others:
-        if isinstance(first, Traced) or isinstance(other, Traced):
-            first = of_two(Operation.SMALLER, first, other)
+        if isinstance(first, Recorded) or isinstance(other, Recorded):
+            first = of_two("SMALLER", first, other)
         elif other < first:
             first = other
     return first
@@ -65,8 +92,10 @@ def smallest(first: float, *others: float) -> float:
 
 def nonzero(value: float) -> float:
     """The value, or 1 where it is zero."""
-    if isinstance(value, Traced):
-        return (value == 0.0).choose(1.0, value)
+    if isinstance(value, Recorded):
+        is_zero: Any = value == 0.0
+        found: float = is_zero.choose(1.0, value)
+        return found
     return value or 1.0
 
 
@@ -77,7 +106,7 @@ def either(
 
     `other` must be computable where the condition holds, too.
     """
-    if isinstance(condition, Condition):
+    if isinstance(condition, Undecided):
         pairs = zip(chosen(), other(), strict=True)
         return tuple(condition.choose(one, two) for one, two in pairs)
     return chosen() if condition else other()
@@ -85,50 +114,59 @@ def either(
 
 def advice(condition: bool) -> bool:
     """The truth of a condition on which no more than a warning hangs."""
-    if isinstance(condition, Condition):
-        found = condition.recorder.guard(
-            condition.operation, condition.left, condition.right, advice=True
-        )
-        return found is not condition.negated
+    if isinstance(condition, Undecided):
+        return condition.advised()
     return condition
 
 
 def next_power_of_two(value: float) -> float:
-    """The power of two next to a positive number, as `floats.power_of_two`."""
-    if isinstance(value, Traced):
-        return value.apply(Operation.POWER_OF_TWO)
-    return power_of_two(value)
+    """The power of two next to a positive number: 2^n with value / 2^n in (0.7, 1.4].
+
+    Example:
+        >>> [next_power_of_two(x) for x in (1.0, 1.4, 1.5, 0.3)]
+        [1.0, 1.0, 2.0, 0.25]
+    """
+    if isinstance(value, Recorded):
+        return value.apply("POWER_OF_TWO")  # type: ignore[no-any-return]
+    mantissa, exponent = math.frexp(value)
+    return math.ldexp(1.0, exponent if mantissa > 0.7 else exponent - 1)
 
 
-def of_one(operation: Operation, value: Any) -> Any:
-    """An elementary function of a float, of rows or of a recorded number."""
-    if isinstance(value, Traced):
+def of_one(operation: str, value: Any) -> Any:
+    """The kernel's function of a name (`SIN`) of a float, of rows or of a recorded number."""
+    if isinstance(value, Recorded):
         return value.apply(operation)
-    return meaning(operation)(value)
+    return _kernel_function(operation)(value)
 
 
-def of_two(operation: Operation, first: Any, second: Any) -> Any:
-    """An operation on two floats of which one may be a recorded number."""
-    if isinstance(first, Traced):
+def of_two(operation: str, first: Any, second: Any) -> Any:
+    """As `of_one`, of two: floats, rows, or recorded numbers with floats."""
+    if isinstance(first, Recorded):
         return first.apply(operation, second)
-    if isinstance(second, Traced):
-        one = Traced(second.recorder, second.recorder.constant(float(first)))
-        return one.apply(operation, second)
-    return meaning(operation)(first, second)
+    if isinstance(second, Recorded):
+        return second.apply_after(operation, first)
+    return _kernel_function(operation)(first, second)
+
+
+def _kernel_function(operation: str) -> Callable[..., Any]:
+    from mechkin_cli.kernel import functions
+
+    function: Callable[..., Any] = getattr(functions, operation.lower())
+    return function
 
 
 def sin(angle: Any) -> Any:
     """The sine."""
-    return of_one(Operation.SIN, angle)
+    return of_one("SIN", angle)
 
 
 def cos(angle: Any) -> Any:
     """The cosine."""
-    return of_one(Operation.COS, angle)
+    return of_one("COS", angle)
 
 
-def whole(value: Traced) -> Traced:
+def whole(value: Recorded) -> Any:
     """The nearest whole number of a recorded one that is smaller than 2^51."""
-    if not abs(value) < float(2**51):
-        raise TraceLost("a varied number is too large to be rounded")
-    return value.apply(Operation.WHOLE)
+    if not abs(value) < float(2**51):  # type: ignore[arg-type]
+        raise TypeError("a varied number is too large to be rounded")
+    return value.apply("WHOLE")

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NoReturn
 
 from mechkin_cli.tape.operations import Operation
+from mechkin_cli.tape.scalars import Recorded, Undecided
 
 if TYPE_CHECKING:
     from mechkin_cli.tape.recorder import Recorder
@@ -18,7 +19,7 @@ class TraceLost(TypeError):
     """A number depends on a recorded one in a way that no tape holds; the message says which."""
 
 
-class Condition:
+class Condition(Undecided):
     """A comparison of which no code has taken note yet.
 
     As a truth value it becomes a guard; `choose` keeps both ways on the tape.
@@ -36,6 +37,11 @@ class Condition:
     def __bool__(self) -> bool:
         return self.recorder.guard(self.operation, self.left, self.right) is not self.negated
 
+    def advised(self) -> bool:
+        """The truth value, where no more than a warning hangs on it."""
+        found = self.recorder.guard(self.operation, self.left, self.right, advice=True)
+        return found is not self.negated
+
     def choose(self, chosen: float | Traced, other: float | Traced) -> Traced:
         """`chosen` where the condition holds, else `other`."""
         if self.negated:
@@ -46,7 +52,7 @@ class Condition:
         return Traced(recorder, recorder.compute(Operation.CHOOSE, holds, *registers))
 
 
-class Traced:
+class Traced(Recorded):
     """A register of a recorder."""
 
     __slots__ = ("recorder", "register")
@@ -91,10 +97,10 @@ class Traced:
         return self._after(Operation.DIVIDE, other)
 
     def __neg__(self) -> Traced:
-        return self.apply(Operation.NEGATE)
+        return self._with(Operation.NEGATE)
 
     def __abs__(self) -> Traced:
-        return self.apply(Operation.MAGNITUDE)
+        return self._with(Operation.MAGNITUDE)
 
     def __lt__(self, other: float | Traced) -> Condition:
         return self._compared(Operation.LESS, other)
@@ -114,14 +120,18 @@ class Traced:
     def __ne__(self, other: object) -> Condition:  # type: ignore[override]
         return self._compared(Operation.EQUAL, other, negated=True)
 
-    def apply(self, operation: Operation, *others: float | Traced) -> Traced:
-        """The operation on this number first, then on others."""
+    def apply(self, operation: str, *others: float | Traced) -> Traced:
+        """The operation of a name on this number first, then on others."""
+        return self._with(Operation[operation], *others)
+
+    def apply_after(self, operation: str, first: float) -> Traced:
+        """The operation of a name on a float first, then on this number."""
+        return self._after(Operation[operation], first)
+
+    def _with(self, operation: Operation, *others: float | Traced) -> Traced:
         registers = (register(self.recorder, other) for other in others)
         result = self.recorder.compute(operation, self.register, *registers)
         return Traced(self.recorder, result)
-
-    def _with(self, operation: Operation, other: float | Traced) -> Traced:
-        return self.apply(operation, other)
 
     def _after(self, operation: Operation, other: float) -> Traced:
         first = register(self.recorder, other)
