@@ -382,3 +382,33 @@ MOST_NUMBERS: Final = 40_000_000
 """Numbers of a run: per row the cells of all tables, the columns of rows.csv and the freedoms of
 all joints. Measured per number: 40 bytes with CSV, 80 with Markdown, 110 with JSON; 4.4 GB in
 all."""
+
+# --- numbers of places, choices and threads ----------------------------------------------------
+
+APPROACH_PLACES: Final = 9
+"""Places that are read on the last stretch before a branch point: the polynomial through them is of
+eighth order, and its change by the last order is the doubt."""
+
+RANGE_SAMPLES: Final = 720
+"""Places of a range at which the sign of an output's rate is read: half a degree of a full turn."""
+
+MOST_EQUATIONS: Final = 120
+"""Closing equations of one block. A Stewart platform has 6, with universal joints 15. The work of a
+row grows with their cube (a ladder of four-bars driven at its far end, with a search of its
+assemblies: 50 equations 9 s, 120 equations 28 s); blocks and loops may be any number."""
+
+MOST_COMPARED_TREES: Final = 400
+"""Choices of closing joints of equal size that are compared for evenness; of more, single
+exchanges."""
+
+REFINEMENT_ROUNDS: Final = 12
+"""Rounds of telling links apart by their neighbours: each doubles what is seen of the structure."""
+
+MOST_CHANGES: Final = 3
+"""Joints changed by one cure of redundant constraints: nobody rebuilds more at once."""
+
+MOST_IDLE_LINKS: Final = 3
+"""Links of one idle group: a leg of S-P-S has two."""
+
+MOST_THREADS: Final = 1024
+"""As many threads as may be asked for."""

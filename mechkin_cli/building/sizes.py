@@ -6,23 +6,17 @@ with the cube of the equations that must be solved together.
 
 from __future__ import annotations
 
-from typing import Final
-
+from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields
 from mechkin_cli.diagnostics import Number
 from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.solver.graph.errors import listed
 
-MOST_EQUATIONS: Final = 120
-"""Closing equations of one block. A Stewart platform has 6, with universal joints 15. The work of a
-row grows with their cube (a ladder of four-bars driven at its far end, with a search of its
-assemblies: 50 equations 9 s, 120 equations 28 s); blocks and loops may be any number."""
-
 
 def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
     """Whether every block is small enough; if not, the first that is not is noted."""
     for block in graph.blocks:
-        if block.equations <= MOST_EQUATIONS:
+        if block.equations <= tolerances.MOST_EQUATIONS:
             continue
         closings = [graph.closings[c] for c in block.closings]
         members = {graph.edges[k].joint.name for closing in closings for k, _ in closing.loop}
@@ -35,8 +29,10 @@ def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
             "drive a coordinate inside, or write parts that do not act on each other in files of "
             "their own",
             measured=f"{block.equations} closing equations",
-            limit=f"{MOST_EQUATIONS} closing equations",
-            numbers=(Number("closing equations", block.equations, limit=MOST_EQUATIONS),),
+            limit=f"{tolerances.MOST_EQUATIONS} closing equations",
+            numbers=(
+                Number("closing equations", block.equations, limit=tolerances.MOST_EQUATIONS),
+            ),
         )
         return False
     return True

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.kernel import functions
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.follow import Followed, TrackEnd
@@ -20,9 +21,6 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.solver.batch import Batch
     from mechkin_cli.solver.session import Session
-
-NODES = 9
-"""Places that are read."""
 
 
 class Approach(NamedTuple):
@@ -54,7 +52,12 @@ def approach(
     """
     if span >= float(np.max(np.abs(followed.inputs - inputs))):
         return None
-    angles = np.asarray((2.0 * np.arange(NODES) + 1.0) * np.pi / (2.0 * NODES), dtype=np.float64)
+    angles = np.asarray(
+        (2.0 * np.arange(tolerances.APPROACH_PLACES) + 1.0)
+        * np.pi
+        / (2.0 * tolerances.APPROACH_PLACES),
+        dtype=np.float64,
+    )
     before: Floats = span * (0.55 + 0.45 * functions.cos(angles))
     places = followed.inputs[:, None] - followed.direction[:, None] * before
     path = np.concatenate([inputs[:, None], places], axis=1)
@@ -64,7 +67,7 @@ def approach(
     batch = session.run(
         path[:, 1:],
         way.guess[:, 1:],
-        rates=np.repeat(followed.direction[:, None], NODES, axis=1),
+        rates=np.repeat(followed.direction[:, None], tolerances.APPROACH_PLACES, axis=1),
         demand=Demand.VELOCITY | Demand.CONDITION | Demand.SINGULAR,
     )
     return Approach(before, batch) if batch.good.all() else None

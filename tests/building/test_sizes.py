@@ -7,9 +7,8 @@ import pytest
 from building.sound import SOUND
 
 import mechkin_cli as mk
-from mechkin_cli.building.sizes import MOST_EQUATIONS
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.tolerances import MOST_NUMBERS
+from mechkin_cli.tolerances import MOST_EQUATIONS, MOST_NUMBERS
 
 SECONDS = 5.0
 """Far above what each takes, far below what an exponential search or a quadratic one would."""

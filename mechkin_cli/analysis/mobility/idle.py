@@ -15,9 +15,6 @@ from mechkin_cli.mechanism.model import Joint
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
 
-MOST_LINKS = 3
-"""Links of one idle group: a leg of S-P-S has two."""
-
 
 class IdleFreedom(NamedTuple):
     """The links that move together, and how, in words."""
@@ -56,7 +53,7 @@ def _groups(configuration: Configuration) -> Iterator[tuple[set[str], list[Joint
     """Groups of links with the joints to the rest, small groups first."""
     joints = configuration.body.mechanism.joints.values()
     links = configuration.body.links
-    for count in range(1, min(MOST_LINKS, len(links) - 1) + 1):
+    for count in range(1, min(tolerances.MOST_IDLE_LINKS, len(links) - 1) + 1):
         for chosen in combinations(links, count):
             group = set(chosen)
             border = [j for j in joints if (j.first in group) != (j.second in group)]

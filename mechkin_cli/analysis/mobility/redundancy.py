@@ -22,10 +22,6 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
 
 
-MOST_CHANGES = 3
-"""Joints changed by one cure."""
-
-
 class Redundancy(NamedTuple):
     """`number` redundant constraints that `joints` carry together, as `wrenches` (words, empty
     where they differ from joint to joint), and a `cure` (None if none of the usual ones does)."""
@@ -196,7 +192,7 @@ def _cure(configuration: Configuration, group: list[Joint], number: int) -> str 
     """The fewest softer joints that take away all redundancy and free no motion."""
     options = [(joint, letter) for joint in group for letter in joint.type.softer]
     rank = _rank(configuration.jacobian)
-    for count in range(1, MOST_CHANGES + 1):
+    for count in range(1, tolerances.MOST_CHANGES + 1):
         for changes in combinations(options, count):
             freed = sum(
                 joint_type(letter).freedoms - joint.type.freedoms for joint, letter in changes

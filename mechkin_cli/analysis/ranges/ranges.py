@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.solver.session import Session
 
-SAMPLES = 720
-"""Places of a range at which the sign of an output's rate is read."""
-
 
 class Limit(NamedTuple):
     """An end of a range in the file's units; `kind` as in `End`."""
@@ -219,7 +216,9 @@ class _Stationary:
         for first, last in ((start.value, ends[0]), (start.value, ends[1])):
             if first == last:
                 continue
-            steps = first + (last - first) * np.linspace(0.0, 1.0, SAMPLES + 1)[:-1]
+            steps = (
+                first + (last - first) * np.linspace(0.0, 1.0, tolerances.RANGE_SAMPLES + 1)[:-1]
+            )
             path = np.repeat(self.walker.inputs[:, None], steps.size, axis=1)
             path[self.walker.number] = steps
             way = self.session.follow(path, start.state)

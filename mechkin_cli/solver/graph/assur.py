@@ -16,13 +16,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from mechkin_cli import tolerances
 from mechkin_cli.solver.graph.components import Component
 from mechkin_cli.solver.graph.matching import Matching, Row
 from mechkin_cli.solver.graph.network import Connection, distances, incidence
 from mechkin_cli.solver.graph.regions import SPACE, Region, find_regions, order_of
-
-MOST_ROUNDS = 12
-"""Rounds of telling links apart by their neighbours."""
 
 
 class Group(NamedTuple):
@@ -300,7 +298,7 @@ def _by_structure(component: Component, kinds: Sequence[tuple[object, ...]]) -> 
     at = incidence(connections)
     away = distances(connections, at, component.entry)
     color, count = dict(away), 0
-    for _ in range(MOST_ROUNDS):
+    for _ in range(tolerances.REFINEMENT_ROUNDS):
         seen = {}
         for link, own in color.items():
             ends = ((*kinds[k], color[connections[k].other(link)]) for k in at[link])
