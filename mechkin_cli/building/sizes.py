@@ -6,17 +6,17 @@ with the cube of the equations that must be solved together.
 
 from __future__ import annotations
 
-from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields
 from mechkin_cli.diagnostics import Number
 from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.solver.graph.errors import listed
+from mechkin_cli.tolerances import MOST_EQUATIONS
 
 
 def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
     """Whether every block is small enough; if not, the first that is not is noted."""
     for block in graph.blocks:
-        if block.equations <= tolerances.MOST_EQUATIONS:
+        if block.equations <= MOST_EQUATIONS:
             continue
         closings = [graph.closings[c] for c in block.closings]
         members = {graph.edges[k].joint.name for closing in closings for k, _ in closing.loop}
@@ -29,10 +29,8 @@ def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
             "drive a coordinate inside, or write parts that do not act on each other in files of "
             "their own",
             measured=f"{block.equations} closing equations",
-            limit=f"{tolerances.MOST_EQUATIONS} closing equations",
-            numbers=(
-                Number("closing equations", block.equations, limit=tolerances.MOST_EQUATIONS),
-            ),
+            limit=f"{MOST_EQUATIONS} closing equations",
+            numbers=(Number("closing equations", block.equations, limit=MOST_EQUATIONS),),
         )
         return False
     return True

@@ -10,6 +10,7 @@ from __future__ import annotations
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.tolerances import MOST_THREADS
 
 INSTRUCTIONS = {2: "SSE2", 4: "AVX2", 8: "AVX-512"}
 """What a width needs of an x86 processor."""
@@ -51,7 +52,7 @@ def force_threads(threads: int) -> None:
     back.
 
     Raises:
-        UsageError: not a whole number from 0 to tolerances.MOST_THREADS.
+        UsageError: not a whole number from 0 to MOST_THREADS.
     """
     check_threads(threads)
     global _forced_threads
@@ -59,11 +60,11 @@ def force_threads(threads: int) -> None:
 
 
 def check_threads(threads: int) -> None:
-    """Raises UsageError where `threads` is not a whole number from 0 to tolerances.MOST_THREADS."""
+    """Raises UsageError where `threads` is not a whole number from 0 to MOST_THREADS."""
     whole = isinstance(threads, int) and not isinstance(threads, bool)
-    if not whole or not 0 <= threads <= tolerances.MOST_THREADS:
+    if not whole or not 0 <= threads <= MOST_THREADS:
         raise UsageError(
-            f"threads {threads}: a whole number from 1 to {tolerances.MOST_THREADS}; 0 takes as many as pay"
+            f"threads {threads}: a whole number from 1 to {MOST_THREADS}; 0 takes as many as pay"
         )
 
 

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli import tolerances
 from mechkin_cli.kernel import functions
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.follow import Followed, TrackEnd
+from mechkin_cli.tolerances import APPROACH_PLACES
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -53,9 +53,7 @@ def approach(
     if span >= float(np.max(np.abs(followed.inputs - inputs))):
         return None
     angles = np.asarray(
-        (2.0 * np.arange(tolerances.APPROACH_PLACES) + 1.0)
-        * np.pi
-        / (2.0 * tolerances.APPROACH_PLACES),
+        (2.0 * np.arange(APPROACH_PLACES) + 1.0) * np.pi / (2.0 * APPROACH_PLACES),
         dtype=np.float64,
     )
     before: Floats = span * (0.55 + 0.45 * functions.cos(angles))
@@ -67,7 +65,7 @@ def approach(
     batch = session.run(
         path[:, 1:],
         way.guess[:, 1:],
-        rates=np.repeat(followed.direction[:, None], tolerances.APPROACH_PLACES, axis=1),
+        rates=np.repeat(followed.direction[:, None], APPROACH_PLACES, axis=1),
         demand=Demand.VELOCITY | Demand.CONDITION | Demand.SINGULAR,
     )
     return Approach(before, batch) if batch.good.all() else None

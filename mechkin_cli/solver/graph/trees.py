@@ -12,9 +12,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations, groupby, product
 from math import comb, prod
 
-from mechkin_cli import tolerances
 from mechkin_cli.solver.graph.assur import Group
 from mechkin_cli.solver.graph.network import Connection
+from mechkin_cli.tolerances import MOST_COMPARED_TREES
 
 
 class NothingCloses(Exception):
@@ -123,10 +123,7 @@ def _most_even(
     names = {c.name for c in chosen}
     classes = [list(some) for _, some in groupby(able, key=lambda c: c.equations)]
     counts = [sum(c.name in names for c in some) for some in classes]
-    if (
-        prod(comb(len(s), n) for s, n in zip(classes, counts, strict=True))
-        > tolerances.MOST_COMPARED_TREES
-    ):
+    if prod(comb(len(s), n) for s, n in zip(classes, counts, strict=True)) > MOST_COMPARED_TREES:
         return _exchanged(joints, legs, classes, list(chosen), depth)
     best, least = list(chosen), _unevenness(joints, legs, chosen, depth)
     every = (combinations(s, n) for s, n in zip(classes, counts, strict=True))
