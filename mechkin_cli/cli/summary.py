@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.analysis.assembly.start import NEAR
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.status import Status, has_solution
 
@@ -24,12 +25,20 @@ def summary(path: Path, analysis: Analysis, folder: Path, written: list[Path]) -
     result = analysis.result
     rows = [("mobility", _mobility(analysis)), ("loops", _loops(analysis))]
     if result.mode:
-        rows.append(("branch", f"mode {result.mode} ({result.how})" if result.how else result.mode))
+        rows.append(("branch", _branch(analysis)))
     rows += [("rows", _rows(analysis)), ("worst", _worst(analysis))]
     kinds = Counter(file.suffix.removeprefix(".") for file in written)
     counts = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
     rows.append(("files", f"{folder} ({counts})"))
     return [f"{analysis.model.name} ({path})", *(f"  {name:<9}{text}" for name, text in rows)]
+
+
+def _branch(analysis: Analysis) -> str:
+    """The mode by its letter where that is known, and how it was found."""
+    result = analysis.result
+    if result.mode == NEAR:
+        return result.how
+    return f"mode {result.mode} ({result.how})" if result.how else result.mode
 
 
 def _mobility(analysis: Analysis) -> str:

@@ -118,8 +118,8 @@ def _from_near(session: Session, inputs: Floats) -> Start | None:
     distance = _distances(session, inputs, newton.state[:, None])[0]
     if newton.is_nearest(distance):
         how = (
-            f"near, {distance:.2g} rad or sizes off by Newton's method, no other within "
-            f"{newton.unique:.2g}"
+            f"{distance:.2g} rad or sizes off what near names, found by Newton's method; no other "
+            f"within {newton.unique:.2g}"
         )
         return Start(newton.state, NEAR, how)
     # what is named exactly is named to rounding
@@ -142,8 +142,8 @@ def _nearest_about(
         return None
     best = distances[order[0]]
     how = (
-        f"near, {best:.2g} rad or sizes off, of {len(order)} within {radius:.2g} that "
-        f"{found.starts} starts found there"
+        f"{best:.2g} rad or sizes off what near names, nearest of {len(order)} that "
+        f"{found.starts} starts found within {radius:.2g}"
     )
     notes = []
     if len(order) > 1 and distances[order[1]] < tolerances.NEAR_RUNNER_UP * best:
