@@ -31,7 +31,8 @@ def by_typer(words: list[str], monkeypatch: pytest.MonkeyPatch) -> dict[str, Any
         app(words, standalone_mode=False)
     except Exception:
         return None
-    names = ("files", "out", "format", "set_", "mode", "table", "lanes", "explain", "json", "quiet")
+    names = ("files", "out", "format", "set_", "mode", "table", "lanes", "threads")
+    names += ("explain", "json", "quiet")
     return dict(zip(names, seen[0], strict=True)) if seen else None
 
 
