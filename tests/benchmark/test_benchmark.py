@@ -1,7 +1,6 @@
 """The peers of the benchmark are right: the kernel is timed against no straw men."""
 
 from functools import partial
-from time import perf_counter
 
 import numpy as np
 import pytest
@@ -27,7 +26,7 @@ from oracle import fold, mp, read
 from mechkin_cli.benchmark.kernel_case import KernelCase, PlannedRun, degree_rows
 from mechkin_cli.benchmark.rcsr import COORDINATES, dimensions
 from mechkin_cli.benchmark.report import Column, Table, cell_text, plain_text, width
-from mechkin_cli.benchmark.timing import Timing, in_turns
+from mechkin_cli.benchmark.timing import SHORTEST, Timing, in_turns
 from mechkin_cli.kernel.width import widths
 
 DOUBLE = Arithmetic("double", 2.0**-52, np.float64, np.cos, np.sin)
@@ -188,19 +187,42 @@ def test_timing_takes_medians_and_ratios_round_by_round():
     assert slow.ratio(fast, factor=4.0) == 0.5
 
 
+class Clock:
+    """A clock that goes on only where a call says how long it took, s."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
 def test_calls_are_timed_in_turns():
-    order = []
-    slow = 0.001
+    clock, order = Clock(), []
 
-    def call(name):
+    def call(name, seconds):
         order.append(name)
-        end = perf_counter() + slow
-        while perf_counter() < end:
-            pass
+        clock.now += seconds
 
-    times = in_turns({name: partial(call, name) for name in "ab"}, rounds=3)
+    calls = {"a": partial(call, "a", 2.0), "b": partial(call, "b", 1.0)}
+    times = in_turns(calls, rounds=3, clock=clock)
     assert order[-6:] == list("ababab")
-    assert len(times["a"].seconds) == 3
+    assert times["a"].seconds == (2.0, 2.0, 2.0)
+    assert times["b"].seconds == (1.0, 1.0, 1.0)
+
+
+def test_short_calls_are_repeated_within_a_round():
+    clock, order = Clock(), []
+
+    def call(name, seconds):
+        order.append(name)
+        clock.now += seconds
+
+    short = SHORTEST / 4.0
+    calls = {"a": partial(call, "a", SHORTEST), "b": partial(call, "b", short)}
+    times = in_turns(calls, rounds=2, clock=clock)
+    assert order[-10:] == list("abbbbabbbb")
+    assert times["b"].seconds == pytest.approx((short, short), rel=1e-9)
 
 
 def test_tables_are_aligned():

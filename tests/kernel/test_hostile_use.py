@@ -4,15 +4,18 @@ generator."""
 from __future__ import annotations
 
 import ast
+import gc
 import re
 import subprocess
 import sys
+import weakref
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from kernel import hostile
+from kernel.hostile_runs import USUAL
 from references import RCSR
 
 import mechkin_cli as mk
@@ -20,8 +23,10 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.solver.codes import Demand, LoadCode, OutputCode
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.records import Output, hand_over_outputs
+from mechkin_cli.solver.stepping import step_limits
 
 TRIALS = 2000
+RUNS = 400
 FRAME = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
 ZERO = (0.0, 0.0, 0.0)
 
@@ -36,6 +41,26 @@ def test_thousands_of_bad_calls_end_with_refusals() -> None:
     assert counts["plans refused"] > TRIALS / 4
     assert counts["ValueError"] > TRIALS
     assert counts["TypeError"] > TRIALS
+
+
+def test_tapes_variants_positions_paths_and_texts_refuse_bad_calls() -> None:
+    """So do they; and not all calls are refused."""
+    found = of_its_own("kernel.hostile_runs", RUNS)
+    assert found.returncode == 0, found.stderr[-2000:]
+    counts = ast.literal_eval(found.stdout)
+    for refusal in ("ValueError", "TypeError"):
+        assert counts[refusal] > 5 * RUNS
+    for done in ("variants complete", "positions found", "rows followed", "judge done"):
+        assert counts[done] > RUNS / 2
+    for made in ("Tape", "Variants", "Positions", "straight", "along", "csv_text", "markdown_text"):
+        assert counts[f"{made} done"] > RUNS / 10
+
+
+def of_its_own(module: str, count: int) -> subprocess.CompletedProcess[str]:
+    """A generator in a process of its own, since a crash would take this one along."""
+    command = [sys.executable, "-W", "ignore", "-m", module, "0", str(count)]
+    tests = Path(hostile.__file__).parent.parent
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, cwd=tests)
 
 
 def one_turn() -> Any:
@@ -210,3 +235,138 @@ def test_the_generator_would_see_a_call_that_is_not_refused(tmp_path: Path) -> N
     found = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert found.returncode == 1
     assert "a spent builder took a record" in found.stderr
+
+
+def four_turns(closed: bool) -> tuple[Any, list[float]]:
+    """Four turns about one axis in a row, or two and a pin that ties them; and inputs."""
+    builder = _kernel.PlanBuilder(1.0, ZERO, 1.0)
+    for parent in range(-1, 3):
+        builder.add_tree_joint(_kernel.TreeCode.R, parent, 0.0, FRAME)
+    builder.set_rest([0, 1, 2, 3])
+    for column in range(4):
+        builder.add_input(column, -1, 2.0 if closed else 1.0)
+    return builder.finish(), [0.0] * 4
+
+
+def test_a_stepper_refuses_the_call_of_its_own_path() -> None:
+    """A path's function that steps on is told so; the stepper works again afterwards."""
+    plan, inputs = four_turns(False)
+    held: list[Any] = []
+    again = [False]
+
+    def at(sigma: float) -> Any:
+        if again[0]:
+            held[0].close(sigma, inputs)
+        return [sigma] * 4, [1.0] * 4, [0.0] * 4
+
+    held.append(_kernel.Stepper.along(plan, at, False, step_limits()))
+    again[0] = True
+    with pytest.raises(ValueError, match="the stepper is in a call"):
+        held[0].close(0.5, inputs)
+    again[0] = False
+    assert held[0].close(0.5, inputs).state.tolist() == [0.5] * 4
+
+
+def test_a_path_that_holds_its_stepper_is_collected() -> None:
+    plan, _ = four_turns(False)
+
+    class Held:
+        stepper: Any = None
+
+        def at(self, sigma: float) -> Any:
+            return [sigma] * 4, [1.0] * 4, [0.0] * 4
+
+    held = Held()
+    held.stepper = _kernel.Stepper.along(plan, held.at, False, step_limits())
+    gone = weakref.ref(held)
+    del held
+    gc.collect()
+    assert gone() is None
+
+
+@pytest.mark.parametrize(
+    ("plan", "at", "varies", "message"),
+    [
+        (lambda _: None, lambda _: ([], [], []), True, "not a Plan"),
+        ("plan", lambda _: ([], [], []), False, "not a Plan"),
+        ("plan", lambda _: ([], [], []), True, "not a function"),
+        (lambda _: None, "at", True, "not a function"),
+    ],
+)
+def test_a_path_is_made_of_functions(plan: Any, at: Any, varies: bool, message: str) -> None:
+    with pytest.raises(TypeError, match=message):
+        _kernel.Stepper.along(plan, at, varies, step_limits())
+
+
+def test_a_path_gives_three_lists() -> None:
+    plan, inputs = four_turns(False)
+    stepper = _kernel.Stepper.along(plan, lambda _: (inputs, inputs), False, step_limits())
+    with pytest.raises(TypeError, match="three lists"):
+        stepper.close(0.0, inputs)
+
+
+def test_the_plans_of_a_path_have_one_structure() -> None:
+    """As many states, columns and closings as before are not enough."""
+    plan, inputs = four_turns(False)
+    builder = _kernel.PlanBuilder(1.0, ZERO, 1.0)
+    for parent in range(-1, 3):
+        code = _kernel.TreeCode.P if parent == 2 else _kernel.TreeCode.R
+        builder.add_tree_joint(code, parent, 0.0, FRAME)
+    builder.set_rest([0, 1, 2, 3])
+    for column in range(4):
+        builder.add_input(column, -1, 1.0)
+    other = builder.finish()
+    plans = [plan]
+    path = _kernel.Stepper.along(
+        lambda _: plans[0], lambda _: (inputs, inputs, inputs), True, step_limits()
+    )
+    assert path.close(0.0, inputs) is not None
+    plans[0] = four_turns(True)[0]
+    assert path.close(0.0, inputs) is not None
+    plans[0] = other
+    with pytest.raises(ValueError, match="one structure"):
+        path.close(0.0, inputs)
+
+
+def test_rows_that_are_followed_share_no_memory() -> None:
+    plan, start = four_turns(False)
+    inputs, guess, limit = np.zeros((4, 3)), np.zeros((4, 3)), np.zeros(3)
+    arguments = plan, inputs, start, [], False, step_limits()
+    _kernel.follow_rows(*arguments, guess, limit, None)
+    for both in ((inputs, limit), (guess, guess[0]), (guess, inputs[1])):
+        with pytest.raises(ValueError, match="share no memory"):
+            _kernel.follow_rows(*arguments, *both, None)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"turn_cosine": 1.5}, "from -1 to 1"),
+        ({"jump": float("nan")}, "from 0 on"),
+        ({"least_step": -1e-15}, "from 0 on"),
+        ({"most_steps": 2**31 - 1}, "1000000 steps"),
+        ({"iterations": -1}, "10000 iterations"),
+    ],
+)
+def test_the_limits_of_a_step_are_numbers(change: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        _kernel.StepLimits(**(USUAL | change))
+
+
+def test_rows_without_columns_are_counted() -> None:
+    """A plan without inputs has tables of any length that take no memory."""
+    builder = _kernel.PlanBuilder(1.0, ZERO, 1.0)
+    plan = builder.finish()
+    outputs = hand_over_outputs(plan, [])
+    nothing = np.zeros((0, 2**59))
+    names = ("inputs", "rates", "accelerations", "jerks", "states", "turns")
+    with pytest.raises(ValueError, match="rows: more than"):
+        _kernel.Positions(
+            plan=plan,
+            outputs=outputs,
+            demand=0,
+            iterations=5,
+            limits=step_limits(),
+            angles=[],
+            **dict.fromkeys(names, nothing),
+        )

@@ -193,7 +193,9 @@ class Configuration:
             largest = float(np.abs(step).max(initial=0.0))
             if not largest < np.inf:
                 break
-            here = here.moved(step * min(1.0, tolerances.MOBILITY_STRIDE / max(largest, 1e-300)))
+            if largest > tolerances.MOBILITY_STRIDE:
+                step = step * (tolerances.MOBILITY_STRIDE / largest)
+            here = here.moved(step)
         return here
 
 

@@ -11,7 +11,7 @@ namespace {
 
 // 2^n for an integral n in [-1022, 1023].
 MECHKIN_INLINE Pack power_of_two(Pack n) {
-  return from_bits((bits(n + Pack(ROUNDER)) + (Words{} + 1023)) << 52);
+  return from_bits(shift_left(plus(bits(n + Pack(ROUNDER)), Words{} + 1023), 52));
 }
 
 // exp(high + low), |low| <= ulp(high); infinity from 709.79 on, 0 below -745.14, NaN for NaN.
@@ -44,8 +44,8 @@ MECHKIN_INLINE Pack exp(Pack x) { return exp_of_sum(x, Pack(0.0)); }
 MECHKIN_INLINE DoubleDouble log_parts(Pack x) {
   const Mask subnormal = x < Pack(0x1p-1022);
   const Words word = bits(select(subnormal, x * Pack(0x1p54), x));
-  const Words biased = shift_right(word - (bits(Pack(0x1.6a09e667f3bcdp-1)) - bits(Pack(1.0))), 52);
-  const Pack m = from_bits(word - ((biased - (Words{} + 1023)) << 52));
+  const Words biased = shift_right(minus(word, bits(Pack(0x1.6a09e667f3bcdp-1)) - bits(Pack(1.0))), 52);
+  const Pack m = from_bits(minus(word, shift_left(minus(biased, Words{} + 1023), 52)));
   const Pack k = (from_bits(biased | bits(Pack(0x1p52))) - Pack(0x1p52 + 1023)) -
                  select(subnormal, Pack(54.0), Pack(0.0));
 

@@ -26,6 +26,7 @@ constexpr int LANES = MECHKIN_LANES;
 
 typedef double Doubles __attribute__((vector_size(8 * LANES)));
 typedef std::int64_t Words __attribute__((vector_size(8 * LANES)));
+typedef std::uint64_t Naturals __attribute__((vector_size(8 * LANES)));
 
 // All bits set in a lane: true.
 struct Mask {
@@ -76,9 +77,12 @@ MECHKIN_INLINE Pack min(Pack a, Pack b) { return select(a < b, a, b); }
 // The bits of each lane as an integer, and back.
 MECHKIN_INLINE Words bits(Pack a) { return (Words)a.v; }
 MECHKIN_INLINE Pack from_bits(Words w) { return (Doubles)w; }
+// Sum and difference of the bits' integers, which wrap.
+MECHKIN_INLINE Words plus(Words a, Words b) { return (Words)((Naturals)a + (Naturals)b); }
+MECHKIN_INLINE Words minus(Words a, Words b) { return (Words)((Naturals)a - (Naturals)b); }
+MECHKIN_INLINE Words shift_left(Words w, int count) { return (Words)((Naturals)w << count); }
 // Logical shift: the only right shift of 64-bit lanes that every instruction set has.
 MECHKIN_INLINE Words shift_right(Words w, int count) {
-  typedef std::uint64_t Naturals __attribute__((vector_size(8 * LANES)));
   return (Words)((Naturals)w >> count);
 }
 // 1.5 * 2^52: adding it rounds to the nearest integer and leaves that integer in the lowest bits.

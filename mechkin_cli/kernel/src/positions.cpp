@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "requirements.hpp"
 #include "units.hpp"
 
 namespace nb = nanobind;
@@ -19,10 +20,6 @@ using namespace nb::literals;
 namespace {
 
 constexpr double FULL_TURN = 2.0 * 3.14159265358979323846;
-
-void require(bool condition, const char* message) {
-  if (!condition) throw std::invalid_argument(message);
-}
 
 }  // namespace
 
@@ -34,6 +31,7 @@ Positions::Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRow
   for (const ClosingTurn& t : closing_turns(p, *kernel_unit(2))) turn_slots_ += t.width;
   const std::size_t n = rows_.rows, table = n * p.inputs;
   require(n > 0, "rows: none");
+  require(rows_.rows <= MOST_ROWS, "rows: more than 100000000");
   require(outputs.fits(plan), "outputs: of a plan with another structure");
   for (const auto* values : {&rows_.inputs, &rows_.rates, &rows_.accelerations, &rows_.jerks})
     require(values->size() == table, "inputs: wrong shape");

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+// Rows of a table that has no columns may be any number, and take no memory where they come from.
+constexpr long MOST_ROWS = 100000000;
+
 inline void require(bool condition, const char* message) {
   if (!condition) throw std::invalid_argument(message);
 }

@@ -56,8 +56,8 @@ bool Stepper::close(double sigma, const double* guess, Node* node) {
 }
 
 bool Stepper::solve(double sigma, const double* guess, bool moving, Node* node) {
-  path_.at(sigma, &point_);
   const Plan& plan = path_.plan(sigma);
+  path_.at(sigma, &point_);
   node->sigma = sigma;
   node->inputs = point_.inputs;
   node->state.resize(plan.states);

@@ -93,6 +93,8 @@ class Stepper {
   const StepLimits& limits() const { return limits_; }
   const std::vector<ClosingTurn>& turns() const { return turns_; }
   int turn_slots() const { return turn_slots_; }
+  // Numbers of a node's Jacobians.
+  long jacobian_entries() const { return entries_; }
   void normalise_quaternions(double* state, long stride) const;
 
  private:

@@ -1,7 +1,6 @@
 #include "stepper_binding.hpp"
 
 #include <nanobind/ndarray.h>
-#include <nanobind/stl/function.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -9,10 +8,10 @@
 #include <nanobind/stl/vector.h>
 
 #include <cmath>
-#include <functional>
 #include <memory>
 
 #include "frozen_plan.hpp"
+#include "same_layout.hpp"
 #include "tracker.hpp"
 #include "units.hpp"
 
@@ -25,8 +24,17 @@ using Table = nb::ndarray<nb::numpy, double, nb::ndim<2>, nb::c_contig, nb::devi
 using Column = nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Numbers = std::vector<double>;
 
+constexpr int MOST_ITERATIONS = 10000;
+constexpr int MOST_STEPS = 1000000;
+
 void need(bool good, const std::string& message) {
   if (!good) throw nb::value_error(message.c_str());
+}
+// An array that is written overlaps no other one.
+template <class Written, class Other>
+void need_apart(const Written& a, const Other& b, const char* message) {
+  const char *const one = reinterpret_cast<const char*>(a.data()), *const other = reinterpret_cast<const char*>(b.data());
+  need(!(one < other + b.nbytes() && other < one + a.nbytes()), message);
 }
 void need_length(const Numbers& a, long length, const char* name) {
   need((long)a.size() == length, std::string(name) + ": wrong length");
@@ -48,36 +56,48 @@ nb::object copied(const Numbers& values) {
 // A path whose points, and whose plan where that changes, come from Python functions.
 class GivenPath : public Path {
  public:
-  using Point = std::tuple<Numbers, Numbers, Numbers>;
-  GivenPath(std::function<Point(double)> at, nb::object plan, bool varies)
+  GivenPath(nb::object at, nb::object plan, bool varies)
       : at_(std::move(at)), plan_(std::move(plan)), varies_(varies) {}
   void at(double sigma, PathPoint* point) const override {
-    std::tie(point->inputs, point->first, point->second) = at_(sigma);
-    const long n = nb::cast<const FrozenPlan&>(varies_ ? first_ : plan_).view().inputs;
+    const nb::object found = at_(sigma);
+    std::tuple<Numbers, Numbers, Numbers> numbers;
+    if (!nb::try_cast(found, numbers)) throw nb::type_error("at: does not give three lists of numbers");
+    std::tie(point->inputs, point->first, point->second) = std::move(numbers);
+    const long n = plan_of(varies_ ? first_ : plan_).inputs;
     need_length(point->inputs, n, "the path's inputs");
     need_length(point->first, n, "the path's first derivatives");
     need_length(point->second, n, "the path's second derivatives");
   }
   const Plan& plan(double sigma) const override {
-    if (!varies_) return nb::cast<const FrozenPlan&>(plan_).view();
+    if (!varies_) return plan_of(plan_);
     current_ = plan_(sigma);
-    const Plan& p = nb::cast<const FrozenPlan&>(current_).view();
-    if (states_ < 0) {
-      first_ = current_;
-      states_ = p.states, blocks_ = p.blocks, columns_ = p.columns, closings_ = p.closings;
-    }
-    need(p.states == states_ && p.blocks == blocks_ && p.columns == columns_ && p.closings == closings_,
-         "the plans of a path must have one structure");
+    const Plan& p = plan_of(current_);
+    if (!first_.is_valid()) first_ = current_;
+    need(same_layout(p, plan_of(first_)), "the plans of a path must have one structure");
     return p;
   }
   bool varies() const override { return varies_; }
 
+  int traverse(visitproc visit, void* arg) const {
+    for (PyObject* held : {at_.ptr(), plan_.ptr(), first_.ptr(), current_.ptr()}) Py_VISIT(held);
+    return 0;
+  }
+  // The functions alone: plans hold nothing of Python's, and the stepper reads the first one's structure.
+  void clear() {
+    at_ = nb::none();
+    if (varies_) plan_ = nb::none();
+  }
+
  private:
-  std::function<Point(double)> at_;
-  nb::object plan_;
+  static const Plan& plan_of(const nb::object& object) {
+    const FrozenPlan* plan = nullptr;
+    if (!nb::try_cast(object, plan, false) || !plan) throw nb::type_error("plan: not a Plan, or none at this sigma");
+    return plan->view();
+  }
+
+  nb::object at_, plan_;
   bool varies_;
   mutable nb::object first_, current_;
-  mutable int states_ = -1, blocks_ = 0, columns_ = 0, closings_ = 0;
 };
 
 // A stepper that owns its path and limits. A straight path keeps its numbers here.
@@ -86,28 +106,69 @@ struct OwnedStepper {
   std::unique_ptr<Path> path;
   StepLimits limits;
   std::unique_ptr<Stepper> stepper;
+  GivenPath* given = nullptr;  // the path, where it is one of Python's
+  bool busy = false;           // in a call that may ask Python for the path
 };
+
+// A path's functions may call anything, from any thread, but not the stepper that waits for them. The flag needs no
+// more than Python's lock, which is held wherever it is read.
+class Turn {
+ public:
+  explicit Turn(OwnedStepper& s) : stepper_(s) {
+    need(!s.busy, "the stepper is in a call; a path's functions cannot use the stepper that asks them");
+    s.busy = true;
+  }
+  ~Turn() { stepper_.busy = false; }
+
+ private:
+  OwnedStepper& stepper_;
+};
+
+// Python's collector of cycles: a path's functions may well hold their stepper.
+int traverse_stepper(PyObject* self, visitproc visit, void* arg) {
+  Py_VISIT(Py_TYPE(self));
+  if (!nb::inst_ready(self)) return 0;
+  const OwnedStepper* const s = nb::inst_ptr<OwnedStepper>(self);
+  return s->given ? s->given->traverse(visit, arg) : 0;
+}
+int clear_stepper(PyObject* self) {
+  if (!nb::inst_ready(self)) return 0;
+  OwnedStepper* const s = nb::inst_ptr<OwnedStepper>(self);
+  if (s->given) s->given->clear();
+  return 0;
+}
+const PyType_Slot STEPPER_SLOTS[] = {
+    {Py_tp_traverse, (void*)traverse_stepper}, {Py_tp_clear, (void*)clear_stepper}, {0, nullptr}};
 
 std::unique_ptr<OwnedStepper> straight(const FrozenPlan& store, Numbers inputs, Numbers direction, StepLimits limits) {
   const Plan& plan = store.view();
   need_length(inputs, plan.inputs, "inputs");
   need_length(direction, plan.inputs, "direction");
-  auto s = std::make_unique<OwnedStepper>(OwnedStepper{std::move(inputs), std::move(direction), {}, limits, {}});
+  auto s = std::make_unique<OwnedStepper>();
+  s->x0 = std::move(inputs), s->u = std::move(direction), s->limits = limits;
   s->path = std::make_unique<Line>(plan, s->x0.data(), s->u.data());
   s->stepper = std::make_unique<Stepper>(*s->path, narrow_unit(), s->limits);
   return s;
 }
 
-std::unique_ptr<OwnedStepper> along(nb::object plan, std::function<GivenPath::Point(double)> at, bool varies,
-                                    StepLimits limits) {
-  auto s = std::make_unique<OwnedStepper>(OwnedStepper{{}, {}, {}, limits, {}});
-  s->path = std::make_unique<GivenPath>(std::move(at), std::move(plan), varies);
+std::unique_ptr<OwnedStepper> along(nb::object plan, nb::object at, bool varies, StepLimits limits) {
+  const auto need_function = [](const nb::object& given, const char* message) {
+    if (!PyCallable_Check(given.ptr())) throw nb::type_error(message);
+  };
+  need_function(at, "at: not a function");
+  if (varies) need_function(plan, "plan: not a function, though it varies");
+  auto s = std::make_unique<OwnedStepper>();
+  s->limits = limits;
+  auto path = std::make_unique<GivenPath>(std::move(at), std::move(plan), varies);
+  s->given = path.get();
+  s->path = std::move(path);
   s->stepper = std::make_unique<Stepper>(*s->path, narrow_unit(), s->limits);
   return s;
 }
 
 std::optional<Node> close_at(OwnedStepper& s, double sigma, const Numbers& guess) {
   need_length(guess, s.stepper->plan().states, "guess");
+  const Turn turn(s);
   FloatingPointState state;
   Node node;
   if (!s.stepper->close(sigma, guess.data(), &node)) return std::nullopt;
@@ -115,12 +176,19 @@ std::optional<Node> close_at(OwnedStepper& s, double sigma, const Numbers& guess
 }
 
 void need_node(const OwnedStepper& s, const Node& node) {
-  need((int)node.state.size() == s.stepper->plan().states && (int)node.side.size() == s.stepper->plan().blocks,
+  const Stepper& stepper = *s.stepper;
+  const Plan& p = stepper.plan();
+  const auto has = [](const Numbers& values, long count) { return (long)values.size() == count; };
+  need(has(node.state, p.states) && has(node.state_first, p.states) && has(node.state_second, p.states) &&
+           has(node.first, p.columns) && has(node.second, p.columns) && has(node.side, p.blocks) &&
+           has(node.pivot, p.blocks) && has(node.jacobian, stepper.jacobian_entries()) &&
+           has(node.turn, stepper.turn_slots()),
        "the node is of another plan");
 }
 
 std::optional<Node> step_from(OwnedStepper& s, const Node& node, double h) {
   need_node(s, node);
+  const Turn turn(s);
   FloatingPointState state;
   Node next;
   if (!s.stepper->step(node, h, &next)) return std::nullopt;
@@ -141,6 +209,9 @@ nb::tuple follow_table(const FrozenPlan& store, Table inputs, const Numbers& sta
   if (!turn.empty()) need_length(turn, slots, "turn");
   const RowGuesses out = {rows, table(guess, plan.states, rows, "guess"), limit.data(),
                           turns ? table(*turns, slots, rows, "turns") : nullptr};
+  const char* const shared = "guess, limit and turns share no memory with one another or with inputs";
+  need_apart(guess, inputs, shared), need_apart(limit, inputs, shared), need_apart(guess, limit, shared);
+  if (turns) need_apart(*turns, inputs, shared), need_apart(*turns, guess, shared), need_apart(*turns, limit, shared);
   Followed found;
   {
     nb::gil_scoped_release released;
@@ -172,6 +243,13 @@ void bind_stepper(nb::module_& m) {
               double longest_step, double least_step, int most_steps, double tight, double coarse, double accept,
               double pivot, int iterations, double same_line, double knot, double corner_cosine, double stray,
               double angle_step, double angle_miss, double plan_step) {
+             for (double cosine : {turn_cosine, corner_cosine})
+               need(cosine >= -1.0 && cosine <= 1.0, "limits: a cosine is a number from -1 to 1");
+             for (double limit : {turn, bend, jump, infill, longest_step, least_step, tight, coarse, accept, pivot,
+                                  same_line, knot, stray, angle_step, angle_miss, plan_step})
+               need(limit >= 0.0, "limits: a limit is a number from 0 on");
+             need(most_steps >= 0 && most_steps <= MOST_STEPS, "limits: 0 to 1000000 steps");
+             need(iterations >= 0 && iterations <= MOST_ITERATIONS, "limits: 0 to 10000 iterations");
              new (at) StepLimits{turn_cosine, turn,   bend,   jump,  infill,     longest_step, least_step,
                                  most_steps,  tight,  coarse, accept, pivot,     iterations,   same_line,
                                  knot,        corner_cosine,  stray,  angle_step, angle_miss,  plan_step};
@@ -192,7 +270,7 @@ void bind_stepper(nb::module_& m) {
       .def_prop_ro("jacobian", &member<&Node::jacobian>)
       .def_prop_ro("turn", &member<&Node::turn>);
 
-  nb::class_<OwnedStepper>(m, "Stepper")
+  nb::class_<OwnedStepper>(m, "Stepper", nb::type_slots(STEPPER_SLOTS))
       .def_static("straight", &straight, "plan"_a, "inputs"_a, "direction"_a, "limits"_a, nb::keep_alive<0, 1>())
       .def_static("along", &along, "plan"_a, "at"_a, "varies"_a, "limits"_a)
       .def("close", &close_at, "sigma"_a, "guess"_a)

@@ -180,6 +180,8 @@ char* put_padded(const Padded& padded, std::size_t row, char* scratch, char* at)
   }
   std::size_t size = styled_text(column.style, column.numbers[row], scratch);
   if (size) size -= padded.dropped;
+  // a number that another thread changed since it was measured stays within its cell
+  size = std::min(size, padded.width);
   at = fill(at, padded.width - size, ' ');
   std::memcpy(at, scratch, size);
   return at + size;

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "new_array.hpp"
+#include "requirements.hpp"
 #include "units.hpp"
 
 namespace nb = nanobind;
@@ -15,9 +17,7 @@ using namespace nb::literals;
 
 namespace {
 
-void require(bool condition, const char* message) {
-  if (!condition) throw std::invalid_argument(message);
-}
+constexpr std::size_t LONGEST = 1 << 30;  // registers, outputs and guards are counted by int
 
 template <class Number>
 using Row = nb::ndarray<const Number, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
@@ -34,21 +34,12 @@ std::vector<Number> copy_of(const Rows<Number>& a) {
   return {a.data(), a.data() + 3 * a.shape(0)};
 }
 
-template <class Number>
-nb::ndarray<nb::numpy, Number> new_array(Number** data, std::initializer_list<std::size_t> shape) {
-  std::size_t size = 1;
-  for (std::size_t n : shape) size *= n;
-  *data = new Number[size ? size : 1];
-  nb::capsule owner(*data, [](void* p) noexcept { delete[] static_cast<Number*>(p); });
-  return nb::ndarray<nb::numpy, Number>(*data, shape, owner);
-}
-
 // inputs x count to (outputs (count, outputs), verdicts (count,) of TapeVerdict).
 nb::tuple replay(const TapeStore& store, Rows<double> inputs, int lanes) {
   const Tape& t = store.view();
   const KernelUnit* const unit = kernel_unit(lanes);
   if (!unit) throw nb::value_error("this width is not available on this machine; 0 asks for the widest");
-  if ((int)inputs.shape(0) != t.inputs) throw nb::value_error("one row of numbers per input of the tape");
+  if (inputs.shape(0) != (std::size_t)t.inputs) throw nb::value_error("one row of numbers per input of the tape");
   const std::size_t count = inputs.shape(1);
   double* outputs;
   std::uint8_t* verdicts;
@@ -73,10 +64,12 @@ TapeStore::TapeStore(int inputs, std::vector<double> constants, std::vector<std:
       outputs_(std::move(outputs)), guards_(std::move(guards)), expected_(std::move(expected)),
       advice_(std::move(advice)) {
   require(inputs > 0, "a tape has inputs");
+  for (std::size_t size : {constants_.size(), operations_.size(), outputs_.size(), expected_.size()})
+    require(size < LONGEST, "the tape is too long");
   require(operands_.size() == 3 * operations_.size(), "three operands an instruction");
   require(guards_.size() == 3 * expected_.size() && advice_.size() == expected_.size(), "three numbers a guard");
   const long first = inputs + (long)constants_.size(), last = first + (long)operations_.size();
-  require(last < (1 << 30), "the tape is too long");
+  require(last < (long)LONGEST, "the tape is too long");
   for (std::size_t i = 0; i < operations_.size(); ++i) {
     require(operations_[i] < TAPE_OPERATIONS, "unknown operation");
     for (int k = 0; k < 3; ++k) {

@@ -1,4 +1,5 @@
-// Python's view of numbers and tables as text. A column is a float64 array; with a style of its own a tuple
+// Python's view of numbers and tables as text; where another thread changes the numbers meanwhile, the text is of
+// either. A column is a float64 array; with a style of its own a tuple
 // (array, scientific, decimals, trimmed); one of words a pair of int32 codes and the texts they stand for.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -40,11 +41,19 @@ NumberStyle significant(int digits) {
   return {checked_digits(digits) ? Notation::significant : Notation::shortest, digits, false};
 }
 
-// The columns and what keeps their memory alive.
+// What `what` names, as C++ has it; TypeError where it is of another type, or text that is no UTF-8.
+template <class Value>
+Value read(nb::handle given, const char* what) {
+  Value value;
+  if (!nb::try_cast(given, value)) throw nb::type_error(what);
+  return value;
+}
+
+// The columns and what keeps their memory alive. Codes are copied: they were checked, and must not change after.
 struct Table {
   std::vector<TextColumn> columns;
   std::vector<Numbers> numbers;
-  std::vector<Codes> codes;
+  std::vector<std::vector<std::int32_t>> codes;
   std::size_t rows = 0;
 };
 
@@ -55,7 +64,7 @@ void add(Table& table, TextColumn column, std::size_t rows) {
 }
 
 void add_numbers(Table& table, nb::handle array, const NumberStyle& style) {
-  const auto numbers = nb::cast<Numbers>(array);
+  const auto numbers = read<Numbers>(array, "a column of numbers is a C-contiguous array of float64, one per row");
   TextColumn column;
   column.numbers = numbers.data();
   column.style = style;
@@ -69,15 +78,17 @@ std::string as_it_is(std::string_view text) { return std::string(text); }
 
 void add_words(Table& table, const nb::tuple& pair, Field field) {
   if (pair.size() != 2) throw nb::value_error("a text column is a pair of codes and texts");
-  const auto codes = nb::cast<Codes>(pair[0]);
+  const auto given = read<Codes>(pair[0], "the codes of a text column are a C-contiguous array of int32");
+  std::vector<std::int32_t> codes(given.data(), given.data() + given.shape(0));
   TextColumn column;
-  for (const nb::handle text : pair[1]) column.fields.push_back(field(nb::cast<std::string>(text)));
-  for (std::size_t i = 0; i < codes.shape(0); ++i)
-    if (codes.data()[i] < 0 || (std::size_t)codes.data()[i] >= column.fields.size())
-      throw nb::index_error("a code stands for none of the texts of its column");
+  for (const std::string& text : read<std::vector<std::string>>(pair[1], "the texts of a column are a list of text"))
+    column.fields.push_back(field(text));
+  for (const std::int32_t code : codes)
+    if (code < 0 || (std::size_t)code >= column.fields.size())
+      throw nb::value_error("a code stands for none of the texts of its column");
   column.codes = codes.data();
-  add(table, std::move(column), codes.shape(0));
-  table.codes.push_back(codes);
+  add(table, std::move(column), codes.size());
+  table.codes.push_back(std::move(codes));
 }
 
 // `style` holds for the numbers that have none of their own.
@@ -86,9 +97,11 @@ void add_column(Table& table, nb::handle given, const NumberStyle& style, Field 
   const auto parts = nb::borrow<nb::tuple>(given);
   if (parts.size() != 4) return add_words(table, parts, field);
   NumberStyle own;
-  own.notation = nb::cast<bool>(parts[1]) ? Notation::scientific : Notation::fixed;
-  own.digits = checked_decimals(nb::cast<int>(parts[2]));
-  own.trimmed = nb::cast<bool>(parts[3]);
+  own.notation = read<bool>(parts[1], "scientific: True or False") ? Notation::scientific : Notation::fixed;
+  own.digits = checked_decimals(read<int>(parts[2], "decimals: a whole number"));
+  own.trimmed = read<bool>(parts[3], "trimmed: True or False");
+  if (own.trimmed && own.notation == Notation::scientific)
+    throw nb::value_error("only plain notation can be trimmed of its zeros");
   add_numbers(table, parts[0], own);
 }
 

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdlib>
+#include <exception>
 #include <list>
 #include <mutex>
 #include <system_error>
@@ -29,11 +30,18 @@ struct Job {
   int inside = 0;             // pool threads that work on it; guarded by the pool
   std::atomic<long> next{0};  // first row that nobody has taken
   std::atomic<int> thread{0};
+  std::atomic<bool> failed{false};
+  std::exception_ptr failure;  // what was thrown first; written by the thread that set `failed`
 
-  void take_chunks() {
+  // Throws nothing: a pool's thread has nobody to tell, and the caller must wait for the others first.
+  void take_chunks() noexcept {
     const int number = thread.fetch_add(1);
-    for (long begin; (begin = next.fetch_add(chunk)) < rows;)
-      work(begin, begin + chunk < rows ? begin + chunk : rows, number);
+    try {
+      for (long begin; !failed && (begin = next.fetch_add(chunk)) < rows;)
+        work(begin, begin + chunk < rows ? begin + chunk : rows, number);
+    } catch (...) {
+      if (!failed.exchange(true)) failure = std::current_exception();
+    }
   }
 };
 
@@ -52,6 +60,7 @@ class Pool {
     std::unique_lock<std::mutex> lock(mutex_);
     jobs_.remove(&job);
     left_.wait(lock, [&] { return job.inside == 0; });
+    if (job.failure) std::rethrow_exception(job.failure);
   }
 
   void stop() {

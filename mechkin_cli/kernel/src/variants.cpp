@@ -9,6 +9,7 @@
 
 #include "assembly_size.hpp"
 #include "dimension_path.hpp"
+#include "requirements.hpp"
 #include "threads.hpp"
 #include "units.hpp"
 
@@ -16,10 +17,6 @@ namespace {
 
 constexpr double FULL_TURN = 2.0 * 3.14159265358979323846;
 constexpr long VARIANTS_AT_A_TIME = 16;
-
-void require(bool condition, const char* message) {
-  if (!condition) throw std::invalid_argument(message);
-}
 
 // What one thread works with; allocated once a call.
 class Worker {
@@ -215,6 +212,7 @@ Variants::Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputLi
   require((int)base_.parameters.size() == t.inputs, "parameters: one for each input of the tape");
   require((std::size_t)t.outputs == constants || (std::size_t)t.outputs == constants + 4 * table,
           "the tape does not give the constants of plan and outputs");
+  require(base_.rows <= MOST_ROWS, "rows: more than 100000000");
   require(base_.rows > 0 && base_.start_row >= 0 && base_.start_row < base_.rows, "rows: none, or no start among them");
   for (const auto* values : {&base_.inputs, &base_.rates, &base_.accelerations, &base_.jerks})
     require(values->size() == table, "inputs: wrong shape");
@@ -236,8 +234,9 @@ Variants::Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputLi
 
 void Variants::run(long count, const double* parameters, const KernelUnit& unit, int threads,
                    const VariantArrays& out) const {
+  const long chunks = (count + VARIANTS_AT_A_TIME - 1) / VARIANTS_AT_A_TIME;
   std::vector<std::unique_ptr<Worker>> workers;
-  for (int k = 0; k < threads; ++k)
+  for (long k = 0; k < std::clamp<long>(threads, 1, std::max(chunks, 1L)); ++k)
     workers.push_back(std::make_unique<Worker>(tape_.view(), plan_, outputs_, base_, unit));
   over_rows(count, VARIANTS_AT_A_TIME, threads, [&](long begin, long end, int thread) {
     workers[thread]->run(begin, end, count, parameters, out);

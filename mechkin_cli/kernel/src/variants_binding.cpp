@@ -8,6 +8,7 @@
 #include <string>
 
 #include "bindings.hpp"
+#include "new_array.hpp"
 #include "units.hpp"
 #include "variants.hpp"
 
@@ -25,19 +26,10 @@ std::vector<double> copy_of(const Table& a, long rows, const char* name) {
   return {a.data(), a.data() + a.shape(0) * a.shape(1)};
 }
 
-template <class Number>
-nb::ndarray<nb::numpy, Number> new_array(Number** data, std::initializer_list<std::size_t> shape) {
-  std::size_t size = 1;
-  for (std::size_t n : shape) size *= n;
-  *data = new Number[size ? size : 1];
-  nb::capsule owner(*data, [](void* p) noexcept { delete[] static_cast<Number*>(p); });
-  return nb::ndarray<nb::numpy, Number>(*data, shape, owner);
-}
-
 // Outputs (count, slots, rows), residual and condition (count, rows), and how each variant ended (count,). Rows of
 // variants that are not complete hold nan.
 nb::tuple run(const Variants& variants, const Table& parameters, int lanes, int threads) {
-  if ((int)parameters.shape(0) != variants.parameters()) throw nb::value_error("parameters: one row for each");
+  if (parameters.shape(0) != (std::size_t)variants.parameters()) throw nb::value_error("parameters: one row for each");
   if (threads < 1 || threads > 1024) throw nb::value_error("threads: 1 to 1024");
   const KernelUnit& unit = unit_or_throw(lanes);
   const std::size_t count = parameters.shape(1), rows = variants.rows(), slots = variants.slots();
@@ -56,7 +48,7 @@ nb::tuple run(const Variants& variants, const Table& parameters, int lanes, int 
 
 // How the continuation ended, the size (m) and the states of the first assembly.
 nb::tuple start(const Variants& variants, const Numbers& parameters) {
-  if ((int)parameters.shape(0) != variants.parameters()) throw nb::value_error("parameters: one for each");
+  if (parameters.shape(0) != (std::size_t)variants.parameters()) throw nb::value_error("parameters: one for each");
   VariantStart found;
   {
     nb::gil_scoped_release released;
