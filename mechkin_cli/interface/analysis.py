@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.analysis.sweep import Result, analyze
-from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.expressions import Expression, Vector, parse
 from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.tables.columns import Columns, evaluate, mode_words, status_words
@@ -35,7 +35,6 @@ class Analysis:
     ) -> None:
         self.model = model
         self.layouts = layouts
-        self._session = session
         self.result = analyze(session, names)
 
     @property
@@ -62,6 +61,7 @@ class Analysis:
 
         Raises:
             ExpressionError: no such quantity, or dimensions that do not fit.
+            UsageError: it belongs to loops that `follow:` has left out of this run.
         """
         a_text("a quantity or expression", text, '"O4.theta"')
         if text in ROW_TEXTS:
@@ -71,7 +71,7 @@ class Analysis:
             if text in given:
                 return given[text].copy()
         expression = parse(text)
-        result = self._with(expression.names)
+        result = self._readable(expression.names)
         columns = self._columns(expression, result)
         others = [self._columns(expression, other) for other in result.alternatives]
         settled = [
@@ -90,13 +90,19 @@ class Analysis:
         rows = np.array(np.broadcast_to(np.asarray(value, float), (self.rows,)))
         return np.asarray(self.result.units.from_si(rows, dimension), float)  # type: ignore[arg-type]
 
-    def _with(self, names: Iterable[str]) -> Result:
-        """The result that has all the quantities among some dotted names: the run's own, but where
-        `follow:` has left out loops that they need."""
+    def _readable(self, names: Iterable[str]) -> Result:
+        """The result, which has all the quantities among some dotted names.
+
+        Raises:
+            UsageError: one belongs to loops that `follow:` has left out of this run.
+        """
         here = self.result.problem.quantities()
         known = self.model.problem.quantities()
         wanted = [name if name in known else name.rpartition(".")[0] for name in names]
-        if all(name in here or name not in known for name in wanted):
-            return self.result
-        every = dict.fromkeys((*self.result.columns, *wanted))
-        return analyze(self._session, [name for name in every if name in known])
+        for name in wanted:
+            if name in known and name not in here:
+                raise UsageError(
+                    f"{name} belongs to loops that this run has left out (follow:); ask for it in "
+                    f'analyze(["{name}"]), which then follows them'
+                )
+        return self.result

@@ -22,7 +22,7 @@ from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph
 from mechkin_cli.solver.session import Packing, Session
-from mechkin_cli.tables.layout import TableLayout
+from mechkin_cli.tables.layout import ROW_TEXTS, TableLayout
 
 if TYPE_CHECKING:
     from typing import Any
@@ -35,7 +35,10 @@ if TYPE_CHECKING:
     from mechkin_cli.interface.varied import Base
 
 
-QUANTITIES = "quantities are such as J.theta, J.force of a joint J, or p.position of a point p"
+QUANTITIES = (
+    "quantities are such as J.theta, J.force of a joint J, or p.position of a point p; components "
+    'and expressions are read from the analysis: r["J.force.x"]'
+)
 
 
 class Model:
@@ -128,9 +131,10 @@ class Model:
             session = self._closed_at(closed_at)
         if mode is not None:
             a_text("mode", mode, '"A"')
-            session = session.assembled(replace(problem.assembly, near={}, mode=mode))
+            session = session.assembled(replace(problem.assembly, mode=mode))
         layouts = self._chosen_tables(tables)
         asked = () if quantities is None else texts("quantities", quantities, '["O4.theta"]')
+        asked = tuple(name for name in asked if name not in ROW_TEXTS)  # always there
         names = [*used_quantities(layouts, problem.quantities()), *asked]
         for name in names:
             if name not in self.quantities:
@@ -156,7 +160,9 @@ class Model:
         try:
             return Session(self.problem, closed_at=closings)
         except UnsolvableGraph as error:
-            raise UsageError(f"closed_at {', '.join(closings) or 'nothing'}: {error}") from None
+            why = f"closed_at {', '.join(closings) or 'nothing'}: {error.diagnostic.message}"
+            cure = "leave out closed_at, or choose other closing joints"
+            raise UsageError(f"{why}; {cure}") from None
 
     def _refuse_loaded_spin(self, problem: Problem, names: Iterable[str]) -> None:
         """Forces need what spins freely to have no cause to spin."""

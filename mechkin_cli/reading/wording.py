@@ -125,4 +125,5 @@ def _wrong_form(context: dict[str, Any], found: Node | None) -> Wording:
 
 
 def _lower_first(text: str) -> str:
-    return text[:1].lower() + text[1:]
+    # an abbreviation stays as it is: "CSV file"
+    return text if text[1:2].isupper() else text[:1].lower() + text[1:]

@@ -63,7 +63,12 @@ class Found(NamedTuple):
 
 
 def assemblies(
-    layout: Layout, plan: Plan, inputs: Floats, turns: int = 1, within: Within | None = None
+    layout: Layout,
+    plan: Plan,
+    inputs: Floats,
+    turns: int = 1,
+    within: Within | None = None,
+    about: Floats | None = None,
 ) -> Found:
     """The assemblies at one set of inputs.
 
@@ -73,8 +78,10 @@ def assemblies(
         inputs: (inputs,) in kernel units.
         turns: turns of helical joints to either side.
         within: where random starts are taken; None: everywhere.
+        about: (states,) whose turns of threads are the middle of those searched; None: as drawn.
     """
     generator = RandomStarts()
+    middle = np.zeros(plan.states) if about is None else about
     partial: list[Floats] = [np.zeros((plan.states, 1))]
     partial[0][_quaternion_scalars(layout), 0] = 1.0
     starts = closed = free = 0
@@ -83,7 +90,9 @@ def assemblies(
     for number in range(len(layout.graph.blocks)):
         continued: list[Floats] = []
         for base in partial:
-            clusters = _search_block(layout, plan, number, inputs, base, generator, turns, within)
+            clusters = _search_block(
+                layout, plan, number, inputs, base, generator, turns, within, middle
+            )
             continued.extend(state[:, None] for state in clusters.states.T)
             starts, closed = starts + clusters.tried, closed + clusters.closed
             chance = max(chance, clusters.chance if clusters.closed else 0.0)
@@ -135,6 +144,7 @@ def _search_block(
     generator: RandomStarts,
     turns: int,
     within: Within | None,
+    middle: Floats,
 ) -> Clusters:
     clusters = Clusters(layout)
     size = tolerances.SEARCH_STARTS
@@ -142,13 +152,13 @@ def _search_block(
     threads = _threads(layout, number)
     while not (clusters.settled or clusters.exhausted):
         states = np.repeat(base, size, axis=1)
-        _randomise(layout, number, states, generator, turns)
+        _randomise(layout, number, states, generator, turns, middle)
         if within is not None:
             _bring_within(layout, number, states, generator, within)
         residual, flags = _ends(plan, number, values, states)
         clusters.closest = min(clusters.closest, float(np.min(residual)))
-        turned = np.all(np.abs(states[threads]) <= _most_turn(turns), axis=0)
-        states, free = _isolated(layout, plan, values, states[:, (flags == 0) & turned])
+        turned = np.abs(states[threads] - middle[threads, None]) <= _most_turn(turns)
+        states, free = _isolated(layout, plan, values, states[:, (flags == 0) & turned.all(axis=0)])
         clusters.add(states)
         clusters.free += free
         clusters.tried += size
@@ -179,7 +189,12 @@ def _most_turn(turns: int) -> float:
 
 
 def _randomise(
-    layout: Layout, number: int, states: Floats, generator: RandomStarts, turns: int
+    layout: Layout,
+    number: int,
+    states: Floats,
+    generator: RandomStarts,
+    turns: int,
+    middle: Floats,
 ) -> None:
     """Fills the unknown states of a block with random starts."""
     rows = states.shape[1]
@@ -194,8 +209,11 @@ def _randomise(
         elif carrier.part.type.slides[local]:
             states[state] = generator.between(reach, rows)
         else:
-            half = _most_turn(turns) if carrier.part.type.is_thread else pi
+            thread = carrier.part.type.is_thread
+            half = _most_turn(turns) if thread else pi
             states[state] = generator.between(half, rows)
+            if thread:
+                states[state] += middle[state]
 
 
 def _bring_within(

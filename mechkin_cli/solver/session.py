@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, TypeVar, cast
 
+import numpy as np
+
 from mechkin_cli import tolerances
 from mechkin_cli.solver.batch import RESIDUAL_TESTS, Batch
 from mechkin_cli.solver.batch import run as run_kernel
@@ -185,11 +187,24 @@ class Session:
         box."""
         from mechkin_cli.solver.search import assemblies
 
-        turns = self.problem.assembly.turns
+        turns, about = self.problem.assembly.turns, self._named_turns()
         if within is not None:
-            return assemblies(self.layout, self.plan, inputs, turns, within)
-        key = ("search", inputs.tobytes(), turns)
-        return self.once(key, lambda: assemblies(self.layout, self.plan, inputs, turns))
+            return assemblies(self.layout, self.plan, inputs, turns, within, about)
+        key = ("search", inputs.tobytes(), turns, about.tobytes())
+        return self.once(
+            key, lambda: assemblies(self.layout, self.plan, inputs, turns, None, about)
+        )
+
+    def _named_turns(self) -> Floats:
+        """States (states,): the turns of threads that the assembly's `near` names, else zero."""
+        states: Floats = np.zeros(self.layout.states)
+        for name, value in self.problem.assembly.near.items():
+            owner, _, coordinate = name.partition(".")
+            joint, edge = self.layout.mechanism.joints[owner], self.layout.edge_number.get(owner)
+            if edge is not None and joint.type.is_threaded:
+                number = self.layout.state(edge, joint.type.freedom_of[coordinate])
+                states[number] = value / joint.unit_of(coordinate, self.layout.length)
+        return states
 
     def run(
         self,

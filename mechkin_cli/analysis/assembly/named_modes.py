@@ -41,7 +41,8 @@ class NamedModes:
 
 def name_modes(session: Session, inputs: Floats) -> NamedModes:
     """The modes at the first row, `inputs` (inputs,) in kernel units."""
-    return session.once(("modes", inputs.tobytes()), lambda: _name_modes(session, inputs))
+    key = ("modes", inputs.tobytes(), str(session.problem.assembly.near))
+    return session.once(key, lambda: _name_modes(session, inputs))
 
 
 def _name_modes(session: Session, inputs: Floats) -> NamedModes:

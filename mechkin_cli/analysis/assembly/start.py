@@ -90,11 +90,10 @@ def _choose_start(session: Session) -> Start:
         return Start(None, "", "", [nothing_found(session, modes.found)])
     if wanted.mode is not None:
         return _by_name(modes, wanted.mode)
-    if wanted.near:
-        distances, how = _distances_near(session.problem, modes.coordinates), "near"
-    else:
-        distances, how = _distances_home(session, modes.points), "nearest to home"
-    return _nearest(modes, distances, how)
+    home = _distances_home(session, modes.points)
+    if not wanted.near:
+        return _nearest(modes, home, home, "nearest to home")
+    return _nearest(modes, _distances_near(session.problem, modes.coordinates), home, "near")
 
 
 def mode_letter(session: Session, start: Start) -> str:
@@ -115,7 +114,7 @@ def _from_near(session: Session, inputs: Floats) -> Start | None:
     newton = newton_from(session, inputs, named) if named.unknowns else None
     if newton is None:
         return None
-    distance = _distances(session, inputs, newton.state[:, None])[0]
+    distance = _distances(session, inputs, newton.state[:, None])[0][0]
     if newton.is_nearest(distance):
         how = (
             f"{distance:.2g} rad or sizes off what near names, found by Newton's method; no other "
@@ -135,9 +134,8 @@ def _nearest_about(
 ) -> Start | None:
     """The nearest of all assemblies about as near as the one that Newton's method found."""
     found = with_assemblies(session.layout, session.plan, inputs, found, newton.state[:, None])
-    distances = _distances(session, inputs, found.states)
-    order = sorted(range(found.number), key=lambda i: distances[i])
-    order = [i for i in order if distances[i] <= radius]
+    distances, home = _distances(session, inputs, found.states)
+    order = [i for i in _in_order(distances, home) if distances[i] <= radius]
     if not order:
         return None
     best = distances[order[0]]
@@ -146,15 +144,30 @@ def _nearest_about(
         f"{found.starts} starts found within {radius:.2g}"
     )
     notes = []
-    if len(order) > 1 and distances[order[1]] < tolerances.NEAR_RUNNER_UP * best:
+    if len(order) > 1 and _is_unclear(best, distances[order[1]]):
         notes.append(_unclear("two assemblies", (best, distances[order[1]])))
     return Start(found.states[:, order[0]], NEAR, how, notes)
 
 
-def _distances(session: Session, inputs: Floats, states: Floats) -> list[float]:
-    """Of assemblies (states, number) from what `near` names."""
-    coordinates, _ = Probe.of(session).read(inputs, states)
-    return _distances_near(session.problem, coordinates)
+def _distances(session: Session, inputs: Floats, states: Floats) -> tuple[list[float], list[float]]:
+    """Of assemblies (states, number) from what `near` names, and from the drawing."""
+    coordinates, points = Probe.of(session).read(inputs, states)
+    return _distances_near(session.problem, coordinates), _distances_home(session, points)
+
+
+def _in_order(distances: list[float], home: list[float]) -> list[int]:
+    """Numbers of assemblies, the nearest first; among those as near but for rounding, the nearest
+    to the drawing."""
+    least = min(distances, default=0.0)
+    tied = [i for i, d in enumerate(distances) if d <= least + tolerances.SAME_MODE]
+    rest = [i for i in range(len(distances)) if i not in tied]
+    rest.sort(key=lambda i: distances[i])
+    return [*sorted(tied, key=lambda i: home[i]), *rest]
+
+
+def _is_unclear(best: float, second: float) -> bool:
+    """Whether a runner-up is about as near as the nearest."""
+    return second < max(tolerances.NEAR_RUNNER_UP * best, best + tolerances.SAME_MODE)
 
 
 def _from_home(session: Session, path: Floats) -> Start:
@@ -185,6 +198,9 @@ def _from_home(session: Session, path: Floats) -> Start:
 def nothing_found(session: Session, found: Found, place: str = "at the first row") -> Diagnostic:
     """What to say where no start closed."""
     hint = "check the dimensions, or start the sweep at another input"
+    if any(joint.type.is_threaded for joint in session.problem.mechanism.joints.values()):
+        turns = session.problem.assembly.turns
+        hint += f"; threads were searched {turns}.5 turns to either side: assembly: {{turns: N}}"
     if session.is_redundant:
         hint = "dimensions of an overconstrained loop must be exact (write expressions)"
     return Diagnostic(
@@ -255,13 +271,13 @@ def _by_name(modes: NamedModes, name: str) -> Start:
     return Start(None, name, "", [diagnostic])
 
 
-def _nearest(modes: NamedModes, distances: list[float], how: str) -> Start:
-    order = sorted(range(modes.number), key=lambda i: distances[i])
+def _nearest(modes: NamedModes, distances: list[float], home: list[float], how: str) -> Start:
+    order = _in_order(distances, home)
     best = order[0]
     notes = []
     if len(order) > 1:
         second = order[1]
-        if distances[second] < tolerances.NEAR_RUNNER_UP * distances[best]:
+        if _is_unclear(distances[best], distances[second]):
             both = f"modes {modes.letters[best]} and {modes.letters[second]}"
             notes.append(_unclear(both, (distances[best], distances[second])))
     words = f"{how}, 1 of {modes.number} found"

@@ -40,18 +40,18 @@ def input_notes(
                 hint="drive fewer coordinates",
             )
         )
-    left = motions.shape[1] - rank - idle
-    if left > 0:
-        notes.append(
-            Diagnostic(
-                "undriven-freedom",
-                "warning",
-                f"{left} freedoms are not driven" if left > 1 else "one freedom is not driven",
-                measured=f"{motions.shape[1]} freedoms, {idle} of them idle, {rank} driven",
-                hint="add inputs under motion",
-            )
-        )
-    return notes
+    return [*notes, *undriven_notes(motions.shape[1], idle, rank)]
+
+
+def undriven_notes(freedoms: int, idle: int, driven: int) -> list[Diagnostic]:
+    """Freedoms that neither spin idly nor are driven."""
+    left = freedoms - driven - idle
+    if left <= 0:
+        return []
+    message = f"{left} freedoms are not driven" if left > 1 else "one freedom is not driven"
+    measured = f"{freedoms} freedoms, {idle} of them idle, {driven} driven"
+    hint = "add inputs under motion"
+    return [Diagnostic("undriven-freedom", "warning", message, measured=measured, hint=hint)]
 
 
 def _is_still(rates: Floats) -> bool:

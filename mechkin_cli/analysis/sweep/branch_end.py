@@ -44,6 +44,10 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) 
         rows.status[~rows.reached] = Status.branch_lost
         rows.diagnostics.extend(locked)
         return None
+    if not len(path):
+        rows.status[~rows.reached] = Status.branch_lost
+        rows.diagnostics.append(_lost_note(session, followed, rows))
+        return None
     far = tolerances.BRANCH_POINT_SPANS[0]
     row = followed.reached - 1
     while row > 0 and np.max(np.abs(followed.inputs - path[:, row])) <= far:
@@ -67,15 +71,25 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) 
     return None
 
 
-def _locked_inputs(session: Session, path: Floats, followed: Followed) -> list[Diagnostic]:
-    """What the mobility of an overconstrained mechanism says of inputs that hardly moved."""
-    way = float(np.max(np.abs(followed.inputs - path[:, 0]), initial=0.0))
-    if way > tolerances.PASSED or not session.is_redundant:
+def input_faults(session: Session) -> list[Diagnostic]:
+    """What the mobility of an overconstrained mechanism says of inputs that are locked, dependent
+    or too few; by the count of their equations its loops would be driven."""
+    if not session.is_redundant:
         return []
     from mechkin_cli.analysis.mobility import find_mobility
+    from mechkin_cli.analysis.mobility.inputs import undriven_notes
 
-    found = find_mobility(session.problem, session).diagnostics
-    return [d for d in found if d.code in ("input-locked", "inputs-dependent")]
+    found = find_mobility(session.problem, session)
+    if not session.driven:
+        return undriven_notes(found.mobility or 0, len(found.idle), 0)
+    codes = ("input-locked", "inputs-dependent", "undriven-freedom")
+    return [diagnostic for diagnostic in found.diagnostics if diagnostic.code in codes]
+
+
+def _locked_inputs(session: Session, path: Floats, followed: Followed) -> list[Diagnostic]:
+    """The same of inputs that hardly moved."""
+    way = float(np.max(np.abs(followed.inputs - path[:, 0]), initial=0.0))
+    return input_faults(session) if way <= tolerances.PASSED else []
 
 
 def _fill_before(

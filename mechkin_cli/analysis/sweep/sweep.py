@@ -180,6 +180,11 @@ def _notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
         if problem.hold_idle:
             moments = {q.name: result.columns[q.name][0] for q in asked if q.kind == HOLDING}
             notes += holding_notes(problem, moments)
+    if (rows.status == Status.rank_unclear).any():
+        from mechkin_cli.analysis.sweep.branch_end import input_faults
+
+        said = {diagnostic.code for diagnostic in rows.diagnostics}
+        notes += [fault for fault in input_faults(session) if fault.code not in said]
     note = open_turn_note(session, rows.states, rows.reached)
     notes += [note] if note else []
     unsure = any(q.kind in WRENCH_KINDS or q.kind == "transmission_angle" for q in asked)
