@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli.analysis.assembly.anew import AnewSession, structure_of
 from mechkin_cli.analysis.sweep import first_assembly
 from mechkin_cli.building.build import build
 from mechkin_cli.building.recording import record
@@ -94,9 +95,13 @@ class VariedModel(Model):
     """
 
     def __init__(self, base: Base, values: Mapping[str, float]) -> None:
+        variation = base.variation(tuple(values))
+        if variation is None:
+            # what has the file's own value need not be named, and may be what no tape holds
+            own = base.model.problem.parameters
+            values = {name: v for name, v in values.items() if v != own[name].value}
+            variation = base.variation(tuple(values))
         self._base, self._values = base, dict(values)
-        names = tuple(values)
-        variation = base.variation(names)
         self._variation = variation
         row = np.array(list(values.values()))
         self._row = row
@@ -123,7 +128,7 @@ class VariedModel(Model):
     def session(self) -> Session:
         """The mechanism in the kernel."""
         if self._variation is None:
-            return Session(self.problem, self.graph)
+            return AnewSession(self.problem, self.graph, self._base.model.session, self._between)
         varied = VariedSession(self._variation, self._row, self.problem, self._base.start)
         if varied.continued is not None and varied.continued.state is None:
             # the branch ends on the way: the same structure, or another problem?
@@ -133,6 +138,18 @@ class VariedModel(Model):
             if structure_of(fresh.graph) != structure_of(varied.graph):
                 return Session(fresh.problem, fresh.graph)
         return varied
+
+    def _between(self, place: float) -> Session:
+        """The session between the file's own parameters (0) and these (1), built anew."""
+        own = self._base.model.problem.parameters
+        values = {}
+        for name, value in self._values.items():
+            start = float(own[name].value)  # type: ignore[arg-type]
+            values[name] = start + place * (value - start)
+        built = self._base.built(values)
+        if isinstance(built.graph, Diagnostic):
+            raise InvalidFile([*built.problem.diagnostics, built.graph])
+        return Session(built.problem, built.graph)
 
     @property
     def graph(self) -> SolverGraph:
@@ -159,13 +176,6 @@ class VariedModel(Model):
         from mechkin_cli.interface.variants import vary
 
         return vary(self._base, self._values, parameters, quantities, reduce, lanes, threads)
-
-
-def structure_of(graph: SolverGraph) -> object:
-    """What two graphs of the same structure have in common."""
-    edges = tuple((edge.joint.name, edge.parent, edge.child) for edge in graph.edges)
-    closings = tuple((closing.joint.name, closing.loop) for closing in graph.closings)
-    return edges, closings, graph.blocks, graph.inputs
 
 
 def with_parameters(base: Base, parameters: Mapping[str, Any]) -> Model:

@@ -123,6 +123,10 @@ class Session:
         """A session of another problem with the same choices."""
         return Session(problem, graph, closed_at=self.closed_at, packing=self.packing)
 
+    def derived(self, make: Callable[[Session], Problem]) -> Session:
+        """The session of a problem that follows from this session's."""
+        return self.of(make(self))
+
     def packed(self, packing: Packing) -> Session:
         """The same session with rows packed otherwise."""
         return self if packing == self.packing else self._changed(packing=packing)

@@ -100,7 +100,7 @@ def test_a_forked_child_has_threads_of_its_own() -> None:
     )
     path = os.pathsep.join(p for p in sys.path if p)
     environment = os.environ | {"PYTHONPATH": path}
-    command = [sys.executable, "-c", program]
+    command = [sys.executable, "-P", "-c", program]
     subprocess.run(command, check=True, env=environment, timeout=60)
 
 

@@ -38,4 +38,4 @@ def test_near_finds_what_home_leads_to(name):
 @pytest.mark.parametrize("name", SOME[::4])
 def test_the_start_is_the_one_asked_for(name):
     assert mk.loads(case(name).text).analyze().result.how.startswith("followed")
-    assert mk.loads(near(name)).analyze().result.how.startswith("near")
+    assert "off what near names" in mk.loads(near(name)).analyze().result.how

@@ -33,7 +33,9 @@ def followed_session(session: Session, wanted: Iterable[Wanted]) -> Session:
     if not left_out:
         return session
     key = ("part", left_out)
-    return session.once(key, lambda: session.of(_part(problem, session.graph, left_out)))
+    return session.once(
+        key, lambda: session.derived(lambda whole: _part(whole.problem, whole.graph, left_out))
+    )
 
 
 def _part(problem: Problem, graph: SolverGraph, left_out: Sequence[int]) -> Problem:

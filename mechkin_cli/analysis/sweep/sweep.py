@@ -62,7 +62,7 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
 def first_assembly(session: Session) -> tuple[Session, Start]:
     """The first assembly, and the session with residual and condition in parts of its size."""
     start = choose_start(session)
-    if start.state is None or session.continued is not None:
+    if start.state is None or session.size is not None:
         return session, start
     inputs = session.inputs.values[:, start.row]
     return session.sized(assembly_size(session.plan, inputs, start.state)), start
