@@ -3,8 +3,9 @@
 #
 #   tests/kernel/sanitized.sh [FOLDER [COUNT]]
 #
-# FOLDER keeps the build (a temporary one otherwise); COUNT: how many hostile trials of each kind. Needs g++ with libasan, and a
-# Python with the project's build and test requirements (PYTHON, python3 otherwise). About four minutes on two cores, the build included.
+# FOLDER keeps the build (a temporary one otherwise); COUNT: how many hostile trials of each kind. Needs g++ with
+# libasan, and a Python with the project's build and test requirements (PYTHON, python3 otherwise). About four minutes
+# on two cores, the build included.
 set -eu
 here=$(cd "$(dirname "$0")/../.." && pwd)
 python=${PYTHON:-python3}
