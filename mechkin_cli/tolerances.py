@@ -2,6 +2,21 @@
 
 Lengths are scaled by the mechanism's size (diagonal of the box of the joint points at the first
 row) before they meet a limit, so the numbers below are pure or radians.
+
+The kernel is given its limits from here. What it keeps itself belongs to one algorithm each and
+stands beside it with its reason (`kernel/src/`):
+
+* `condition.hpp`: the condition up to which the estimate stands, 1e6, and how far its factors may
+  be off, 5e-4; beyond, the condition is computed to rounding;
+* `linear.hpp`: cosines of Jacobi rotations, 1e-15 and 1e-8, and at most 30 sweeps;
+* `search.hpp`: damping of Levenberg-Marquardt steps;
+* `position.hpp`: a Newton step beyond 1e100 is none;
+* `row_curve.cpp`: rows from which a curve's derivatives are read, in parts of step and `PATH_KNOT`;
+* `tracker.cpp`, `dimension_path.cpp`: a rest of 1e-6 of a step is taken along, steps grow fourfold
+  at most;
+* `legs.hpp`: `OPPOSITE_COSINE` again;
+* `closing_equations.hpp`, `tree_joints.hpp`: 1e-150, just above the root of the least normal
+  double; `trigonometric.hpp`, `angle_reduction.hpp`: where one formula takes over from another.
 """
 
 from __future__ import annotations

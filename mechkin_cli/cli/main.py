@@ -61,19 +61,28 @@ def _run() -> int:
 
 def _analyze_files() -> Callable[..., int]:
     """Loads what a plain analysis needs, and no more than that."""
-    import gc
-
     # an analysis multiplies no large matrices: one thread of BLAS per core would only be started
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    # modules live as long as the process: looking for garbage among them is a tenth of a short run
+    if "mechkin_cli.interface" not in sys.modules:
+        _load_without_collecting()
+    from mechkin_cli.cli.analyze import analyze_files
+
+    return analyze_files
+
+
+def _load_without_collecting() -> None:
+    """Modules live as long as the process: looking for garbage among them is a tenth of a short
+    run. What else there is at the time is never collected either, so this is for the first analysis
+    of a process."""
+    import gc
+
     gc.disable()
     try:
+        import mechkin_cli.cli.analyze
         import mechkin_cli.interface  # noqa: F401
-        from mechkin_cli.cli.analyze import analyze_files
     finally:
         gc.freeze()
         gc.enable()
-    return analyze_files
 
 
 def _failed(error: Exception) -> int:

@@ -337,7 +337,10 @@ class Positions:
         """The outputs' slots in SI; None where the branch does not lead there."""
 
 class StepLimits:
-    """What a step along a path may do; see StepLimits in src/stepper.hpp."""
+    """What a step along a path may do; see StepLimits in src/stepper.hpp.
+
+    ValueError for a cosine beyond 1, another number below 0 or nan, more than a million steps.
+    """
 
     def __init__(
         self,
@@ -409,7 +412,8 @@ class Stepper:
     ) -> Stepper:
         """Along any path: `at(sigma)` are the inputs and their two derivatives.
 
-        With `varies` the plan is a function of sigma in [0, 1], too.
+        With `varies` the plan is a function of sigma in [0, 1], too; its plans have one layout.
+        Neither function may use the stepper: ValueError.
         """
     def close(self, sigma: float, guess: Sequence[float]) -> Node | None: ...
     def predict(self, node: Node, h: float) -> Floats: ...
@@ -434,7 +438,7 @@ def follow_rows(
     limit: Floats,
     turns: Floats | None,
 ) -> tuple[int, int, int, int, Floats, Floats, Floats, Floats]:
-    """Fills guess, limit and turns.
+    """Fills guess, limit and turns, which share no memory with one another or with inputs.
 
     Returns how it ended (`TrackEnd`), rows reached, steps taken and rejected, and inputs, state,
     turn and direction at the last place.

@@ -164,3 +164,23 @@ def test_an_interrupt_leaves_nothing_half_written(
     assert err == "mechkin: interrupted; files written so far are whole\n"
     left = {p: p.read_text(encoding="utf-8") for p in (tmp_path / "out").rglob("*") if p.is_file()}
     assert left == before
+
+
+def test_what_earlier_analyses_left_is_collected(tmp_path: Path) -> None:
+    """Several analyses in one process: nothing of them outlives it, as the kernel would report."""
+    program = tmp_path / "again.py"
+    program.write_text(
+        "import sys\n"
+        "from mechkin_cli.cli.main import main\n"
+        f"sys.argv = ['mechkin', 'analyze', {str(RCSR)!r}]\n"
+        "for _ in range(3):\n"
+        "    try:\n"
+        "        main()\n"
+        "    except SystemExit as ended:\n"
+        "        assert ended.code == 0\n"
+    )
+    found = subprocess.run(
+        [sys.executable, str(program)], capture_output=True, text=True, timeout=60, cwd=tmp_path
+    )
+    assert found.returncode == 0, found.stderr
+    assert "leaked" not in found.stderr

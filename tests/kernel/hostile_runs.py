@@ -372,6 +372,11 @@ class HostileRuns(Hostile):
 
     def followed(self) -> None:
         plan, inputs, state = self.some_plan()
+        limits = self.limits()
+        if self.random.random() < 0.2:
+            # rows whose distances overflow, under limits that see no corner
+            inputs = self.noise.choice([0.0, 1e-200, 1e200, -1e300, 1.0], (plan.inputs, 6))
+            limits = _kernel.StepLimits(**(USUAL | {"corner_cosine": -1.0}))
         rows = inputs.shape[1]
         turns = sum(width for *_, width in _kernel.closing_turns(plan))
         guess, limit = self.array(plan.states, rows), self.per_row(rows)
@@ -380,7 +385,7 @@ class HostileRuns(Hostile):
             guess = inputs if self.random.random() < 0.5 else carried
         begin = self.either([0.0] * turns, [], [0.0] * (turns + 1))
         start = self.either(state.tolist(), state[:-1].tolist())
-        arguments = [plan, inputs, start, begin, self.either(False, True), self.limits()]
+        arguments = [plan, inputs, start, begin, self.either(False, True), limits]
 
         def call() -> None:
             found = self.attempt(_kernel.follow_rows, *arguments, guess, limit, carried)

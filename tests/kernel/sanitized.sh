@@ -3,8 +3,9 @@
 #
 #   tests/kernel/sanitized.sh [FOLDER [COUNT]]
 #
-# FOLDER keeps the build (a temporary one otherwise); COUNT: how many hostile trials. Needs g++ with libasan, and a
-# Python with the project's build and test requirements (PYTHON, python3 otherwise). A few minutes.
+# FOLDER keeps the build (a temporary one otherwise); COUNT: how many hostile trials of each kind. Needs g++ with
+# libasan, and a Python with the project's build and test requirements (PYTHON, python3 otherwise). About four minutes
+# on two cores, the build included.
 set -eu
 here=$(cd "$(dirname "$0")/../.." && pwd)
 python=${PYTHON:-python3}
@@ -35,9 +36,13 @@ export UBSAN_OPTIONS=print_stacktrace=1 PYTHONPATH="$folder/package:$here/tests"
 cd "$folder"
 "$python" -c 'import mechkin_cli, sys; assert mechkin_cli.__file__.startswith(sys.argv[1])' "$folder/package"
 for generator in hostile hostile_runs; do
-  "$python" -W ignore -m "kernel.$generator" 0 "${2:-2000}" 2> "$folder/$generator.log" ||
+  "$python" -W ignore -m "kernel.$generator" 0 "${2:-1000}" 2> "$folder/$generator.log" ||
     { tail -n 60 "$folder/$generator.log"; exit 1; }
 done
-"$python" -m pytest -q -p no:cacheprovider --rootdir "$here" "$here/tests/kernel" \
+# left out: tests that compile, compare whole tables in processes of their own, or check digits by mpmath
+"$python" -m pytest -q -p no:cacheprovider --rootdir "$here" --durations 8 \
+  "$here/tests/kernel" "$here/tests/tape" "$here/tests/variants" "$here/tests/solver/test_following_rows.py" \
   --ignore "$here/tests/kernel/test_symbols.py" --ignore "$here/tests/kernel/test_linear.py" \
-  --ignore "$here/tests/kernel/test_elementary.py"
+  --ignore "$here/tests/kernel/test_elementary.py" --ignore "$here/tests/kernel/test_bits.py" \
+  --ignore "$here/tests/kernel/test_new_pair.py" \
+  -k "not thousands_of_bad_calls and not refuse_bad_calls and not the_generator_would_see"

@@ -164,7 +164,7 @@ struct SameOrientation : DirectionCondition<3> {
     const Pack s = sqrt(dot(skew, skew));
     const Pack angle = atan2(s, c);
     // at exactly half a turn the axis is lost; any axis keeps the residual at pi
-    const Mask tiny = s < Pack(1e-150);
+    const Mask tiny = s < Pack(1e-150);  // just above the root of the least normal double
     const Vec3 lost = {select(c < Pack(0.0), angle, Pack(0.0)), Pack(0.0), Pack(0.0)};
     const Vec3 e = select(tiny, lost, (angle / select(tiny, Pack(1.0), s)) * skew);
     r[0] = e.x, r[1] = e.y, r[2] = e.z;

@@ -10,10 +10,11 @@
 
 namespace {
 
-// The largest condition that the estimate stands for: well below 1e7, where rows count as near singular.
+// The largest condition that the estimate stands for: well below 1e7, where rows count as near singular
+// (tolerances.CONDITION_NEAR_SINGULAR), so that no row's verdict hangs on the estimate's 1 %.
 constexpr double ESTIMATED_CONDITION = 1e6;
 // The largest product of the condition and the way from the factored to the closed place, which is about the relative
-// error of the smallest singular value that it causes.
+// error of the smallest singular value that it causes: a twentieth of the 1 % that the estimate promises.
 constexpr double FACTORS_OFF = 5e-4;
 
 // A number for each equation of a block, `length` for those that are lengths, else 1.

@@ -58,6 +58,7 @@ bool follow_to_target(Stepper& stepper, const double* start, Node* node) {
   double h = stepper.wanted_step(*node);
   for (int steps = 0; node->sigma < 1.0; ++steps) {
     if (steps >= limits.most_steps) return false;
+    // a rest of a millionth of a step is taken along
     const bool last = node->sigma + 1.000001 * h >= 1.0;
     const double step = last ? 1.0 - node->sigma : h;
     if (stepper.step(*node, step, last ? 1.0 : node->sigma + step, &next)) {

@@ -169,8 +169,9 @@ class RowFollower {
     long row = first;
     bool placed = false;  // whether `node` stands at `row`
     double h = limits_.longest_step;
-    while (row < last) {
-      if (!placed) {
+    // tries from one row; lengths that overflow would let a step be tried for ever
+    for (long tries = 0; row < last; ++tries) {
+      if (!placed && tries <= limits_.most_steps) {
         placed = stepper.close(path.length(row), result_.state.data(), &node);
         if (placed && !result_.turn.empty()) adopt_turns(stepper, result_.turn, &node);
         const double wanted = placed ? stepper.wanted_step(node) : h;
@@ -183,22 +184,23 @@ class RowFollower {
         h = std::fmin(h, wanted);
       }
       const long target = placed ? std::min(last, path.row_before(node.sigma + h)) : row;
-      const bool good = target > row && step(stepper, path, node, target, &next);
+      const bool tired = tries > limits_.most_steps;
+      const bool good = !tired && target > row && step(stepper, path, node, target, &next);
       if (good) {
         const double taken = next.sigma - node.sigma;
         infill(stepper, node, next, path.lengths(row + 1), row + 1, target + 1, out_);
         std::swap(node, next);
         take(node);
-        row = target, result_.reached = row + 1, ++result_.steps;
+        row = target, result_.reached = row + 1, ++result_.steps, tries = 0;
         h = std::fmin(stepper.wanted_step(node), 4.0 * taken);
         path.read_for_step(h);
-      } else if (target > row + 1) {
+      } else if (!tired && target > row + 1) {
         h = 0.5 * (path.length(target) - node.sigma);
         h = std::fmax(h, path.length(row + 1) - node.sigma), ++result_.rejected;
         path.read_for_step(h), placed = false;
       } else {
         if (!line(row, row + 1)) return false;
-        ++row, placed = false, h = 4.0 * (path.length(row) - path.length(row - 1));
+        ++row, tries = 0, placed = false, h = 4.0 * (path.length(row) - path.length(row - 1));
       }
     }
     int leading = 0;
@@ -211,6 +213,7 @@ class RowFollower {
     const double h = next->sigma - node.sigma;
     if (!continue_turns(stepper, node, next) && h > limits_.angle_step) return false;
     const long begin = path.row_before(node.sigma) + 1;
+    if (begin > target) return false;  // lengths that overflow are in no order
     return stray(stepper, node, *next, path.lengths(begin), target - begin, rows_.values + begin, rows_.rows) <=
            limits_.stray * h;
   }

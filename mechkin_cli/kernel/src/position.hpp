@@ -332,7 +332,8 @@ inline Closed close_block(const Plan& p, Workspace& w, int index, const Request&
     }
     last_step = select(done, iteration ? last_step : Pack(0.0), length);
     polished = length <= Pack(r.coarse);
-    // where the Jacobian is singular there is no step: the lane stays where it is
+    // where the Jacobian is singular there is no step: the lane stays where it is (NaN, infinity, or 1e100, whose
+    // products would soon be infinite)
     done = done | ~(length < Pack(1e100));
     correction += select(done, Pack(0.0), length);
     advance_block(p, w, index, w.right, ~done);

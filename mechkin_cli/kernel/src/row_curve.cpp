@@ -24,6 +24,8 @@ RowCurve::RowCurve(const Plan& plan, const InputRows& rows, long first, long las
 }
 
 void RowCurve::read_for_step(double h) {
+  // an eighth of a step tells its curve; at a thousandth of the knot, 1e-5, rounding of the inputs comes to 1e-6 of a
+  // second derivative, and no nearer row is read
   knot_ = std::fmin(largest_knot_, std::fmax(h / 8.0, 1e-3 * largest_knot_));
 }
 

@@ -36,7 +36,7 @@ inline void damped_step(Workspace& w, const BlockMatrices& at, Pack damping) {
       normal[i * n + j] = s;
     }
   }
-  // 1e-6: an unknown that no equation moves (a zero column) is damped, too
+  // 1e-6 of a unit screw's square: an unknown that no equation moves (a zero column) is damped, too
   for (int i = 0; i < n; ++i) normal[i * n + i] += damping * (normal[i * n + i] + Pack(1e-6));
   const Factors f = {normal, at.swap, n};
   factor(f);

@@ -33,7 +33,8 @@ void need(bool good, const std::string& message) {
 // An array that is written overlaps no other one.
 template <class Written, class Other>
 void need_apart(const Written& a, const Other& b, const char* message) {
-  const char *const one = reinterpret_cast<const char*>(a.data()), *const other = reinterpret_cast<const char*>(b.data());
+  const char* const one = reinterpret_cast<const char*>(a.data());
+  const char* const other = reinterpret_cast<const char*>(b.data());
   need(!(one < other + b.nbytes() && other < one + a.nbytes()), message);
 }
 void need_length(const Numbers& a, long length, const char* name) {

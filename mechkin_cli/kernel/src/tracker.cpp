@@ -26,6 +26,7 @@ Track follow_line(const Plan& plan, const KernelUnit& unit, const double* x0, co
     }
     const double least = limits.least_step * std::fmax(1.0, std::fabs(node.sigma));
     // the last step ends exactly on the last row
+    // a rest of a millionth of a step is taken along
     const bool last = node.sigma + 1.000001 * h >= end;
     const double step = last ? end - node.sigma : h;
     if (!last && step < least) {

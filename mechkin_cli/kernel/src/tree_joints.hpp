@@ -115,7 +115,7 @@ MECHKIN_INLINE void advance(Orientation, Pack* q, const Pack* delta, Mask moving
   const Pack angle = sqrt(dot(half, half));
   Pack s, c;
   sincos(angle, s, c);
-  const Mask tiny = angle < Pack(1e-150);
+  const Mask tiny = angle < Pack(1e-150);  // just above the root of the least normal double; sin x = x long before
   const Pack f = select(tiny, Pack(1.0), s / select(tiny, Pack(1.0), angle));
   const Quaternion turned = normalised(product({c, f * half.x, f * half.y, f * half.z}, {q[0], q[1], q[2], q[3]}));
   q[0] = select(moving, turned.w, q[0]);

@@ -29,7 +29,8 @@ std::vector<double> copy_of(const Table& a, long rows, const char* name) {
 // Outputs (count, slots, rows), residual and condition (count, rows), and how each variant ended (count,). Rows of
 // variants that are not complete hold nan.
 nb::tuple run(const Variants& variants, const Table& parameters, int lanes, int threads) {
-  if (parameters.shape(0) != (std::size_t)variants.parameters()) throw nb::value_error("parameters: one row for each");
+  if (parameters.shape(0) != (std::size_t)variants.parameters())
+    throw nb::value_error("parameters: one row for each");
   if (threads < 1 || threads > 1024) throw nb::value_error("threads: 1 to 1024");
   const KernelUnit& unit = unit_or_throw(lanes);
   const std::size_t count = parameters.shape(1), rows = variants.rows(), slots = variants.slots();
