@@ -63,7 +63,7 @@ class Solver:
     def __init__(self, model: Model, names: tuple[str, ...]) -> None:
         problem = model.problem
         wanted = _wanted(model, names)
-        result = analyze(model.session, verdicts=False)
+        result = analyze(model.session, [q.name for q in wanted], verdicts=False)
         known = problem.quantities()
         session = result.session
         units = problem.units

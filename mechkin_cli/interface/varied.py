@@ -100,7 +100,7 @@ class VariedModel(Model):
             # what has the file's own value need not be named, and may be what no tape holds
             own = base.model.problem.parameters
             values = {name: v for name, v in values.items() if v != own[name].value}
-            variation = base.variation(tuple(values))
+            variation = base.variation(tuple(values)) if values else None
         self._base, self._values = base, dict(values)
         self._variation = variation
         row = np.array(list(values.values()))

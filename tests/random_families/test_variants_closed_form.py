@@ -192,3 +192,25 @@ def test_far_variants_stay_on_their_branch_or_are_lost(seed: int, kind: str) -> 
 def test_two_loops_on_one_crank_are_judged_each(seed: int) -> None:
     """Two independent loops, one of which may fold, or both at once."""
     check(seed, "RCSR", 2, moving=False)
+
+
+@pytest.mark.parametrize("kind", PAIRS)
+@pytest.mark.parametrize("seed", range(100, 100 + 2 * TIMES))
+def test_a_sweep_that_moves_too_is_continued_all_the_same(seed: int, kind: str) -> None:
+    """The first row's input is a parameter as the lengths are."""
+    check(seed, kind, 1, moving=True)
+
+
+def test_naming_the_start_of_the_sweep_changes_nothing() -> None:
+    """Far lengths alone, and with the file's own value of the sweep's start."""
+    rng = np.random.default_rng(7)
+    bars, start = drawn(rng, 1)
+    model = mk.loads(text_of(bars, PAIRS["RRRR"], start, start + 1.0, 2))
+    scale = rng.uniform(0.8, 1.25, (40, 4))
+    lengths = {n: bars[0].lengths[i] * scale[:, i] for i, n in enumerate(["a", "b0", "c0", "d0"])}
+    alone = model.vary(lengths, ["D0.theta"])
+    named = model.vary(lengths | {"start": np.full(40, start)}, ["D0.theta"])
+    assert (alone.status == named.status).all()
+    both = alone.codes[:, 0] == 0
+    assert both.sum() > 10
+    assert np.abs(alone["D0.theta"] - named["D0.theta"])[both].max() < 1e-9

@@ -31,10 +31,13 @@ def test_the_same_positions_as_a_fresh_file(stem: str) -> None:
         for name, value in values.items()
     }
     fresh = mk.load(MECHANISMS / f"{stem}.yaml", texts)
-    one, other = varied.analyze(tables=[]), fresh.analyze(tables=[])
+    # of a file that follows loop one alone, what that loop has
+    alone = ["O2.theta", "O2.s", "O4.theta"]
+    names = alone if model.problem.follow is not None else list(model.problem.mechanism.coordinates)
+    one, other = varied.analyze(names, tables=[]), fresh.analyze(names, tables=[])
     if not (one.result.complete and other.result.complete):
         return
-    for name in model.problem.mechanism.coordinates:
+    for name in names:
         scale = 1.0 + np.abs(other[name]).max()
         assert np.abs(one[name] - other[name]).max() < 1e-8 * scale, name
 
@@ -115,6 +118,9 @@ def test_questions_beside_the_sweep(scale: float) -> None:
             assert b is not None
             assert abs(a.value - b.value) < 1e-9
     assert str(varied.mobility().mobility) == str(fresh.mobility().mobility)
-    one, other = varied.analyze(tables=[]), fresh.analyze(tables=[])
+    # of a file that follows loop one alone, what that loop has
+    alone = ["O2.theta", "O2.s", "O4.theta"]
+    names = alone if model.problem.follow is not None else list(model.problem.mechanism.coordinates)
+    one, other = varied.analyze(names, tables=[]), fresh.analyze(names, tables=[])
     assert np.abs(one["O4.theta"] - other["O4.theta"]).max() < 1e-11
     assert varied.analyze(tables=[], mode="B").result.mode == "B"
