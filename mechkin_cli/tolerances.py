@@ -307,6 +307,10 @@ LARGEST_NUMBER: Final = 1e100
 """SI value of a field above which it is a slip of the pen: products of three such values are the
 last that stay doubles (1.8e308); beyond, cells would be empty without a reason."""
 
+SMALLEST_SIZE: Final = 1e-100
+"""Size of a drawing in m below which it is a slip of the pen: the inverse of its square is the last
+that stays a double with what it is multiplied by; atoms are drawn with 1e-10."""
+
 LARGEST_FACTOR: Final = 1e30
 """Size in SI beyond which (or below whose inverse) a unit of a file is taken for a mistake."""
 
@@ -397,6 +401,10 @@ MOST_NUMBERS: Final = 40_000_000
 """Numbers of a run: per row the cells of all tables, the columns of rows.csv and the freedoms of
 all joints. Measured per number: 40 bytes with CSV, 80 with Markdown, 110 with JSON; 4.4 GB in
 all."""
+
+MOST_KEPT: Final = 400_000_000
+"""Numbers that the results of variants may have together; 3.2 GB, the machine's memory before
+anything is computed with them."""
 
 # --- numbers of places, choices and threads ----------------------------------------------------
 

@@ -15,7 +15,7 @@ from mechkin_cli.building.linkage import build_linkage, is_link
 from mechkin_cli.building.loads import LoadBuilder
 from mechkin_cli.building.memory import row_limit
 from mechkin_cli.building.motion import build_motion
-from mechkin_cli.building.sizes import check_blocks
+from mechkin_cli.building.sizes import check_blocks, check_size
 from mechkin_cli.building.source import Source
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
@@ -149,7 +149,7 @@ def _graph(
     fields: Fields, file: MechanismFile, mechanism: Mechanism, motion: Motion
 ) -> SolverGraph | Diagnostic | None:
     """The solver graph; only asked for when the parts are sound, to avoid follow-up errors."""
-    if fields.error_count:
+    if fields.error_count or not check_size(fields, mechanism):
         return None
     try:
         graph = build_graph(mechanism, motion.driven)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
@@ -31,9 +32,13 @@ def open_file(path: str | Path, parameters: Mapping[str, str] = _NONE) -> Source
     return _checked(read_document(path).with_parameters(parameters))
 
 
-def open_text(text: str, name: str, parameters: Mapping[str, str] = _NONE) -> Source:
-    """As `open_file`, for a text; `name` stands for the file in messages."""
-    return _checked(document_from_text(text, name).with_parameters(parameters))
+def open_text(
+    text: str, name: str, parameters: Mapping[str, str] = _NONE, folder: Path | None = None
+) -> Source:
+    """As `open_file`, for a text; `name` stands for the file in messages, in `folder` are the files
+    that the text names."""
+    document = replace(document_from_text(text, name), folder=folder)
+    return _checked(document.with_parameters(parameters))
 
 
 def _checked(document: Document) -> Source:

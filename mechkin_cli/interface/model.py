@@ -7,8 +7,9 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from mechkin_cli.building.build import Built
+from mechkin_cli.building.build import Built, build
 from mechkin_cli.building.columns import used_quantities
+from mechkin_cli.building.source import open_text
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError
 from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.arguments import Setting, a_text, a_whole_number, texts
@@ -25,6 +26,7 @@ from mechkin_cli.solver.session import Packing, Session
 from mechkin_cli.tables.layout import ROW_TEXTS, TableLayout
 
 if TYPE_CHECKING:
+    from pathlib import Path
     from typing import Any
 
     from mechkin_cli.analysis.mobility import Mobility
@@ -48,6 +50,12 @@ class Model:
         self.built = built
         self.stem = stem
         self._solvers: dict[tuple[str, ...] | None, Solver] = {}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled and copied as the text of the file; tables that it names are read again."""
+        document = self.built.read.document
+        given = (document.text, document.file, dict(document.overrides), document.folder)
+        return _rebuilt, (*given, self.stem)
 
     @property
     def name(self) -> str:
@@ -124,8 +132,10 @@ class Model:
             InvalidFile: the mechanism cannot be solved as it is driven.
             UsageError: an unknown table, quantity or mode, or a width that the machine lacks.
         """
-        check_width(a_whole_number("lanes", lanes, "rows at a time"))
-        check_threads(a_whole_number("threads", threads, "how many split the rows"))
+        lanes = a_whole_number("lanes", lanes, "rows at a time")
+        threads = a_whole_number("threads", threads, "how many split the rows")
+        check_width(lanes)
+        check_threads(threads)
         session, problem = self.session, self.problem
         if closed_at is not None:
             session = self._closed_at(closed_at)
@@ -357,3 +367,10 @@ class Model:
                     f"there is no table {name[:LONGEST_NAME]}; tables are {', '.join(known)}"
                 )
         return tuple(known[name] for name in dict.fromkeys(names))
+
+
+def _rebuilt(
+    text: str, file: str, overrides: Mapping[str, str], folder: Path | None, stem: str
+) -> Model:
+    """A model of the text that another had."""
+    return Model(build(open_text(text, file, overrides, folder)), stem)

@@ -93,6 +93,17 @@ class Study:
                 parts[text].append(array)
         return {text: np.concatenate(arrays) for text, arrays in parts.items()}, codes, self.errors
 
+    def numbers_kept(self) -> int:
+        """Numbers that come back of a variant: parameters, verdicts, what was asked for."""
+        kept = len(self.names) + -(-self.rows // 8)
+        for text, expression in self.asked.items():
+            value = expression.evaluate(sample_of(self.problem), self.problem.units).value
+            width = 3 if isinstance(value, Vector) else 1
+            reduction = self.reductions[text]
+            each = len(reduction) if isinstance(reduction, tuple) else 1
+            kept += width * (self.rows if reduction is None else each)
+        return kept
+
     def _chunk(self) -> int:
         width = 2 + sum(3 if quantity.vector else 1 for quantity in self.wanted)
         return max(1, CHUNK_NUMBERS // (self.rows * width))
@@ -244,8 +255,10 @@ class Study:
         if values.ndim == 3:
             parts = [self._by(reduction, text, values[:, :, k]) for k in range(3)]
             return np.stack(parts, axis=1)
+        given = values.view()
+        given.flags.writeable = False  # the next reduction reads the same
         try:
-            found = np.asarray(reduction(values), dtype=np.float64)
+            found = np.asarray(reduction(given), dtype=np.float64)
         except Exception as error:
             raise UsageError(
                 f"the reduction of {text} failed with {type(error).__name__}: "

@@ -18,6 +18,7 @@ from mechkin_cli.interface.varied import Base, file_values
 from mechkin_cli.kernel.width import check_threads, check_width
 from mechkin_cli.status import Status
 from mechkin_cli.tables.layout import ROW_TEXTS
+from mechkin_cli.tolerances import MOST_KEPT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -99,15 +100,28 @@ def vary(
     threads: int,
 ) -> Variants:
     """`Model.vary`, whose arguments these are; `held` are values (SI) that are set already."""
-    check_width(a_whole_number("lanes", lanes, "rows at a time"))
-    check_threads(a_whole_number("threads", threads, "how many split the variants"))
+    lanes = a_whole_number("lanes", lanes, "rows at a time")
+    threads = a_whole_number("threads", threads, "how many split the variants")
+    check_width(lanes)
+    check_threads(threads)
     problem = base.model.problem
     names, values = parameter_arrays(problem, parameters)
     given = file_values(values, problem, names)
     names, values = _with_held(list(problem.parameters), names, values, held)
     asked = _parsed(problem.mechanism.coordinates if quantities is None else quantities, base.model)
     study = Study(base, names, asked, _reductions(asked, reduce), lanes, threads)
+    _check_memory(values.shape[1], study)
     return Variants(given, *study.run(values))
+
+
+def _check_memory(variants: int, study: Study) -> None:
+    """Whether all that comes back fits into memory."""
+    kept = variants * study.numbers_kept()
+    if kept > MOST_KEPT:
+        raise UsageError(
+            f"the results of {variants} variants are {kept} numbers (limit {MOST_KEPT}); ask for "
+            "less, reduce over the rows, or take fewer variants at a time"
+        )
 
 
 def _with_held(

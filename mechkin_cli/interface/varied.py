@@ -113,6 +113,10 @@ class VariedModel(Model):
         super().__init__(base.model.built, base.model.stem)
         self._advised = verdict == Verdict.OTHER_ADVICE
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled and copied as the file's model and the values."""
+        return _revaried, (self._base.model, self._values)
+
     @cached_property
     def problem(self) -> Problem:
         """The mechanism, its motion and assembly in SI."""
@@ -176,6 +180,11 @@ class VariedModel(Model):
         from mechkin_cli.interface.variants import vary
 
         return vary(self._base, self._values, parameters, quantities, reduce, lanes, threads)
+
+
+def _revaried(model: Model, values: Mapping[str, float]) -> Model:
+    """A model with the values that another had."""
+    return VariedModel(Base(model), values) if values else model
 
 
 def with_parameters(base: Base, parameters: Mapping[str, Any]) -> Model:

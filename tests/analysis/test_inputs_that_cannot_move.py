@@ -51,3 +51,21 @@ def test_a_triangle_that_does_not_close_says_how_far() -> None:
     (found,) = mk.loads(open_triangle).analyze([]).diagnostics
     assert found.code == "not-assembled"
     assert "must be exact" in (found.hint or "")
+
+
+@pytest.mark.parametrize("inputs", ["", "motion: {inputs: {A.theta: {from: 0, to: 5, step: 1}}}"])
+def test_freedoms_of_a_plane_chain_that_nothing_drives_are_told(inputs: str) -> None:
+    """Four links and five: a freedom is left that the conditions of their planes hide."""
+    chain = FOUR_BAR[: FOUR_BAR.index("motion:")]
+    if inputs:
+        chain = chain.replace(
+            "D: {type: R, links: [ground, c], point: [3, 0, 0]",
+            "D: {type: R, links: [c, d], point: [3, 0.5, 0]",
+        )
+        chain = chain.replace("c: {}}", "c: {}, d: {}}")
+        chain += "  E: {type: R, links: [ground, d], point: [4, 0, 0], axis: [0, 0, 1]}\n"
+    result = mk.loads(chain + inputs).analyze([])
+    (found,) = [d for d in result.diagnostics if d.code == "undriven-freedom"]
+    assert "not driven" in found.message
+    assert "add inputs" in (found.hint or "")
+    assert result["row.status"][0] == "rank-unclear"

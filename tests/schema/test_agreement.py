@@ -58,6 +58,7 @@ EDITORS_ACCEPT = {
     "too-many-numbers": CROSSING,
     "csv-table": "it is a property of another file",
     "too-large": VALUE,
+    "too-small": VALUE,
     "negative-mass": VALUE,
     "zero-step": VALUE,
     "zero-lead": VALUE,
@@ -87,6 +88,9 @@ MORE_BAD = [
     SOUND.replace("step: 5}", "count: 9000000}"),
     SOUND.replace("step: 5}", "count: 3.0}"),
     SOUND.replace("format: 1", "format: 1.0"),
+    "format: 1\nlinks: {a: {}}\njoints:\n  A:\n    type: R\n    links: [ground, a]\n"
+    "    point: {ground: [0, 0, 0], a: [1e-200, 0, 0]}\n    axis: [0, 0, 1]\n"
+    "motion: {inputs: {A.theta: {at: 0}}}\n",
 ]
 BAD = [*(bad.text for bad in (*BAD_FILES, *BAD_PARTS, *BAD_USES)), *MORE_BAD]
 

@@ -199,6 +199,8 @@ def test_a_variant_that_is_no_mechanism():
         ({"P1": 0.5}, {"lanes": 3}, "lanes 3"),
         ({"P1": 0.5}, {"threads": -1}, "threads: expected"),
         ({"P1": 0.5}, {"reduce": lambda values: 1.0}, "one value a variant"),
+        ({"P1": 0.5}, {"reduce": lambda values: values.sort()}, "read-only"),
+        ({"P1": np.full(50_000_000, 0.5)}, {}, "50000000 variants are [0-9]+ numbers"),
     ],
 )
 def test_bad_use(given, more, match):
@@ -211,3 +213,11 @@ def test_no_variants():
     result = model_of("rcsr").vary({"P1": []}, ["O4.theta"], reduce="max")
     assert len(result) == 0
     assert result["O4.theta"].shape == (0,)
+
+
+def test_whole_numbers_of_numpy():
+    model = model_of("rcsr")
+    one = model.vary({"P1": [0.5, 0.51]}, ["O4.theta"])
+    other = model.vary({"P1": [0.5, 0.51]}, ["O4.theta"], lanes=np.int64(2), threads=np.uint8(2))
+    assert one["O4.theta"].tobytes() == other["O4.theta"].tobytes()
+    assert model.analyze(threads=np.int64(2), lanes=np.int32(2)).result.complete

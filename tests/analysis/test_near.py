@@ -1,0 +1,68 @@
+"""`assembly: near` on coordinates that count turns, at exact ties, and what a run leaves out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mechkin_cli as mk
+
+MECHANISMS = Path(__file__).parents[2] / "mechanisms"
+SLIDER = """
+format: 1
+units: {{length: m, angle: deg}}
+links: {{crank: {{}}, rod: {{}}, slider: {{}}}}
+joints:
+  A: {{type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}}
+  B: {{type: C, links: [crank, rod], point: [1, 0, 0], axis: [0, 0, 1]}}
+  C: {{type: S, links: [rod, slider], point: [3, 1, 0]}}
+  D: {{type: P, links: [ground, slider], point: [3, 1, 0], axis: [1, 0, 0]}}
+motion: {{inputs: {{A.theta: {{at: 0}}}}}}
+assembly: {{near: {{{near}}}}}
+"""
+
+
+def test_two_assemblies_at_the_same_distance_are_told_and_the_drawn_one_is_taken() -> None:
+    """The rod from (1, 0) to the line y = 1: mirrored about the vertical through the crank's end,
+    so the place between them is as far from both."""
+    middle = np.degrees(np.arctan2(1, 0) - np.arctan2(1, 2))
+    result = mk.loads(SLIDER.format(near=f"B.theta: {float(middle)!r}")).analyze(["B.theta"])
+    assert [d.code for d in result.diagnostics] == ["nearest-unclear"]
+    assert abs(result["B.theta"][0]) < 1e-9
+    other = mk.loads(SLIDER.format(near="B.theta: 120")).analyze(["B.theta"])
+    assert other["B.theta"][0] == pytest.approx(2 * middle, abs=1e-9)
+
+
+@pytest.mark.parametrize("turns", [-40, -3, 0, 1, 2, 17])
+def test_near_names_the_turns_of_a_thread(turns: int) -> None:
+    """A nut closes a loop with a slide: its angle is the slide over the lead, without a limit."""
+    lead, home = 0.02, 0.3
+    text = f"""
+format: 1
+units: {{length: m, angle: deg}}
+links: {{spindle: {{}}, nut: {{}}}}
+joints:
+  A: {{type: P, links: [ground, nut], point: [0, 0, 0], axis: [1, 0, 0]}}
+  B: {{type: H, links: [spindle, nut], point: [0, 0, 0], axis: [1, 0, 0], lead: {lead}}}
+  C: {{type: R, links: [ground, spindle], point: [0, 0, 0], axis: [1, 0, 0]}}
+motion: {{inputs: {{A.s: {{at: {home + turns * lead}}}}}}}
+assembly: {{near: {{B.theta: {360 * (home / lead + turns) + 1}}}}}
+"""
+    result = mk.loads(text).analyze(["B.theta"])
+    assert abs(result["B.theta"][0]) == pytest.approx(360 * abs(home / lead + turns), rel=1e-9)
+
+
+def test_what_a_run_left_out_is_not_read_from_another_assembly() -> None:
+    """The second loop does not close on the branch of the first that the file names."""
+    model = mk.load(MECHANISMS / "rcsr_csr_loop_one.yaml")
+    alone = model.analyze()
+    with pytest.raises(mk.UsageError, match=r'ask for it in analyze\(\["O5.theta"\]\)'):
+        alone["O5.theta"]
+    both = model.analyze(["O5.theta"])
+    assert np.isfinite(both["O5.theta"]).all()
+    assert abs(both["O2.theta"][0] - alone["O2.theta"][0]) > 30
+    inputs = {"O1.theta": float(both["O1.theta"][3])}
+    assert model.solve(inputs, ["O5.theta"])["O5.theta"] == pytest.approx(both["O5.theta"][3])
+    assert model.solve(inputs, ["O4.theta"])["O4.theta"] == pytest.approx(alone["O4.theta"][3])
