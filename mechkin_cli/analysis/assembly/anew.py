@@ -46,7 +46,7 @@ class AnewSession(Session):
         on_the_way: Callable[[float], Session],
     ) -> None:
         super().__init__(problem, graph, closed_at=base.closed_at, packing=base.packing)
-        self.__dict__.pop("continued", None)
+        del self.continued  # found below when it is asked for
         self.base, self.on_the_way = base, on_the_way
         self.layout = Layout(problem.mechanism, self.graph, base.layout.length)
 
