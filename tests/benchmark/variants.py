@@ -117,7 +117,7 @@ def peak_after(count: int) -> int:
         "m.vary(variants.arrays(m, int(sys.argv[2])), q, reduce=('min', 'max'), threads=1)\n"
         "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)\n"
     )
-    line = [sys.executable, "-c", script, str(Path(__file__).parent), str(count)]
+    line = [sys.executable, "-P", "-c", script, str(Path(__file__).parent), str(count)]
     done = subprocess.run(line, check=True, capture_output=True, text=True)
     return int(done.stdout) // 1024
 
