@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import mechkin_cli as mk
 
@@ -35,23 +36,48 @@ def test_two_assemblies_at_the_same_distance_are_told_and_the_drawn_one_is_taken
     assert other["B.theta"][0] == pytest.approx(2 * middle, abs=1e-9)
 
 
-@pytest.mark.parametrize("turns", [-40, -3, 0, 1, 2, 17])
-def test_near_names_the_turns_of_a_thread(turns: int) -> None:
-    """A nut closes a loop with a slide: its angle is the slide over the lead, without a limit."""
-    lead, home = 0.02, 0.3
-    text = f"""
+RADIUS, REACH, LEAD = 0.1, 0.1, 0.02
+PHASE = 0.7
+SCREW = f"""
 format: 1
-units: {{length: m, angle: deg}}
-links: {{spindle: {{}}, nut: {{}}}}
+units: {{length: m, angle: rad}}
+links: {{spindle: {{}}, nut: {{}}, rod: {{}}}}
 joints:
-  A: {{type: P, links: [ground, nut], point: [0, 0, 0], axis: [1, 0, 0]}}
-  B: {{type: H, links: [spindle, nut], point: [0, 0, 0], axis: [1, 0, 0], lead: {lead}}}
-  C: {{type: R, links: [ground, spindle], point: [0, 0, 0], axis: [1, 0, 0]}}
-motion: {{inputs: {{A.s: {{at: {home + turns * lead}}}}}}}
-assembly: {{near: {{B.theta: {360 * (home / lead + turns) + 1}}}}}
+  A: {{type: R, links: [ground, spindle], point: [0, 0, 0], axis: [1, 0, 0]}}
+  B: {{type: H, links: [spindle, nut], point: [0, 0, 0], axis: [1, 0, 0], lead: {LEAD}}}
+  C: {{type: S, links: [nut, rod], point: [0, {RADIUS}, 0]}}
+  D:
+    type: U
+    links: [rod, ground]
+    point: [0, {REACH * np.cos(PHASE)}, {REACH * np.sin(PHASE)}]
+    axis: [0, 0, 1]
+    axis2: [1, 0, 0]
+motion: {{inputs: {{A.theta: {{at: 0}}}}}}
 """
-    result = mk.loads(text).analyze(["B.theta"])
-    assert abs(result["B.theta"][0]) == pytest.approx(360 * abs(home / lead + turns), rel=1e-9)
+
+
+def screw_angles() -> list[float]:
+    """Turns of the nut that keep the rod's length: (lead turn / 2 pi)^2 = 2 r q (cos(turn - phase)
+    - cos(phase)), bracketed on a fine grid."""
+
+    def off(turn: float) -> float:
+        slide = LEAD * turn / (2 * np.pi)
+        return float(slide**2 - 2 * RADIUS * REACH * (np.cos(turn - PHASE) - np.cos(PHASE)))
+
+    grid = np.linspace(-80.0, 80.0, 16_001)
+    signs = np.sign([off(turn) for turn in grid])
+    return [float(brentq(off, grid[i], grid[i + 1])) for i in np.flatnonzero(np.diff(signs))]
+
+
+FAR = pytest.mark.xfail(reason="few starts end on far turns of a long thread", strict=True)
+TURNS = [pytest.param(t, marks=[FAR] if abs(t) > 7.0 else []) for t in screw_angles()[::3]]
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_near_names_the_turns_of_a_thread(turn: float) -> None:
+    """The nut meets the rod on many turns; the one that is named is taken."""
+    text = SCREW + f"assembly: {{near: {{B.theta: {turn + 0.01!r}}}}}\n"
+    assert mk.loads(text).analyze(["B.theta"])["B.theta"][0] == pytest.approx(turn, abs=1e-9)
 
 
 def test_what_a_run_left_out_is_not_read_from_another_assembly() -> None:
