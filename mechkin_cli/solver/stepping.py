@@ -34,4 +34,7 @@ def step_limits(
         angle_step=tolerances.CLOSING_ANGLE_STEP,
         angle_miss=tolerances.CLOSING_ANGLE_MISS,
         plan_step=tolerances.PLAN_STEP,
+        radius=tolerances.SPECTRAL_RADIUS,
+        narrow=tolerances.NARROW_STEP,
+        arc_steps=tolerances.ARC_STEPS,
     )

@@ -55,16 +55,20 @@ bool Stepper::close(double sigma, const double* guess, Node* node) {
   return true;
 }
 
+void Stepper::size_node(Node* node) const {
+  node->state.resize(plan_.states);
+  node->first.resize(plan_.columns), node->second.resize(plan_.columns);
+  node->side.assign(plan_.blocks, 1.0), node->pivot.resize(plan_.blocks);
+  node->jacobian.resize(entries_), node->danger.assign(plan_.blocks, 0.0);
+  node->turn.resize(turn_slots_), node->turn_first.resize(turn_slots_), node->turn_second.resize(turn_slots_);
+}
+
 bool Stepper::solve(double sigma, const double* guess, bool moving, Node* node) {
   const Plan& plan = path_.plan(sigma);
   path_.at(sigma, &point_);
-  node->sigma = sigma;
+  node->sigma = node->place = sigma, node->rate = 1.0, node->bend = 0.0;
   node->inputs = point_.inputs;
-  node->state.resize(plan.states);
-  node->first.resize(plan.columns), node->second.resize(plan.columns);
-  node->side.assign(plan.blocks, 1.0), node->pivot.resize(plan.blocks);
-  node->jacobian.resize(entries_);
-  node->turn.resize(turn_slots_), node->turn_first.resize(turn_slots_), node->turn_second.resize(turn_slots_);
+  size_node(node);
   double residual = 0.0;
   unsigned char flags = 0;
   Request r = {};
@@ -120,7 +124,7 @@ void Stepper::predict(const Node& n, double h, std::vector<double>* guess) const
 bool Stepper::step(const Node& a, double h, double sigma, Node* b) {
   predict(a, h, &guess_);
   const std::vector<double> guess = guess_;
-  return close(sigma, guess.data(), b) && judge(a, *b);
+  return close(sigma, guess.data(), b) && judge(a, b);
 }
 
 // The inputs are columns too, so the first derivatives hold the whole tangent of the branch.

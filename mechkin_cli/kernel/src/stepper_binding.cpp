@@ -183,7 +183,7 @@ void need_node(const OwnedStepper& s, const Node& node) {
   need(has(node.state, p.states) && has(node.state_first, p.states) && has(node.state_second, p.states) &&
            has(node.first, p.columns) && has(node.second, p.columns) && has(node.side, p.blocks) &&
            has(node.pivot, p.blocks) && has(node.jacobian, stepper.jacobian_entries()) &&
-           has(node.turn, stepper.turn_slots()),
+           has(node.danger, p.blocks) && has(node.turn, stepper.turn_slots()),
        "the node is of another plan");
 }
 
@@ -243,21 +243,30 @@ void bind_stepper(nb::module_& m) {
            [](StepLimits* at, double turn_cosine, double turn, double bend, double jump, double infill,
               double longest_step, double least_step, int most_steps, double tight, double coarse, double accept,
               double pivot, int iterations, double same_line, double knot, double corner_cosine, double stray,
-              double angle_step, double angle_miss, double plan_step) {
+              double angle_step, double angle_miss, double plan_step, double radius, double narrow,
+              int arc_steps) {
              for (double cosine : {turn_cosine, corner_cosine})
                need(cosine >= -1.0 && cosine <= 1.0, "limits: a cosine is a number from -1 to 1");
              for (double limit : {turn, bend, jump, infill, longest_step, least_step, tight, coarse, accept, pivot,
-                                  same_line, knot, stray, angle_step, angle_miss, plan_step})
+                                  same_line, knot, stray, angle_step, angle_miss, plan_step, radius, narrow})
                need(limit >= 0.0, "limits: a limit is a number from 0 on");
              need(most_steps >= 0 && most_steps <= MOST_STEPS, "limits: 0 to 1000000 steps");
              need(iterations >= 0 && iterations <= MOST_ITERATIONS, "limits: 0 to 10000 iterations");
-             new (at) StepLimits{turn_cosine, turn,   bend,   jump,  infill,     longest_step, least_step,
-                                 most_steps,  tight,  coarse, accept, pivot,     iterations,   same_line,
-                                 knot,        corner_cosine,  stray,  angle_step, angle_miss,  plan_step};
+             need(arc_steps >= 0 && arc_steps <= MOST_STEPS, "limits: 0 to 1000000 steps of an arc");
+             StepLimits limits = {};
+             limits.turn_cosine = turn_cosine, limits.turn = turn, limits.bend = bend, limits.jump = jump;
+             limits.infill = infill, limits.longest_step = longest_step, limits.least_step = least_step;
+             limits.most_steps = most_steps, limits.tight = tight, limits.coarse = coarse, limits.accept = accept;
+             limits.pivot = pivot, limits.radius = radius, limits.narrow = narrow, limits.arc_steps = arc_steps;
+             limits.iterations = iterations, limits.same_line = same_line, limits.knot = knot;
+             limits.corner_cosine = corner_cosine, limits.stray = stray, limits.angle_step = angle_step;
+             limits.angle_miss = angle_miss, limits.plan_step = plan_step;
+             new (at) StepLimits(limits);
            },
            nb::kw_only(), "turn_cosine"_a, "turn"_a, "bend"_a, "jump"_a, "infill"_a, "longest_step"_a, "least_step"_a,
            "most_steps"_a, "tight"_a, "coarse"_a, "accept"_a, "pivot"_a, "iterations"_a, "same_line"_a, "knot"_a,
-           "corner_cosine"_a, "stray"_a, "angle_step"_a, "angle_miss"_a, "plan_step"_a);
+           "corner_cosine"_a, "stray"_a, "angle_step"_a, "angle_miss"_a, "plan_step"_a, "radius"_a, "narrow"_a,
+           "arc_steps"_a);
 
   nb::class_<Node>(m, "Node")
       .def_ro("sigma", &Node::sigma)
@@ -281,9 +290,11 @@ void bind_stepper(nb::module_& m) {
              s.stepper->predict(node, h, &guess);
              return copied(guess);
            }, "node"_a, "h"_a)
-      .def("judge", [](const OwnedStepper& s, const Node& a, const Node& b) {
+      .def("judge", [](OwnedStepper& s, const Node& a, Node& b) {
              need_node(s, a), need_node(s, b);
-             return s.stepper->judge(a, b);
+             const Turn turn(s);
+             FloatingPointState state;
+             return s.stepper->judge(a, &b);
            }, "a"_a, "b"_a)
       .def("step", &step_from, "node"_a, "h"_a)
       .def("wanted_step", [](const OwnedStepper& s, const Node& node) {

@@ -50,11 +50,11 @@ Followed follow_rows(const Plan& plan, const KernelUnit& unit, const double* inp
 void adopt_turns(const Stepper& stepper, const std::vector<double>& turn, Node* node);
 // Makes the turns of a node continuous with those of the node before; false where one turned too fast to tell.
 bool continue_turns(const Stepper& stepper, const Node& a, Node* b);
-// Guesses for rows [begin, end) at sigma[0 ... end - begin) between two nodes.
-void infill(const Stepper& stepper, const Node& a, const Node& b, const double* sigma, long begin, long end,
+// Guesses for rows [begin, end) at place[0 ... end - begin) between two nodes.
+void infill(const Stepper& stepper, const Node& a, const Node& b, const double* place, long begin, long end,
             const RowGuesses& out);
 // How far the inputs of `count` rows (column after column, `stride` apart) lie from the curve between two nodes.
-double stray(const Stepper& stepper, const Node& a, const Node& b, const double* sigma, long count,
+double stray(const Stepper& stepper, const Node& a, const Node& b, const double* place, long count,
              const double* inputs, long stride);
 // A node as the guess of a row.
 void put_row(const Node& node, double limit, long row, const RowGuesses& out);
