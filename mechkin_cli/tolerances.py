@@ -132,6 +132,10 @@ NODE_PIVOT: Final = 1e-8
 """Least pivot of the equations at a node of a path: the root of a rounding, which is as near as
 numbers of double precision come to a singular place on a branch."""
 
+ARC_PIVOT: Final = 1e-7
+"""The same of the bordered matrix that follows a branch by arclength: its derivatives are wrong by
+a rounding over its square, a hundredth. Two branches at a gap of 1e-12 leave 1e-6."""
+
 SPECTRAL_RADIUS: Final = 0.5
 """Largest spectral radius of J_a^+ J_b - I for the Jacobians of a step from a to b, and to its
 middle: below 1 no matrix of the straight segment between them is singular. Half of it leaves room

@@ -11,12 +11,40 @@ import numpy as np
 
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.solver.closing_turns import turn_count
+from mechkin_cli.solver.codes import PassageEnd as PassageEnd
 from mechkin_cli.solver.codes import TrackEnd as TrackEnd
 from mechkin_cli.solver.stepping import step_limits
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
+
+
+class Ending(NamedTuple):
+    """A dead centre or a branch point that ends a branch.
+
+    `block` is the one that is singular there, `inputs` (inputs,) and `state` (states,) the place;
+    `first` and `second` are derivatives of the columns by the arclength of the block's branch,
+    `bend` the second one of the path's parameter, whose first is zero at a dead centre. `beyond`
+    are inputs and states of a place on a dead centre's other side.
+    """
+
+    kind: PassageEnd
+    block: int
+    inputs: Floats
+    state: Floats
+    first: Floats
+    second: Floats
+    bend: float
+    inputs_beyond: Floats
+    beyond: Floats
+
+
+class Crossing(NamedTuple):
+    """A branch point that was passed straight on: the first row behind it, and its inputs."""
+
+    row: int
+    inputs: Floats
 
 
 class Followed(NamedTuple):
@@ -40,6 +68,8 @@ class Followed(NamedTuple):
     direction: Floats
     turns: Floats | None = None
     turn: Floats | None = None
+    ending: Ending | None = None
+    crossings: tuple[Crossing, ...] = ()
 
 
 def follow(
@@ -50,6 +80,7 @@ def follow(
     every_row: bool = False,
     turns: bool = False,
     turn: Floats | None = None,
+    straight: bool = False,
 ) -> Followed:
     """Follows the branch through `start` (states at the first row) along all rows.
 
@@ -60,23 +91,39 @@ def follow(
         every_row: make each row a node of the skeleton instead of filling in.
         turns: carry the turns of closing joints along.
         turn: (turn slots,) turns at the first row, where they are known from a way before it.
+        straight: pass branch points along the smooth continuation.
     """
     rows = inputs.shape[1]
     guess, limit = np.empty((start.size, rows)), np.empty(rows)
     along = np.empty((turn_count(plan), rows)) if turns else None
     given = [] if turn is None else turn.tolist()
-    end, reached, steps, _, place, state, last_turn, direction = _kernel.follow_rows(
-        plan,
-        np.ascontiguousarray(inputs),
-        start.tolist(),
-        given,
-        every_row,
-        step_limits(),
-        guess,
-        limit,
-        along,
+    end, reached, steps, _, place, state, last_turn, direction, ending, crossings = (
+        _kernel.follow_rows(
+            plan,
+            np.ascontiguousarray(inputs),
+            start.tolist(),
+            given,
+            every_row,
+            step_limits(straight=straight),
+            guess,
+            limit,
+            along,
+        )
     )
     guess[:, reached:] = np.nan
+    found = None if ending is None else Ending(PassageEnd(ending[0]), *ending[1:])
+    crossed = tuple(Crossing(*each) for each in crossings)
     return Followed(
-        guess, limit, reached, TrackEnd(end), steps, place, state, direction, along, last_turn
+        guess,
+        limit,
+        reached,
+        TrackEnd(end),
+        steps,
+        place,
+        state,
+        direction,
+        along,
+        last_turn,
+        found,
+        crossed,
     )

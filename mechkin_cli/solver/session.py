@@ -20,7 +20,7 @@ from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.follow import Followed
 from mechkin_cli.solver.follow import follow as follow_path
-from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph, is_redundant
+from mechkin_cli.solver.graph import SolverGraph, build_graph, is_redundant
 from mechkin_cli.solver.inputs import KernelInputs, kernel_inputs
 from mechkin_cli.solver.layout import Layout
 
@@ -95,7 +95,6 @@ class Session:
         self.size: float | None = None
         self.continued: Continued | None = None
         self.graph = graph or build_graph(problem.mechanism, self.driven, closed_at)
-        self._exchanged: dict[tuple[int, Coordinate], Session | None] = {}
         self._readouts: dict[object, Readout] = {}
         self._kept: dict[object, object] = {}
 
@@ -245,23 +244,3 @@ class Session:
             lanes=self.packing.lanes,
             threads=self.packing.threads,
         )
-
-    def exchanged(self, number: int, coordinate: Coordinate) -> Session | None:
-        """The session in which another coordinate is driven in place of input `number`; None where
-        it cannot be solved so."""
-        key = (number, coordinate)
-        if key not in self._exchanged:
-            driven = list(self.driven)
-            driven[number] = coordinate
-            closed_at = [closing.joint.name for closing in self.graph.closings]
-            try:
-                found = Session(
-                    self.problem, driven=driven, closed_at=closed_at, packing=self.packing
-                )
-                # states go from one session to the other: lengths in the same unit
-                unit = self.layout.length
-                found.__dict__["layout"] = Layout(self.problem.mechanism, found.graph, unit)
-            except UnsolvableGraph:
-                found = None
-            self._exchanged[key] = found
-        return self._exchanged[key]

@@ -33,7 +33,7 @@ def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> R
     if start.row == 0:
         followed = session.follow(values, start.state, every_row=every_row, turns=True)
         rows = Rows.followed(followed)
-        rows.nodes = _go_on(session, values, followed, rows, every_row)
+        _explain(session, values, followed, rows)
     else:
         rows = Rows.without_guesses(session.layout.states, turn_count(session.plan), count)
         for way in (slice(start.row, None, -1), slice(start.row, None)):
@@ -41,29 +41,18 @@ def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> R
             followed = session.follow(path, start.state, every_row=every_row, turns=True)
             part = rows.part(way)
             part.take(followed, 0)
-            rows.nodes += _go_on(session, path, followed, part, every_row)
+            rows.nodes += followed.steps
+            _explain(session, path, followed, part)
     _wrap_from_first(session.layout, rows)
     return rows
 
 
-def _go_on(session: Session, path: Floats, followed: Followed, rows: Rows, every_row: bool) -> int:
-    """Finds out what ended a way, and follows it on, back from dead centres; returns the steps
-    taken in all."""
-    steps = followed.steps
-    while followed.end != TrackEnd.FINISHED:
+def _explain(session: Session, path: Floats, followed: Followed, rows: Rows) -> None:
+    """Says what ended a way, if it ended."""
+    if followed.end != TrackEnd.FINISHED:
         from mechkin_cli.analysis.sweep.branch_end import explain_end
 
-        back = explain_end(session, path, followed, rows)
-        if back is None:
-            break
-        # the row before is near the dead centre: go on from the last regular place of the branch
-        path = np.column_stack((followed.inputs, path[:, back:]))
-        rows = rows.part(slice(back - 1, None))
-        state, turn = followed.state, followed.turn
-        followed = session.follow(path, state, every_row=every_row, turns=True, turn=turn)
-        rows.take(followed, 1)
-        steps += followed.steps
-    return steps
+        explain_end(session, path, followed, rows)
 
 
 def _wrap_from_first(layout: Layout, rows: Rows) -> None:

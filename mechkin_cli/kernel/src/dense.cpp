@@ -121,8 +121,9 @@ bool spectral_radius_within(Matrix e, double limit) {
 double spectral_radius_bound(Matrix e) {
   double least = HUGE_VAL;
   spectral_bounds(std::move(e), [&](double bound) {
+    const bool enough = bound > 0.9 * least;
     least = std::fmin(least, bound);
-    return false;
+    return enough;
   });
   return least;
 }

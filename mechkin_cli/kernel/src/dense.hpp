@@ -35,7 +35,7 @@ class LeastSquares {
 // The powers' norms come near the radius, which changes neither with units nor with the order of equations and unknowns
 // nor where independent parts stand in one matrix.
 bool spectral_radius_within(Matrix e, double limit);
-// The same bound: the least of the six.
+// The same bound, as near as powers still lower it by a tenth.
 double spectral_radius_bound(Matrix e);
 
 // Singular values, falling, with the right singular vectors as columns of `v`, by one-sided Jacobi rotations.

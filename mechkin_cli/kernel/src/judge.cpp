@@ -16,9 +16,10 @@ bool is_regular_segment(const Matrix& a, const Matrix& middle, const Matrix& b, 
     subtract_identity(&e);
     return e;
   };
-  Matrix onward = difference(from, b);
-  *danger = spectral_radius_bound(onward);
-  if (!(*danger <= limit) && !spectral_radius_within(difference(to, a), limit)) return false;
+  *danger = spectral_radius_bound(difference(to, a));
+  if (!(*danger <= limit) && !spectral_radius_within(difference(to, a), limit) &&
+      !spectral_radius_within(difference(from, b), limit))
+    return false;
   return spectral_radius_within(difference(from, middle), limit) &&
          spectral_radius_within(difference(to, middle), limit);
 }

@@ -26,7 +26,7 @@ class RowFollower {
   RowFollower(const Plan& plan, const KernelUnit& unit, const InputRows& rows, const StepLimits& limits,
               const RowGuesses& out)
       : plan_(plan), unit_(unit), rows_(rows), limits_(limits), out_(out), scale_(rows.inputs, 0.0),
-        result_{TrackEnd::finished, 1, 0, 0, {}, {}, {}, std::vector<double>(rows.inputs, 0.0)} {
+        result_{TrackEnd::finished, 1, 0, 0, {}, {}, {}, std::vector<double>(rows.inputs, 0.0), {}, {}, {}} {
     for (int i = 0; i < rows.inputs; ++i)
       for (long r = 0; r < rows.rows; ++r) scale_[i] = std::fmax(scale_[i], std::fabs(rows.at(i, r)));
   }
@@ -143,11 +143,20 @@ class RowFollower {
     result_.end = missed ? TrackEnd::stalled : track.end;
     result_.steps += track.steps, result_.rejected += track.rejected;
     result_.reached = first + 1 + track.reached;
+    result_.limit = track.limit;
+    for (double place : track.crossings) note_crossing(origin, place, sigma, first);
     if (track.end == TrackEnd::start_not_closed)
       result_.inputs = origin;
     else
       take(track.last);
     return result_.end == TrackEnd::finished;
+  }
+  // A branch point that was passed on the line from `first`.
+  void note_crossing(const std::vector<double>& origin, double place, const std::vector<double>& sigma, long first) {
+    std::vector<double> inputs = origin;
+    for (int i = 0; i < rows_.inputs; ++i) inputs[i] += place * result_.direction[i];
+    const long behind = std::upper_bound(sigma.begin(), sigma.end(), place) - sigma.begin();
+    result_.crossings.push_back(inputs), result_.crossed_before.push_back(first + 1 + behind);
   }
   void take(const Node& node) {
     result_.inputs = node.inputs, result_.state = node.state, result_.turn = node.turn;

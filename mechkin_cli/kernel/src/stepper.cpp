@@ -129,15 +129,17 @@ bool Stepper::step(const Node& a, double h, double sigma, Node* b) {
 
 // The inputs are columns too, so the first derivatives hold the whole tangent of the branch.
 double Stepper::wanted_step(const Node& n) const {
-  double b2 = 0.0, along = 0.0;
+  double b2 = 0.0, along = 0.0, most = limits_.longest_step;
+  // a fifth less than what would be refused
+  for (double danger : n.danger) most = std::fmin(most, 0.8 * limits_.radius / danger);
   for (double s : n.second) b2 += s * s;
-  if (b2 == 0.0) return limits_.longest_step;
+  if (b2 == 0.0) return most;
   const double t2 = tangent_product(n, n);
   for (std::size_t i = 0; i < n.first.size(); ++i) along += n.first[i] * n.second[i];
   const double across = std::sqrt(std::fmax(b2 - along * along / t2, 0.0));
   const double by_bend = limits_.bend * std::sqrt(t2 / b2);
   const double by_turn = across > 0.0 ? limits_.turn * std::sqrt(t2) / across : HUGE_VAL;
-  return std::fmin(limits_.longest_step, std::fmin(by_bend, by_turn));
+  return std::fmin(most, std::fmin(by_bend, by_turn));
 }
 
 void Stepper::normalise_quaternions(double* state, long stride) const {

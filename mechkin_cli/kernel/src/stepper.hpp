@@ -22,9 +22,11 @@ struct StepLimits {
   int most_steps;
   double tight, coarse, accept;  // Newton's tests, see Request
   double pivot;         // least pivot of a node: the tangent next to a singular place is rounding
+  double arc_pivot;     // the same of the matrix by arclength, whose derivatives are used to tell a dead centre
   double radius;        // largest spectral radius of J_a^+ J_b - I over a step, and to its middle
   double narrow;        // step (rad, length units of the inputs) below which a refusal is looked into by arclength
   int arc_steps;        // at most in one such look
+  bool straight;        // whether a branch point is passed along the smooth continuation
   int iterations;
   double same_line;     // distance from a straight line, in parts of the inputs, up to which rows lie on it
   double knot;          // distance (rad, length units) of the rows from which the path's derivatives are read
@@ -75,7 +77,9 @@ struct Node {
   std::vector<double> state_first, state_second;  // derivatives of the raw states
   std::vector<double> side, pivot;                // blocks: sign of a square block's determinant; least pivot
   std::vector<double> jacobian;                   // blocks, one after the other, rows x size
-  std::vector<double> danger;                     // blocks: |J_a^+ J_b - I| by a unit of the step that led here
+  std::vector<double> by_sigma;                   // by arclength: rates of its block's equations with sigma
+  std::vector<double> danger;                     // blocks: radius of J^+ J_a - I by a unit of the step that led here from a;
+                                                  // about 1 / the distance to a singular place
   std::vector<double> turn, turn_first, turn_second;  // of closing joints, see ClosingTurn; as the kernel has them
 };
 
@@ -94,7 +98,7 @@ class Stepper {
   // on a given place.
   bool step(const Node& a, double h, double sigma, Node* b);
   bool step(const Node& a, double h, Node* b) { return step(a, h, a.sigma + h, b); }
-  // The step that keeps prediction and turn of the tangent within what is wanted.
+  // The step that keeps prediction, turn of the tangent and change of the Jacobians within what is wanted.
   double wanted_step(const Node& node) const;
 
   const Plan& plan() const { return plan_; }
@@ -136,7 +140,7 @@ class Stepper {
 };
 
 // Whether the segments from one matrix to another, by way of a third half way, hold no singular one: the least of the
-// spectral radii of A^+ B - I and B^+ A - I, and both to the middle, are at most `limit`. `danger`: |A^+ B - I|.
+// spectral radii of A^+ B - I and B^+ A - I, and both to the middle, are at most `limit`. `danger`: a bound of the radius of B^+ A - I.
 bool is_regular_segment(const Matrix& a, const Matrix& middle, const Matrix& b, double limit, double* danger);
 
 double tangent_product(const Node& a, const Node& b);

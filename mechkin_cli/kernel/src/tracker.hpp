@@ -5,7 +5,7 @@
 // of closing joints are carried along in the same way, so that whole turns and signs are never lost between rows.
 #pragma once
 
-#include "stepper.hpp"
+#include "passage.hpp"
 
 enum class TrackEnd : int { finished = 0, stalled = 1, exhausted = 2, start_not_closed = 3 };
 
@@ -17,12 +17,21 @@ struct RowGuesses {
   double* turn;   // turn slots x rows: closing joints' turns, continuous from the start; may be null
 };
 
+// What ended a branch: a dead centre or a branch point, located by arclength; `lost` where nothing is known.
+struct Limit {
+  PassageEnd kind = PassageEnd::lost;
+  int block = -1;
+  Node at, beyond;  // the place, with derivatives by arclength; the first node on a dead centre's other side
+};
+
 struct Track {
   TrackEnd end;
   long reached;     // rows that have a guess
   long steps, rejected;
   Node last;
   double refused_step;  // the step that could not be taken, if stalled
+  Limit limit;
+  std::vector<double> crossings;  // sigma of the branch points that were passed
 };
 
 // Rows on a straight path: sigma (rows) must not fall; row 0 of them is number `first` of the guesses.
@@ -36,6 +45,10 @@ struct Followed {
   TrackEnd end;
   long reached, steps, rejected;
   std::vector<double> inputs, state, turn, direction;
+  Limit limit;
+  // branch points that were passed: the inputs there, and the first row behind each
+  std::vector<std::vector<double>> crossings;
+  std::vector<long> crossed_before;
 };
 
 // Follows the branch through `start` along all rows; `inputs` (inputs x rows, column after column). Straight runs of
