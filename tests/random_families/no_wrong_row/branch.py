@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from mpmath import mpf
 from numpy.typing import NDArray
-
 from random_families.no_wrong_row.field import EXACT, FAST
 from random_families.no_wrong_row.linkage import Linkage
 
@@ -65,23 +64,23 @@ def way(linkage: Linkage, sign: int, span: float) -> Way:
     reach = min(span, TURN) if repeats else span
     t = np.linspace(0.0, reach, max(3, math.ceil(GRID * reach / TURN) + 1))
     end, folds, critical = reach, None, []
-    for number, body in enumerate(linkage.bodies, 1):
+    for body in linkage.bodies:
         if body.rod is None:
             continue
-        margin = linkage.at(sign * t, FAST, number).margin[body.name]
+        margin = linkage.at(sign * t, FAST, body.name).margin[body.name]
         for low, high in low_places(margin, t):
-            place, least = lowest(linkage, number, sign, low, high)
+            place, least = lowest(linkage, body.name, sign, low, high)
             critical.append((place, body.name, max(least, 0.0)))
             t = np.union1d(t, fine(place, end))
             if least <= 0:
-                end, folds = first_zero(linkage, number, sign, low, place), body.name
+                end, folds = first_zero(linkage, body.name, sign, low, place), body.name
                 break
         t = np.append(t[t < end], end)
     critical = [item for item in critical if item[0] < end or item[1] == folds]
     final = linkage.at(sign * t, FAST)
     return Way(
         sign,
-        end if folds else math.inf if reach < span or repeats and reach == TURN else reach,
+        end if folds else math.inf,
         folds,
         t,
         {name: np.maximum(m, 0.0) for name, m in final.margin.items()},
@@ -103,14 +102,12 @@ def low_places(margin: Array, t: Array) -> list[tuple[float, float]]:
     return places
 
 
-def one(linkage: Linkage, number: int, sign: int, t: Any) -> Any:
-    name = linkage.bodies[number - 1].name
-    return linkage.at(sign * t, FAST, number).margin[name]
+def one(linkage: Linkage, name: str, sign: int, t: Any) -> Any:
+    """A body's margin."""
+    return linkage.at(sign * t, FAST, name).margin[name]
 
 
-def lowest(
-    linkage: Linkage, number: int, sign: int, low: float, high: float
-) -> tuple[float, float]:
+def lowest(linkage: Linkage, name: str, sign: int, low: float, high: float) -> tuple[float, float]:
     """Place and value of the least margin between two places.
 
     Raises:
@@ -118,25 +115,24 @@ def lowest(
     """
     while True:
         t = np.linspace(low, high, 41)
-        margin = one(linkage, number, sign, t)
+        margin = one(linkage, name, sign, t)
         best = int(np.argmin(margin))
         if margin[best] < -DECIDED or high - low < 1e-13 * max(1.0, high) + 1e-15:
             break
         low, high = float(t[max(best - 1, 0)]), float(t[min(best + 1, 40)])
     place, least = float(t[best]), float(margin[best])
     if abs(least) < DECIDED:
-        name = linkage.bodies[number - 1].name
-        least = float(linkage.at(sign * mpf(place), EXACT, number).margin[name])
+        least = float(linkage.at(sign * mpf(place), EXACT, name).margin[name])
         if abs(least) < UNDECIDED:
             raise Undecided
     return place, least
 
 
-def first_zero(linkage: Linkage, number: int, sign: int, low: float, high: float) -> float:
+def first_zero(linkage: Linkage, name: str, sign: int, low: float, high: float) -> float:
     """The first place where the margin is not positive; it is at `high`, and positive at `low`."""
     while high - low > 1e-15 * max(1.0, high):
         t = np.linspace(low, high, 41)
-        gone = one(linkage, number, sign, t) <= 0
+        gone = one(linkage, name, sign, t) <= 0
         gone[-1] = True
         first = int(np.argmax(gone))
         if first == 0:

@@ -17,7 +17,6 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-
 from random_families.no_wrong_row.branch import TURN, Undecided, way
 from random_families.no_wrong_row.drawing import Drawing, Vector
 from random_families.no_wrong_row.field import FAST
@@ -81,12 +80,12 @@ class Seen:
 def wanted_length(rng: random.Random, shortest: float, longest: float, gap: float) -> float:
     """A length near one of the two, or away from both."""
     choice = rng.random()
-    inside = 1 if rng.random() < 0.7 else -1
+    inside = 1 if rng.random() < 0.85 else -1
     if choice < 0.4:
         return longest - inside * gap
     if choice < 0.8:
         return shortest + inside * gap
-    return rng.uniform(0.9 * shortest, 1.1 * longest)
+    return rng.uniform(shortest, longest)
 
 
 def on_circle(
@@ -140,8 +139,8 @@ def on_line(rng: random.Random, seen: Seen, foot: Vector, u: Vector, gap: float)
         return np.sqrt(np.maximum((m * m).sum(0) - (u @ m) ** 2, 0))
 
     least = seen.largest(off)
-    inside = 1 if rng.random() < 0.7 else -1
-    length = least + inside * gap if rng.random() < 0.8 else least * rng.uniform(0.9, 2)
+    inside = 1 if rng.random() < 0.85 else -1
+    length = least + inside * gap if rng.random() < 0.8 else least * rng.uniform(1, 2)
     m = seen.at(np.zeros(1))[:, 0] - foot
     along = float(u @ m)
     square = length**2 - float(m @ m) + along**2

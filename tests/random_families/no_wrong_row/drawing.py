@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-
 from random_families.no_wrong_row.linkage import Body, Floats, Linkage, Point
 
 Vector = NDArray[np.float64]

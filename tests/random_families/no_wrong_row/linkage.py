@@ -16,11 +16,8 @@ legs are made of such bodies.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
-
-from mpmath import mpf
 
 from random_families.no_wrong_row.field import (
     EXACT,
@@ -112,6 +109,11 @@ class Linkage:
 
     def __init__(self, bodies: list[Body], size: float) -> None:
         self.bodies, self.size = bodies, size
+        self._needs: dict[str, set[str]] = {GROUND: set()}
+        for body in bodies:
+            before = {body.parent, *([body.rod.other.body] if body.rod else [])}
+            self._needs[body.name] = {body.name}.union(*(self._needs[name] for name in before))
+        self._carriers = {b.parent for b in bodies} | {b.rod.other.body for b in bodies if b.rod}
         self.side = {body.name: self._side(body) for body in bodies if body.rod}
 
     def _side(self, body: Body) -> int:
@@ -123,20 +125,29 @@ class Linkage:
         slope = dot(minus(m, w), u) if body.slides else dot(m, cross(u, w))
         return -1 if slope > 0 else 1
 
-    def at(self, t: Any, numbers: Field, bodies: int | None = None) -> Placed:
-        """The drawn branch at the input's values t, an array or a number."""
+    def at(self, t: Any, numbers: Field, until: str | None = None) -> Placed:
+        """The drawn branch at the input's values t, an array or a number.
+
+        `until`: the coordinate and the margin of that body alone, with what it needs.
+        """
         placed = Placed()
         zero, one = numbers.number(0), numbers.number(1)
         unit = ((one, zero, zero), (zero, one, zero), (zero, zero, one))
         placed.pose[GROUND] = Pose(unit, (zero, zero, zero))
-        for body in self.bodies[:bodies]:
+        needed = self._needs[until] if until else None
+        for body in self.bodies:
+            if needed is not None and body.name not in needed:
+                continue
             if body.drive is not None:
                 value = numbers.number(body.drive) * t
             else:
                 value, margin = self._solved(body, placed, numbers)
                 placed.margin[body.name] = margin
             placed.value[body.name] = value
-            placed.pose[body.name] = moved(body, value, placed.pose[body.parent], numbers)
+            if body.name == until:
+                break
+            if until is None or body.name in self._carriers:
+                placed.pose[body.name] = moved(body, value, placed.pose[body.parent], numbers)
         return placed
 
     def _solved(self, body: Body, placed: Placed, numbers: Field) -> tuple[Any, Any]:
@@ -162,9 +173,6 @@ class Linkage:
         D = a * a + b * b - c * c
         theta = numbers.atan2(b, a) + side * numbers.atan2(numbers.root(D), c)
         return theta, D / (square * size * size)
-
-    def exact_at(self, t: mpf) -> Placed:
-        return self.at(t, EXACT)
 
 
 def unit_vector(v: Vector, numbers: Field) -> Vector:
@@ -197,6 +205,3 @@ def cross_matrix(u: Vector, i: int, j: int) -> Any:
         return 0
     k = 3 - i - j
     return u[k] if (j - i) % 3 == 2 else -u[k]
-
-
-Coordinate = Callable[[Placed], Any]

@@ -6,7 +6,6 @@ import math
 import random
 
 import numpy as np
-
 from random_families.no_wrong_row.design import (
     Impossible,
     Seen,
@@ -48,9 +47,7 @@ def crank(drawing: Drawing, name: str, foot: Vector, axis: Vector, factor: float
     link = drawing.link(f"link_{name}")
     drawing.link_of[name] = link
     drawing.bodies.append(Body(name, GROUND, False, floats(foot), floats(axis), drive=factor))
-    drawing.joint(
-        name, "R", "ground", link, floats(foot), f", axis: {text(floats(axis))}"
-    )
+    drawing.joint(name, "R", "ground", link, floats(foot), f", axis: {text(floats(axis))}")
     drawing.columns.append(Column(f"{name}.theta", name, True))
     if factor != 1.0:
         drawing.inputs[f"{name}.theta"] = f"{factor!r}*A.theta"
@@ -112,7 +109,9 @@ def hinged(drawing: Drawing, body: Body) -> bool:
 def in_space(drawing: Drawing, rng: random.Random, name: str, gap: float) -> None:
     """RSSR: a rocker about any axis, on any body."""
     driver = rng.choice([b for b in drawing.bodies if b.name in drawing.link_of])
-    other = Point(driver.name, floats(np.array(driver.foot) + rng.uniform(0.3, 1.5) * random_unit(rng)))
+    other = Point(
+        driver.name, floats(np.array(driver.foot) + rng.uniform(0.3, 1.5) * random_unit(rng))
+    )
     foot, axis = np.array(driver.foot) + rng.uniform(0.5, 3) * random_unit(rng), random_unit(rng)
     seen = Seen(drawing, other, GROUND)
     height = rng.uniform(-0.5, 0.5)
@@ -206,9 +205,7 @@ def on_two_legs(drawing: Drawing, rng: random.Random, name: str, gap: float) -> 
         )
         second_axis, place = own, Point(first, floats(centre), floats(own))
     foot = floats(second_foot)
-    drawing.bodies.append(
-        Body(first, GROUND, collared, foot, floats(axis), rod=Rod(place, one))
-    )
+    drawing.bodies.append(Body(first, GROUND, collared, foot, floats(axis), rod=Rod(place, one)))
     try:
         unit = second_axis / np.linalg.norm(second_axis)
         seen = Seen(drawing, two, first)
