@@ -12,6 +12,7 @@ import os
 import sys
 import time
 from collections import Counter
+from functools import partial
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
@@ -26,13 +27,17 @@ def main() -> int:
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--show", type=int, default=3, help="cases shown of each kind of fault")
     parser.add_argument("--save", type=Path, help="folder for the files of the cases shown")
+    parser.add_argument("--series", type=int, default=1, choices=(1, 2))
     options = parser.parse_args()
     numbers = range(options.first, options.first + options.mechanisms)
     rows: Counter[str] = Counter()
     mechanisms: Counter[str] = Counter()
     start = time.monotonic()
+    run = partial(run_one, series=options.series)
     with multiprocessing.Pool(options.processes) as pool:
-        for outcome in pool.imap_unordered(run_one, numbers, chunksize=8):
+        for outcome in pool.imap_unordered(
+            partial(run_one, series=options.series), numbers, chunksize=8
+        ):
             rows.update(outcome.counts)
             for kind, words in outcome.faults.items():
                 mechanisms[kind] += 1

@@ -122,8 +122,9 @@ def lowest(linkage: Linkage, name: str, sign: int, low: float, high: float) -> t
         low, high = float(t[max(best - 1, 0)]), float(t[min(best + 1, 40)])
     place, least = float(t[best]), float(margin[best])
     if abs(least) < DECIDED:
-        least = float(linkage.at(sign * mpf(place), EXACT, name).margin[name])
-        if abs(least) < UNDECIDED:
+        placed = linkage.at(sign * mpf(place), EXACT, name)
+        least = float(placed.margin[name])
+        if abs(least) < UNDECIDED * float(placed.blur.get(name, 1)):
             raise Undecided
     return place, least
 

@@ -17,10 +17,10 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
+from random_families.no_wrong_row.bodies import Point
 from random_families.no_wrong_row.branch import TURN, Undecided, way
 from random_families.no_wrong_row.drawing import Drawing, Vector
 from random_families.no_wrong_row.field import FAST
-from random_families.no_wrong_row.linkage import Point
 
 Array = NDArray[np.float64]
 

@@ -12,115 +12,54 @@ and a slide has s = m.u + side sqrt(D) with D = (m.u)^2 - m.m + L^2. A branch ke
 as D is positive; a simple zero of D is a dead centre, a double one a branch point. Nothing is
 stepped. Planar and spherical four-bars, RSSR, slider-cranks, wheels under rods and bodies on two
 legs are made of such bodies.
+
+Two more conditions serve arms and shafts. A *level* keeps n.m, of a direction n of the body with a
+point or a direction m of another one: A cos + B sin = C again, with D zero where m comes to the
+axis. An *aim* turns a body until one of its directions has the heading of another one about the
+axis: theta = atan2(B, A), and nothing to choose. A node (`node.py`) is
+a point at three given distances from others.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Any
 
-from random_families.no_wrong_row.field import (
-    EXACT,
-    Field,
-    Vector,
-    cross,
-    dot,
-    minus,
-    plus,
-    times,
+from random_families.no_wrong_row.bodies import (
+    GROUND,
+    Aim,
+    Body,
+    Level,
+    Placed,
+    Pose,
+    Rod,
+    exact,
+    unit_vector,
 )
-
-Floats = tuple[float, float, float]
-GROUND = "ground"
-ORIGIN = (0.0, 0.0, 0.0)
-
-
-@dataclass(frozen=True)
-class Point:
-    """A point of a body as drawn, base + offset: both are written numbers."""
-
-    body: str
-    base: Floats
-    offset: Floats = ORIGIN
-
-    def drawn(self, numbers: Field) -> Vector:
-        return plus(exact(self.base, numbers), exact(self.offset, numbers))
-
-
-@dataclass(frozen=True)
-class Rod:
-    """A constant distance, as drawn, between a body's own point and one placed before."""
-
-    own: Point
-    other: Point
-
-
-@dataclass(frozen=True)
-class Body:
-    """A link, or a part of one, with one coordinate about or along the axis in its parent.
-
-    `drive` is the factor of the input; without it the rod places the body.
-    """
-
-    name: str
-    parent: str
-    slides: bool
-    foot: Floats
-    axis: Floats
-    drive: float | None = None
-    rod: Rod | None = None
-
-
-@dataclass
-class Pose:
-    """x = turn x_drawn + shift."""
-
-    turn: tuple[Vector, Vector, Vector]
-    shift: Vector
-
-    def place(self, point: Vector) -> Vector:
-        return plus(self.along(point), self.shift)
-
-    def along(self, v: Vector) -> Vector:
-        return tuple(dot(row, v) for row in self.turn)  # type: ignore[return-value]
-
-    def seen(self, point: Vector) -> Vector:
-        d, rows = minus(point, self.shift), self.turn
-        return tuple(  # type: ignore[return-value]
-            rows[0][k] * d[0] + rows[1][k] * d[1] + rows[2][k] * d[2] for k in range(3)
-        )
-
-
-@dataclass
-class Placed:
-    """Coordinates, discriminants in parts of their scale, and poses by body."""
-
-    value: dict[str, Any] = field(default_factory=dict)
-    margin: dict[str, Any] = field(default_factory=dict)
-    pose: dict[str, Pose] = field(default_factory=dict)
-
-
-def exact(v: Floats, numbers: Field) -> Vector:
-    return tuple(numbers.number(c) for c in v)  # type: ignore[return-value]
+from random_families.no_wrong_row.field import EXACT, Field, Vector, cross, dot, minus, plus, times
+from random_families.no_wrong_row.node import Node, drawn_height
 
 
 class Linkage:
     """Bodies in the order of solution; `size` is the scale of lengths."""
 
-    def __init__(self, bodies: list[Body], size: float) -> None:
+    def __init__(self, bodies: list[Body | Node], size: float) -> None:
         self.bodies, self.size = bodies, size
         self._needs: dict[str, set[str]] = {GROUND: set()}
         for body in bodies:
-            before = {body.parent, *([body.rod.other.body] if body.rod else [])}
+            before = {body.parent, *body.others}
             self._needs[body.name] = {body.name}.union(*(self._needs[name] for name in before))
-        self._carriers = {b.parent for b in bodies} | {b.rod.other.body for b in bodies if b.rod}
+        self._carriers = {b.parent for b in bodies}.union(*(b.others for b in bodies))
         self.side = {body.name: self._side(body) for body in bodies if body.rod}
 
-    def _side(self, body: Body) -> int:
+    def _side(self, body: Body | Node) -> int:
         """The side of the drawn assembly: the sign of d(A cos + B sin)/d(theta) at 0, negative."""
+        if isinstance(body, Node):
+            return 1 if drawn_height(body) > 0 else -1
         assert body.rod
-        m = minus(body.rod.other.drawn(EXACT), exact(body.foot, EXACT))
+        m = drawn_target(body, body.rod, EXACT)
         u = exact(body.axis, EXACT)
+        if isinstance(body.rod, Level):
+            return -1 if dot(m, cross(u, exact(body.rod.own, EXACT))) > 0 else 1
         w = minus(body.rod.own.drawn(EXACT), exact(body.foot, EXACT))
         slope = dot(minus(m, w), u) if body.slides else dot(m, cross(u, w))
         return -1 if slope > 0 else 1
@@ -138,11 +77,15 @@ class Linkage:
         for body in self.bodies:
             if needed is not None and body.name not in needed:
                 continue
+            if isinstance(body, Node):
+                placed.margin[body.name] = body.solve(t, placed, self.side[body.name], numbers)
+                continue
             if body.drive is not None:
                 value = numbers.number(body.drive) * t
+            elif body.aim is not None:
+                value = aimed(body, body.aim, placed, numbers)
             else:
-                value, margin = self._solved(body, placed, numbers)
-                placed.margin[body.name] = margin
+                value, placed.margin[body.name] = self._solved(body, placed, numbers)
             placed.value[body.name] = value
             if body.name == until:
                 break
@@ -154,6 +97,8 @@ class Linkage:
         rod = body.rod
         assert rod
         u = unit_vector(exact(body.axis, numbers), numbers)
+        if isinstance(rod, Level):
+            return self._levelled(body, rod, placed, numbers)
         own, other = rod.own.drawn(numbers), rod.other.drawn(numbers)
         d = minus(own, other)
         square = dot(d, d)
@@ -174,9 +119,41 @@ class Linkage:
         theta = numbers.atan2(b, a) + side * numbers.atan2(numbers.root(D), c)
         return theta, D / (square * size * size)
 
+    def _levelled(self, body: Body, level: Level, placed: Placed, numbers: Field) -> Any:
+        u = unit_vector(exact(body.axis, numbers), numbers)
+        n = unit_vector(exact(level.own, numbers), numbers)
+        m, drawn = target(body, level, placed, numbers), drawn_target(body, level, numbers)
+        size = numbers.number(1 if level.free else self.size)
+        a = (dot(m, n) - dot(m, u) * dot(n, u)) / size
+        b = dot(m, cross(u, n)) / size
+        c = (dot(drawn, n) - dot(m, u) * dot(n, u)) / size
+        D = a * a + b * b - c * c
+        placed.blur[body.name] = abs(a) + abs(b) + abs(c)
+        return numbers.atan2(b, a) + self.side[body.name] * numbers.atan2(numbers.root(D), c), D
 
-def unit_vector(v: Vector, numbers: Field) -> Vector:
-    return times(1 / numbers.root(dot(v, v)), v)
+
+def drawn_target(body: Body, item: Rod | Level | Aim, numbers: Field) -> Vector:
+    """The other point from the axis's foot, or the other direction, as drawn."""
+    if not isinstance(item, Rod) and item.free:
+        return unit_vector(item.other.drawn(numbers), numbers)
+    return minus(item.other.drawn(numbers), exact(body.foot, numbers))
+
+
+def target(body: Body, item: Level | Aim, placed: Placed, numbers: Field) -> Vector:
+    """The same where the other body is now, as seen in the parent."""
+    other, parent = placed.pose[item.other.body], placed.pose[body.parent]
+    if item.free:
+        return parent.heading(other.along(unit_vector(item.other.drawn(numbers), numbers)))
+    there = parent.seen(other.place(item.other.drawn(numbers)))
+    return minus(there, exact(body.foot, numbers))
+
+
+def aimed(body: Body, aim: Aim, placed: Placed, numbers: Field) -> Any:
+    u = unit_vector(exact(body.axis, numbers), numbers)
+    w, m = exact(aim.own, numbers), target(body, aim, placed, numbers)
+    if not aim.free:
+        w = minus(w, exact(body.foot, numbers))
+    return numbers.atan2(dot(m, cross(u, w)), dot(m, w) - dot(m, u) * dot(w, u))
 
 
 def moved(body: Body, value: Any, parent: Pose, numbers: Field) -> Pose:

@@ -6,6 +6,7 @@ import math
 import random
 
 import numpy as np
+from random_families.no_wrong_row.bodies import GROUND, ORIGIN, Body, Floats, Point, Rod
 from random_families.no_wrong_row.design import (
     Impossible,
     Seen,
@@ -15,7 +16,6 @@ from random_families.no_wrong_row.design import (
     random_unit,
 )
 from random_families.no_wrong_row.drawing import Column, Drawing, Vector, floats, text
-from random_families.no_wrong_row.linkage import GROUND, ORIGIN, Body, Floats, Point, Rod
 
 PLANAR_RODS = (
     ("S", "S"), ("R", "R"), ("C", "S"), ("S", "C"), ("R", "S"), ("S", "R"), ("R", "Sg"),

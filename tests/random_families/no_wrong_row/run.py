@@ -18,8 +18,8 @@ class Outcome(NamedTuple):
     text: str
 
 
-def run_one(number: int) -> Outcome:
-    case = drawn(number)
+def run_one(number: int, series: int = 1) -> Outcome:
+    case = drawn(number, series)
     try:
         verdict = judged(case)
     except Exception as error:

@@ -79,3 +79,18 @@ def swinging(rng: random.Random) -> Travel:
 
 def travelled(rng: random.Random) -> Travel:
     return rng.choice([swept, swept, swept, swept, swept, rising, swinging])(rng)
+
+
+def travelled_from(rng: random.Random) -> Travel:
+    """The same, or a sweep whose first row is not the drawing."""
+    if rng.random() < 0.75:
+        return travelled(rng)
+    step = rng.choice(STEPS)
+    first = round(rng.uniform(-120, 120), 2)
+    way = rng.choice([-1, 1])
+    count = min(int(rng.choice(SPANS) / step + 1e-9), MOST_ROWS - 1) + 1
+    last = first + way * (count - 1) * step
+    rows = np.array([first + way * step * k for k in range(count)])
+    text = f"{{from: {first!r}, to: {last!r}, step: {step!r}}}"
+    least, most = np.minimum(rows, first), np.maximum(rows, first)
+    return Travel(rows, np.maximum(most, 0.0), np.minimum(least, 0.0), text)

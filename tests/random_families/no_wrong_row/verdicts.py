@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from mpmath import mp, mpf
@@ -49,14 +50,30 @@ def judged(case: Case) -> Verdict:
         verdict.add("undecided")
         return verdict
     names = [column.name for column in case.drawing.columns]
-    analysis = mk.loads(case.text).analyze(names, tables=[])
+    asked = list(dict.fromkeys(vector_of(name)[0] for name in names))
+    analysis = mk.loads(case.text).analyze(asked, tables=[])
     status = analysis["row.status"].tolist()
-    misses = truth.misses({name: analysis[name] for name in names})
+    if truth.starts_beyond():
+        verdict.counts["first row beyond a fold"] += len(status)
+        return verdict
+    misses = truth.misses({name: cells(analysis, name) for name in names})
     for k, word in enumerate(status):
         where = f"row {k} at {case.travel.rows[k]:.12g} deg, {word}"
         kind, words = truth.kind(k, word, misses)
         verdict.add(kind, f"{where}; {words}" if words else "")
     return verdict
+
+
+def vector_of(name: str) -> tuple[str, int | None]:
+    """The quantity of a column, and which component of it."""
+    quantity, _, last = name.rpartition(".")
+    return (quantity, "xyz".index(last)) if last in ("x", "y", "z") else (name, None)
+
+
+def cells(analysis: Any, name: str) -> Array:
+    quantity, component = vector_of(name)
+    found = np.asarray(analysis[quantity])
+    return found if component is None else found[:, component]
 
 
 class Truth:
@@ -67,7 +84,7 @@ class Truth:
     """
 
     def __init__(self, case: Case) -> None:
-        self.case, self.linkage = case, case.drawing.linkage()
+        self.case, self.linkage = case, case.drawing.linkage(case.sides)
         travel = case.travel
         self.high, self.low = np.radians(travel.highest), -np.radians(travel.lowest)
         self.ways = {
@@ -76,6 +93,11 @@ class Truth:
             if reach.max() > 0
         }
         self.least = {sign: least_singular(case, one) for sign, one in self.ways.items()}
+
+    def starts_beyond(self) -> bool:
+        """Whether the first row is beyond the end of what is drawn: any assembly may be taken."""
+        first = float(np.radians(self.case.travel.rows[0]))
+        return any(sign * first > one.end - AT_FOLD for sign, one in self.ways.items())
 
     def kind(self, k: int, status: str, misses: list[str]) -> tuple[str, str]:
         """The kind of verdict on a row, and what is at fault."""
@@ -129,7 +151,11 @@ class Truth:
                 words[k] = words[k] or self._exactly(int(k), found)
             if not column.angle:
                 continue
-            turns = np.abs(np.radians(have) - self._continuous(column)) > 0.75 * TURN
+            apart = np.radians(have) - self._continuous(column)
+            if self.case.sides or self.case.travel.rows[0]:
+                # the first row counts from where it finds itself
+                apart -= TURN * np.round(apart[0] / TURN) if np.isfinite(apart[0]) else 0.0
+            turns = np.abs(apart) > 0.75 * TURN
             for k in np.flatnonzero(turns):
                 words[k] = words[k] or f"{column.name} {have[k]:.6g} is off by whole turns"
         return words
