@@ -183,7 +183,15 @@ class Session:
     ) -> Followed:
         """Follows the branch through `start` (states,) along a path (inputs, rows); arguments as
         those of `solver.follow.follow`."""
-        return follow_path(self.plan, path, start, every_row=every_row, turns=turns, turn=turn)
+        return follow_path(
+            self.plan,
+            path,
+            start,
+            every_row=every_row,
+            turns=turns,
+            turn=turn,
+            straight=self.problem.assembly.straight,
+        )
 
     def search(self, inputs: Floats, within: Within | None = None) -> Found:
         """All assemblies at some inputs (inputs,) that random starts find, or those `within` a

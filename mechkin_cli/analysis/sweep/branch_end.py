@@ -29,6 +29,10 @@ MAY_BE_FOLD = (
 )
 
 
+MOST_SHOWN = 4
+"""Places that a message shows."""
+
+
 def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) -> None:
     """Says why a branch ended, and gives the rows that it does not reach their status.
 
@@ -50,6 +54,24 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) 
         rows.diagnostics.append(_branch_point_note(session, limit, rows))
     else:
         rows.diagnostics.append(_lost_note(session, followed, rows))
+
+
+def crossing_note(session: Session, followed: Followed) -> Diagnostic:
+    """The branch points that a way passed straight on."""
+    places = [
+        input_numbers(session.problem, session.layout, crossing.inputs)
+        for crossing in followed.crossings
+    ]
+    shown = [", ".join(map(input_text, numbers)) for numbers in places[:MOST_SHOWN]]
+    more = len(places) - len(shown)
+    return Diagnostic(
+        "branch-point-passed",
+        "note",
+        f"the branch passes {'a branch point' if len(places) == 1 else 'branch points'} along its "
+        "smooth continuation, as assembly: {at_branch_points: straight} asks",
+        measured="; ".join(shown) + (f" and {more} more" if more else ""),
+        numbers=tuple(number for numbers in places[:MOST_SHOWN] for number in numbers),
+    )
 
 
 def input_faults(session: Session) -> list[Diagnostic]:

@@ -41,6 +41,8 @@ def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> R
             followed = session.follow(path, start.state, every_row=every_row, turns=True)
             part = rows.part(way)
             part.take(followed, 0)
+            if way.step == -1:
+                part.section *= -1
             rows.nodes += followed.steps
             _explain(session, path, followed, part)
     _wrap_from_first(session.layout, rows)
@@ -48,7 +50,11 @@ def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> R
 
 
 def _explain(session: Session, path: Floats, followed: Followed, rows: Rows) -> None:
-    """Says what ended a way, if it ended."""
+    """Says which branch points a way passed, and what ended it, if it ended."""
+    if followed.crossings:
+        from mechkin_cli.analysis.sweep.branch_end import crossing_note
+
+        rows.diagnostics.append(crossing_note(session, followed))
     if followed.end != TrackEnd.FINISHED:
         from mechkin_cli.analysis.sweep.branch_end import explain_end
 

@@ -272,6 +272,13 @@ Matrix Arc::extended_at(const Node& near, const std::vector<double>& state, doub
   return extended(copy);
 }
 
+double Arc::own_step(const Node& n) const {
+  double bend = n.bend * speed_ * n.bend * speed_;
+  for (int u = 0; u < size_; ++u) bend += n.second[unknown(u)] * n.second[unknown(u)];
+  const double most = std::fmin(limits_.longest_step, 0.8 * limits_.radius / n.danger[block_]);
+  return std::fmin(most, std::fmin(limits_.bend, limits_.turn) / std::sqrt(bend));
+}
+
 bool Arc::same_side(const Node& a, Node* b, int* blame) {
   const double h = b->place - a.place;
   Node half = a;

@@ -23,6 +23,8 @@ class Arc : public Stepper {
   bool step(const Node& a, double h, Node* b, int* blame);
   // Closes at a step h from a node without judging.
   bool close_from(const Node& a, double h, Node* b);
+  // The step that the block alone would want.
+  double own_step(const Node& node) const;
 
   int block() const { return block_; }
   bool carries(int block) const { return block == block_ || before_[block] || carried_[block]; }

@@ -6,6 +6,22 @@
 
 namespace {
 
+// A block that is neither solved nor looked at: its joints are placed as they are, for others may hang on them, and its
+// unknowns stand still.
+inline void leave_block(const Plan& p, Workspace& w, int index) {
+  const Block& b = p.block[index];
+  place_block(p, w, b);
+  block_screws(p, w, b);
+  for (int u = 0; u < b.size; ++u) {
+    const int column = p.unknown[b.column_begin + u];
+    w.rate[column] = w.acceleration[column] = 0.0;
+  }
+}
+inline void leave_motion(const Plan& p, Workspace& w, int index, bool second) {
+  const Block& b = p.block[index];
+  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], second);
+}
+
 // Equations and Jacobian (not factored) at the states as they are.
 template <class Out>
 inline Residual hold_block(const Plan& p, Workspace& w, int index, Out&& equations) {

@@ -10,7 +10,7 @@ namespace {
 
 // A block other than the arc's own stands in the way where its matrix changes this many times faster.
 constexpr double FASTER = 3.0;
-// Halvings of the wanted step after which it is asked which block stands in the way.
+// Part of the step that the arc's own block wants, below which it is asked which other one stands in the way.
 constexpr double SHORTENED = 1.0 / 8.0;
 // Speed of the path along the arc below which rows are closed one by one: next to a dead centre.
 constexpr double SLOW = 1e-2;
@@ -84,11 +84,13 @@ class Walker {
     Node a, b;
     if (!arc.enter(from, &a)) return;
     p->nodes.assign(1, a);
-    double wanted = arc.wanted_step(a), h = std::fmin(wanted, refused_ / a.rate);
+    double h = std::fmin(arc.wanted_step(a), refused_ / a.rate);
+    int refuses = -1;  // the block that refused the last step
     while (p->steps + p->rejected < limits_.arc_steps) {
+      if (stands_in_the_way(arc, a, refuses, h, p)) return;
       if (h < LEAST_ARC) {
         if (!cross_branch_point(p, &a)) return;
-        h = wanted = arc.wanted_step(a);
+        h = arc.wanted_step(a);
       }
       int blame = -1;
       const bool good = arc.step(a, h, &b, &blame) && (continue_turns(arc, a, &b) || h <= limits_.angle_step) &&
@@ -96,10 +98,9 @@ class Walker {
       if (!good) {
         ++p->rejected;
         
-        if (stands_in_the_way(arc, a, blame, h, wanted, p)) return;
         // at a branch point steps of any length end where the pivots are rounding
         const bool singular = h < SINGULAR_STEP && blame == arc.block() && b.pivot[blame] < limits_.arc_pivot;
-        h = singular ? 0.0 : 0.5 * h;
+        h = singular ? 0.0 : 0.5 * h, refuses = blame;
         continue;
       }
       ++p->steps;
@@ -114,14 +115,13 @@ class Walker {
         continue;
       }
       p->nodes.push_back(b);
-      wanted = arc.wanted_step(b);
       // a step of twice what the path's own steps are refused at: they can go on
       if (b.sigma >= until_ || std::fmin(b.rate, a.rate) * arc.speed() * h >= 2.0 * limits_.narrow) {
         p->end = PassageEnd::through;
         return;
       }
-      h = std::fmin(wanted, 4.0 * h);
-      a = b;
+      h = std::fmin(arc.wanted_step(b), 4.0 * h);
+      a = b, refuses = -1;
     }
   }
 
@@ -142,8 +142,8 @@ class Walker {
   }
 
   // Whether another block is what refuses the steps; then the walk ends here.
-  bool stands_in_the_way(const Arc& arc, const Node& a, int blame, double h, double wanted, Passage* p) const {
-    if (h > SHORTENED * wanted) return false;
+  bool stands_in_the_way(const Arc& arc, const Node& a, int blame, double h, Passage* p) const {
+    if (h > SHORTENED * arc.own_step(a)) return false;
     const int own = arc.block();
     int other = blame >= 0 && blame != own ? blame : -1;
     for (std::size_t k = 0; other < 0 && k < a.danger.size(); ++k)

@@ -73,7 +73,10 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (long e = 0; e < at.m * at.n; ++e) writer(r.jacobian).put(at.jacobian - w.jacobian + e, at.jacobian[e]);
   };
   for (int b = 0; b < p.blocks; ++b) {
-    if (skips(b)) continue;
+    if (skips(b)) {
+      leave_block(p, w, b);
+      continue;
+    }
     if (holds(b)) {
       const Residual held = hold_block(p, w, b, writer(r.held->equations));
       converged = converged & (held.test <= Pack(r.accept));
@@ -103,7 +106,9 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int b = 0; b < p.blocks; ++b)
       if (holds(b))
         hold_velocities(p, w, b, *r.held, given, writer(r.held->first));
-      else if (!skips(b))
+      else if (skips(b))
+        leave_motion(p, w, b, false);
+      else
         block_velocities(p, w, b);
     for (int k = 0; k < rest_count; ++k) move_link(p, w, p.rest[k], false);
   }
@@ -112,7 +117,9 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int b = 0; b < p.blocks; ++b)
       if (holds(b))
         hold_accelerations(p, w, b, *r.held, given, writer(r.held->second));
-      else if (!skips(b))
+      else if (skips(b))
+        leave_motion(p, w, b, true);
+      else
         block_accelerations(p, w, b);
     for (int k = 0; k < rest_count; ++k) move_link(p, w, p.rest[k], true);
   }
