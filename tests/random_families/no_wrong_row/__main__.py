@@ -35,9 +35,7 @@ def main() -> int:
     start = time.monotonic()
     run = partial(run_one, series=options.series)
     with multiprocessing.Pool(options.processes) as pool:
-        for outcome in pool.imap_unordered(
-            partial(run_one, series=options.series), numbers, chunksize=8
-        ):
+        for outcome in pool.imap_unordered(run, numbers, chunksize=8):
             rows.update(outcome.counts)
             for kind, words in outcome.faults.items():
                 mechanisms[kind] += 1

@@ -12,6 +12,7 @@ from random_families.no_wrong_row.drawing import Drawing
 from random_families.no_wrong_row.field import FAST
 from random_families.no_wrong_row.loops import LOOPS, crank, in_plane
 from random_families.no_wrong_row.more_loops import MORE_LOOPS, platform
+from random_families.no_wrong_row.node import Node
 from random_families.no_wrong_row.transforms import double
 from random_families.no_wrong_row.travel import Travel, travelled, travelled_from
 
@@ -51,7 +52,8 @@ def drawn(number: int, series: int = 1) -> Case:
         if series == 1:
             travel, chosen = travelled(rng), {}
         else:
-            travel, chosen = travelled_from(rng), _chosen(drawing, rng)
+            chosen = _chosen(drawing, rng)
+            travel = (travelled if chosen else travelled_from)(rng)
         near = near_of(drawing, chosen)
         return Case(number, drawing, text_of(drawing, travel, near), travel, gaps, chosen)
 
@@ -91,7 +93,13 @@ def _chosen(drawing: Drawing, rng: random.Random) -> dict[str, int]:
     """Sides of another assembly than the drawn one, or none."""
     if rng.random() < 0.75:
         return {}
-    sides = {name: rng.choice([-1, 1]) for name in drawing.linkage().side}
+    sides = {
+        body.name: rng.choice([-1, 1])
+        for body in drawing.bodies
+        if body.rod and not isinstance(body, Node)
+    }
+    if not sides:
+        return {}
     at = drawing.linkage(sides).at(np.zeros(1), FAST)
     return sides if min(float(m[0]) for m in at.margin.values()) > 1e-3 else {}
 

@@ -27,7 +27,7 @@ class Leg:
 
     def square(self, own: Vector, t: Any, numbers: Field) -> Any:
         d = minus(own, self.other.drawn(numbers))
-        length = numbers.root(dot(d, d))
+        length = numbers.root(dot(d, d)) + 0 * t
         if self.stroke:
             length = length + numbers.number(self.stroke) * numbers.sin(self.turns * t)
         return length * length

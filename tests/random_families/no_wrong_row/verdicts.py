@@ -192,7 +192,7 @@ class Truth:
         radians = np.radians(self.case.travel.rows)
         want = np.zeros_like(radians)
         for sign, one in self.ways.items():
-            here = radians * sign > 0
+            here = radians * sign >= 0
             at, turns = one.reduced(np.abs(radians[here]))
             value = one.value[column.body]
             winding = round((value[-1] - value[0]) / TURN) if one.periodic else 0
