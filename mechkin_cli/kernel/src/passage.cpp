@@ -264,6 +264,12 @@ bool Stretch::at(const Plan& plan, const KernelUnit& unit, const std::vector<Clo
   return true;
 }
 
+bool Stretch::carries_all(int blocks) const {
+  for (int b = 0; b < blocks; ++b)
+    if (!of_block(b).arc->carries(b)) return false;
+  return true;
+}
+
 long Stretch::steps() const {
   long sum = 0;
   for (const Passage& p : passages) sum += p.steps;
@@ -280,9 +286,14 @@ Stretch walk_stretch(const Path& path, const KernelUnit& unit, const StepLimits&
   const Plan& plan = path.plan(0.0);
   const int n = plan.blocks;
   const std::vector<char> upstream = upstream_blocks(plan, unit);
+  // at the start of a path no step has told the dangers yet
+  const auto worse = [&](int b, int other) {
+    if (from.danger[b] != from.danger[other]) return from.danger[b] > from.danger[other];
+    return from.pivot[b] < from.pivot[other];
+  };
   int first = 0;
   for (int b = 0; b < n; ++b)
-    if (from.danger[b] > from.danger[first]) first = b;
+    if (worse(b, first)) first = b;
   Stretch stretch;
   std::vector<int> trouble = {first};
   const Walker walker(limits, refused, until);
@@ -293,10 +304,11 @@ Stretch walk_stretch(const Path& path, const KernelUnit& unit, const StepLimits&
     for (bool again = true; again;) {
       again = false;
       std::vector<char> carried(n, 1);
-      for (int other : trouble)
-        if (other != block)
-          for (int b = 0; b < n; ++b)
-            if (b == other || upstream[b * n + other]) carried[b] = 0;
+      for (int other : trouble) {
+        if (other == block || upstream[block * n + other]) continue;
+        for (int b = 0; b < n; ++b)
+          if (b == other || upstream[b * n + other]) carried[b] = 0;
+      }
       p = Passage();
       p.block = block, p.arc = std::make_unique<Arc>(path, unit, limits, block, carried);
       walker.walk(from, &p);
