@@ -10,6 +10,11 @@ namespace {
 
 // A block other than the arc's own stands in the way where its matrix changes this many times faster.
 constexpr double FASTER = 3.0;
+// A block that the arc's own hangs on passes its trouble on: it stands in the way where its own change is not small
+// beside that.
+constexpr double BEFORE = 0.5;
+// Where a walk was stopped by a block before it, within this of that one's end, it has come there, too.
+constexpr double SAME_END = 1e-9;
 // Part of the step that the arc's own block wants, below which it is asked which other one stands in the way.
 constexpr double SHORTENED = 1.0 / 8.0;
 // Speed of the path along the arc below which rows are closed one by one: next to a dead centre.
@@ -143,8 +148,13 @@ class Walker {
 
   // Whether another block is what refuses the steps; then the walk ends here.
   bool stands_in_the_way(const Arc& arc, const Node& a, int blame, double h, Passage* p) const {
-    if (h > SHORTENED * arc.own_step(a)) return false;
     const int own = arc.block();
+    for (std::size_t k = 0; k < a.danger.size(); ++k)
+      if (arc.before()[k] && a.danger[k] > std::fmax(BEFORE * a.danger[own], 1.0 / limits_.narrow)) {
+        p->blame = (int)k;
+        return true;
+      }
+    if (h > SHORTENED * arc.own_step(a)) return false;
     int other = blame >= 0 && blame != own ? blame : -1;
     for (std::size_t k = 0; other < 0 && k < a.danger.size(); ++k)
       if ((int)k != own && arc.carries((int)k) && a.danger[k] > FASTER * std::fmax(a.danger[own], 1.0)) other = (int)k;
@@ -264,6 +274,12 @@ bool Stretch::at(const Plan& plan, const KernelUnit& unit, const std::vector<Clo
   return true;
 }
 
+bool Stretch::carries_all(int blocks) const {
+  for (int b = 0; b < blocks; ++b)
+    if (!of_block(b).arc->carries(b)) return false;
+  return true;
+}
+
 long Stretch::steps() const {
   long sum = 0;
   for (const Passage& p : passages) sum += p.steps;
@@ -280,41 +296,56 @@ Stretch walk_stretch(const Path& path, const KernelUnit& unit, const StepLimits&
   const Plan& plan = path.plan(0.0);
   const int n = plan.blocks;
   const std::vector<char> upstream = upstream_blocks(plan, unit);
+  // at the start of a path no step has told the dangers yet
+  const auto worse = [&](int b, int other) {
+    if (from.danger[b] != from.danger[other]) return from.danger[b] > from.danger[other];
+    return from.pivot[b] < from.pivot[other];
+  };
   int first = 0;
   for (int b = 0; b < n; ++b)
-    if (from.danger[b] > from.danger[first]) first = b;
+    if (worse(b, first)) first = b;
   Stretch stretch;
   std::vector<int> trouble = {first};
   const Walker walker(limits, refused, until);
   long steps = 0, rejected = 0;
+  const auto is_known = [&](int b) { return std::find(trouble.begin(), trouble.end(), b) != trouble.end(); };
   for (std::size_t k = 0; k < trouble.size(); ++k) {
-    const int block = trouble[k];
     Passage p;
     for (bool again = true; again;) {
       again = false;
+      const int block = trouble[k];
       std::vector<char> carried(n, 1);
-      for (int other : trouble)
-        if (other != block)
-          for (int b = 0; b < n; ++b)
-            if (b == other || upstream[b * n + other]) carried[b] = 0;
+      for (int other : trouble) {
+        if (other == block || upstream[block * n + other]) continue;
+        for (int b = 0; b < n; ++b)
+          if (b == other || upstream[b * n + other]) carried[b] = 0;
+      }
       p = Passage();
       p.block = block, p.arc = std::make_unique<Arc>(path, unit, limits, block, carried);
       walker.walk(from, &p);
-      if (p.end == PassageEnd::lost && p.blame >= 0) {
-        if (std::find(trouble.begin(), trouble.end(), p.blame) == trouble.end()) {
-          trouble.push_back(p.blame);
-          again = !upstream[block * n + p.blame];
-        }
-        // what it hangs on tells how far it goes
-        if (!again && p.nodes.size() > 1) p.end = PassageEnd::through;
-      }
       steps += p.steps, rejected += p.rejected;
+      if (p.end != PassageEnd::lost || p.blame < 0) continue;
+      if (!is_known(p.blame)) {
+        again = true;
+        // a block before this one is looked at in its place; this one is then carried along
+        if (upstream[block * n + p.blame])
+          trouble[k] = p.blame;
+        else
+          trouble.push_back(p.blame);
+      } else if (p.nodes.size() > 1) {
+        p.end = PassageEnd::through;
+      }
     }
     if (p.nodes.empty()) p.nodes.assign(1, from);
     stretch.passages.push_back(std::move(p));
   }
   for (std::size_t k = 0; k < stretch.passages.size(); ++k)
     if (stretch.ends < 0 || stretch.passages[k].reach() < stretch.reach()) stretch.ends = (int)k;
+  for (std::size_t k = 0; k < stretch.passages.size(); ++k) {
+    const Passage &one = stretch.last(), &other = stretch.passages[k];
+    const bool ends = other.end == PassageEnd::dead_centre || other.end == PassageEnd::branch_point;
+    if (one.blame == other.block && ends && other.reach() - one.reach() <= SAME_END) stretch.ends = (int)k;
+  }
   stretch.passages.front().steps += steps - stretch.steps();
   stretch.passages.front().rejected += rejected - stretch.rejected();
   return stretch;

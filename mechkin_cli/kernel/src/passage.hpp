@@ -34,6 +34,8 @@ struct Stretch {
   double reach() const { return last().reach(); }
   // The passage that tells a block's unknowns.
   const Passage& of_block(int block) const;
+  // Whether every block was carried along by one: none that hangs on two blocks in trouble is.
+  bool carries_all(int blocks) const;
   bool at(const Plan& plan, const KernelUnit& unit, const std::vector<ClosingTurn>& turns, double sigma,
           Node* node, double* limit) const;
   long steps() const;
