@@ -147,6 +147,6 @@ def first_zero(linkage: Linkage, name: str, sign: int, low: float, high: float) 
 
 def fine(place: float, end: float) -> Array:
     """Points that come closer to a place in equal ratios."""
-    steps = 10.0 ** np.arange(-9, -2, 0.125)
+    steps = 10.0 ** np.arange(-13, -2, 0.125)
     points = np.concatenate([place - steps, [place], place + steps])
     return points[(points > 0) & (points < end)]

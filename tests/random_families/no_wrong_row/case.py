@@ -118,15 +118,18 @@ def near_of(drawing: Drawing, sides: dict[str, int]) -> str:
     return "assembly: {near: {" + ", ".join(items) + "}}\n" if items else ""
 
 
-def text_of(drawing: Drawing, travel: Travel, near: str = "") -> str:
-    links, joints = drawing.shuffled()
+def text_of(
+    drawing: Drawing, travel: Travel, near: str = "", more: str = "", *, shuffled: bool = True
+) -> str:
+    links, joints = drawing.shuffled() if shuffled else (drawing.links, drawing.joints)
+    mass = "mass: 1.5, center_of_mass: [0.3, -0.2, 0.4], inertia: {xx: 0.3, yy: 0.2, zz: 0.4}"
     inputs = "".join(f"    {n}: {{with: {v}}}\n" for n, v in drawing.inputs.items())
     return (
         "format: 1\nname: random\nunits: {length: m, angle: deg, mass: kg, force: N}\nlinks:\n"
-        + "".join(f"  {link}: {{}}\n" for link in links)
+        + "".join(f"  {link}: {{{mass if link in drawing.heavy else ''}}}\n" for link in links)
         + "joints:\n"
         + "".join(f"  {joint}\n" for joint in joints)
         + ("points:\n" if drawing.marks else "")
         + "".join(f"  {mark}\n" for mark in drawing.marks)
-        + f"motion:\n{travel.head}  inputs:\n    A.theta: {travel.text}\n{inputs}{near}"
+        + f"motion:\n{travel.head}  inputs:\n    A.theta: {travel.text}\n{inputs}{near}{more}"
     )

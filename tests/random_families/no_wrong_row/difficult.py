@@ -8,3 +8,12 @@ DIFFICULT = (
 
 NOT_YET: frozenset[int] = frozenset({13, *DIFFICULT})
 """Each fails strictly: a number whose mechanism is right must leave the set."""
+
+SECOND_NOT_YET: frozenset[int] = frozenset()
+"""The same of the second series."""
+
+WRITTEN_NOT_YET: frozenset[tuple[int, int]] = frozenset()
+"""Series and numbers whose rows change when they are written otherwise."""
+
+CIRCUITS_NOT_YET: frozenset[int] = frozenset()
+"""Loops whose ranges or circuits contradict their discriminants."""

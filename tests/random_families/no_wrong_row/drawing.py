@@ -37,7 +37,7 @@ class Column:
 @dataclass
 class Drawing:
     """Bodies, links and joints; `merged` are groups of bodies that one block solves, `marks` the
-    entries of points."""
+    entries of points; links are massless but for `heavy` ones."""
 
     rng: random.Random
     bodies: list[Body | Node] = field(default_factory=list)
@@ -48,6 +48,7 @@ class Drawing:
     merged: list[tuple[str, ...]] = field(default_factory=list)
     points: list[Floats] = field(default_factory=list)
     marks: list[str] = field(default_factory=list)
+    heavy: set[str] = field(default_factory=set)
     families: list[str] = field(default_factory=list)
     link_of: dict[str, str] = field(default_factory=lambda: {"ground": "ground"})
 

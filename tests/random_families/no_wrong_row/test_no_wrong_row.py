@@ -6,28 +6,39 @@ import os
 from collections import Counter
 
 import pytest
-from random_families.no_wrong_row.difficult import DIFFICULT, NOT_YET
+from random_families.no_wrong_row.difficult import DIFFICULT, NOT_YET, SECOND_NOT_YET
 from random_families.no_wrong_row.run import run_one
 
 COUNT = 40 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 
-def test_no_row_is_wrong_or_lost() -> None:
+def check(numbers: list[int], series: int, solved: int) -> None:
+    """No row of any is at fault, and at least so many are solved."""
     faults, counts = [], Counter[str]()
-    for number in (*range(COUNT), *DIFFICULT):
-        if number in NOT_YET:
-            continue
-        outcome = run_one(number)
+    for number in numbers:
+        outcome = run_one(number, series)
         counts.update(outcome.counts)
         faults += [f"{number}: {kind}: {words}" for kind, words in outcome.faults.items()]
     assert not faults, "\n".join(faults)
-    assert counts["error"] == 0
-    assert counts["right"] > 5 * COUNT
+    assert counts["right"] > solved
     assert counts["given up"] + counts["undecided"] < 0.1 * sum(counts.values())
+
+
+def test_no_row_is_wrong_or_lost() -> None:
+    check([n for n in (*range(COUNT), *DIFFICULT) if n not in NOT_YET], 1, 5 * COUNT)
+
+
+def test_arms_platforms_shafts_and_ties() -> None:
+    check([n for n in range(COUNT // 2) if n not in SECOND_NOT_YET], 2, 5 * COUNT)
 
 
 @pytest.mark.parametrize("number", sorted(NOT_YET))
 @pytest.mark.xfail(strict=True, reason="a step may pass where two loops change sides")
 def test_not_yet(number: int) -> None:
-    outcome = run_one(number)
-    assert not outcome.faults
+    assert not run_one(number).faults
+
+
+@pytest.mark.parametrize("number", sorted(SECOND_NOT_YET))
+@pytest.mark.xfail(strict=True, reason="chords of ties, and singular places of arms and shafts")
+def test_second_not_yet(number: int) -> None:
+    assert not run_one(number, 2).faults
