@@ -16,7 +16,7 @@ constexpr double BEFORE = 0.5;
 // Where a walk was stopped by a block before it, within this of that one's end, it has come there, too.
 constexpr double SAME_END = 1e-9;
 // Part of the step that the arc's own block wants, below which it is asked which other one stands in the way.
-constexpr double SHORTENED = 1.0 / 8.0;
+constexpr double SHORTENED = 1.0 / 64.0, STUCK = 1.0 / 1024.0;
 // Speed of the path along the arc below which rows are closed one by one: next to a dead centre.
 constexpr double SLOW = 1e-2;
 // Correction of such a row: the root of a rounding, by which its place next to a dead centre may be off.
@@ -25,6 +25,8 @@ constexpr double CLOSED = 1e-7;
 // over its root.
 constexpr double LEAST_ARC = 1e-10;
 constexpr double SINGULAR_STEP = 1e-6;
+// Pivots of a matrix that is singular a little farther on, in parts of the least that steps may have.
+constexpr double SINGULAR_PIVOTS = 10.0;
 // Least ratio of sigma's second derivative at a dead centre and its mean over the step that it lies in.
 constexpr double SAME_BEND = 0.2;
 
@@ -156,8 +158,12 @@ class Walker {
       }
     if (h > SHORTENED * arc.own_step(a)) return false;
     int other = blame >= 0 && blame != own ? blame : -1;
-    for (std::size_t k = 0; other < 0 && k < a.danger.size(); ++k)
-      if ((int)k != own && arc.carries((int)k) && a.danger[k] > FASTER * std::fmax(a.danger[own], 1.0)) other = (int)k;
+    // far below its own step it is another one in any case
+    const double least = h > STUCK * arc.own_step(a) ? FASTER * std::fmax(a.danger[own], 1.0) : 0.0;
+    for (std::size_t k = 0; blame < 0 && k < a.danger.size(); ++k) {
+      if ((int)k == own || !arc.carries((int)k) || !(a.danger[k] > least)) continue;
+      if (other < 0 || a.danger[k] > a.danger[other]) other = (int)k;
+    }
     if (other < 0) return false;
     p->blame = other;
     return true;
@@ -183,6 +189,7 @@ class Walker {
 
   bool cross_branch_point(Passage* p, Node* a) const {
     BranchPointAhead point;
+    if (a->pivot[p->block] > SINGULAR_PIVOTS * limits_.arc_pivot) return false;
     if (p->nodes.size() < 2 || !branch_point_ahead(*p->arc, p->nodes, &point)) return false;
     p->end = PassageEnd::branch_point;
     Node before, after;
