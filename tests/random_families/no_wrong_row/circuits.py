@@ -44,7 +44,7 @@ class Loop:
         def margin(t: mpf) -> mpf:
             return linkage.at(one.sign * t, EXACT, name).margin[name]
 
-        return math.degrees(1e-15 / abs(float(diff(margin, mpf(one.end)))))
+        return math.degrees(5e-15 / abs(float(diff(margin, mpf(one.end)))))
 
 
 def looped(number: int) -> Loop:

@@ -26,6 +26,7 @@ from typing import Any
 
 from random_families.no_wrong_row.bodies import (
     GROUND,
+    ORIGIN,
     Aim,
     Body,
     Level,
@@ -104,7 +105,8 @@ class Linkage:
         square = dot(d, d)
         there = placed.pose[rod.other.body].place(other)
         seen = placed.pose[body.parent].seen(there)
-        side, size = self.side[body.name], numbers.number(self.size)
+        on_sphere = own_is_direction(rod)
+        side, size = self.side[body.name], numbers.number(1 if on_sphere else self.size)
         if body.slides:
             m = minus(seen, own)
             along = dot(m, u)
@@ -130,6 +132,11 @@ class Linkage:
         D = a * a + b * b - c * c
         placed.blur[body.name] = abs(a) + abs(b) + abs(c)
         return numbers.atan2(b, a) + self.side[body.name] * numbers.atan2(numbers.root(D), c), D
+
+
+def own_is_direction(rod: Rod) -> bool:
+    """Whether the rod joins two points of a unit sphere about one centre."""
+    return rod.own.base == rod.other.base and ORIGIN not in (rod.own.offset, rod.other.offset)
 
 
 def drawn_target(body: Body, item: Rod | Level | Aim, numbers: Field) -> Vector:

@@ -15,7 +15,7 @@ import mechkin_cli as mk
 Array = NDArray[np.float64]
 EXACTNESS = 1e-9
 """Of positions, rates and efforts, in parts of the largest of their kind in the row, times the
-condition; efforts also in parts of accelerations, as masses are about 1."""
+condition; accelerations and efforts also in parts of squared rates."""
 RATES = ("", "_dot", "_ddot")
 GRAVITY = "loads:\n  - {type: gravity, g: [2, -3, -9]}\n"
 
@@ -70,10 +70,14 @@ def difference(case: Case, one: Rows, two: Rows, names: list[str]) -> str:
             return f"row {k} at {case.travel.rows[k]:.9g} deg: {b} for {a}"
     with np.errstate(invalid="ignore"):
         condition = np.fmax(1.0, np.fmax(one.condition, two.condition))
+        # accelerations are sums of squared rates over singular values
+        rates = np.nanmax(np.abs(one.values["coordinate_dot"]), axis=0, initial=0.0)
+        bends = rates**2
         for kind, want in one.values.items():
             have = two.values[kind]
-            scale = [want, one.values["coordinate_ddot"]] if kind == "effort" else [want]
-            largest = np.nanmax(np.abs(np.concatenate(scale)), axis=0, initial=1.0)
+            largest = np.nanmax(np.abs(want), axis=0, initial=1.0)
+            if kind in ("coordinate_ddot", "effort"):
+                largest = np.fmax(largest, bends)
             if (np.isnan(want) != np.isnan(have)).any():
                 return f"{kind}: cells are empty in one of them"
             wrong = np.abs(have - want) > EXACTNESS * condition * largest
