@@ -13,8 +13,6 @@ constexpr double FASTER = 3.0;
 // A block that the arc's own hangs on passes its trouble on: it stands in the way where its own change is not small
 // beside that.
 constexpr double BEFORE = 0.5;
-// Where a walk was stopped by a block before it, within this of that one's end, it has come there, too.
-constexpr double SAME_END = 1e-9;
 // Part of the step that the arc's own block wants, below which it is asked which other one stands in the way.
 constexpr double SHORTENED = 1.0 / 64.0, STUCK = 1.0 / 1024.0;
 // Speed of the path along the arc below which rows are closed one by one: next to a dead centre.
@@ -106,7 +104,7 @@ class Walker {
         ++p->rejected;
         
         // at a branch point steps of any length end where the pivots are rounding
-        const bool singular = h < SINGULAR_STEP && blame == arc.block() && b.pivot[blame] < limits_.arc_pivot;
+        const bool singular = h < SINGULAR_STEP && blame >= 0 && arc.owns(blame) && arc.own_pivot(b) < limits_.arc_pivot;
         h = singular ? 0.0 : 0.5 * h, refuses = blame;
         continue;
       }
@@ -150,18 +148,18 @@ class Walker {
 
   // Whether another block is what refuses the steps; then the walk ends here.
   bool stands_in_the_way(const Arc& arc, const Node& a, int blame, double h, Passage* p) const {
-    const int own = arc.block();
+    const double own = arc.own_danger(a);
     for (std::size_t k = 0; k < a.danger.size(); ++k)
-      if (arc.before()[k] && a.danger[k] > std::fmax(BEFORE * a.danger[own], 1.0 / limits_.narrow)) {
+      if (arc.before()[k] && a.danger[k] > std::fmax(BEFORE * own, 1.0 / limits_.narrow)) {
         p->blame = (int)k;
         return true;
       }
     if (h > SHORTENED * arc.own_step(a)) return false;
-    int other = blame >= 0 && blame != own ? blame : -1;
+    int other = blame >= 0 && !arc.owns(blame) ? blame : -1;
     // far below its own step it is another one in any case
-    const double least = h > STUCK * arc.own_step(a) ? FASTER * std::fmax(a.danger[own], 1.0) : 0.0;
+    const double least = h > STUCK * arc.own_step(a) ? FASTER * std::fmax(own, 1.0) : 0.0;
     for (std::size_t k = 0; blame < 0 && k < a.danger.size(); ++k) {
-      if ((int)k == own || !arc.carries((int)k) || !(a.danger[k] > least)) continue;
+      if (arc.owns((int)k) || !arc.carries((int)k) || !(a.danger[k] > least)) continue;
       if (other < 0 || a.danger[k] > a.danger[other]) other = (int)k;
     }
     if (other < 0) return false;
@@ -189,7 +187,7 @@ class Walker {
 
   bool cross_branch_point(Passage* p, Node* a) const {
     BranchPointAhead point;
-    if (a->pivot[p->block] > SINGULAR_PIVOTS * limits_.arc_pivot) return false;
+    if (p->arc->own_pivot(*a) > SINGULAR_PIVOTS * limits_.arc_pivot) return false;
     if (p->nodes.size() < 2 || !branch_point_ahead(*p->arc, p->nodes, &point)) return false;
     p->end = PassageEnd::branch_point;
     Node before, after;
@@ -245,7 +243,7 @@ bool Passage::at(double sigma, Node* node, double* limit) const {
 
 const Passage& Stretch::of_block(int block) const {
   for (const Passage& p : passages)
-    if (p.block == block) return p;
+    if (p.arc->owns(block)) return p;
   for (const Passage& p : passages)
     if (p.arc->carries(block)) return p;
   return passages.front();
@@ -287,73 +285,71 @@ bool Stretch::carries_all(int blocks) const {
   return true;
 }
 
-long Stretch::steps() const {
-  long sum = 0;
-  for (const Passage& p : passages) sum += p.steps;
-  return sum;
+namespace {
+
+// The blocks in trouble that a block hangs on, itself, and all that lies between them: what is walked together.
+std::vector<char> chain_of(int block, const std::vector<int>& trouble, const std::vector<char>& upstream, int n) {
+  std::vector<char> own(n, 0);
+  own[block] = 1;
+  for (int other : trouble) {
+    if (!upstream[block * n + other]) continue;
+    own[other] = 1;
+    for (int b = 0; b < n; ++b)
+      if (upstream[b * n + other] && upstream[block * n + b]) own[b] = 1;
+  }
+  return own;
 }
-long Stretch::rejected() const {
-  long sum = 0;
-  for (const Passage& p : passages) sum += p.rejected;
-  return sum;
+
+// All but the other blocks in trouble and what hangs on them.
+std::vector<char> carried_with(const std::vector<char>& own, const std::vector<int>& trouble,
+                               const std::vector<char>& upstream, int n) {
+  std::vector<char> carried(n, 1);
+  for (int other : trouble)
+    for (int b = 0; b < n && !own[other]; ++b)
+      if (b == other || upstream[b * n + other]) carried[b] = 0;
+  return carried;
 }
+
+// The block whose matrix changes fastest; at the start of a path no step has told that yet.
+int worst_block(const Node& node) {
+  int worst = 0;
+  for (int b = 1; b < (int)node.danger.size(); ++b) {
+    const bool told = node.danger[b] != node.danger[worst];
+    if (told ? node.danger[b] > node.danger[worst] : node.pivot[b] < node.pivot[worst]) worst = b;
+  }
+  return worst;
+}
+
+}  // namespace
 
 Stretch walk_stretch(const Path& path, const KernelUnit& unit, const StepLimits& limits, const Node& from,
                      double refused, double until) {
-  const Plan& plan = path.plan(0.0);
-  const int n = plan.blocks;
-  const std::vector<char> upstream = upstream_blocks(plan, unit);
-  // at the start of a path no step has told the dangers yet
-  const auto worse = [&](int b, int other) {
-    if (from.danger[b] != from.danger[other]) return from.danger[b] > from.danger[other];
-    return from.pivot[b] < from.pivot[other];
-  };
-  int first = 0;
-  for (int b = 0; b < n; ++b)
-    if (worse(b, first)) first = b;
-  Stretch stretch;
-  std::vector<int> trouble = {first};
+  const int n = path.plan(0.0).blocks;
+  const std::vector<char> upstream = upstream_blocks(path.plan(0.0), unit);
   const Walker walker(limits, refused, until);
-  long steps = 0, rejected = 0;
-  const auto is_known = [&](int b) { return std::find(trouble.begin(), trouble.end(), b) != trouble.end(); };
-  for (std::size_t k = 0; k < trouble.size(); ++k) {
-    Passage p;
-    for (bool again = true; again;) {
-      again = false;
-      const int block = trouble[k];
-      std::vector<char> carried(n, 1);
-      for (int other : trouble) {
-        if (other == block || upstream[block * n + other]) continue;
-        for (int b = 0; b < n; ++b)
-          if (b == other || upstream[b * n + other]) carried[b] = 0;
-      }
-      p = Passage();
-      p.block = block, p.arc = std::make_unique<Arc>(path, unit, limits, block, carried);
+  std::vector<int> trouble = {worst_block(from)};
+  Stretch stretch;
+  // every block that is found to stand in the way changes what is walked together, and what is carried along
+  for (bool again = true; again;) {
+    again = false;
+    stretch.passages.clear();
+    for (std::size_t k = 0; k < trouble.size() && !again; ++k) {
+      Passage p;
+      p.block = trouble[k];
+      const std::vector<char> own = chain_of(p.block, trouble, upstream, n);
+      p.arc = std::make_unique<Arc>(path, unit, limits, own, carried_with(own, trouble, upstream, n));
       walker.walk(from, &p);
-      steps += p.steps, rejected += p.rejected;
-      if (p.end != PassageEnd::lost || p.blame < 0) continue;
-      if (!is_known(p.blame)) {
+      stretch.steps += p.steps, stretch.rejected += p.rejected;
+      const bool is_new = std::find(trouble.begin(), trouble.end(), p.blame) == trouble.end();
+      if (p.end == PassageEnd::lost && p.blame >= 0 && is_new) {
         again = true;
-        // a block before this one is looked at in its place; this one is then carried along
-        if (upstream[block * n + p.blame])
-          trouble[k] = p.blame;
-        else
-          trouble.push_back(p.blame);
-      } else if (p.nodes.size() > 1) {
-        p.end = PassageEnd::through;
+        trouble.push_back(p.blame);
       }
+      if (p.nodes.empty()) p.nodes.assign(1, from);
+      stretch.passages.push_back(std::move(p));
     }
-    if (p.nodes.empty()) p.nodes.assign(1, from);
-    stretch.passages.push_back(std::move(p));
   }
   for (std::size_t k = 0; k < stretch.passages.size(); ++k)
     if (stretch.ends < 0 || stretch.passages[k].reach() < stretch.reach()) stretch.ends = (int)k;
-  for (std::size_t k = 0; k < stretch.passages.size(); ++k) {
-    const Passage &one = stretch.last(), &other = stretch.passages[k];
-    const bool ends = other.end == PassageEnd::dead_centre || other.end == PassageEnd::branch_point;
-    if (one.blame == other.block && ends && other.reach() - one.reach() <= SAME_END) stretch.ends = (int)k;
-  }
-  stretch.passages.front().steps += steps - stretch.steps();
-  stretch.passages.front().rejected += rejected - stretch.rejected();
   return stretch;
 }

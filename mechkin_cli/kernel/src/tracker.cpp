@@ -87,7 +87,7 @@ class Tracker {
   // What refuses the steps, by arclength.
   bool look() {
     const Stretch stretch = walk_stretch(path_, unit_, limits_, node_, step_, end_);
-    track_.steps += stretch.steps(), track_.rejected += stretch.rejected();
+    track_.steps += stretch.steps, track_.rejected += stretch.rejected;
     const PassageEnd kind = stretch.end();
     const bool ends = kind == PassageEnd::dead_centre || kind == PassageEnd::branch_point;
     if (!stretch.carries_all(plan().blocks)) {
