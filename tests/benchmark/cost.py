@@ -61,7 +61,8 @@ class Version:
 
     def measure(self, text: str, rounds: int) -> dict[str, float]:
         """Raises: RuntimeError where the process has ended."""
-        assert self.process.stdin and self.process.stdout
+        assert self.process.stdin
+        assert self.process.stdout
         self.process.stdin.write(json.dumps([text, rounds]) + "\n")
         self.process.stdin.flush()
         answer = self.process.stdout.readline()

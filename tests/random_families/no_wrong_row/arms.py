@@ -34,19 +34,32 @@ def unit(v: Vector) -> Vector:
     return np.asarray(v / length)
 
 
-def arm(drawing: Drawing, rng: random.Random, name: str, gap: float) -> None:
+class Near(NamedTuple):
+    """What an arm comes near to, in one place, and by how much; the elbow stays away."""
+
+    shoulder: str
+    wrist: str
+    straight: float
+
+
+def arm(
+    drawing: Drawing, rng: random.Random, name: str, gap: float, near: Near | None = None
+) -> None:
     """An arm on ground that holds a link; all of its singular places may be near one place."""
     driver = rng.choice([b for b in drawing.bodies if b.name in drawing.link_of])
     centre = np.array(driver.foot) + rng.uniform(0.4, 1.5) * random_unit(rng)
     hand = Hand(Point(driver.name, floats(centre)), floats(random_unit(rng)))
     seen = Seen(drawing, hand.centre, GROUND)
     place, other = rng.choice(seen.places), rng.choice(seen.places)
-    if rng.random() < 0.5:
+    if near or rng.random() < 0.5:
         other = place
     before = len(drawing.bodies)
-    shoulder = shoulder_of(drawing, rng, name, hand, seen, float(place), gap)
+    kind = near.shoulder if near else rng.choice(SHOULDERS)
+    shoulder = shoulder_of(drawing, rng, name, hand, seen, float(place), gap, kind)
     elbow(drawing, rng, name, hand, shoulder, other_gap(rng, gap))
-    wrist = wrist_of(drawing, rng, name, hand, float(other), other_gap(rng, gap))
+    small = near.straight if near else other_gap(rng, gap)
+    kind = near.wrist if near else rng.choice(WRISTS)
+    wrist = wrist_of(drawing, rng, name, hand, float(other), small, kind)
     names = [f"{name}_{k}" for k in range(1, 7)]
     drawing.merged.append((names[0], names[1], names[3]))
     drawing.families.append(f"arm {shoulder.kind}, {wrist}")
@@ -76,10 +89,9 @@ class Shoulder(NamedTuple):
 
 def shoulder_of(
     drawing: Drawing, rng: random.Random, name: str, hand: Hand, seen: Seen, place: float,
-    gap: float,
+    gap: float, kind: str,
 ) -> Shoulder:  # fmt: skip
     """The first body: its plane keeps the wrist's centre at its height."""
-    kind = rng.choice(SHOULDERS)
     here, soon = seen.at(np.array([place, place + 1e-5])).T
     axis = random_unit(rng)
     way = np.cross(axis, soon - here) / 1e-5
@@ -119,10 +131,10 @@ def elbow(
 
 
 def wrist_of(
-    drawing: Drawing, rng: random.Random, name: str, hand: Hand, place: float, gap: float
-) -> str:
+    drawing: Drawing, rng: random.Random, name: str, hand: Hand, place: float, gap: float,
+    kind: str,
+) -> str:  # fmt: skip
     """The last three bodies; the axes of the fourth and the sixth nearly meet at a place."""
-    kind = rng.choice(WRISTS)
     placed = drawing.linkage().at(np.array([place]), FAST)
     turned = placed.pose[hand.centre.body].along(hand.axis)
     there = np.array([float(x[0]) for x in placed.pose[f"{name}_3"].heading(turned)])
