@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -99,13 +100,14 @@ class Pose:
 
 @dataclass
 class Placed:
-    """Coordinates, discriminants in parts of their scale, what a rounding changes in them in
-    roundings, and poses, by body."""
+    """By body: coordinates, discriminants in parts of their scale, what a rounding changes in them
+    in roundings, poses, and how far a value of the coordinate misses the condition, in parts."""
 
     value: dict[str, Any] = field(default_factory=dict)
     margin: dict[str, Any] = field(default_factory=dict)
     blur: dict[str, Any] = field(default_factory=dict)
     pose: dict[str, Pose] = field(default_factory=dict)
+    miss: dict[str, Callable[[Any], Any]] = field(default_factory=dict)
 
 
 def exact(v: Floats, numbers: Field) -> Vector:

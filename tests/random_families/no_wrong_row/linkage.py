@@ -65,10 +65,13 @@ class Linkage:
         slope = dot(minus(m, w), u) if body.slides else dot(m, cross(u, w))
         return -1 if slope > 0 else 1
 
-    def at(self, t: Any, numbers: Field, until: str | None = None) -> Placed:
+    def at(
+        self, t: Any, numbers: Field, until: str | None = None, held: dict[str, Any] | None = None
+    ) -> Placed:
         """The drawn branch at the input's values t, an array or a number.
 
-        `until`: the coordinate and the margin of that body alone, with what it needs.
+        `until`: the coordinate and the margin of that body alone, with what it needs. `held`:
+        coordinates that are given instead of solved for.
         """
         placed = Placed()
         zero, one = numbers.number(0), numbers.number(1)
@@ -87,6 +90,7 @@ class Linkage:
                 value = aimed(body, body.aim, placed, numbers)
             else:
                 value, placed.margin[body.name] = self._solved(body, placed, numbers)
+                value = held.get(body.name, value) if held else value
             placed.value[body.name] = value
             if body.name == until:
                 break
@@ -111,6 +115,8 @@ class Linkage:
             m = minus(seen, own)
             along = dot(m, u)
             D = along * along - dot(m, m) + square
+            length = numbers.root(square)
+            placed.miss[body.name] = lambda s: ((s - along) ** 2 - D) / (2 * length * size)
             return along + side * numbers.root(D), D / square
         foot = exact(body.foot, numbers)
         m, w = minus(seen, foot), minus(own, foot)
@@ -118,6 +124,8 @@ class Linkage:
         b = dot(m, cross(u, w))
         c = (dot(m, m) + dot(w, w) - square) / 2 - dot(m, u) * dot(w, u)
         D = a * a + b * b - c * c
+        scale = numbers.root(square) * size
+        placed.miss[body.name] = lambda q: (a * numbers.cos(q) + b * numbers.sin(q) - c) / scale
         theta = numbers.atan2(b, a) + side * numbers.atan2(numbers.root(D), c)
         return theta, D / (square * size * size)
 
@@ -130,6 +138,7 @@ class Linkage:
         b = dot(m, cross(u, n)) / size
         c = (dot(drawn, n) - dot(m, u) * dot(n, u)) / size
         D = a * a + b * b - c * c
+        placed.miss[body.name] = lambda q: a * numbers.cos(q) + b * numbers.sin(q) - c
         placed.blur[body.name] = abs(a) + abs(b) + abs(c)
         return numbers.atan2(b, a) + self.side[body.name] * numbers.atan2(numbers.root(D), c), D
 

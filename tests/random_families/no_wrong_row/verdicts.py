@@ -14,6 +14,8 @@ from random_families.no_wrong_row.branch import TURN, Undecided, Way, way
 from random_families.no_wrong_row.case import Case
 from random_families.no_wrong_row.drawing import Column
 from random_families.no_wrong_row.field import EXACT, FAST
+from random_families.no_wrong_row.linkage import Linkage
+from random_families.no_wrong_row.singular import least_of_block
 
 import mechkin_cli as mk
 
@@ -92,7 +94,9 @@ class Truth:
             for sign, reach in ((1, self.high), (-1, self.low))
             if reach.max() > 0
         }
-        self.least = {sign: least_singular(case, one) for sign, one in self.ways.items()}
+        self.least = {
+            sign: least_singular(case, self.linkage, one) for sign, one in self.ways.items()
+        }
 
     def starts_beyond(self) -> bool:
         """Whether the first row is beyond the end of what is drawn: any assembly may be taken."""
@@ -127,7 +131,7 @@ class Truth:
             return "wrong: solved beyond a fold", limit
         row = abs(math.radians(float(self.case.travel.rows[k])))
         returned = row < one.end
-        least = before_the_end(self.case, one)
+        least = before_the_end(self.case, self.linkage, one)
         if status != "beyond-dead-centre" and not returned and least >= LEAST_SINGULAR:
             return "fold not named", limit
         return "right: beyond", ""
@@ -200,24 +204,23 @@ class Truth:
         return want
 
 
-def least_singular(case: Case, one: Way) -> Array:
-    """By place of a way: the least product of roots of margins in one block from the start on."""
+def least_singular(case: Case, linkage: Linkage, one: Way) -> Array:
+    """By place of a way: the least singular value of a block from the start on."""
     least = np.full(len(one.t), math.inf)
     for group in blocks(case, one):
-        product = np.sqrt(np.prod([one.margin[name] for name in group], axis=0))
-        least = np.minimum(least, product)
+        least = np.minimum(least, least_of_block(linkage, group, one))
     return np.minimum.accumulate(least)
 
 
-def before_the_end(case: Case, one: Way) -> float:
-    """The least product of roots of margins before the one that goes to zero at the end falls."""
+def before_the_end(case: Case, linkage: Linkage, one: Way) -> float:
+    """The least singular value before the one that goes to zero at the end falls."""
     least = math.inf
     for group in blocks(case, one):
-        product = np.sqrt(np.prod([one.margin[name] for name in group], axis=0))
+        value = least_of_block(linkage, group, one)
         if one.folds in group:
-            well = np.flatnonzero(product > 1e-2)
-            product = product[: well[-1] + 1] if len(well) else product[:1]
-        least = min(least, float(product.min()))
+            well = np.flatnonzero(value > 1e-2)
+            value = value[: well[-1] + 1] if len(well) else value[:1]
+        least = min(least, float(value.min()))
     return least
 
 
