@@ -463,7 +463,7 @@ def follow_rows(
     """Fills guess, limit and turns, which share no memory with one another or with inputs.
 
     Returns how it ended (`TrackEnd`), rows reached, steps taken and rejected, and inputs, state,
-    turn and direction at the last place; what ended the branch, if it is known (`PassageEnd`, block,
+    turn and direction at the last place; what ended the branch if it is known (`PassageEnd`, block,
     inputs, states, columns' derivatives by arclength, second ones, that of the path's parameter,
     inputs and states beyond); the branch points that were passed (first row behind, inputs).
     """
