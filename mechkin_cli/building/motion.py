@@ -11,6 +11,8 @@ from mechkin_cli.building.coordinates import dimension_of, is_coordinate
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.memory import RowLimit
 from mechkin_cli.building.spacing import spaced
+from mechkin_cli.expressions import Expression
+from mechkin_cli.mechanism.course import Course
 from mechkin_cli.mechanism.model import Joint
 from mechkin_cli.mechanism.motion import DrivenInput, Moments, Motion
 from mechkin_cli.schema.laws import Law
@@ -45,20 +47,40 @@ def build_motion(
     rows = time.written.size if time else _row_count(fields, orders)
     if fields.error_count == errors:
         limit.is_exceeded(fields, ("motion", "inputs"), rows)
+    expressions: dict[str, Expression] = {}
     if fields.error_count == errors and following:
         from mechkin_cli.building.following import Following
 
         coordinates = frozenset(c for joint in joints.values() for c in joint.coordinates)
-        Following(fields, orders, rows, time).add_all(following, coordinates)
+        tied = Following(fields, orders, rows, time)
+        tied.add_all(following, coordinates)
+        expressions = tied.expressions
     if fields.error_count == errors:
         names = [name for name in section.inputs if name in orders]
         inputs = [_driven(fields, name, orders[name], rows) for name in names]
         if fields.error_count == errors:
-            return Motion(tuple(inputs), rows, time)
+            return Motion(
+                tuple(inputs), rows, time, _course(fields, section, inputs, expressions, time)
+            )
     fields.refused.add("time")
     for joint in joints.values():
         fields.refused.update(f"{name}.effort" for name in (joint.name, *joint.coordinates))
     return nothing
+
+
+def _course(
+    fields: Fields,
+    section: MotionSection,
+    inputs: list[DrivenInput],
+    expressions: dict[str, Expression],
+    time: Moments | None,
+) -> Course | None:
+    """The inputs between the rows, where they do not simply run from one to the next."""
+    if time is None and not expressions:
+        return None
+    from mechkin_cli.building.course import build_course
+
+    return build_course(fields, section, inputs, expressions, time)
 
 
 def _moments(fields: Fields, section: TimeSection | None, limit: RowLimit) -> Moments | None:

@@ -17,6 +17,7 @@ from mechkin_cli.solver.stepping import step_limits
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.route import Way
 
 
 class Followed(NamedTuple):
@@ -40,6 +41,8 @@ class Followed(NamedTuple):
     direction: Floats
     turns: Floats | None = None
     turn: Floats | None = None
+    place: int = 0
+    """The last place of the way that was reached."""
 
 
 def follow(
@@ -50,6 +53,7 @@ def follow(
     every_row: bool = False,
     turns: bool = False,
     turn: Floats | None = None,
+    course: _kernel.Course | None = None,
 ) -> Followed:
     """Follows the branch through `start` (states at the first row) along all rows.
 
@@ -60,12 +64,13 @@ def follow(
         every_row: make each row a node of the skeleton instead of filling in.
         turns: carry the turns of closing joints along.
         turn: (turn slots,) turns at the first row, where they are known from a way before it.
+        course: of the inputs between the rows, where it is not straight.
     """
     rows = inputs.shape[1]
     guess, limit = np.empty((start.size, rows)), np.empty(rows)
     along = np.empty((turn_count(plan), rows)) if turns else None
     given = [] if turn is None else turn.tolist()
-    end, reached, steps, _, place, state, last_turn, direction = _kernel.follow_rows(
+    end, reached, steps, _, place, state, last_turn, direction, _, _ = _kernel.follow_rows(
         plan,
         np.ascontiguousarray(inputs),
         start.tolist(),
@@ -75,8 +80,49 @@ def follow(
         guess,
         limit,
         along,
+        course,
     )
     guess[:, reached:] = np.nan
     return Followed(
-        guess, limit, reached, TrackEnd(end), steps, place, state, direction, along, last_turn
+        guess,
+        limit,
+        reached,
+        TrackEnd(end),
+        steps,
+        place,
+        state,
+        direction,
+        along,
+        last_turn,
+        reached - 1,
+    )
+
+
+def follow_way(
+    plan: Plan,
+    way: Way,
+    start: Floats,
+    *,
+    every_row: bool = False,
+    turns: bool = False,
+    turn: Floats | None = None,
+) -> Followed:
+    """Follows the branch along a way, and gives its rows alone; arguments as those of `follow`."""
+    found = follow(
+        plan,
+        way.values,
+        start,
+        every_row=every_row,
+        turns=turns,
+        turn=turn,
+        course=way.course,
+    )
+    real = way.real
+    if real.size == way.rows.size:
+        return found
+    return found._replace(
+        guess=np.ascontiguousarray(found.guess[:, real]),
+        limit=found.limit[real],
+        reached=int(np.count_nonzero(real < found.reached)),
+        turns=None if found.turns is None else np.ascontiguousarray(found.turns[:, real]),
     )

@@ -20,8 +20,9 @@ from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.follow import Followed
 from mechkin_cli.solver.follow import follow as follow_path
+from mechkin_cli.solver.follow import follow_way as follow_along
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph, is_redundant
-from mechkin_cli.solver.inputs import KernelInputs, kernel_inputs
+from mechkin_cli.solver.inputs import KernelInputs, input_unit, kernel_inputs
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.demand import Slot
+    from mechkin_cli.solver.route import Route, Way
     from mechkin_cli.solver.search import Found, Within
 
 T = TypeVar("T")
@@ -114,6 +116,17 @@ class Session:
         """The inputs of all rows of the problem's motion."""
         return kernel_inputs(self.problem, self.layout)
 
+    @cached_property
+    def route(self) -> Route | None:
+        """The way along all rows; None where it goes straight from each to the next."""
+        course = self.problem.motion.course
+        if course is None:
+            return None
+        from mechkin_cli.solver.route import Route
+
+        units = [input_unit(self.layout, item) for item in self.problem.motion.inputs]
+        return Route(course, self.inputs.values, np.array(units))
+
     @property
     def is_redundant(self) -> bool:
         """Whether some loop has more closing equations than unknowns."""
@@ -185,6 +198,18 @@ class Session:
         """Follows the branch through `start` (states,) along a path (inputs, rows); arguments as
         those of `solver.follow.follow`."""
         return follow_path(self.plan, path, start, every_row=every_row, turns=turns, turn=turn)
+
+    def follow_way(
+        self,
+        way: Way,
+        start: Floats,
+        *,
+        every_row: bool = False,
+        turns: bool = False,
+        turn: Floats | None = None,
+    ) -> Followed:
+        """Follows the branch through `start` (states,) along a way of the route."""
+        return follow_along(self.plan, way, start, every_row=every_row, turns=turns, turn=turn)
 
     def search(self, inputs: Floats, within: Within | None = None) -> Found:
         """All assemblies at some inputs (inputs,) that random starts find, or those `within` a

@@ -21,6 +21,7 @@ from mechkin_cli.units import LENGTH
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.solver.route import Way
     from mechkin_cli.solver.session import Session
 
 
@@ -31,10 +32,13 @@ MAY_BE_FOLD = (
 )
 
 
-def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) -> int | None:
+def explain_end(
+    session: Session, path: Floats, way: Way | None, followed: Followed, rows: Rows
+) -> int | None:
     """Finds why a branch ended; rows before a dead centre get their guesses from its shape.
 
-    `path` (inputs, rows) in kernel units and `rows` are in the order in which they were followed.
+    `path` (inputs, rows) in kernel units and `rows` are in the order in which they were followed;
+    `way` is theirs along the inputs' course, where they have one.
 
     Returns the row from which the way can be followed anew, back from the last place on the branch;
     None where it ends.

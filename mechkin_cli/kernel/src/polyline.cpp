@@ -13,19 +13,20 @@
 
 namespace {
 
-enum class Way { rest, line, curve };
+enum class Way { rest, line, curve, course };
 
 // Rows (first, last] that are reached one way from row `first`.
 struct Piece {
   Way way;
   long first, last;
+  long number = -1;  // of the course's piece
 };
 
 class RowFollower {
  public:
   RowFollower(const Plan& plan, const KernelUnit& unit, const InputRows& rows, const StepLimits& limits,
-              const RowGuesses& out)
-      : plan_(plan), unit_(unit), rows_(rows), limits_(limits), out_(out), scale_(rows.inputs, 0.0),
+              const RowGuesses& out, const Course* course)
+      : plan_(plan), unit_(unit), rows_(rows), limits_(limits), out_(out), course_(course), scale_(rows.inputs, 0.0),
         result_{TrackEnd::finished, 1, 0, 0, {}, {}, {}, std::vector<double>(rows.inputs, 0.0)} {
     for (int i = 0; i < rows.inputs; ++i)
       for (long r = 0; r < rows.rows; ++r) scale_[i] = std::fmax(scale_[i], std::fabs(rows.at(i, r)));
@@ -40,6 +41,7 @@ class RowFollower {
       if (piece.way == Way::rest) rest(piece);
       if (piece.way == Way::line && !line(piece.first, piece.last)) return result_;
       if (piece.way == Way::curve && !curve(piece)) return result_;
+      if (piece.way == Way::course && !along_course(piece, every_row)) return result_;
     }
     place_inputs(rows_.rows - 1);
     return result_;
@@ -81,10 +83,10 @@ class RowFollower {
   }
 
   // The last row that lies on the straight way from `first` through the row after it.
-  long end_of_line(long first, const std::vector<double>& u, int leading) const {
+  long end_of_line(long first, long end, const std::vector<double>& u, int leading) const {
     double before = 0.0;
     long row = first + 1;
-    for (; row < rows_.rows; ++row) {
+    for (; row <= end; ++row) {
       const double along = (rows_.at(leading, row) - rows_.at(leading, first)) * u[leading];
       bool onward = along > before;
       for (int i = 0; onward && rows_.inputs > 1 && i < rows_.inputs; ++i) {
@@ -101,11 +103,20 @@ class RowFollower {
     std::vector<Piece> found;
     std::vector<double> u;
     int leading = 0;
+    long next = 0;  // piece of the course
+    const long courses = course_ ? (long)course_->pieces().size() : 0;
     for (long first = 0, last = 0; first + 1 < rows_.rows; first = last) {
+      if (next < courses && course_->pieces()[next].first == first) {
+        last = course_->pieces()[next].last;
+        found.push_back({Way::course, first, last, next});
+        ++next;
+        continue;
+      }
       last = first + 1;
       Way way = Way::rest;
       if (direction_from(first, &u, &leading)) {
-        if (!every_row) last = end_of_line(first, u, leading);
+        const long end = next < courses ? course_->pieces()[next].first : rows_.rows - 1;
+        if (!every_row) last = end_of_line(first, end, u, leading);
         const bool whole = first == 0 && last == rows_.rows - 1;
         const bool far = last > first + 1 && rows_.distance(first, last) >= limits_.knot;
         way = every_row || whole || far || rows_.inputs == 1 ? Way::line : Way::curve;
@@ -138,6 +149,10 @@ class RowFollower {
       sigma[row - first - 1] = std::fabs(rows_.at(leading, row) - origin[leading]);
     const Track track = follow_line(plan_, unit_, origin.data(), result_.direction.data(), last - first, sigma.data(),
                                     result_.state.data(), result_.turn, limits_, out_, first + 1);
+    return adopt(track, first, last, origin);
+  }
+  // The end of a way along rows (first, last]; whether it reached the last.
+  bool adopt(const Track& track, long first, long last, const std::vector<double>& origin) {
     // a row that is no number ends nothing, and is not reached either
     const bool missed = track.end == TrackEnd::finished && track.reached < last - first;
     result_.end = missed ? TrackEnd::stalled : track.end;
@@ -151,6 +166,34 @@ class RowFollower {
   }
   void take(const Node& node) {
     result_.inputs = node.inputs, result_.state = node.state, result_.turn = node.turn;
+  }
+
+  // Rows (first, last] of a piece of the course, all in one way or each for itself.
+  bool along_course(const Piece& piece, bool every_row) {
+    std::vector<double> sigma(piece.last - piece.first + 1);
+    for (long row = piece.first; row <= piece.last; ++row)
+      sigma[row - piece.first] = course_->sigma_of_row(piece.number, row);
+    const CoursePath path(plan_, *course_, piece.number,
+                          {sigma.data(), (long)sigma.size(), rows_.values + piece.first, rows_.rows});
+    for (long first = piece.first, last = first; first < piece.last; first = last) {
+      last = every_row ? first + 1 : piece.last;
+      const double begin = sigma[first - piece.first];
+      std::vector<double> origin(rows_.inputs);
+      for (int i = 0; i < rows_.inputs; ++i) origin[i] = rows_.at(i, first);
+      const Track track = follow_path(path, unit_, begin, last - first, &sigma[first + 1 - piece.first],
+                                      result_.state.data(), result_.turn, limits_, out_, first + 1);
+      const bool on = adopt(track, first, last, origin);
+      const double place = track.last.state.empty() ? begin : track.last.sigma;
+      PathPoint point;
+      path.at(place, &point);
+      double size = 0.0;
+      for (double part : point.first) size = std::fmax(size, std::fabs(part));
+      for (int i = 0; i < rows_.inputs; ++i) result_.direction[i] = size > 0.0 ? point.first[i] / size : 0.0;
+      if (on) continue;
+      result_.piece = piece.number, result_.parameter = course_->parameter(piece.number, place);
+      return false;
+    }
+    return true;
   }
 
   bool curve(const Piece& piece) {
@@ -223,6 +266,7 @@ class RowFollower {
   const InputRows& rows_;
   const StepLimits& limits_;
   const RowGuesses& out_;
+  const Course* course_;
   std::vector<double> scale_;
   Followed result_;
 };
@@ -231,7 +275,7 @@ class RowFollower {
 
 Followed follow_rows(const Plan& plan, const KernelUnit& unit, const double* inputs, const double* start,
                      const std::vector<double>& turn, bool every_row, const StepLimits& limits,
-                     const RowGuesses& out) {
+                     const RowGuesses& out, const Course* course) {
   const InputRows rows = {inputs, plan.inputs, out.rows};
-  return RowFollower(plan, unit, rows, limits, out).follow(start, turn, every_row);
+  return RowFollower(plan, unit, rows, limits, out, course).follow(start, turn, every_row);
 }

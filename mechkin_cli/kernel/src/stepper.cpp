@@ -127,13 +127,26 @@ bool Stepper::step(const Node& a, double h, double sigma, Node* b) {
 double Stepper::wanted_step(const Node& n) const {
   double b2 = 0.0, along = 0.0;
   for (double s : n.second) b2 += s * s;
-  if (b2 == 0.0) return limits_.longest_step;
+  const double longest = longest_step(n);
+  if (b2 == 0.0) return longest;
   const double t2 = tangent_product(n, n);
   for (std::size_t i = 0; i < n.first.size(); ++i) along += n.first[i] * n.second[i];
   const double across = std::sqrt(std::fmax(b2 - along * along / t2, 0.0));
   const double by_bend = limits_.bend * std::sqrt(t2 / b2);
   const double by_turn = across > 0.0 ? limits_.turn * std::sqrt(t2) / across : HUGE_VAL;
-  return std::fmin(limits_.longest_step, std::fmin(by_bend, by_turn));
+  return std::fmin(longest, std::fmin(by_bend, by_turn));
+}
+
+// The step in which no input moves farther than it may: s h + b h^2 / 2 with the fastest one's derivatives.
+double Stepper::longest_step(const Node& n) const {
+  double speed = 0.0, bend = 0.0;
+  for (int i = 0; i < plan_.inputs; ++i) {
+    speed = std::fmax(speed, std::fabs(n.first[plan_.input_column[i]]));
+    bend = std::fmax(bend, std::fabs(n.second[plan_.input_column[i]]));
+  }
+  const double longest = limits_.longest_step;
+  if (n.own != 0.0 || (speed == 0.0 && bend == 0.0)) return longest;
+  return bend == 0.0 ? longest / speed : 2.0 * longest / (speed + std::sqrt(speed * speed + 2.0 * bend * longest));
 }
 
 void Stepper::normalise_quaternions(double* state, long stride) const {

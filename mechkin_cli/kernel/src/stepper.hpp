@@ -45,6 +45,8 @@ class Path {
   // Whether the plan's constants change along the path: its derivatives are then read from places nearby,
   // in 0 <= sigma <= 1.
   virtual bool varies() const { return false; }
+  // Whether the inputs are linear in sigma, so that the ends of a step tell all of them between.
+  virtual bool is_straight() const { return true; }
 };
 
 // x0 + sigma u on one plan.
@@ -103,6 +105,7 @@ class Stepper {
   void differentiate_states(Node* node) const;
   void differentiate_turns(Node* node) const;
   void columns_of_states(Node* node) const;
+  double longest_step(const Node& node) const;
 
   const Path& path_;
   const Plan& plan_;

@@ -6,7 +6,7 @@
 #include "elementwise.hpp"
 #include "outputs.hpp"
 #include "search.hpp"
-#include "tape_replay.hpp"
+#include "tape_jets.hpp"
 
 namespace {
 
@@ -187,7 +187,7 @@ struct PairTypes<Entries<All...>> {
 };
 
 const KernelUnit unit = {LANES, tree_types, PairTypes<Pairs>::table, Pairs::count, workspace_size, run, run_rows, search_rows,
-                         elementwise, replay_size, replay};
+                         elementwise, replay_size, replay, jets_size, replay_jets};
 
 }  // namespace
 
