@@ -10,9 +10,9 @@
 
 namespace {
 
-// Part of a piece next to a rest within which derivatives are those at its end: of a power of the parameter they would
-// be products of zero and infinity.
-constexpr double AT_REST = 1e-6;
+// Part of a piece next to a rest within which it is its chord: derivatives by a power of the parameter would be products
+// of zero and infinity there, and the way differs from its chord by less than a thousandth of 1e-9.
+constexpr double AT_REST = 1e-9;
 
 const KernelUnit& narrow() { return *kernel_unit(2); }
 
@@ -68,22 +68,30 @@ void Course::at(long piece, double sigma, PathPoint* point, std::vector<char>* m
     given[0] = parameter;
     narrow().replay_jets(t, given.data(), ways_.data() + piece * switches_, out.data(), memory->data());
   };
-  point->inputs.resize(n), point->first.resize(n), point->second.resize(n);
-  replay(this->parameter(piece, sigma));
-  for (int i = 0; i < n; ++i) point->inputs[i] = out[3 * i] / units_[i];
+  point->inputs.resize(n), point->first.resize(n), point->second.assign(n, 0.0);
+  const double stretch = p.end - p.begin, order = std::fabs(p.power), part = std::fmin(std::fmax(sigma / p.scale, 0.0), 1.0);
+  const double rest = p.power < 0.0 ? 1.0 - part : part, sense = p.power < 0.0 ? -1.0 : 1.0;
+  if (order != 1.0 && rest < AT_REST) {
+    // the chord from the rest
+    replay(p.power < 0.0 ? p.end : p.begin);
+    for (int i = 0; i < n; ++i) point->inputs[i] = out[3 * i] / units_[i];
+    replay(parameter(piece, p.scale * (p.power < 0.0 ? 1.0 - AT_REST : AT_REST)));
+    for (int i = 0; i < n; ++i) {
+      const double slope = (out[3 * i] / units_[i] - point->inputs[i]) / AT_REST;
+      point->inputs[i] += slope * rest, point->first[i] = sense * slope / p.scale;
+    }
+    return;
+  }
   // the parameter by sigma
-  const double stretch = p.end - p.begin, order = std::fabs(p.power);
   double first = stretch / p.scale, second = 0.0;
   if (order != 1.0) {
-    const double part = std::fmin(std::fmax(sigma / p.scale, 0.0), 1.0);
-    const double rest = p.power < 0.0 ? 1.0 - part : part, away = std::fmax(rest, AT_REST);
-    const double root = power(away, 1.0 / order), slope = root / (order * away);
-    const double bend = slope * (1.0 / order - 1.0) / away;
-    first *= slope, second = stretch / (p.scale * p.scale) * (p.power < 0.0 ? -bend : bend);
-    if (away != rest) replay(p.begin + stretch * (p.power < 0.0 ? 1.0 - root : root));
+    const double slope = power(rest, 1.0 / order) / (order * rest), bend = slope * (1.0 / order - 1.0) / rest;
+    first *= slope, second = sense * stretch / (p.scale * p.scale) * bend;
   }
+  replay(parameter(piece, sigma));
   for (int i = 0; i < n; ++i) {
     const double by = out[3 * i + 1] / units_[i], twice = out[3 * i + 2] / units_[i];
+    point->inputs[i] = out[3 * i] / units_[i];
     point->first[i] = by * first;
     point->second[i] = twice * (first * first) + by * second;
   }

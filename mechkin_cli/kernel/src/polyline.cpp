@@ -15,6 +15,8 @@ namespace {
 
 enum class Way { rest, line, curve, course };
 
+constexpr double ROUNDING = 0x1p-50;  // some units in the last place
+
 // Rows (first, last] that are reached one way from row `first`.
 struct Piece {
   Way way;
@@ -69,15 +71,18 @@ class RowFollower {
     for (int i = 0; i < rows_.inputs; ++i) result_.inputs[i] = rows_.at(i, row);
   }
 
-  // Direction from a row to the next, its largest part 1 (or -1), and which part that is; false where they coincide.
+  // Direction from a row to the next, its largest part 1 (or -1), and which part that is; false where they coincide but
+  // for roundings of the inputs, which are no way to go.
   bool direction_from(long row, std::vector<double>* u, int* leading) const {
     u->assign(rows_.inputs, 0.0), *leading = 0;
     double size = 0.0;
+    bool moves = false;
     for (int i = 0; i < rows_.inputs; ++i) {
       (*u)[i] = rows_.at(i, row + 1) - rows_.at(i, row);
+      moves = moves || !(std::fabs((*u)[i]) <= ROUNDING * scale_[i]);
       if (std::fabs((*u)[i]) > size) size = std::fabs((*u)[i]), *leading = i;
     }
-    if (size == 0.0) return false;
+    if (size == 0.0 || !moves) return false;
     for (double& part : *u) part /= size;
     return true;
   }
