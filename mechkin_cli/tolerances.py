@@ -128,10 +128,26 @@ farther is lost: a fold is met to this part of the way."""
 LEAST_STEP: Final = 1e-15
 """Step (in parts of max(1, |path|)) below which a branch cannot be followed in double precision."""
 
-NODE_PIVOT: Final = 1e-6
-"""Least pivot of the scaled equations at a node of a path: the tangent's error is about a rounding
-over its square, so that below it no test of the tangent tells one branch from another. Measured
-without it: a path ran through the branch point of a parallelogram onto the crossed branch."""
+NODE_PIVOT: Final = 1e-8
+"""Least pivot of the equations at a node of a path: the root of a rounding, which is as near as
+numbers of double precision come to a singular place on a branch."""
+
+ARC_PIVOT: Final = 1e-7
+"""The same of the bordered matrix that follows a branch by arclength: its derivatives are wrong by
+a rounding over its square, a hundredth. Two branches at a gap of 1e-12 leave 1e-6."""
+
+SPECTRAL_RADIUS: Final = 0.5
+"""Largest spectral radius of J_a^+ J_b - I for the Jacobians of a step from a to b, and to its
+middle: below 1 no matrix of the straight segment between them is singular. Half of it leaves room
+for what the segment does not see of the path. Measured: no jump in 1650 mechanisms near change
+points, where signs of determinants jumped in 878 of 999, at the same number of steps on others."""
+
+NARROW_STEP: Final = 0.02
+"""A step (rad, length units of the inputs) that is refused and would come below this is looked into
+by arclength: sweeps far from dead centres and branch points take steps of a tenth and more."""
+
+ARC_STEPS: Final = 4000
+"""Steps of one look by arclength. A gap of 1e-12 between two branches takes some two hundred."""
 
 SAME_LINE: Final = 1e-12
 """Distance from a straight line, in parts of the inputs, up to which rows count as one run of the

@@ -23,7 +23,8 @@ def build_assembly(
         path = ("assembly", "near", name)
         if is_coordinate(fields, path, name, joints):
             near[name] = fields.number(path, text, dimension_of(name.partition(".")[2]))
-    return Assembly(near, section.mode, section.turns)
+    straight = section.at_branch_points is not None
+    return Assembly(near, section.mode, section.turns, straight)
 
 
 def build_follow(

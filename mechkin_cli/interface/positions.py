@@ -178,7 +178,7 @@ def _native(
         turns=turns,
         demand=int(demand_of(session.problem.mechanism, wanted)),
         iterations=tolerances.NEWTON_ITERATIONS,
-        limits=step_limits(),
+        limits=step_limits(straight=session.problem.assembly.straight),
         angles=angles,
     )
 

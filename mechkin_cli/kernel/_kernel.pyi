@@ -454,7 +454,20 @@ def follow_rows(
     limit: Floats,
     turns: Floats | None,
     course: Course | None = None,
-) -> tuple[int, int, int, int, Floats, Floats, Floats, Floats, int, float]:
+) -> tuple[
+    int,
+    int,
+    int,
+    int,
+    Floats,
+    Floats,
+    Floats,
+    Floats,
+    tuple[int, int, Floats, Floats, Floats, Floats, float, Floats, Floats] | None,
+    list[tuple[int, Floats]],
+    int,
+    float,
+]:
     """Fills guess, limit and turns, which share no memory with one another or with inputs.
 
     Returns how it ended (`TrackEnd`), rows reached, steps taken and rejected, and inputs, state,

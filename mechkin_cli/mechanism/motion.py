@@ -79,8 +79,9 @@ class Motion(NamedTuple):
 @dataclass(frozen=True)
 class Assembly:
     """Which assembly is meant at the first row: near some coordinates (rad, m), a mode, or
-    neither."""
+    neither; `straight`: branch points are passed along the smooth continuation."""
 
     near: Mapping[str, float] = field(default_factory=dict)
     mode: str | None = None
     turns: int = 1
+    straight: bool = False

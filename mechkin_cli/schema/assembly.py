@@ -1,6 +1,6 @@
 """`assembly:` - which way of assembling the mechanism is meant at the first row."""
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
 from mechkin_cli.schema.base import NOTHING, Section, refuse
 from mechkin_cli.schema.rules import Limits
@@ -18,6 +18,9 @@ class AssemblySection(Section):
     """Take the mode of this letter, as `mechkin modes` names it."""
     turns: Annotated[WholeNumber, Limits(ge=0, le=1000)] = 1
     """Turns of helical joints to either side within which modes are looked for."""
+    at_branch_points: Literal["straight"] | None = None
+    """`straight`: where the branch crosses another, as a parallelogram's does when it lies flat, it
+    goes on along its smooth continuation. Left out, the branch ends there."""
 
     def check(self) -> None:
         """One of near and mode at most."""

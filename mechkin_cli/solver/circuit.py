@@ -15,10 +15,8 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.solver.branch_limit import find_limit
-from mechkin_cli.solver.branch_point import BranchPoint
+from mechkin_cli.solver.branch_limit import BranchPoint, DeadCentre, find_limit
 from mechkin_cli.solver.clusters import pose_keys, same_poses
-from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.runaway import Runaway
 
@@ -33,14 +31,12 @@ class End(NamedTuple):
     """Where a branch ends: the input there (kernel units), and what may lie beyond.
 
     `unbounded`: a slide grew out of bounds before it; `full-turn`: it came to an assembly that was
-    met before, turns ago; `far`: not found within the reach that is looked over. `last` are the
-    states at the last place before a dead centre.
+    met before, turns ago; `far`: not found within the reach that is looked over.
     """
 
     kind: EndKind
     value: float
     fold: DeadCentre | None = None
-    last: Floats | None = None
 
 
 class Passage(NamedTuple):
@@ -95,9 +91,8 @@ class Walker:
         found: list[Branch] = []
         goal = first.lower if direction > 0.0 else first.upper
         while end.fold is not None and len(found) < tolerances.MOST_BRANCHES:
-            start = self._beyond(end, direction)
-            if start is None:
-                break
+            beyond = float(end.fold.inputs_beyond[self.number])
+            start = Passage(beyond, end.fold.beyond)
             direction = -direction
             far, places = self._climb(start, direction, None)
             ends = (end, far) if direction > 0.0 else (far, end)
@@ -106,16 +101,6 @@ class Walker:
                 return found, True
             end = far
         return found, False
-
-    def _beyond(self, end: End, direction: float) -> Passage | None:
-        """A place on the other side of a dead centre that was met going in a direction."""
-        fold, last = end.fold, end.last
-        if fold is None or last is None:
-            return None
-        bend = abs(float(fold.second[fold.exchanged.input_column]))
-        value = fold.value - direction * 0.5 * bend * tolerances.FOLD_CROSSING**2
-        state = fold.guess(value, 2.0 * fold.state - last)
-        return None if state is None else Passage(value, state)
 
     def _climb(
         self, start: Passage, direction: float, first: Passage | None
@@ -129,15 +114,14 @@ class Walker:
             path[self.number] = place.value, target
             way = self.session.follow(path, place.state)
             if way.end != TrackEnd.FINISHED:
-                origin = path[:, 0]
-                limit = find_limit(self.session, way, origin, place.state)
+                limit = find_limit(self.session, way)
                 last = float(way.inputs[self.number])
                 if isinstance(limit, DeadCentre):
-                    return End("dead-centre", limit.value, limit, way.state), places
+                    return End("dead-centre", float(limit.inputs[self.number]), limit), places
                 if isinstance(limit, Runaway):
                     return End("unbounded", last), places
                 if isinstance(limit, BranchPoint):
-                    return End("branch-point", last + direction * limit.distance), places
+                    return End("branch-point", float(limit.inputs[self.number])), places
                 return End("branch-lost", last), places
             place = Passage(target, way.state)
             if self.period is None and target != self.inputs[self.number]:

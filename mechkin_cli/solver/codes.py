@@ -15,6 +15,9 @@ if TYPE_CHECKING:
         OutputCode as OutputCode,
     )
     from mechkin_cli.kernel._kernel import (
+        PassageEnd as PassageEnd,
+    )
+    from mechkin_cli.kernel._kernel import (
         RowFlag as RowFlag,
     )
     from mechkin_cli.kernel._kernel import (
@@ -29,6 +32,7 @@ else:
     Demand = _kernel.Demand
     LoadCode = _kernel.LoadCode
     OutputCode = _kernel.OutputCode
+    PassageEnd = _kernel.PassageEnd
     RowFlag = _kernel.RowFlag
     TrackEnd = _kernel.TrackEnd
     TreeCode = _kernel.TreeCode

@@ -11,6 +11,7 @@ import numpy as np
 
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.solver.closing_turns import turn_count
+from mechkin_cli.solver.codes import PassageEnd as PassageEnd
 from mechkin_cli.solver.codes import TrackEnd as TrackEnd
 from mechkin_cli.solver.stepping import step_limits
 
@@ -18,6 +19,33 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.solver.route import Way
+
+
+class Ending(NamedTuple):
+    """A dead centre or a branch point that ends a branch.
+
+    `block` is the one that is singular there, `inputs` (inputs,) and `state` (states,) the place;
+    `first` and `second` are derivatives of the columns by the arclength of the block's branch,
+    `bend` the second one of the path's parameter, whose first is zero at a dead centre. `beyond`
+    are inputs and states of a place on a dead centre's other side.
+    """
+
+    kind: PassageEnd
+    block: int
+    inputs: Floats
+    state: Floats
+    first: Floats
+    second: Floats
+    bend: float
+    inputs_beyond: Floats
+    beyond: Floats
+
+
+class Crossing(NamedTuple):
+    """A branch point that was passed straight on: the first row behind it, and its inputs."""
+
+    row: int
+    inputs: Floats
 
 
 class Followed(NamedTuple):
@@ -28,7 +56,8 @@ class Followed(NamedTuple):
     quaternions of closing joints, continuous from the first row, where they were asked for
     (`solver.closing_turns`). If the branch could not be followed further, `inputs` and `state` are
     the last place on it, `turn` the closing joints' turns there, and `direction` the way the inputs
-    were going.
+    were going; where that lies on a piece of their course, `parameter` is the course's, at the
+    ending where it is known.
     """
 
     guess: Floats
@@ -41,8 +70,9 @@ class Followed(NamedTuple):
     direction: Floats
     turns: Floats | None = None
     turn: Floats | None = None
-    place: int = 0
-    """The last place of the way that was reached."""
+    ending: Ending | None = None
+    crossings: tuple[Crossing, ...] = ()
+    parameter: float | None = None
 
 
 def follow(
@@ -53,6 +83,7 @@ def follow(
     every_row: bool = False,
     turns: bool = False,
     turn: Floats | None = None,
+    straight: bool = False,
     course: _kernel.Course | None = None,
 ) -> Followed:
     """Follows the branch through `start` (states at the first row) along all rows.
@@ -64,25 +95,30 @@ def follow(
         every_row: make each row a node of the skeleton instead of filling in.
         turns: carry the turns of closing joints along.
         turn: (turn slots,) turns at the first row, where they are known from a way before it.
-        course: of the inputs between the rows, where it is not straight.
+        straight: pass branch points along the smooth continuation.
+        course: of the inputs between the rows, where they do not go straight.
     """
     rows = inputs.shape[1]
     guess, limit = np.empty((start.size, rows)), np.empty(rows)
     along = np.empty((turn_count(plan), rows)) if turns else None
     given = [] if turn is None else turn.tolist()
-    end, reached, steps, _, place, state, last_turn, direction, _, _ = _kernel.follow_rows(
+    found = _kernel.follow_rows(
         plan,
         np.ascontiguousarray(inputs),
         start.tolist(),
         given,
         every_row,
-        step_limits(),
+        step_limits(straight=straight),
         guess,
         limit,
         along,
         course,
     )
+    end, reached, steps, _, place, state, last_turn, direction = found[:8]
+    limits, crossings, piece, parameter = found[8:]
     guess[:, reached:] = np.nan
+    ending = None if limits is None else Ending(PassageEnd(limits[0]), *limits[1:])
+    crossed = tuple(Crossing(*each) for each in crossings)
     return Followed(
         guess,
         limit,
@@ -94,7 +130,9 @@ def follow(
         direction,
         along,
         last_turn,
-        reached - 1,
+        ending,
+        crossed,
+        parameter if piece >= 0 else None,
     )
 
 
@@ -104,25 +142,33 @@ def follow_way(
     start: Floats,
     *,
     every_row: bool = False,
-    turns: bool = False,
-    turn: Floats | None = None,
+    straight: bool = False,
 ) -> Followed:
-    """Follows the branch along a way, and gives its rows alone; arguments as those of `follow`."""
+    """Follows the branch along a way, with the turns of closing joints, and gives its rows alone;
+    arguments as those of `follow`."""
     found = follow(
         plan,
         way.values,
         start,
         every_row=every_row,
-        turns=turns,
-        turn=turn,
+        turns=True,
+        straight=straight,
         course=way.course,
     )
+    if found.end != TrackEnd.FINISHED and found.parameter is None:
+        inputs = found.inputs if found.ending is None else found.ending.inputs
+        found = found._replace(parameter=way.parameter_of(found.reached - 1, inputs))
     real = way.real
     if real.size == way.rows.size:
         return found
+    assert found.turns is not None
     return found._replace(
         guess=np.ascontiguousarray(found.guess[:, real]),
         limit=found.limit[real],
         reached=int(np.count_nonzero(real < found.reached)),
-        turns=None if found.turns is None else np.ascontiguousarray(found.turns[:, real]),
+        turns=np.ascontiguousarray(found.turns[:, real]),
+        crossings=tuple(
+            Crossing(int(np.count_nonzero(real < crossing.row)), crossing.inputs)
+            for crossing in found.crossings
+        ),
     )

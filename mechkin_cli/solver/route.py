@@ -34,6 +34,7 @@ class Way(NamedTuple):
         values: (inputs, places) in kernel units.
         course: the kernel's, None where all is straight.
         cells: (places - 1,) the cell from each place to the next, -1 for none.
+        route: that it is part of.
     """
 
     rows: NDArray[np.int64]
@@ -41,11 +42,25 @@ class Way(NamedTuple):
     values: Floats
     course: _kernel.Course | None
     cells: NDArray[np.int64]
+    route: Route
 
     @property
     def real(self) -> NDArray[np.int64]:
         """Places that are rows."""
         return np.flatnonzero(self.rows >= 0)
+
+    def parameter_of(self, place: int, inputs: Floats) -> float:
+        """The course's parameter between a place and the next, where the inputs are as given."""
+        cell = int(self.cells[place]) if place < self.cells.size else -1
+        if cell < 0:
+            return float(self.at[place])
+        low, high = float(self.at[place]), float(self.at[place + 1])
+        for _ in range(16):
+            at = low + (high - low) * np.linspace(0.0, 1.0, 33)
+            miss = np.max(np.abs(self.route.jets(cell, at)[:, :, 0] - inputs), axis=1)
+            best = int(np.argmin(miss))
+            low, high = float(at[max(best - 1, 0)]), float(at[min(best + 1, 32)])
+        return 0.5 * (low + high)
 
 
 class Route:
@@ -74,30 +89,6 @@ class Route:
             cells = course.cells[:first][::-1]
         return self._way(course.rows[chosen], course.at[chosen], self.values[:, chosen], cells)
 
-    def way_from(self, inputs: Floats, way: Way, row: int) -> Way:
-        """Straight from some inputs to a row of a way, and on along that."""
-        first = int(np.flatnonzero(way.rows == row)[0])
-        return self._way(
-            np.concatenate([[row], way.rows[first:]]),
-            np.concatenate([[np.nan], way.at[first:]]),
-            np.column_stack((inputs, way.values[:, first:])),
-            np.concatenate([[-1], way.cells[first:]]),
-        )
-
-    def parameter_of(self, way: Way, place: int, inputs: Floats) -> float:
-        """The course's parameter next to a place and the one behind it, where the inputs are as
-        given."""
-        cell = int(way.cells[place]) if place < way.cells.size else -1
-        if cell < 0:
-            return float(way.at[place])
-        low, high = float(way.at[place]), float(way.at[place + 1])
-        for _ in range(16):
-            at = low + (high - low) * np.linspace(0.0, 1.0, 33)
-            miss = np.max(np.abs(self._jets(cell, at)[:, :, 0] - inputs), axis=1)
-            best = int(np.argmin(miss))
-            low, high = float(at[max(best - 1, 0)]), float(at[min(best + 1, 32)])
-        return 0.5 * (low + high)
-
     def _way(
         self, rows: NDArray[np.int64], at: Floats, values: Floats, cells: NDArray[np.int64]
     ) -> Way:
@@ -113,7 +104,7 @@ class Route:
                 self.units,
                 np.ascontiguousarray(at),
             )
-        return Way(rows, at, np.ascontiguousarray(values), native, cells)
+        return Way(rows, at, np.ascontiguousarray(values), native, cells, self)
 
     def _pieces(self, at: Floats, cells: NDArray[np.int64]) -> tuple[list[Piece], list[int]]:
         """Runs of places on one curved cell that are passed in one direction."""
@@ -148,12 +139,12 @@ class Route:
         found = []
         for cell in range(edges.size - 1):
             at = edges[cell] + (edges[cell + 1] - edges[cell]) * np.linspace(0, 1, LENGTH_SAMPLES)
-            changes = np.abs(np.diff(self._jets(cell, at)[:, :, 0], axis=0))
+            changes = np.abs(np.diff(self.jets(cell, at)[:, :, 0], axis=0))
             length = sum(np.max(changes, axis=1, initial=0.0).tolist())
             found.append(length if 0.0 < length < np.inf else 1.0)
         return found
 
-    def _jets(self, cell: int, at: Floats) -> Floats:
+    def jets(self, cell: int, at: Floats) -> Floats:
         """Inputs and two derivatives by the parameter (places, inputs, 3) in kernel units."""
         constants = self.course.constants[cell]
         given = np.concatenate([at[None], np.repeat(constants[:, None], at.size, axis=1)])

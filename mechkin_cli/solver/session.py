@@ -21,7 +21,7 @@ from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.follow import Followed
 from mechkin_cli.solver.follow import follow as follow_path
 from mechkin_cli.solver.follow import follow_way as follow_along
-from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph, is_redundant
+from mechkin_cli.solver.graph import SolverGraph, build_graph, is_redundant
 from mechkin_cli.solver.inputs import KernelInputs, input_unit, kernel_inputs
 from mechkin_cli.solver.layout import Layout
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.demand import Slot
-    from mechkin_cli.solver.route import Route, Way
+    from mechkin_cli.solver.route import Route
     from mechkin_cli.solver.search import Found, Within
 
 T = TypeVar("T")
@@ -97,7 +97,6 @@ class Session:
         self.size: float | None = None
         self.continued: Continued | None = None
         self.graph = graph or build_graph(problem.mechanism, self.driven, closed_at)
-        self._exchanged: dict[tuple[int, Coordinate], Session | None] = {}
         self._readouts: dict[object, Readout] = {}
         self._kept: dict[object, object] = {}
 
@@ -197,19 +196,28 @@ class Session:
     ) -> Followed:
         """Follows the branch through `start` (states,) along a path (inputs, rows); arguments as
         those of `solver.follow.follow`."""
-        return follow_path(self.plan, path, start, every_row=every_row, turns=turns, turn=turn)
+        return follow_path(
+            self.plan,
+            path,
+            start,
+            every_row=every_row,
+            turns=turns,
+            turn=turn,
+            straight=self.problem.assembly.straight,
+        )
 
-    def follow_way(
-        self,
-        way: Way,
-        start: Floats,
-        *,
-        every_row: bool = False,
-        turns: bool = False,
-        turn: Floats | None = None,
+    def follow_rows(
+        self, start: Floats, row: int = 0, step: int = 1, *, every_row: bool = False
     ) -> Followed:
-        """Follows the branch through `start` (states,) along a way of the route."""
-        return follow_along(self.plan, way, start, every_row=every_row, turns=turns, turn=turn)
+        """Follows the branch through `start` (states,) at a row along the rows from there on, or
+        with step -1 back from there, with the turns of closing joints; between the rows the inputs
+        follow their laws and ties."""
+        if self.route is None:
+            path = np.ascontiguousarray(self.inputs.values[:, row::step])
+            return self.follow(path, start, every_row=every_row, turns=True)
+        straight = self.problem.assembly.straight
+        way = self.route.way(row, step)
+        return follow_along(self.plan, way, start, every_row=every_row, straight=straight)
 
     def search(self, inputs: Floats, within: Within | None = None) -> Found:
         """All assemblies at some inputs (inputs,) that random starts find, or those `within` a
@@ -270,23 +278,3 @@ class Session:
             lanes=self.packing.lanes,
             threads=self.packing.threads,
         )
-
-    def exchanged(self, number: int, coordinate: Coordinate) -> Session | None:
-        """The session in which another coordinate is driven in place of input `number`; None where
-        it cannot be solved so."""
-        key = (number, coordinate)
-        if key not in self._exchanged:
-            driven = list(self.driven)
-            driven[number] = coordinate
-            closed_at = [closing.joint.name for closing in self.graph.closings]
-            try:
-                found = Session(
-                    self.problem, driven=driven, closed_at=closed_at, packing=self.packing
-                )
-                # states go from one session to the other: lengths in the same unit
-                unit = self.layout.length
-                found.__dict__["layout"] = Layout(self.problem.mechanism, found.graph, unit)
-            except UnsolvableGraph:
-                found = None
-            self._exchanged[key] = found
-        return self._exchanged[key]

@@ -10,9 +10,12 @@ from mechkin_cli.kernel._kernel import StepLimits
 
 @cache
 def step_limits(
-    longest_step: float = tolerances.LONGEST_STEP, least_step: float = tolerances.LEAST_STEP
+    longest_step: float = tolerances.LONGEST_STEP,
+    least_step: float = tolerances.LEAST_STEP,
+    *,
+    straight: bool = False,
 ) -> StepLimits:
-    """What a step may do, from `tolerances`."""
+    """What a step may do, from `tolerances`; `straight`: pass branch points."""
     return StepLimits(
         turn_cosine=tolerances.TURN_LIMIT_COSINE,
         turn=tolerances.TURN_WANTED,
@@ -34,4 +37,9 @@ def step_limits(
         angle_step=tolerances.CLOSING_ANGLE_STEP,
         angle_miss=tolerances.CLOSING_ANGLE_MISS,
         plan_step=tolerances.PLAN_STEP,
+        arc_pivot=tolerances.ARC_PIVOT,
+        radius=tolerances.SPECTRAL_RADIUS,
+        narrow=tolerances.NARROW_STEP,
+        arc_steps=tolerances.ARC_STEPS,
+        straight=straight,
     )

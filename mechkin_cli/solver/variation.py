@@ -108,7 +108,7 @@ class Reading:
             continuation=step_limits(
                 tolerances.LONGEST_DIMENSION_STEP, tolerances.LEAST_DIMENSION_STEP
             ),
-            following=step_limits(),
+            following=step_limits(straight=base.problem.assembly.straight),
             angles=variation.closing_angles(self.slots, turns),
             ways=_ways(base, start.row),
         )

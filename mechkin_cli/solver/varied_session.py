@@ -42,7 +42,7 @@ class VariedSession(Session):
         self.graph = graph_of(problem.mechanism, base.graph)
         for found in ("plan", "layout", "inputs", "route"):
             self.__dict__.pop(found, None)
-        self._exchanged, self._readouts, self._kept = {}, {}, {}
+        self._readouts, self._kept = {}, {}
         end, size, state = variation.reading(()).runs(Demand.POSITION, start).start(values)
         lost = end != VariantEnd.COMPLETE
         self.continued = Continued(None if lost else np.asarray(state), start.row)

@@ -22,7 +22,6 @@ from mechkin_cli.analysis.assembly.probe import Probe
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.solver.clusters import pose_keys, same_poses
-from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.inputs import input_numbers, input_text
 from mechkin_cli.solver.search import Found, with_assemblies
@@ -187,9 +186,9 @@ def _from_home(session: Session, path: Floats) -> Start:
         hint=f"choose another assembly with assembly: {{near: ...}}{rigid}",
         numbers=places,
     )
-    from mechkin_cli.solver.branch_limit import find_limit
+    from mechkin_cli.solver.branch_limit import DeadCentre, find_limit
 
-    limit = find_limit(session, followed, followed.inputs, followed.state)
+    limit = find_limit(session, followed)
     folds = isinstance(limit, DeadCentre)
     status = Status.beyond_dead_centre if folds else Status.branch_lost
     return Start(None, "home", "", [diagnostic], status)

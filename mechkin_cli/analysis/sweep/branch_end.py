@@ -10,18 +10,15 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.start import MAY_BE_RIGID
 from mechkin_cli.analysis.sweep.rows import Rows
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.solver.branch_limit import find_limit
-from mechkin_cli.solver.branch_point import BranchPoint
-from mechkin_cli.solver.dead_centre import DeadCentre
+from mechkin_cli.solver.branch_limit import BranchPoint, DeadCentre, find_limit
 from mechkin_cli.solver.follow import Followed
-from mechkin_cli.solver.inputs import input_number, input_numbers, input_text
+from mechkin_cli.solver.inputs import input_numbers, input_text
 from mechkin_cli.solver.runaway import Runaway
 from mechkin_cli.status import Status
 from mechkin_cli.units import LENGTH
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.solver.route import Way
     from mechkin_cli.solver.session import Session
 
 
@@ -32,47 +29,49 @@ MAY_BE_FOLD = (
 )
 
 
-def explain_end(
-    session: Session, path: Floats, way: Way | None, followed: Followed, rows: Rows
-) -> int | None:
-    """Finds why a branch ended; rows before a dead centre get their guesses from its shape.
+MOST_SHOWN = 4
+"""Places that a message shows."""
 
-    `path` (inputs, rows) in kernel units and `rows` are in the order in which they were followed;
-    `way` is theirs along the inputs' course, where they have one.
 
-    Returns the row from which the way can be followed anew, back from the last place on the branch;
-    None where it ends.
+def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) -> None:
+    """Says why a branch ended, and gives the rows that it does not reach their status.
+
+    `path` (inputs, rows) in kernel units and `rows` are in the order in which they were followed.
     """
+    missing = ~rows.reached
+    rows.status[missing] = Status.branch_lost
     locked = _locked_inputs(session, path, followed)
     if locked:
-        rows.status[~rows.reached] = Status.branch_lost
         rows.diagnostics.extend(locked)
-        return None
-    if not len(path):
-        rows.status[~rows.reached] = Status.branch_lost
-        rows.diagnostics.append(_lost_note(session, followed, rows))
-        return None
-    far = tolerances.BRANCH_POINT_SPANS[0]
-    row = followed.reached - 1
-    while row > 0 and np.max(np.abs(followed.inputs - path[:, row])) <= far:
-        row -= 1
-    limit = find_limit(session, followed, path[:, row], rows.states[:, row])
+        return
+    limit = find_limit(session, followed) if len(path) else None
     if isinstance(limit, DeadCentre):
-        number = int(np.flatnonzero(followed.direction)[0])
-        back = _fill_before(limit, path, followed, number, rows)
-        if back is not None or rows.reached.all():
-            return back
-        rows.status[~rows.reached] = Status.beyond_dead_centre
-        rows.diagnostics.append(_dead_centre_note(session, limit, number, path, rows))
-        return None
-    rows.status[~rows.reached] = Status.branch_lost
-    if isinstance(limit, Runaway):
+        rows.status[missing] = Status.beyond_dead_centre
+        rows.diagnostics.append(_dead_centre_note(session, limit, path, rows))
+    elif isinstance(limit, Runaway):
         rows.diagnostics.append(_runaway_note(session, followed, limit, rows))
     elif isinstance(limit, BranchPoint):
-        rows.diagnostics.append(_branch_point_note(session, followed, limit, rows))
+        rows.diagnostics.append(_branch_point_note(session, limit, rows))
     else:
         rows.diagnostics.append(_lost_note(session, followed, rows))
-    return None
+
+
+def crossing_note(session: Session, followed: Followed) -> Diagnostic:
+    """The branch points that a way passed straight on."""
+    places = [
+        input_numbers(session.problem, session.layout, crossing.inputs)
+        for crossing in followed.crossings
+    ]
+    shown = [", ".join(map(input_text, numbers)) for numbers in places[:MOST_SHOWN]]
+    more = len(places) - len(shown)
+    return Diagnostic(
+        "branch-point-passed",
+        "note",
+        f"the branch passes {'a branch point' if len(places) == 1 else 'branch points'} along its "
+        "smooth continuation, as assembly: {at_branch_points: straight} asks",
+        measured="; ".join(shown) + (f" and {more} more" if more else ""),
+        numbers=tuple(number for numbers in places[:MOST_SHOWN] for number in numbers),
+    )
 
 
 def input_faults(session: Session) -> list[Diagnostic]:
@@ -96,32 +95,6 @@ def _locked_inputs(session: Session, path: Floats, followed: Followed) -> list[D
     return input_faults(session) if way <= tolerances.PASSED else []
 
 
-def _fill_before(
-    fold: DeadCentre, path: Floats, followed: Followed, number: int, rows: Rows
-) -> int | None:
-    """Guesses for the rows between the last place followed and the fold.
-
-    Returns the first row after them that turns back from the fold, None if there is none.
-    """
-    others = np.arange(len(path)) != number
-    before = float(followed.inputs[number])
-    for row in range(followed.reached, rows.reached.size):
-        if np.any(path[others, row] != followed.inputs[others]):
-            return None
-        value = float(path[number, row])
-        if (value - before) * float(followed.direction[number]) < 0.0:
-            return row if row > followed.reached else None
-        guess = fold.guess(value, followed.state)
-        if guess is None:
-            return None
-        rows.states[:, row] = guess
-        rows.turns[:, row] = np.nan
-        rows.limit[row] = tolerances.JUMP_LIMIT
-        rows.reached[row] = True
-        before = value
-    return None
-
-
 def _row_span(rows: Rows) -> str:
     missing = np.sort(rows.numbers[~rows.reached]) + 1
     return f"row {missing[0]}" if missing.size == 1 else f"rows {missing[0]} to {missing[-1]}"
@@ -134,21 +107,27 @@ def _stay_empty(rows: Rows, where: str = "") -> str:
     return f"{_row_span(rows)} {lie}{'stays' if one else 'stay'} empty"
 
 
-def _dead_centre_note(
-    session: Session, fold: DeadCentre, number: int, path: Floats, rows: Rows
-) -> Diagnostic:
-    place = input_number(session.problem, session.layout, number, fold.value)
-    inwards = float(fold.second[fold.exchanged.input_column])
-    beyond = (path[number, ~rows.reached] - fold.value) * inwards <= 0.0
-    where = "beyond it" if beyond.all() else "beyond it on the way of the rows"
+def _dead_centre_note(session: Session, limit: DeadCentre, path: Floats, rows: Rows) -> Diagnostic:
+    places = input_numbers(session.problem, session.layout, limit.inputs)
+    moving = np.flatnonzero(limit.inputs_beyond != limit.inputs)
+    shown = [places[number] for number in moving] or places
+    beyond = _all_beyond(limit, path, rows)
+    where = "beyond it" if beyond else "beyond it on the way of the rows"
     return Diagnostic(
         "dead-centre",
         "warning",
         f"the branch ends at a dead centre; {_stay_empty(rows, where)}",
-        measured=input_text(place),
+        measured=", ".join(map(input_text, shown)),
         hint="end the sweep before it, or choose another assembly",
-        numbers=(place,),
+        numbers=tuple(shown),
     )
+
+
+def _all_beyond(limit: DeadCentre, path: Floats, rows: Rows) -> bool:
+    """Whether the missing rows lie where the branch does not come at all."""
+    back = limit.inputs_beyond - limit.inputs
+    off = path[:, ~rows.reached] - limit.inputs[:, None]
+    return bool(np.all(np.sum(off * back[:, None], axis=0) <= 0.0))
 
 
 def _runaway_note(session: Session, followed: Followed, limit: Runaway, rows: Rows) -> Diagnostic:
@@ -167,20 +146,16 @@ def _runaway_note(session: Session, followed: Followed, limit: Runaway, rows: Ro
     )
 
 
-def _branch_point_note(
-    session: Session, followed: Followed, point: BranchPoint, rows: Rows
-) -> Diagnostic:
-    places = input_numbers(
-        session.problem, session.layout, followed.inputs + point.distance * followed.direction
-    )
+def _branch_point_note(session: Session, point: BranchPoint, rows: Rows) -> Diagnostic:
+    places = input_numbers(session.problem, session.layout, point.inputs)
     return Diagnostic(
         "branch-point",
         "error",
         "the branch comes to a branch point, where it crosses another and the mechanism may go "
         f"either way; {_stay_empty(rows)}",
         measured=", ".join(map(input_text, places)),
-        hint="begin another sweep beyond it with assembly: {near: ...}, or change the dimensions "
-        "a little",
+        hint="assembly: {at_branch_points: straight} goes on along the smooth continuation; or begin "
+        "another sweep beyond it with assembly: {near: ...}",
         numbers=places,
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.solver.follow import Followed
     from mechkin_cli.solver.layout import Layout
-    from mechkin_cli.solver.route import Way
     from mechkin_cli.solver.session import Session
 
 
@@ -25,79 +24,43 @@ def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> R
 
     With `every_row` each row is a careful step instead of a place filled in between two.
     """
-    count = session.inputs.values.shape[1]
+    values = session.inputs.values
+    count = values.shape[1]
     if start.state is None:
         rows = Rows.without_guesses(session.layout.states, turn_count(session.plan), count)
         rows.status[:] = start.status
         return rows
     if start.row == 0:
-        way = _Way.along(session, 0, 1)
-        followed = way.follow(start.state, every_row)
+        followed = session.follow_rows(start.state, every_row=every_row)
         rows = Rows.followed(followed)
-        rows.nodes = _go_on(way, followed, rows, every_row)
+        _explain(session, values, followed, rows)
     else:
         rows = Rows.without_guesses(session.layout.states, turn_count(session.plan), count)
-        for step in (-1, 1):
-            way = _Way.along(session, start.row, step)
-            followed = way.follow(start.state, every_row)
-            part = rows.part(slice(start.row, None, step))
+        for way in (slice(start.row, None, -1), slice(start.row, None)):
+            path = np.ascontiguousarray(values[:, way])
+            followed = session.follow_rows(
+                start.state, start.row, way.step or 1, every_row=every_row
+            )
+            part = rows.part(way)
             part.take(followed, 0)
-            rows.nodes += _go_on(way, followed, part, every_row)
+            if way.step == -1:
+                part.section *= -1
+            rows.nodes += followed.steps
+            _explain(session, path, followed, part)
     _wrap_from_first(session.layout, rows)
     return rows
 
 
-class _Way(NamedTuple):
-    """Rows in the order in which they are followed: their inputs (inputs, rows), and the way along
-    the inputs' course where they have one."""
+def _explain(session: Session, path: Floats, followed: Followed, rows: Rows) -> None:
+    """Says which branch points a way passed, and what ended it, if it ended."""
+    if followed.crossings:
+        from mechkin_cli.analysis.sweep.branch_end import crossing_note
 
-    session: Session
-    path: Floats
-    course: Way | None
-
-    @classmethod
-    def along(cls, session: Session, row: int, step: int) -> _Way:
-        """From a row on, or with step -1 back from it."""
-        path = np.ascontiguousarray(session.inputs.values[:, row::step])
-        return cls(session, path, None if session.route is None else session.route.way(row, step))
-
-    def from_place(self, inputs: Floats, row: int) -> _Way:
-        """From some inputs straight to the row with a number in this way, and on."""
-        path = np.column_stack((inputs, self.path[:, row:]))
-        if self.course is None or self.session.route is None:
-            return self._replace(path=path)
-        number = int(self.course.rows[self.course.real[row]])
-        return self._replace(
-            path=path, course=self.session.route.way_from(inputs, self.course, number)
-        )
-
-    def follow(self, start: Floats, every_row: bool, turn: Floats | None = None) -> Followed:
-        """The branch through a start along the way."""
-        if self.course is None:
-            follow = self.session.follow
-            return follow(self.path, start, every_row=every_row, turns=True, turn=turn)
-        return self.session.follow_way(
-            self.course, start, every_row=every_row, turns=True, turn=turn
-        )
-
-
-def _go_on(way: _Way, followed: Followed, rows: Rows, every_row: bool) -> int:
-    """Finds out what ended a way, and follows it on, back from dead centres; returns the steps
-    taken in all."""
-    steps = followed.steps
-    while followed.end != TrackEnd.FINISHED:
+        rows.diagnostics.append(crossing_note(session, followed))
+    if followed.end != TrackEnd.FINISHED:
         from mechkin_cli.analysis.sweep.branch_end import explain_end
 
-        back = explain_end(way.session, way.path, way.course, followed, rows)
-        if back is None:
-            break
-        # the row before is near the dead centre: go on from the last regular place of the branch
-        way = way.from_place(followed.inputs, back)
-        rows = rows.part(slice(back - 1, None))
-        followed = way.follow(followed.state, every_row, followed.turn)
-        rows.take(followed, 1)
-        steps += followed.steps
-    return steps
+        explain_end(session, path, followed, rows)
 
 
 def _wrap_from_first(layout: Layout, rows: Rows) -> None:

@@ -17,13 +17,20 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.follow import Followed
 
 
+def sections(found: Followed, rows: int) -> NDArray[np.int64]:
+    """The number of branch points that a way passed before each row (rows,)."""
+    passed = [crossing.row for crossing in found.crossings]
+    return np.searchsorted(np.sort(np.array(passed)), np.arange(rows), side="right")
+
+
 @dataclass
 class Rows:
     """States (states, rows), guesses until they are closed, and what is known about rows that have
     none; `limit` is the largest correction that a guess may still need, `numbers` counts the rows
     from 0 as the file does, `nodes` the steps with which they were followed. `turns` (turn slots,
     rows) are angles and quaternions of closing joints as following carried them along
-    (`solver.closing_turns`), nan where a row was filled in from a dead centre.
+    (`solver.closing_turns`). `section` (rows,) tells rows apart between which a branch point was
+    passed; numbers say nothing but that.
     """
 
     states: Floats
@@ -34,6 +41,7 @@ class Rows:
     diagnostics: list[Diagnostic]
     numbers: NDArray[np.int64]
     turns: Floats
+    section: NDArray[np.int64]
 
     @classmethod
     def without_guesses(cls, states: int, turns: int, rows: int) -> Rows:
@@ -47,6 +55,7 @@ class Rows:
             diagnostics=[],
             numbers=np.arange(rows),
             turns=np.full((turns, rows), np.nan),
+            section=np.zeros(rows, dtype=np.int64),
         )
 
     @classmethod
@@ -63,6 +72,7 @@ class Rows:
             diagnostics=[],
             numbers=np.arange(count),
             turns=turns,
+            section=sections(found, count),
         )
 
     def take(self, found: Followed, first: int) -> None:
@@ -73,12 +83,13 @@ class Rows:
         if found.turns is not None:
             self.turns[:, known] = found.turns[:, known]
         self.reached[first:] = np.arange(first, self.reached.size) < found.reached
+        self.section[first:] = sections(found, self.reached.size)[first:]
 
     def part(self, rows: slice) -> Rows:
         """Some of the rows, in the slice's order: views of the same arrays."""
         arrays = (self.states[:, rows], self.limit[rows], self.reached[rows], self.status[rows])
         more = (self.nodes, self.diagnostics, self.numbers[rows], self.turns[:, rows])
-        return Rows(*arrays, *more)
+        return Rows(*arrays, *more, self.section[rows])
 
     @property
     def has_failed(self) -> bool:

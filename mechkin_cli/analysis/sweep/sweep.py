@@ -144,8 +144,11 @@ def _failed(batch: Batch, rows: Rows) -> Bools:
 
     Sides are there where the run demanded more than positions.
     """
-    first = int(np.argmax(rows.reached))
-    turned = (batch.side != batch.side[:, first : first + 1]).any(axis=0)
+    # where a branch point was passed, sides change with it: a section has those of its median row
+    turned = np.zeros(rows.reached.size, dtype=bool)
+    for section in np.unique(rows.section[rows.reached]):
+        own = np.flatnonzero(rows.reached & (rows.section == section))
+        turned[own] = (batch.side[:, own] != batch.side[:, own[:1]]).any(axis=0)
     failed: Bools = ~batch.good | turned | ~(batch.correction <= rows.limit)
     return rows.reached & failed
 

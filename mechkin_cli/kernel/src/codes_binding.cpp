@@ -70,6 +70,11 @@ void bind_run_codes(nb::module_& m) {
       .value("STALLED", TrackEnd::stalled)
       .value("EXHAUSTED", TrackEnd::exhausted)
       .value("START_NOT_CLOSED", TrackEnd::start_not_closed);
+  nb::enum_<PassageEnd>(m, "PassageEnd", nb::is_arithmetic(), "What a walk by arclength came to.")
+      .value("THROUGH", PassageEnd::through)
+      .value("DEAD_CENTRE", PassageEnd::dead_centre)
+      .value("BRANCH_POINT", PassageEnd::branch_point)
+      .value("LOST", PassageEnd::lost);
   nb::enum_<Operation>(m, "Operation", nb::is_arithmetic(), "Elementary functions of `elementwise`.")
       .value("SIN", OPERATION_SIN)
       .value("COS", OPERATION_COS)

@@ -24,6 +24,13 @@ double power(double x, double y) {
   return result;
 }
 
+// The part of a piece's length; beyond its ends the formulas go on, but not beyond a rest.
+double part_of(const CoursePiece& p, double sigma) {
+  const double part = sigma / p.scale;
+  if (std::fabs(p.power) == 1.0) return part;
+  return p.power < 0.0 ? std::fmin(part, 1.0) : std::fmax(part, 0.0);
+}
+
 }  // namespace
 
 Course::Course(const TapeStore& tape, std::vector<CoursePiece> pieces, std::vector<double> constants,
@@ -52,7 +59,7 @@ double Course::sigma(long piece, double parameter) const {
 
 double Course::parameter(long piece, double sigma) const {
   const CoursePiece& p = pieces_[piece];
-  const double part = std::fmin(std::fmax(sigma / p.scale, 0.0), 1.0);
+  const double part = part_of(p, sigma);
   const double u = p.power < 0.0 ? 1.0 - power(1.0 - part, -1.0 / p.power) : power(part, 1.0 / p.power);
   return p.begin + (p.end - p.begin) * u;
 }
@@ -69,7 +76,7 @@ void Course::at(long piece, double sigma, PathPoint* point, std::vector<char>* m
     narrow().replay_jets(t, given.data(), ways_.data() + piece * switches_, out.data(), memory->data());
   };
   point->inputs.resize(n), point->first.resize(n), point->second.assign(n, 0.0);
-  const double stretch = p.end - p.begin, order = std::fabs(p.power), part = std::fmin(std::fmax(sigma / p.scale, 0.0), 1.0);
+  const double stretch = p.end - p.begin, order = std::fabs(p.power), part = part_of(p, sigma);
   const double rest = p.power < 0.0 ? 1.0 - part : part, sense = p.power < 0.0 ? -1.0 : 1.0;
   if (order != 1.0 && rest < AT_REST) {
     // the chord from the rest

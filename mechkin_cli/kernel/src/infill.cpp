@@ -29,10 +29,10 @@ void interpolate(const std::vector<Hermite>& weights, double h, const Ends& e, d
   }
 }
 
-std::vector<Hermite> weights_of(const Node& a, const Node& b, const double* sigma, long count) {
+std::vector<Hermite> weights_of(const Node& a, const Node& b, const double* place, long count) {
   std::vector<Hermite> weights;
   weights.reserve(count);
-  for (long i = 0; i < count; ++i) weights.emplace_back((sigma[i] - a.sigma) / (b.sigma - a.sigma));
+  for (long i = 0; i < count; ++i) weights.emplace_back((place[i] - a.place) / (b.place - a.place));
   return weights;
 }
 
@@ -46,14 +46,14 @@ void negate(Node* node, int slot) {
 
 }  // namespace
 
-void infill(const Stepper& stepper, const Node& a, const Node& b, const double* sigma, long begin, long end,
+void infill(const Stepper& stepper, const Node& a, const Node& b, const double* place, long begin, long end,
             const RowGuesses& out) {
   const int states = stepper.plan().states;
-  const double h = b.sigma - a.sigma;
+  const double h = b.place - a.place;
   double distance = h;
   for (int s = 0; s < states; ++s) distance = std::fmax(distance, std::fabs(b.state[s] - a.state[s]));
   for (long row = begin; row < end; ++row) out.limit[row] = stepper.limits().infill * distance;
-  const std::vector<Hermite> weights = weights_of(a, b, sigma, end - begin);
+  const std::vector<Hermite> weights = weights_of(a, b, place, end - begin);
   for (int s = 0; s < states; ++s)
     interpolate(weights, h, {{a.state[s], a.state_first[s], a.state_second[s]},
                              {b.state[s], b.state_first[s], b.state_second[s]}},
@@ -66,15 +66,15 @@ void infill(const Stepper& stepper, const Node& a, const Node& b, const double* 
                 out.turn + s * out.rows + begin);
 }
 
-double stray(const Stepper& stepper, const Node& a, const Node& b, const double* sigma, long count,
+double stray(const Stepper& stepper, const Node& a, const Node& b, const double* place, long count,
              const double* inputs, long stride) {
   const Plan& plan = stepper.plan();
-  const std::vector<Hermite> weights = weights_of(a, b, sigma, count);
+  const std::vector<Hermite> weights = weights_of(a, b, place, count);
   std::vector<double> along(count);
   double worst = 0.0;
   for (int i = 0; i < plan.inputs; ++i) {
     const int c = plan.input_column[i];
-    interpolate(weights, b.sigma - a.sigma,
+    interpolate(weights, b.place - a.place,
                 {{a.inputs[i], a.first[c], a.second[c]}, {b.inputs[i], b.first[c], b.second[c]}}, along.data());
     for (long k = 0; k < count; ++k) worst = std::fmax(worst, std::fabs(along[k] - inputs[i * stride + k]));
   }
@@ -104,7 +104,7 @@ void adopt_turns(const Stepper& stepper, const std::vector<double>& turn, Node* 
 // An angle's change over a step follows from its first and second derivatives at both ends (the integral of their
 // Hermite polynomial, wrong by h^5 / 720 of the fifth derivative); a quaternion's sign from its prediction.
 bool continue_turns(const Stepper& stepper, const Node& a, Node* b) {
-  const double h = b->sigma - a.sigma, most = stepper.limits().angle_miss;
+  const double h = b->place - a.place, most = stepper.limits().angle_miss;
   bool sure = true;
   for (const ClosingTurn& t : stepper.turns()) {
     const int s = t.slot;

@@ -1,70 +1,88 @@
 // Whether two nodes of a path lie on one branch.
 //
-// A block of equations passes a singular place where the sign of its determinant changes; the signs are compared block
-// by block, for two that change together leave their product as it was. An overconstrained block has no determinant;
-// there det(A^T B) of its Jacobians at both nodes is negative where one direction of the unknowns loses its
-// equations and gets them back reversed.
+// A branch is lost where a block's Jacobian passes a singular one unseen. Both ends of a step and its middle are
+// looked at: where the spectral radius of J_a^+ J_b - I is below 1, no matrix of the straight segment from J_a to J_b
+// is singular. The radius changes neither with units, nor with the order or merging of blocks; a sign of a determinant
+// comes back where two factors change together. What is shown is a segment of matrices, not the true path
+// (docs/numerics.md).
 #include <cmath>
 
 #include "stepper.hpp"
 
-namespace {
-
-// det(A^T B) of two m x n matrices, by elimination with row exchanges.
-double product_determinant(const double* a, const double* b, int m, int n) {
-  std::vector<double> c(n * n, 0.0);
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j)
-      for (int k = 0; k < m; ++k) c[i * n + j] += a[k * n + i] * b[k * n + j];
-  double determinant = 1.0;
-  for (int k = 0; k < n; ++k) {
-    int best = k;
-    for (int i = k + 1; i < n; ++i)
-      if (std::fabs(c[i * n + k]) > std::fabs(c[best * n + k])) best = i;
-    if (best != k) {
-      for (int j = 0; j < n; ++j) std::swap(c[k * n + j], c[best * n + j]);
-      determinant = -determinant;
-    }
-    determinant *= c[k * n + k];
-    for (int i = k + 1; i < n; ++i) {
-      const double f = c[i * n + k] / c[k * n + k];
-      for (int j = k; j < n; ++j) c[i * n + j] -= f * c[k * n + j];
-    }
-  }
-  return determinant;
+bool is_regular_segment(const Matrix& a, const Matrix& middle, const Matrix& b, double limit, double* danger) {
+  const LeastSquares from(a), to(b);
+  const auto difference = [](const LeastSquares& at, const Matrix& other) {
+    Matrix e = at.solve(other);
+    subtract_identity(&e);
+    return e;
+  };
+  *danger = spectral_radius_bound(difference(to, a));
+  if (!(*danger <= limit) && !spectral_radius_within(difference(to, a), limit) &&
+      !spectral_radius_within(difference(from, b), limit))
+    return false;
+  return spectral_radius_within(difference(from, middle), limit) &&
+         spectral_radius_within(difference(to, middle), limit);
 }
 
-bool same_sides(const Plan& plan, const Node& a, const Node& b) {
-  const double *one = a.jacobian.data(), *other = b.jacobian.data();
-  for (int k = 0; k < plan.blocks; ++k) {
-    const int m = plan.block[k].rows, n = plan.block[k].size;
-    if (m == n && a.side[k] != b.side[k]) return false;
-    if (m > n && !(product_determinant(one, other, m, n) > 0.0)) return false;
-    one += m * n, other += m * n;
-  }
-  return true;
+Matrix Stepper::block_matrix(const std::vector<double>& jacobian, int block) const {
+  long at = 0;
+  for (int b = 0; b < block; ++b) at += plan_.block[b].rows * plan_.block[b].size;
+  Matrix matrix(plan_.block[block].rows, plan_.block[block].size);
+  for (std::size_t e = 0; e < matrix.a.size(); ++e) matrix.a[e] = jacobian[at + e];
+  return matrix;
 }
 
-bool turned_too_far(const Node& a, const Node& b, const StepLimits& limits) {
+std::vector<double> Stepper::middle(const Node& a, const Node& b) const {
+  const double h = b.place - a.place;
+  std::vector<double> state(plan_.states);
+  for (int s = 0; s < plan_.states; ++s)
+    state[s] = 0.5 * (a.state[s] + b.state[s]) + 5.0 / 32.0 * h * (a.state_first[s] - b.state_first[s]) +
+               h * h / 64.0 * (a.state_second[s] + b.state_second[s]);
+  normalise_quaternions(state.data(), 1);
+  return state;
+}
+
+bool Stepper::same_side(const Node& a, Node* b) {
+  const double h = b->place - a.place, half = a.sigma + 0.5 * (b->sigma - a.sigma);
+  const std::vector<double> guess = middle(a, *b);
+  const Plan& plan = path_.plan(half);
+  path_.at(half, &point_);
+  std::vector<double> jacobian(entries_);
+  double residual = 0.0, correction = 0.0;
+  unsigned char flags = 0;
+  Request r = {};
+  r.rows = 1, r.inputs = point_.inputs.data(), r.guess = guess.data();
+  r.residual = &residual, r.correction = &correction, r.flags = &flags;
+  r.jacobian = jacobian.data(), r.demand = DEMAND_JACOBIAN;
+  unit_.run(plan, r, memory_.data());
+  bool same = true;
+  for (int k = 0; k < plan_.blocks; ++k) {
+    double danger = 0.0;
+    same = is_regular_segment(block_matrix(a.jacobian, k), block_matrix(jacobian, k), block_matrix(b->jacobian, k),
+                              limits_.radius, &danger) && same;
+    b->danger[k] = danger / std::fabs(h);
+  }
+  return same;
+}
+
+bool Stepper::turned_too_far(const Node& a, const Node& b) const {
   const double cosine = tangent_product(a, b) / std::sqrt(tangent_product(a, a) * tangent_product(b, b));
-  return !(cosine >= limits.turn_cosine);
+  return !(cosine >= limits_.turn_cosine);
 }
 
 // Prediction of a from b: a place on another branch does not look back at where it was predicted from.
-bool looks_back(const Stepper& stepper, const Node& a, const Node& b, double tolerance) {
+bool Stepper::looks_back(const Node& a, const Node& b, double tolerance) const {
   std::vector<double> back;
-  stepper.predict(b, a.sigma - b.sigma, &back);
+  predict(b, a.place - b.place, &back);
   for (std::size_t s = 0; s < back.size(); ++s)
     if (!(std::fabs(back[s] - a.state[s]) <= tolerance)) return false;
   return true;
 }
 
-}  // namespace
-
-bool Stepper::judge(const Node& a, const Node& b) const {
-  const double length = std::fabs(b.sigma - a.sigma) * std::sqrt(tangent_product(a, a));
-  if (!(b.correction <= limits_.jump * length)) return false;
-  for (double p : b.pivot)
+bool Stepper::judge(const Node& a, Node* b) {
+  const double length = std::fabs(b->place - a.place) * std::sqrt(tangent_product(a, a));
+  if (!(b->correction <= limits_.jump * length)) return false;
+  for (double p : b->pivot)
     if (!(p >= limits_.pivot)) return false;
-  return same_sides(plan_, a, b) && !turned_too_far(a, b, limits_) && looks_back(*this, a, b, limits_.jump * length);
+  return !turned_too_far(a, *b) && looks_back(a, *b, limits_.jump * length) && same_side(a, b);
 }

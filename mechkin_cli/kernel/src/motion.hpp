@@ -70,13 +70,8 @@ inline void block_velocities(const Plan& p, Workspace& w, int index) {
   for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], false);
 }
 
-// First with the block's unknown second derivatives at zero, which leaves the convective part of the
-// closing equations, then with the ones that cancel it.
-inline void block_accelerations(const Plan& p, Workspace& w, int index) {
-  const Block& b = p.block[index];
-  const BlockMatrices at = matrices_of(p, w, index);
-  for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = 0.0;
-  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
+// Second derivatives of a block's closing equations, negative, into w.right: as the links move.
+inline void second_of_equations(const Plan& p, Workspace& w, const Block& b) {
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
@@ -86,6 +81,16 @@ inline void block_accelerations(const Plan& p, Workspace& w, int index) {
     });
     if (j.slide >= 0) w.right[j.row] += Pack(j.slide_sign) * w.acceleration[p.joints[j.slide].column];
   }
+}
+
+// First with the block's unknown second derivatives at zero, which leaves the convective part of the
+// closing equations, then with the ones that cancel it.
+inline void block_accelerations(const Plan& p, Workspace& w, int index) {
+  const Block& b = p.block[index];
+  const BlockMatrices at = matrices_of(p, w, index);
+  for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = 0.0;
+  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
+  second_of_equations(p, w, b);
   at.solve_equations(w.right);
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = w.right[u];
   for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);

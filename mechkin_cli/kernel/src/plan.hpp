@@ -150,7 +150,8 @@ enum Demand : unsigned {
   DEMAND_POWER = 16,
   DEMAND_JERK = 32,
   DEMAND_SINGULAR = 64,  // with DEMAND_CONDITION: to rounding instead of to 1 %
-  DEMAND_EVERYTHING = 127
+  DEMAND_EVERYTHING = 127,  // that can be asked for from outside
+  DEMAND_JACOBIAN = 128     // the blocks' Jacobians alone, which a Request without a demand does not get
 };
 
 // A joint as its user knows it: where its wrench is read off, and where its point rides.
@@ -218,6 +219,19 @@ struct ClosingTurn {
   int slot, width;  // first of its values, and how many: 1 or 4
 };
 
+// A block whose unknowns are given instead of solved for, so that its equations can be looked at where they need not
+// hold; the arrays as in a Request. Of the other blocks only those in `solved` are closed and moved.
+struct Held {
+  int block;
+  const unsigned char* solved;   // blocks: not zero for those that are closed; the held one's entry does not count
+  bool complete;                 // whether `solved` holds all that the plan's remaining joints hang on
+  const double* rates;           // its unknowns x rows
+  const double* accelerations;
+  double* equations;             // its equations x rows
+  double* first;                 // their first derivatives, with DEMAND_VELOCITY
+  double* second;                // their second ones, with DEMAND_ACCELERATION
+};
+
 // One call: arrays are stored column after column ([k * rows + row]).
 struct Request {
   long rows;
@@ -250,6 +264,7 @@ struct Request {
   int shift;                    // 0, or 1 and 2: parts of the null space added to reactions
   int iterations;               // at most
   double tight, coarse, accept;  // residual, step, residual: see tolerances.py
+  const Held* held;             // null: every block is solved
 };
 
 enum RowFlag : unsigned char {

@@ -29,7 +29,7 @@ class RowFollower {
   RowFollower(const Plan& plan, const KernelUnit& unit, const InputRows& rows, const StepLimits& limits,
               const RowGuesses& out, const Course* course)
       : plan_(plan), unit_(unit), rows_(rows), limits_(limits), out_(out), course_(course), scale_(rows.inputs, 0.0),
-        result_{TrackEnd::finished, 1, 0, 0, {}, {}, {}, std::vector<double>(rows.inputs, 0.0)} {
+        result_{TrackEnd::finished, 1, 0, 0, {}, {}, {}, std::vector<double>(rows.inputs, 0.0), {}, {}, {}} {
     for (int i = 0; i < rows.inputs; ++i)
       for (long r = 0; r < rows.rows; ++r) scale_[i] = std::fmax(scale_[i], std::fabs(rows.at(i, r)));
   }
@@ -154,6 +154,11 @@ class RowFollower {
       sigma[row - first - 1] = std::fabs(rows_.at(leading, row) - origin[leading]);
     const Track track = follow_line(plan_, unit_, origin.data(), result_.direction.data(), last - first, sigma.data(),
                                     result_.state.data(), result_.turn, limits_, out_, first + 1);
+    for (double place : track.crossings) {
+      std::vector<double> inputs = origin;
+      for (int i = 0; i < rows_.inputs; ++i) inputs[i] += place * result_.direction[i];
+      note_crossing(inputs, place, sigma.data(), first, last);
+    }
     return adopt(track, first, last, origin);
   }
   // The end of a way along rows (first, last]; whether it reached the last.
@@ -163,11 +168,17 @@ class RowFollower {
     result_.end = missed ? TrackEnd::stalled : track.end;
     result_.steps += track.steps, result_.rejected += track.rejected;
     result_.reached = first + 1 + track.reached;
+    result_.limit = track.limit;
     if (track.end == TrackEnd::start_not_closed)
       result_.inputs = origin;
     else
       take(track.last);
     return result_.end == TrackEnd::finished;
+  }
+  // A branch point that was passed at a place of the way along rows (first, last], whose places are `sigma`.
+  void note_crossing(const std::vector<double>& inputs, double place, const double* sigma, long first, long last) {
+    const long behind = std::upper_bound(sigma, sigma + (last - first), place) - sigma;
+    result_.crossings.push_back(inputs), result_.crossed_before.push_back(first + 1 + behind);
   }
   void take(const Node& node) {
     result_.inputs = node.inputs, result_.state = node.state, result_.turn = node.turn;
@@ -180,22 +191,27 @@ class RowFollower {
       sigma[row - piece.first] = course_->sigma_of_row(piece.number, row);
     const CoursePath path(plan_, *course_, piece.number,
                           {sigma.data(), (long)sigma.size(), rows_.values + piece.first, rows_.rows});
+    PathPoint point;
     for (long first = piece.first, last = first; first < piece.last; first = last) {
       last = every_row ? first + 1 : piece.last;
-      const double begin = sigma[first - piece.first];
+      const double begin = sigma[first - piece.first], *const places = &sigma[first + 1 - piece.first];
       std::vector<double> origin(rows_.inputs);
       for (int i = 0; i < rows_.inputs; ++i) origin[i] = rows_.at(i, first);
-      const Track track = follow_path(path, unit_, begin, last - first, &sigma[first + 1 - piece.first],
-                                      result_.state.data(), result_.turn, limits_, out_, first + 1);
+      const Track track = follow_path(path, unit_, begin, last - first, places, result_.state.data(), result_.turn,
+                                      limits_, out_, first + 1);
       const bool on = adopt(track, first, last, origin);
-      const double place = track.last.state.empty() ? begin : track.last.sigma;
-      PathPoint point;
-      path.at(place, &point);
+      for (double place : track.crossings) {
+        path.at(place, &point);
+        note_crossing(point.inputs, place, places, first, last);
+      }
+      const double end = track.last.state.empty() ? begin : track.last.sigma;
+      path.at(end, &point);
       double size = 0.0;
       for (double part : point.first) size = std::fmax(size, std::fabs(part));
       for (int i = 0; i < rows_.inputs; ++i) result_.direction[i] = size > 0.0 ? point.first[i] / size : 0.0;
       if (on) continue;
-      result_.piece = piece.number, result_.parameter = course_->parameter(piece.number, place);
+      const bool known = track.limit.kind != PassageEnd::lost;
+      result_.piece = piece.number, result_.parameter = course_->parameter(piece.number, known ? track.limit.at.sigma : end);
       return false;
     }
     return true;

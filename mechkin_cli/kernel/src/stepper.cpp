@@ -55,16 +55,20 @@ bool Stepper::close(double sigma, const double* guess, Node* node) {
   return true;
 }
 
+void Stepper::size_node(Node* node) const {
+  node->state.resize(plan_.states);
+  node->first.resize(plan_.columns), node->second.resize(plan_.columns);
+  node->side.assign(plan_.blocks, 1.0), node->pivot.resize(plan_.blocks);
+  node->jacobian.resize(entries_), node->danger.assign(plan_.blocks, 0.0);
+  node->turn.resize(turn_slots_), node->turn_first.resize(turn_slots_), node->turn_second.resize(turn_slots_);
+}
+
 bool Stepper::solve(double sigma, const double* guess, bool moving, Node* node) {
   const Plan& plan = path_.plan(sigma);
   path_.at(sigma, &point_);
-  node->sigma = sigma;
+  node->sigma = node->place = sigma, node->rate = 1.0, node->bend = 0.0;
   node->inputs = point_.inputs;
-  node->state.resize(plan.states);
-  node->first.resize(plan.columns), node->second.resize(plan.columns);
-  node->side.assign(plan.blocks, 1.0), node->pivot.resize(plan.blocks);
-  node->jacobian.resize(entries_);
-  node->turn.resize(turn_slots_), node->turn_first.resize(turn_slots_), node->turn_second.resize(turn_slots_);
+  size_node(node);
   double residual = 0.0;
   unsigned char flags = 0;
   Request r = {};
@@ -120,21 +124,22 @@ void Stepper::predict(const Node& n, double h, std::vector<double>* guess) const
 bool Stepper::step(const Node& a, double h, double sigma, Node* b) {
   predict(a, h, &guess_);
   const std::vector<double> guess = guess_;
-  return close(sigma, guess.data(), b) && judge(a, *b);
+  return close(sigma, guess.data(), b) && judge(a, b);
 }
 
 // The inputs are columns too, so the first derivatives hold the whole tangent of the branch.
 double Stepper::wanted_step(const Node& n) const {
-  double b2 = 0.0, along = 0.0;
+  double b2 = 0.0, along = 0.0, most = longest_step(n);
+  // a fifth less than what would be refused
+  for (double danger : n.danger) most = std::fmin(most, 0.8 * limits_.radius / danger);
   for (double s : n.second) b2 += s * s;
-  const double longest = longest_step(n);
-  if (b2 == 0.0) return longest;
+  if (b2 == 0.0) return most;
   const double t2 = tangent_product(n, n);
   for (std::size_t i = 0; i < n.first.size(); ++i) along += n.first[i] * n.second[i];
   const double across = std::sqrt(std::fmax(b2 - along * along / t2, 0.0));
   const double by_bend = limits_.bend * std::sqrt(t2 / b2);
   const double by_turn = across > 0.0 ? limits_.turn * std::sqrt(t2) / across : HUGE_VAL;
-  return std::fmin(longest, std::fmin(by_bend, by_turn));
+  return std::fmin(most, std::fmin(by_bend, by_turn));
 }
 
 // The step in which no input moves farther than it may: s h + b h^2 / 2 with the fastest one's derivatives.

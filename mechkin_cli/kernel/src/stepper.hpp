@@ -2,11 +2,13 @@
 //
 // A path maps a parameter sigma to the inputs and their first and second derivatives by sigma. A node is a place on
 // the branch over the path, closed to rounding, with the branch's own derivatives by sigma. Following, dead centres,
-// branch points and continuation in a mechanism's dimensions are made of these steps.
+// branch points and continuation in a mechanism's dimensions are made of these steps. Where the path itself turns back,
+// at a dead centre, the branch goes on in its own arclength (arc.hpp).
 #pragma once
 
 #include <vector>
 
+#include "dense.hpp"
 #include "unit.hpp"
 
 struct StepLimits {
@@ -20,6 +22,11 @@ struct StepLimits {
   int most_steps;
   double tight, coarse, accept;  // Newton's tests, see Request
   double pivot;         // least pivot of a node: the tangent next to a singular place is rounding
+  double arc_pivot;     // the same of the matrix by arclength, whose derivatives are used to tell a dead centre
+  double radius;        // largest spectral radius of J_a^+ J_b - I over a step, and to its middle
+  double narrow;        // step (rad, length units of the inputs) below which a refusal is looked into by arclength
+  int arc_steps;        // at most in one such look
+  bool straight;        // whether a branch point is passed along the smooth continuation
   int iterations;
   double same_line;     // distance from a straight line, in parts of the inputs, up to which rows lie on it
   double knot;          // distance (rad, length units) of the rows from which the path's derivatives are read
@@ -63,6 +70,8 @@ class Line : public Path {
 
 struct Node {
   double sigma;
+  double place;                                   // the parameter that derivatives are by: sigma, or an arclength
+  double rate, bend;                              // sigma's derivatives by it: 1 and 0 where it is sigma
   double correction;                              // largest change of an unknown against the guess
   double own;                                     // sigma's part in the tangent: 1 where the plan varies, else 0
   std::vector<double> inputs;
@@ -70,6 +79,9 @@ struct Node {
   std::vector<double> state_first, state_second;  // derivatives of the raw states
   std::vector<double> side, pivot;                // blocks: sign of a square block's determinant; least pivot
   std::vector<double> jacobian;                   // blocks, one after the other, rows x size
+  std::vector<double> by_sigma;                   // by arclength: rates of its block's equations with sigma
+  std::vector<double> danger;                     // blocks: radius of J^+ J_a - I by a unit of the step that led here from a;
+                                                  // about 1 / the distance to a singular place
   std::vector<double> turn, turn_first, turn_second;  // of closing joints, see ClosingTurn; as the kernel has them
 };
 
@@ -82,13 +94,13 @@ class Stepper {
   bool close(double sigma, const double* guess, Node* node);
   // Second-order prediction of the states a step h away; quaternions have unit length.
   void predict(const Node& node, double h, std::vector<double>* guess) const;
-  // Whether b lies on a's branch, so far as the two nodes tell (judge.cpp).
-  bool judge(const Node& a, const Node& b) const;
+  // Whether b lies on a's branch (judge.cpp); notes the blocks' danger in b.
+  bool judge(const Node& a, Node* b);
   // Predict, close and judge a node a step h on. `sigma` is where it ends: a.sigma + h, unless a step shall end exactly
   // on a given place.
   bool step(const Node& a, double h, double sigma, Node* b);
   bool step(const Node& a, double h, Node* b) { return step(a, h, a.sigma + h, b); }
-  // The step that keeps prediction and turn of the tangent within what is wanted.
+  // The step that keeps prediction, turn of the tangent and change of the Jacobians within what is wanted.
   double wanted_step(const Node& node) const;
 
   const Plan& plan() const { return plan_; }
@@ -99,25 +111,40 @@ class Stepper {
   long jacobian_entries() const { return entries_; }
   void normalise_quaternions(double* state, long stride) const;
 
- private:
-  bool solve(double sigma, const double* guess, bool moving, Node* node);
-  bool differentiate_by_plan(Node* node);
+ protected:
+  // The states half way between two nodes, by quintic Hermite interpolation.
+  std::vector<double> middle(const Node& a, const Node& b) const;
+  // A block's matrix among those of a node.
+  Matrix block_matrix(const std::vector<double>& jacobian, int block) const;
+  bool turned_too_far(const Node& a, const Node& b) const;
+  bool looks_back(const Node& a, const Node& b, double tolerance) const;
+  void size_node(Node* node) const;
   void differentiate_states(Node* node) const;
   void differentiate_turns(Node* node) const;
-  void columns_of_states(Node* node) const;
-  double longest_step(const Node& node) const;
 
   const Path& path_;
   const Plan& plan_;
   const KernelUnit& unit_;
   const StepLimits& limits_;
   std::vector<char> memory_;
+  PathPoint point_;
+
+ private:
+  bool solve(double sigma, const double* guess, bool moving, Node* node);
+  bool same_side(const Node& a, Node* b);
+  bool differentiate_by_plan(Node* node);
+  void columns_of_states(Node* node) const;
+  double longest_step(const Node& node) const;
+
   std::vector<ClosingTurn> turns_;
   int turn_slots_ = 0;
   long entries_ = 0;
-  PathPoint point_;
   std::vector<double> guess_;
 };
+
+// Whether the segments from one matrix to another, by way of a third half way, hold no singular one: the least of the
+// spectral radii of A^+ B - I and B^+ A - I, and both to the middle, are at most `limit`. `danger`: a bound of the radius of B^+ A - I.
+bool is_regular_segment(const Matrix& a, const Matrix& middle, const Matrix& b, double limit, double* danger);
 
 double tangent_product(const Node& a, const Node& b);
 

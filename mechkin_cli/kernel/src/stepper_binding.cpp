@@ -183,7 +183,7 @@ void need_node(const OwnedStepper& s, const Node& node) {
   need(has(node.state, p.states) && has(node.state_first, p.states) && has(node.state_second, p.states) &&
            has(node.first, p.columns) && has(node.second, p.columns) && has(node.side, p.blocks) &&
            has(node.pivot, p.blocks) && has(node.jacobian, stepper.jacobian_entries()) &&
-           has(node.turn, stepper.turn_slots()),
+           has(node.danger, p.blocks) && has(node.turn, stepper.turn_slots()),
        "the node is of another plan");
 }
 
@@ -195,6 +195,16 @@ std::optional<Node> step_from(OwnedStepper& s, const Node& node, double h) {
   if (!s.stepper->step(node, h, &next)) return std::nullopt;
   continue_turns(*s.stepper, node, &next);
   return next;
+}
+
+// (kind, block, inputs, states, derivatives of the columns by arclength, second ones, sigma's second; inputs and states
+// of a place beyond), or None.
+nb::object limit_of(const Followed& found) {
+  const Limit& limit = found.limit;
+  if (limit.kind != PassageEnd::dead_centre && limit.kind != PassageEnd::branch_point) return nb::none();
+  const Node &at = limit.at, &beyond = limit.beyond;
+  return nb::make_tuple((int)limit.kind, limit.block, copied(at.inputs), copied(at.state), copied(at.first),
+                        copied(at.second), at.bend, copied(beyond.inputs), copied(beyond.state));
 }
 
 nb::tuple follow_table(const FrozenPlan& store, Table inputs, const Numbers& start, const Numbers& turn, bool every_row,
@@ -221,8 +231,12 @@ nb::tuple follow_table(const FrozenPlan& store, Table inputs, const Numbers& sta
     FloatingPointState state;
     found = follow_rows(plan, narrow_unit(), inputs.data(), start.data(), turn, every_row, limits, out, course);
   }
+  nb::list crossings;
+  for (std::size_t k = 0; k < found.crossings.size(); ++k)
+    crossings.append(nb::make_tuple(found.crossed_before[k], copied(found.crossings[k])));
   return nb::make_tuple((int)found.end, found.reached, found.steps, found.rejected, copied(found.inputs),
-                        copied(found.state), copied(found.turn), copied(found.direction), found.piece, found.parameter);
+                        copied(found.state), copied(found.turn), copied(found.direction), limit_of(found), crossings,
+                        found.piece, found.parameter);
 }
 
 nb::list turn_table(const FrozenPlan& store) {
@@ -245,21 +259,31 @@ void bind_stepper(nb::module_& m) {
            [](StepLimits* at, double turn_cosine, double turn, double bend, double jump, double infill,
               double longest_step, double least_step, int most_steps, double tight, double coarse, double accept,
               double pivot, int iterations, double same_line, double knot, double corner_cosine, double stray,
-              double angle_step, double angle_miss, double plan_step) {
+              double angle_step, double angle_miss, double plan_step, double arc_pivot, double radius, double narrow,
+              int arc_steps, bool straight) {
              for (double cosine : {turn_cosine, corner_cosine})
                need(cosine >= -1.0 && cosine <= 1.0, "limits: a cosine is a number from -1 to 1");
              for (double limit : {turn, bend, jump, infill, longest_step, least_step, tight, coarse, accept, pivot,
-                                  same_line, knot, stray, angle_step, angle_miss, plan_step})
+                                  same_line, knot, stray, angle_step, angle_miss, plan_step, arc_pivot, radius, narrow})
                need(limit >= 0.0, "limits: a limit is a number from 0 on");
              need(most_steps >= 0 && most_steps <= MOST_STEPS, "limits: 0 to 1000000 steps");
              need(iterations >= 0 && iterations <= MOST_ITERATIONS, "limits: 0 to 10000 iterations");
-             new (at) StepLimits{turn_cosine, turn,   bend,   jump,  infill,     longest_step, least_step,
-                                 most_steps,  tight,  coarse, accept, pivot,     iterations,   same_line,
-                                 knot,        corner_cosine,  stray,  angle_step, angle_miss,  plan_step};
+             need(arc_steps >= 0 && arc_steps <= MOST_STEPS, "limits: 0 to 1000000 steps of an arc");
+             StepLimits limits = {};
+             limits.turn_cosine = turn_cosine, limits.turn = turn, limits.bend = bend, limits.jump = jump;
+             limits.infill = infill, limits.longest_step = longest_step, limits.least_step = least_step;
+             limits.most_steps = most_steps, limits.tight = tight, limits.coarse = coarse, limits.accept = accept;
+             limits.pivot = pivot, limits.arc_pivot = arc_pivot, limits.radius = radius, limits.narrow = narrow, limits.arc_steps = arc_steps;
+             limits.straight = straight;
+             limits.iterations = iterations, limits.same_line = same_line, limits.knot = knot;
+             limits.corner_cosine = corner_cosine, limits.stray = stray, limits.angle_step = angle_step;
+             limits.angle_miss = angle_miss, limits.plan_step = plan_step;
+             new (at) StepLimits(limits);
            },
            nb::kw_only(), "turn_cosine"_a, "turn"_a, "bend"_a, "jump"_a, "infill"_a, "longest_step"_a, "least_step"_a,
            "most_steps"_a, "tight"_a, "coarse"_a, "accept"_a, "pivot"_a, "iterations"_a, "same_line"_a, "knot"_a,
-           "corner_cosine"_a, "stray"_a, "angle_step"_a, "angle_miss"_a, "plan_step"_a);
+           "corner_cosine"_a, "stray"_a, "angle_step"_a, "angle_miss"_a, "plan_step"_a, "arc_pivot"_a, "radius"_a, "narrow"_a,
+           "arc_steps"_a, "straight"_a);
 
   nb::class_<Node>(m, "Node")
       .def_ro("sigma", &Node::sigma)
@@ -283,9 +307,11 @@ void bind_stepper(nb::module_& m) {
              s.stepper->predict(node, h, &guess);
              return copied(guess);
            }, "node"_a, "h"_a)
-      .def("judge", [](const OwnedStepper& s, const Node& a, const Node& b) {
+      .def("judge", [](OwnedStepper& s, const Node& a, Node& b) {
              need_node(s, a), need_node(s, b);
-             return s.stepper->judge(a, b);
+             const Turn turn(s);
+             FloatingPointState state;
+             return s.stepper->judge(a, &b);
            }, "a"_a, "b"_a)
       .def("step", &step_from, "node"_a, "h"_a)
       .def("wanted_step", [](const OwnedStepper& s, const Node& node) {

@@ -5,8 +5,14 @@
 
 namespace {
 
+// Rounding of a dead centre's place in parts of max(1, |sigma|): a row so near lies on it.
+constexpr double ON_DEAD_CENTRE = 1e-14;
+// The same of a branch point, which is extrapolated: a row so near has no branch of its own.
+constexpr double ON_BRANCH_POINT = 1e-11;
+
 // Whether the inputs between two nodes are where the nodes' derivatives say: what the path does between them is seen.
 bool sees_between(const Path& path, const Stepper& stepper, const Node& a, const Node& b) {
+  if (path.is_straight()) return true;
   constexpr int PLACES = 3;
   const double h = b.sigma - a.sigma;
   double sigma[PLACES];
@@ -20,6 +26,143 @@ bool sees_between(const Path& path, const Stepper& stepper, const Node& a, const
   return stray(stepper, a, b, sigma, PLACES, inputs.data(), PLACES) <= stepper.limits().stray * h;
 }
 
+// A walk along one path: careful steps while they are long, by arclength where they are refused (passage.hpp).
+class Tracker {
+ public:
+  Tracker(const Path& path, const KernelUnit& unit, long rows, const double* sigma, const StepLimits& limits,
+          const RowGuesses& out, long first)
+      : path_(path), unit_(unit), rows_(rows), sigma_(sigma), limits_(limits), out_(out), first_(first),
+        stepper_(path, unit, limits), track_{TrackEnd::finished, 0, 0, 0, {}, 0.0, {}, {}} {}
+
+  Track follow(double begin, const double* start, const std::vector<double>& turn) {
+    if (!stepper_.close(begin, start, &node_)) {
+      track_.end = TrackEnd::start_not_closed;
+      return track_;
+    }
+    if (!turn.empty()) adopt_turns(stepper_, turn, &node_);
+    for (; row_ < rows_ && sigma_[row_] <= begin; ++row_) put_row(node_, limits_.jump, first_ + row_, out_);
+    end_ = rows_ ? sigma_[rows_ - 1] : begin;
+    step_ = stepper_.wanted_step(node_);
+    while (node_.sigma < end_ && go_on()) {
+    }
+    track_.reached = row_;
+    track_.last = node_;
+    return track_;
+  }
+
+ private:
+  bool stop(TrackEnd end, double refused) {
+    track_.end = end, track_.refused_step = refused;
+    return false;
+  }
+
+  bool go_on() {
+    if (track_.steps + track_.rejected >= limits_.most_steps) return stop(TrackEnd::exhausted, 0.0);
+    const double least = limits_.least_step * std::fmax(1.0, std::fabs(node_.sigma));
+    // the last step ends exactly on the last row
+    // a rest of a millionth of a step is taken along
+    const bool last = node_.sigma + 1.000001 * step_ >= end_;
+    const double h = last ? end_ - node_.sigma : step_;
+    if (!last && h < least) return stop(TrackEnd::stalled, h);
+    if (h * speed() < limits_.narrow && !last && looks()) return look();
+    Node next;
+    if (stepper_.step(node_, h, last ? end_ : node_.sigma + h, &next) &&
+        (continue_turns(stepper_, node_, &next) || h <= limits_.angle_step) &&
+        sees_between(path_, stepper_, node_, next)) {
+      ++track_.steps;
+      const long from = row_;
+      while (row_ < rows_ && sigma_[row_] <= next.sigma) ++row_;
+      infill(stepper_, node_, next, sigma_ + from, first_ + from, first_ + row_, out_);
+      step_ = std::fmin(stepper_.wanted_step(next), 4.0 * h);
+      std::swap(node_, next);
+      looks_ = looks_ || step_ * speed() >= limits_.narrow;
+      return true;
+    }
+    ++track_.rejected;
+    step_ = 0.5 * h;
+    if (looks() && step_ * speed() < limits_.narrow) return look();
+    return step_ >= least || stop(TrackEnd::stalled, h);
+  }
+
+  bool looks() const { return looks_ && !path_.varies() && plan().blocks > 0; }
+  const Plan& plan() const { return stepper_.plan(); }
+  // Speed of the inputs along the path at the node.
+  double speed() const {
+    double square = 0.0;
+    for (int i = 0; i < plan().inputs; ++i) {
+      const double rate = node_.first[plan().input_column[i]];
+      square += rate * rate;
+    }
+    return square > 0.0 ? std::sqrt(square) : 1.0;
+  }
+
+  // What refuses the steps, by arclength.
+  bool look() {
+    const Stretch stretch = walk_stretch(path_, unit_, limits_, node_, step_, end_);
+    track_.steps += stretch.steps(), track_.rejected += stretch.rejected();
+    const PassageEnd kind = stretch.end();
+    const bool ends = kind == PassageEnd::dead_centre || kind == PassageEnd::branch_point;
+    if (!ends && !(stretch.reach() > node_.sigma)) {
+      looks_ = false;
+      return true;
+    }
+    const double reach = stretch.reach(), about = std::fmax(1.0, std::fabs(reach));
+    const double until = kind == PassageEnd::dead_centre    ? reach + ON_DEAD_CENTRE * about
+                         : kind == PassageEnd::branch_point ? reach - ON_BRANCH_POINT * about
+                                                            : reach;
+    for (; row_ < rows_ && sigma_[row_] <= until; ++row_)
+      if (!place_row(stretch, std::fmin(sigma_[row_], reach))) break;
+    for (double sigma : stretch.last().crossings) track_.crossings.push_back(sigma);
+    if (ends && row_ < rows_) {
+      track_.limit.kind = kind, track_.limit.block = stretch.last().block;
+      track_.limit.at = stretch.last().nodes.back(), track_.limit.beyond = stretch.last().beyond;
+      return stop(TrackEnd::stalled, 0.0);
+    }
+    Node guess, next;
+    double limit = 0.0;
+    const double target = std::fmin(reach, end_);
+    if (!stretch.at(plan(), unit_, stepper_.turns(), target, &guess, &limit)) return stop(TrackEnd::stalled, 0.0);
+    if (!stepper_.close(target, guess.state.data(), &next)) {
+      if (row_ < rows_) return stop(TrackEnd::stalled, 0.0);
+      next = guess, next.sigma = target, next.inputs = node_.inputs;
+      path_inputs(target, &next.inputs);
+    } else {
+      adopt_turns(stepper_, guess.turn, &next);
+    }
+    node_ = next;
+    step_ = stepper_.wanted_step(node_);
+    return true;
+  }
+
+  void path_inputs(double sigma, std::vector<double>* inputs) const {
+    PathPoint point;
+    path_.at(sigma, &point);
+    *inputs = point.inputs;
+  }
+
+  bool place_row(const Stretch& stretch, double sigma) {
+    Node guess;
+    double limit = 0.0;
+    if (!stretch.at(plan(), unit_, stepper_.turns(), sigma, &guess, &limit)) return false;
+    put_row(guess, limit, first_ + row_, out_);
+    return true;
+  }
+
+  const Path& path_;
+  const KernelUnit& unit_;
+  long rows_;
+  const double* sigma_;
+  const StepLimits& limits_;
+  const RowGuesses& out_;
+  long first_;
+  Stepper stepper_;
+  Track track_;
+  Node node_;
+  long row_ = 0;
+  double end_ = 0.0, step_ = 0.0;
+  bool looks_ = true;  // whether a refusal is looked into: not again where that led nowhere
+};
+
 }  // namespace
 
 Track follow_line(const Plan& plan, const KernelUnit& unit, const double* x0, const double* u, long rows,
@@ -29,55 +172,7 @@ Track follow_line(const Plan& plan, const KernelUnit& unit, const double* x0, co
 }
 
 Track follow_path(const Path& path, const KernelUnit& unit, double begin, long rows, const double* sigma,
-                  const double* start, const std::vector<double>& turn, const StepLimits& limits, const RowGuesses& out, long first) {
-  Stepper stepper(path, unit, limits);
-  Track track = {TrackEnd::finished, 0, 0, 0, {}, 0.0};
-  Node node, next;
-  if (!stepper.close(begin, start, &node)) {
-    track.end = TrackEnd::start_not_closed;
-    return track;
-  }
-  if (!turn.empty()) adopt_turns(stepper, turn, &node);
-  long row = 0;
-  for (; row < rows && sigma[row] <= begin; ++row) put_row(node, limits.jump, first + row, out);
-  const double end = rows ? sigma[rows - 1] : begin;
-  double h = stepper.wanted_step(node);
-  while (node.sigma < end) {
-    if (track.steps + track.rejected >= limits.most_steps) {
-      track.end = TrackEnd::exhausted;
-      break;
-    }
-    const double least = limits.least_step * std::fmax(1.0, std::fabs(node.sigma));
-    // the last step ends exactly on the last row
-    // a rest of a millionth of a step is taken along
-    const bool last = node.sigma + 1.000001 * h >= end;
-    const double step = last ? end - node.sigma : h;
-    if (!last && step < least) {
-      track.end = TrackEnd::stalled;
-      track.refused_step = step;
-      break;
-    }
-    const bool good = stepper.step(node, step, last ? end : node.sigma + step, &next) &&
-                      (continue_turns(stepper, node, &next) || step <= limits.angle_step) &&
-                      (path.is_straight() || sees_between(path, stepper, node, next));
-    if (!good) {
-      ++track.rejected;
-      h = 0.5 * step;
-      if (h < least) {
-        track.end = TrackEnd::stalled;
-        track.refused_step = step;
-        break;
-      }
-      continue;
-    }
-    ++track.steps;
-    const long from = row;
-    while (row < rows && sigma[row] <= next.sigma) ++row;
-    infill(stepper, node, next, sigma + from, first + from, first + row, out);
-    h = std::fmin(stepper.wanted_step(next), 4.0 * step);
-    std::swap(node, next);
-  }
-  track.reached = row;
-  track.last = node;
-  return track;
+                  const double* start, const std::vector<double>& turn, const StepLimits& limits, const RowGuesses& out,
+                  long first) {
+  return Tracker(path, unit, rows, sigma, limits, out, first).follow(begin, start, turn);
 }

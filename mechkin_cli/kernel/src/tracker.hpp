@@ -6,7 +6,7 @@
 #pragma once
 
 #include "course.hpp"
-#include "stepper.hpp"
+#include "passage.hpp"
 
 enum class TrackEnd : int { finished = 0, stalled = 1, exhausted = 2, start_not_closed = 3 };
 
@@ -18,29 +18,43 @@ struct RowGuesses {
   double* turn;   // turn slots x rows: closing joints' turns, continuous from the start; may be null
 };
 
+// What ended a branch: a dead centre or a branch point, located by arclength; `lost` where nothing is known.
+struct Limit {
+  PassageEnd kind = PassageEnd::lost;
+  int block = -1;
+  Node at, beyond;  // the place, with derivatives by arclength; the first node on a dead centre's other side
+};
+
 struct Track {
   TrackEnd end;
   long reached;     // rows that have a guess
   long steps, rejected;
   Node last;
   double refused_step;  // the step that could not be taken, if stalled
+  Limit limit;
+  std::vector<double> crossings;  // sigma of the branch points that were passed
 };
 
 // Rows on a path from `begin` on: sigma (rows) must not fall; row 0 of them is number `first` of the guesses.
 // `turn` (turn slots) are the closing joints' continuous turns at the start, empty: as the kernel finds them.
 Track follow_path(const Path& path, const KernelUnit& unit, double begin, long rows, const double* sigma,
-                  const double* start, const std::vector<double>& turn, const StepLimits& limits, const RowGuesses& out, long first);
+                  const double* start, const std::vector<double>& turn, const StepLimits& limits, const RowGuesses& out,
+                  long first);
 // The same on the straight path x0 + sigma u, from x0 on.
 Track follow_line(const Plan& plan, const KernelUnit& unit, const double* x0, const double* u, long rows,
                   const double* sigma, const double* start, const std::vector<double>& turn, const StepLimits& limits,
                   const RowGuesses& out, long first);
 
 // How far rows were followed: the last place on the branch, and the way the inputs went there (largest part 1); on a
-// piece of their course, which one, and the course's parameter.
+// piece of their course, which one, and the course's parameter at the limit, or at the last place where none is known.
 struct Followed {
   TrackEnd end;
   long reached, steps, rejected;
   std::vector<double> inputs, state, turn, direction;
+  Limit limit;
+  // branch points that were passed: the inputs there, and the first row behind each
+  std::vector<std::vector<double>> crossings;
+  std::vector<long> crossed_before;
   long piece = -1;
   double parameter = 0.0;
 };
@@ -58,11 +72,11 @@ Followed follow_rows(const Plan& plan, const KernelUnit& unit, const double* inp
 void adopt_turns(const Stepper& stepper, const std::vector<double>& turn, Node* node);
 // Makes the turns of a node continuous with those of the node before; false where one turned too fast to tell.
 bool continue_turns(const Stepper& stepper, const Node& a, Node* b);
-// Guesses for rows [begin, end) at sigma[0 ... end - begin) between two nodes.
-void infill(const Stepper& stepper, const Node& a, const Node& b, const double* sigma, long begin, long end,
+// Guesses for rows [begin, end) at place[0 ... end - begin) between two nodes.
+void infill(const Stepper& stepper, const Node& a, const Node& b, const double* place, long begin, long end,
             const RowGuesses& out);
 // How far the inputs of `count` rows (column after column, `stride` apart) lie from the curve between two nodes.
-double stray(const Stepper& stepper, const Node& a, const Node& b, const double* sigma, long count,
+double stray(const Stepper& stepper, const Node& a, const Node& b, const double* place, long count,
              const double* inputs, long stride);
 // A node as the guess of a row.
 void put_row(const Node& node, double limit, long row, const RowGuesses& out);

@@ -4,6 +4,7 @@
 
 #include "condition.hpp"
 #include "elementwise.hpp"
+#include "held.hpp"
 #include "outputs.hpp"
 #include "search.hpp"
 #include "tape_jets.hpp"
@@ -63,7 +64,23 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
 
   Pack residual = 0.0, correction = 0.0, condition = 0.0;
   Mask converged = all_lanes(true), side = all_lanes(true);
+  const auto skips = [&](int b) { return r.held && b != r.held->block && !r.held->solved[b]; };
+  const auto holds = [&](int b) { return r.held && b == r.held->block; };
+  const auto given = [&](const double* base, int u) { return in.get(base, u); };
+  const auto writer = [&](double* base) { return Writer{base, in.rows, in.row, in.count}; };
+  const auto write_jacobian = [&](const BlockMatrices& at) {
+    if (!r.jacobian) return;
+    for (long e = 0; e < at.m * at.n; ++e) writer(r.jacobian).put(at.jacobian - w.jacobian + e, at.jacobian[e]);
+  };
   for (int b = 0; b < p.blocks; ++b) {
+    if (skips(b)) continue;
+    if (holds(b)) {
+      const Residual held = hold_block(p, w, b, writer(r.held->equations));
+      converged = converged & (held.test <= Pack(r.accept));
+      side = side & block_side_conditions(p, w, p.block[b]);
+      write_jacobian(matrices_of(p, w, b));
+      continue;
+    }
     const Closed closed = close_block(p, w, b, r);
     // a NaN wins
     residual = select(closed.residual <= residual, residual, closed.residual);
@@ -71,28 +88,33 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     converged = converged & closed.converged;
     side = side & closed.side;
     if (!r.demand) continue;
-    const Writer out = {nullptr, in.rows, in.row, in.count};
-    const BlockVerdict verdict = judge_block(p, w, b, r, closed, [&](const BlockMatrices& at) {
-      if (!r.jacobian) return;
-      for (long e = 0; e < at.m * at.n; ++e) out.to(r.jacobian).put(at.jacobian - w.jacobian + e, at.jacobian[e]);
-    });
+    const BlockVerdict verdict = judge_block(p, w, b, r, closed, write_jacobian);
     condition = max(verdict.condition, condition);
-    if (r.side) out.to(r.side).put(b, verdict.side);
-    if (r.pivot) out.to(r.pivot).put(b, matrices_of(p, w, b).least());
+    if (r.side) writer(r.side).put(b, verdict.side);
+    if (r.pivot) writer(r.pivot).put(b, matrices_of(p, w, b).least());
   }
-  for (int k = 0; k < p.rest_count; ++k) {
+  const int rest_count = r.held && !r.held->complete ? 0 : p.rest_count;
+  for (int k = 0; k < rest_count; ++k) {
     place_joint(p, w, p.rest[k]);
     find_screws(p, w, p.rest[k]);
   }
   if (velocities) {
     for (int i = 0; i < p.inputs; ++i) w.rate[p.input_column[i]] = in.get(r.rates, i);
-    for (int b = 0; b < p.blocks; ++b) block_velocities(p, w, b);
-    for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], false);
+    for (int b = 0; b < p.blocks; ++b)
+      if (holds(b))
+        hold_velocities(p, w, b, *r.held, given, writer(r.held->first));
+      else if (!skips(b))
+        block_velocities(p, w, b);
+    for (int k = 0; k < rest_count; ++k) move_link(p, w, p.rest[k], false);
   }
   if (accelerations) {
     for (int i = 0; i < p.inputs; ++i) w.acceleration[p.input_column[i]] = in.get(r.accelerations, i);
-    for (int b = 0; b < p.blocks; ++b) block_accelerations(p, w, b);
-    for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], true);
+    for (int b = 0; b < p.blocks; ++b)
+      if (holds(b))
+        hold_accelerations(p, w, b, *r.held, given, writer(r.held->second));
+      else if (!skips(b))
+        block_accelerations(p, w, b);
+    for (int k = 0; k < rest_count; ++k) move_link(p, w, p.rest[k], true);
   }
 
   if (r.demand & DEMAND_JERK) {
@@ -101,7 +123,6 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int k = 0; k < p.rest_count; ++k) jerk_link(p, w, p.rest[k]);
   }
 
-  const auto writer = [&](double* base) { return Writer{base, in.rows, in.row, in.count}; };
   if (r.states)
     for (int s = 0; s < p.states; ++s) writer(r.states).put(s, w.q[s]);
   if (r.velocities && velocities)

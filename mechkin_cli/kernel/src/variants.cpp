@@ -30,8 +30,8 @@ class Worker {
               base.rows),
         memory_(std::max(wide.workspace_size(plan.view()), narrow_.workspace_size(plan.view()))),
         replay_memory_(wide.replay_size(tape)), size_memory_(plan.view(), narrow_), guess_(plan.view().states * base.rows), way_(guess_.size()),
-        limit_(base.rows), way_limit_(base.rows), correction_(base.rows), side_(plan.view().blocks * base.rows), flags_(base.rows),
-        way_inputs_(plan.view().inputs * base.rows) {
+        limit_(base.rows), way_limit_(base.rows), correction_(base.rows), side_(plan.view().blocks * base.rows),
+        flags_(base.rows), section_(base.rows, 0), way_inputs_(plan.view().inputs * base.rows) {
     for (const ClosingTurn& t : closing_turns(plan.view(), narrow_)) turn_slots_ += t.width;
     if (!base.angles.empty()) turn_.resize(turn_slots_ * base.rows), way_turn_.resize(turn_.size());
   }
@@ -106,9 +106,11 @@ class Worker {
     wide_.run(plan_.view(), r, memory_.data());
     for (long row = 0; row < rows; ++row)
       if (flags_[row] || !(correction_[row] <= limit_[row])) return VariantEnd::incomplete;
+    // sides change where a branch point is passed
     for (int b = 0; b < plan_.view().blocks; ++b)
       for (long row = 1; row < rows; ++row)
-        if (side_[b * rows + row] != side_[b * rows]) return VariantEnd::incomplete;
+        if (section_[row] == section_[row - 1] && side_[b * rows + row] != side_[b * rows + row - 1])
+          return VariantEnd::incomplete;
     unwrap_angles(r.outputs);
     if (!(r.demand & DEMAND_CONDITION)) std::fill_n(r.condition, rows, __builtin_nan(""));
     return VariantEnd::complete;
@@ -154,6 +156,11 @@ class Worker {
         for (long k = 0; k < count; ++k) (*to)[c * rows + first + direction * k] = from[c * count + k];
     };
     put(way_, p.states, &guess_), put(way_limit_, 1, &limit_);
+    for (long k = 0; k < count; ++k) {
+      const auto passed = [&](long behind) { return behind <= k; };
+      const long sections = std::count_if(found.crossed_before.begin(), found.crossed_before.end(), passed);
+      section_[first + direction * k] = direction * sections;
+    }
     if (!way_turn_.empty()) put(way_turn_, turn_slots_, &turn_);
     return true;
   }
@@ -173,6 +180,11 @@ class Worker {
           if (way.rows[k] >= 0) (*to)[c * rows + way.rows[k]] = from[c * count + k];
     };
     put(way_, p.states, &guess_), put(way_limit_, 1, &limit_);
+    for (long k = 0; k < count; ++k) {
+      const auto passed = [&](long behind) { return behind <= k; };
+      const long sections = std::count_if(found.crossed_before.begin(), found.crossed_before.end(), passed);
+      if (way.rows[k] >= 0) section_[way.rows[k]] = way.step * sections;
+    }
     if (!turn_.empty()) put(way_turn_, turn_slots_, &turn_);
     return true;
   }
@@ -215,6 +227,7 @@ class Worker {
   SizeMemory size_memory_;
   std::vector<double> guess_, way_, limit_, way_limit_, correction_, side_;
   std::vector<unsigned char> flags_;
+  std::vector<long> section_;  // of each row: branch points passed before it
   std::vector<double> way_inputs_, turn_, way_turn_, state_;
   std::vector<double> parameters_, by_tape_, replayed_;
   std::vector<std::uint8_t> verdict_;

@@ -1,0 +1,204 @@
+#include "dense.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+LeastSquares::LeastSquares(Matrix matrix) : a_(std::move(matrix)), pivot_(a_.columns), beta_(a_.columns) {
+  const int m = a_.rows, n = a_.columns;
+  for (int k = 0; k < n; ++k) {
+    double square = 0.0;
+    for (int i = k; i < m; ++i) square += a_(i, k) * a_(i, k);
+    const double first = a_(k, k), length = std::copysign(std::sqrt(square), first);
+    pivot_[k] = -length;
+    a_(k, k) = first + length;
+    const double v2 = 2.0 * (square + std::fabs(first * length));
+    beta_[k] = v2 > 0.0 ? 2.0 / v2 : 0.0;
+    for (int j = k + 1; j < n; ++j) {
+      double s = 0.0;
+      for (int i = k; i < m; ++i) s += a_(i, k) * a_(i, j);
+      s *= beta_[k];
+      for (int i = k; i < m; ++i) a_(i, j) -= s * a_(i, k);
+    }
+  }
+}
+
+std::vector<double> LeastSquares::solve(std::vector<double> b) const {
+  const int m = a_.rows, n = a_.columns;
+  for (int k = 0; k < n; ++k) {
+    double s = 0.0;
+    for (int i = k; i < m; ++i) s += a_(i, k) * b[i];
+    s *= beta_[k];
+    for (int i = k; i < m; ++i) b[i] -= s * a_(i, k);
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    for (int j = k + 1; j < n; ++j) b[k] -= a_(k, j) * b[j];
+    b[k] /= pivot_[k];
+  }
+  b.resize(n);
+  return b;
+}
+
+Matrix LeastSquares::solve(const Matrix& b) const {
+  Matrix x(a_.columns, b.columns);
+  std::vector<double> column(b.rows);
+  for (int j = 0; j < b.columns; ++j) {
+    column.resize(b.rows);
+    for (int i = 0; i < b.rows; ++i) column[i] = b(i, j);
+    column = solve(std::move(column));
+    for (int i = 0; i < x.rows; ++i) x(i, j) = column[i];
+  }
+  return x;
+}
+
+double LeastSquares::least_pivot() const {
+  double least = pivot_.empty() ? 1.0 : std::fabs(pivot_[0]);
+  for (double p : pivot_) least = std::fmin(least, std::fabs(p));
+  return least;
+}
+
+// |R^-1|, column by column
+double LeastSquares::least_singular_bound() const {
+  const int n = a_.columns;
+  double square = 0.0;
+  std::vector<double> x(n);
+  for (int c = 0; c < n; ++c) {
+    std::fill(x.begin(), x.end(), 0.0);
+    x[c] = 1.0;
+    for (int k = c; k >= 0; --k) {
+      for (int j = k + 1; j <= c; ++j) x[k] -= a_(k, j) * x[j];
+      x[k] /= pivot_[k];
+      square += x[k] * x[k];
+    }
+  }
+  return square > 0.0 ? 1.0 / std::sqrt(square) : n ? 0.0 : HUGE_VAL;
+}
+
+namespace {
+
+double norm(const Matrix& e) {
+  double square = 0.0;
+  for (double x : e.a) square += x * x;
+  return std::sqrt(square);
+}
+
+Matrix squared(const Matrix& e) {
+  const int n = e.rows;
+  Matrix product(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k) {
+      const double x = e(i, k);
+      for (int j = 0; j < n; ++j) product(i, j) += x * e(k, j);
+    }
+  return product;
+}
+
+// Calls use(bound) with one bound after the other until it says that this is enough. The powers are kept near 1: bounds
+// as 2^-k of the logarithm would need one, roots do not.
+template <class Use>
+void spectral_bounds(Matrix e, Use&& use) {
+  double scale = 1.0;  // of the power so far: |E^(2^k)|^(1/2^k) = scale |power|^(1/2^k)
+  for (int k = 0;; ++k) {
+    const double size = norm(e);
+    if (!(size < HUGE_VAL)) return;
+    double root = size;
+    for (int i = 0; i < k; ++i) root = std::sqrt(root);
+    if (use(scale * root) || k == 5 || size == 0.0) return;
+    for (double& x : e.a) x /= size;
+    scale *= root;
+    e = squared(e);
+  }
+}
+
+}  // namespace
+
+bool spectral_radius_within(Matrix e, double limit) {
+  bool within = false;
+  spectral_bounds(std::move(e), [&](double bound) { return within = bound <= limit; });
+  return within;
+}
+
+double spectral_radius_bound(Matrix e) {
+  double least = HUGE_VAL;
+  spectral_bounds(std::move(e), [&](double bound) {
+    const bool enough = bound > 0.9 * least;
+    least = std::fmin(least, bound);
+    return enough;
+  });
+  return least;
+}
+
+Singular singular_vectors(Matrix a) {
+  const int m = a.rows, n = a.columns;
+  Matrix v(n, n);
+  for (int i = 0; i < n; ++i) v(i, i) = 1.0;
+  const auto product = [&](int p, int q) {
+    double s = 0.0;
+    for (int i = 0; i < m; ++i) s += a(i, p) * a(i, q);
+    return s;
+  };
+  const auto rotate = [](Matrix& x, int p, int q, double c, double s) {
+    for (int i = 0; i < x.rows; ++i) {
+      const double one = x(i, p), other = x(i, q);
+      x(i, p) = c * one - s * other, x(i, q) = s * one + c * other;
+    }
+  };
+  bool again = true;
+  // convergence takes some six to ten sweeps
+  for (int sweep = 0; again && sweep < 30; ++sweep) {
+    again = false;
+    for (int p = 0; p < n; ++p)
+      for (int q = p + 1; q < n; ++q) {
+        const double gamma = product(p, q), one = product(p, p), other = product(q, q);
+        // orthogonal to ten roundings
+        if (!(std::fabs(gamma) > 1e-15 * std::sqrt(one * other)) || !(std::fabs(gamma) > 1e-300)) continue;
+        again = true;
+        const double zeta = (other - one) / (2.0 * gamma);
+        const double t = std::copysign(1.0, zeta) / (std::fabs(zeta) + std::sqrt(1.0 + zeta * zeta));
+        const double c = 1.0 / std::sqrt(1.0 + t * t);
+        rotate(a, p, q, c, c * t), rotate(v, p, q, c, c * t);
+      }
+  }
+  std::vector<double> size(n);
+  for (int j = 0; j < n; ++j) size[j] = std::sqrt(product(j, j));
+  std::vector<int> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return size[i] > size[j]; });
+  Singular found = {std::vector<double>(n), Matrix(n, n)};
+  for (int j = 0; j < n; ++j) {
+    found.value[j] = size[order[j]];
+    for (int i = 0; i < n; ++i) found.v(i, j) = v(i, order[j]);
+  }
+  return found;
+}
+
+Matrix transposed(const Matrix& a) {
+  Matrix t(a.columns, a.rows);
+  for (int i = 0; i < a.rows; ++i)
+    for (int j = 0; j < a.columns; ++j) t(j, i) = a(i, j);
+  return t;
+}
+
+void subtract_identity(Matrix* a) {
+  for (int i = 0; i < a->rows; ++i) (*a)(i, i) -= 1.0;
+}
+
+double determinant(Matrix a) {
+  const int n = a.rows;
+  double product = 1.0;
+  for (int k = 0; k < n; ++k) {
+    int best = k;
+    for (int i = k + 1; i < n; ++i)
+      if (std::fabs(a(i, k)) > std::fabs(a(best, k))) best = i;
+    if (best != k) {
+      for (int j = 0; j < n; ++j) std::swap(a(k, j), a(best, j));
+      product = -product;
+    }
+    product *= a(k, k);
+    for (int i = k + 1; i < n; ++i) {
+      const double f = a(i, k) / a(k, k);
+      for (int j = k; j < n; ++j) a(i, j) -= f * a(k, j);
+    }
+  }
+  return product;
+}

@@ -1,0 +1,51 @@
+// Small dense matrices in plain doubles, for what a branch is judged by: least squares, the bound of a spectral radius,
+// singular vectors. Row-major; sums in fixed order.
+#pragma once
+
+#include <vector>
+
+struct Matrix {
+  int rows = 0, columns = 0;
+  std::vector<double> a;
+  Matrix() = default;
+  Matrix(int m, int n) : rows(m), columns(n), a((std::size_t)m * n, 0.0) {}
+  double& operator()(int i, int j) { return a[(std::size_t)i * columns + j]; }
+  double operator()(int i, int j) const { return a[(std::size_t)i * columns + j]; }
+};
+
+// Householder's QR of a matrix with at least as many rows as columns.
+class LeastSquares {
+ public:
+  explicit LeastSquares(Matrix matrix);
+  // The least-squares solution of A x = b; b has as many entries as A has rows.
+  std::vector<double> solve(std::vector<double> b) const;
+  // A^+ B.
+  Matrix solve(const Matrix& b) const;
+  // Size of the least pivot: zero where columns are dependent.
+  double least_pivot() const;
+  // 1 / |A^+| in Frobenius' norm: at most the least singular value, and at least it over the root of the columns.
+  double least_singular_bound() const;
+
+ private:
+  Matrix a_;
+  std::vector<double> pivot_, beta_;
+};
+
+// Whether a bound of the spectral radius of E is at most `limit`: |E^k|^(1/k) in Frobenius' norm for k = 1, 2, 4 ... 32.
+// The powers' norms come near the radius, which changes neither with units nor with the order of equations and unknowns
+// nor where independent parts stand in one matrix.
+bool spectral_radius_within(Matrix e, double limit);
+// The same bound, as near as powers still lower it by a tenth.
+double spectral_radius_bound(Matrix e);
+
+// Singular values, falling, with the right singular vectors as columns of `v`, by one-sided Jacobi rotations.
+struct Singular {
+  std::vector<double> value;
+  Matrix v;
+};
+Singular singular_vectors(Matrix a);
+
+Matrix transposed(const Matrix& a);
+// Minus the identity, in place.
+void subtract_identity(Matrix* a);
+double determinant(Matrix a);

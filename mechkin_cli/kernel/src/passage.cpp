@@ -1,0 +1,321 @@
+#include "passage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "branch_point.hpp"
+#include "tracker.hpp"
+
+namespace {
+
+// A block other than the arc's own stands in the way where its matrix changes this many times faster.
+constexpr double FASTER = 3.0;
+// Halvings of the wanted step after which it is asked which block stands in the way.
+constexpr double SHORTENED = 1.0 / 8.0;
+// Speed of the path along the arc below which rows are closed one by one: next to a dead centre.
+constexpr double SLOW = 1e-2;
+// Correction of such a row: the root of a rounding, by which its place next to a dead centre may be off.
+constexpr double CLOSED = 1e-7;
+// Arclength below which a branch is not resolved: where two branches pass at a gap of 1e-16 of the size, they bend
+// over its root.
+constexpr double LEAST_ARC = 1e-10;
+constexpr double SINGULAR_STEP = 1e-6;
+// Least ratio of sigma's second derivative at a dead centre and its mean over the step that it lies in.
+constexpr double SAME_BEND = 0.2;
+
+// sigma between two nodes, by its quintic Hermite polynomial, with its derivative by the place.
+struct SigmaBetween {
+  const Node &a, &b;
+  double at(double t, double* slope) const {
+    const double h = b.place - a.place, t2 = t * t, t3 = t2 * t;
+    const double value1 = t3 * (10 - t * (15 - 6 * t)), first0 = t - t3 * (6 - t * (8 - 3 * t));
+    const double first1 = -t3 * (4 - t * (7 - 3 * t)), second0 = 0.5 * t2 * (1 - t * (3 - t * (3 - t)));
+    const double second1 = 0.5 * t3 * (1 - t * (2 - t));
+    const double value1_t = 30 * t2 * (1 - t) * (1 - t), first0_t = 1 - t2 * (18 - t * (32 - 15 * t));
+    const double first1_t = -t2 * (12 - t * (28 - 15 * t));
+    const double second0_t = t * (1 - t * (4.5 - t * (6 - 2.5 * t))), second1_t = t2 * (1.5 - t * (4 - 2.5 * t));
+    *slope = value1_t * (b.sigma - a.sigma) / h + first0_t * a.rate + first1_t * b.rate +
+             h * (second0_t * a.bend + second1_t * b.bend);
+    return a.sigma + value1 * (b.sigma - a.sigma) + h * (first0 * a.rate + first1 * b.rate) +
+           h * h * (second0 * a.bend + second1 * b.bend);
+  }
+};
+
+// The part of a step at which sigma is met; it rises from a to b.
+double part_at(const Node& a, const Node& b, double sigma) {
+  const SigmaBetween between = {a, b};
+  double low = 0.0, high = 1.0, t = 0.5;
+  for (int i = 0; i < 60; ++i) {
+    double slope = 0.0;
+    const double miss = between.at(t, &slope) - sigma;
+    (miss > 0.0 ? high : low) = t;
+    const double next = t - miss / (slope * (b.place - a.place));
+    const double taken = next > low && next < high ? next : 0.5 * (low + high);
+    if (std::fabs(taken - t) <= 1e-15) break;
+    t = taken;
+  }
+  return t;
+}
+
+void interpolate_all(const Node& a, const Node& b, double t, Node* node) {
+  const double h = b.place - a.place, t2 = t * t, t3 = t2 * t;
+  const double value1 = t3 * (10 - t * (15 - 6 * t)), first0 = t - t3 * (6 - t * (8 - 3 * t));
+  const double first1 = -t3 * (4 - t * (7 - 3 * t)), second0 = 0.5 * t2 * (1 - t * (3 - t * (3 - t)));
+  const double second1 = 0.5 * t3 * (1 - t * (2 - t));
+  const auto between = [&](const std::vector<double>& v0, const std::vector<double>& v1, const std::vector<double>& f0,
+                           const std::vector<double>& f1, const std::vector<double>& s0, const std::vector<double>& s1,
+                           std::vector<double>* out) {
+    out->resize(v0.size());
+    for (std::size_t i = 0; i < v0.size(); ++i)
+      (*out)[i] = v0[i] + value1 * (v1[i] - v0[i]) + h * (first0 * f0[i] + first1 * f1[i]) +
+                  h * h * (second0 * s0[i] + second1 * s1[i]);
+  };
+  between(a.state, b.state, a.state_first, b.state_first, a.state_second, b.state_second, &node->state);
+  between(a.turn, b.turn, a.turn_first, b.turn_first, a.turn_second, b.turn_second, &node->turn);
+}
+
+class Walker {
+ public:
+  Walker(const StepLimits& limits, double refused, double until)
+      : limits_(limits), refused_(refused), until_(until) {}
+
+  void walk(const Node& from, Passage* p) const {
+    Arc& arc = *p->arc;
+    Node a, b;
+    if (!arc.enter(from, &a)) return;
+    p->nodes.assign(1, a);
+    double wanted = arc.wanted_step(a), h = std::fmin(wanted, refused_ / a.rate);
+    while (p->steps + p->rejected < limits_.arc_steps) {
+      if (h < LEAST_ARC) {
+        if (!cross_branch_point(p, &a)) return;
+        h = wanted = arc.wanted_step(a);
+      }
+      int blame = -1;
+      const bool good = arc.step(a, h, &b, &blame) && (continue_turns(arc, a, &b) || h <= limits_.angle_step) &&
+                        shows_its_turns(a, b);
+      if (!good) {
+        ++p->rejected;
+        
+        if (stands_in_the_way(arc, a, blame, h, wanted, p)) return;
+        // at a branch point steps of any length end where the pivots are rounding
+        const bool singular = h < SINGULAR_STEP && blame == arc.block() && b.pivot[blame] < limits_.arc_pivot;
+        h = singular ? 0.0 : 0.5 * h;
+        continue;
+      }
+      ++p->steps;
+      if (b.rate <= 0.0) {
+        Node fold;
+        if (locate_dead_centre(arc, a, b, &fold)) {
+          p->nodes.push_back(fold), p->beyond = b, p->end = PassageEnd::dead_centre;
+          return;
+        }
+        h *= 0.5;
+        if (h < LEAST_ARC) return;
+        continue;
+      }
+      p->nodes.push_back(b);
+      wanted = arc.wanted_step(b);
+      // a step of twice what the path's own steps are refused at: they can go on
+      if (b.sigma >= until_ || std::fmin(b.rate, a.rate) * arc.speed() * h >= 2.0 * limits_.narrow) {
+        p->end = PassageEnd::through;
+        return;
+      }
+      h = std::fmin(wanted, 4.0 * h);
+      a = b;
+    }
+  }
+
+ private:
+  // Two dead centres in one step would go unseen: sigma's rate keeps its sign at both ends. Between them the rate's
+  // cubic Hermite polynomial must not come near zero.
+  bool shows_its_turns(const Node& a, const Node& b) const {
+    if (a.rate <= 0.0 || b.rate <= 0.0) return true;
+    const double h = b.place - a.place, least = 0.25 * std::fmin(a.rate, b.rate);
+    if (a.bend >= 0.0 || b.bend <= 0.0) return true;
+    for (int i = 1; i < 16; ++i) {
+      const double t = i / 16.0, t2 = t * t, t3 = t2 * t;
+      const double rate = (1 - 3 * t2 + 2 * t3) * a.rate + (3 * t2 - 2 * t3) * b.rate +
+                          h * ((t - 2 * t2 + t3) * a.bend + (t3 - t2) * b.bend);
+      if (rate < least) return h <= 1e-12;
+    }
+    return true;
+  }
+
+  // Whether another block is what refuses the steps; then the walk ends here.
+  bool stands_in_the_way(const Arc& arc, const Node& a, int blame, double h, double wanted, Passage* p) const {
+    if (h > SHORTENED * wanted) return false;
+    const int own = arc.block();
+    int other = blame >= 0 && blame != own ? blame : -1;
+    for (std::size_t k = 0; other < 0 && k < a.danger.size(); ++k)
+      if ((int)k != own && arc.carries((int)k) && a.danger[k] > FASTER * std::fmax(a.danger[own], 1.0)) other = (int)k;
+    if (other < 0) return false;
+    p->blame = other;
+    return true;
+  }
+
+  // Newton on sigma' = 0 between two nodes where it changes sign.
+  bool locate_dead_centre(Arc& arc, const Node& a, const Node& b, Node* fold) const {
+    double low = 0.0, high = b.place - a.place, h = high * a.rate / (a.rate - b.rate);
+    for (int i = 0; i < 60; ++i) {
+      if (!arc.close_from(a, h, fold)) return false;
+      (fold->rate > 0.0 ? low : high) = h;
+      const double next = h - fold->rate / fold->bend;
+      const double taken = next > low && next < high ? next : 0.5 * (low + high);
+      if (std::fabs(taken - h) <= 1e-15 * std::fmax(1.0, high) || fold->rate == 0.0) break;
+      h = taken;
+    }
+    continue_turns(arc, a, fold);
+    // its derivatives must tell what the ends of the step do
+    const double bend = (b.rate - a.rate) / (b.place - a.place);
+    return std::fabs(fold->rate) * arc.speed() <= 1e-7 && fold->bend < SAME_BEND * bend &&
+           bend < SAME_BEND * fold->bend;
+  }
+
+  bool cross_branch_point(Passage* p, Node* a) const {
+    BranchPointAhead point;
+    if (p->nodes.size() < 2 || !branch_point_ahead(*p->arc, p->nodes, &point)) return false;
+    p->end = PassageEnd::branch_point;
+    Node before, after;
+    if (!limits_.straight || !pass_straight(*p->arc, point, &before, &after)) {
+      Node there = branch_point_node(*p->arc, point);
+      while (p->nodes.size() > 1 && p->nodes.back().sigma >= there.sigma) p->nodes.pop_back();
+      p->nodes.push_back(there);
+      return false;
+    }
+    p->end = PassageEnd::lost;
+    while (p->nodes.size() > 1 && p->nodes.back().place >= before.place) p->nodes.pop_back();
+    const auto go_on = [&](Node next) {
+      continue_turns(*p->arc, p->nodes.back(), &next);
+      p->nodes.push_back(next);
+    };
+    if (before.place > p->nodes.back().place) go_on(before);
+    go_on(after);
+    p->crossings.push_back(point.sigma);
+    *a = p->nodes.back();
+    return true;
+  }
+
+  const StepLimits& limits_;
+  double refused_, until_;
+};
+
+}  // namespace
+
+bool Passage::at(double sigma, Node* node, double* limit) const {
+  std::size_t i = 1;
+  while (i + 1 < nodes.size() && nodes[i].sigma < sigma) ++i;
+  if (nodes.size() < 2 || sigma >= nodes.back().sigma) {
+    *node = nodes.back(), *limit = CLOSED;
+    return true;
+  }
+  const Node &a = nodes[i - 1], &b = nodes[i];
+  const double t = part_at(a, b, sigma);
+  *node = a;
+  interpolate_all(a, b, t, node);
+  *limit = std::fmax(CLOSED, arc->limits().infill * (b.place - a.place));
+  if (std::fmin(a.rate, b.rate) * arc->speed() >= SLOW) return true;
+  // next to a dead centre the place of sigma on the arc counts
+  double h = t * (b.place - a.place);
+  for (int k = 0; k < 40; ++k) {
+    if (!arc->close_from(a, h, node)) return false;
+    const double miss = (node->sigma - sigma) / node->rate;
+    if (!(std::fabs(miss) > 1e-15 * std::fmax(1.0, std::fabs(h)))) break;
+    h = std::fmin(std::fmax(h - miss, 0.0), b.place - a.place);
+  }
+  continue_turns(*arc, a, node);
+  return true;
+}
+
+const Passage& Stretch::of_block(int block) const {
+  for (const Passage& p : passages)
+    if (p.block == block) return p;
+  for (const Passage& p : passages)
+    if (p.arc->carries(block)) return p;
+  return passages.front();
+}
+
+bool Stretch::at(const Plan& plan, const KernelUnit& unit, const std::vector<ClosingTurn>& turns, double sigma,
+                 Node* node, double* limit) const {
+  std::vector<Node> found(passages.size());
+  *limit = 0.0;
+  for (std::size_t k = 0; k < passages.size(); ++k) {
+    double own = 0.0;
+    if (!passages[k].at(sigma, &found[k], &own)) return false;
+    *limit = std::fmax(*limit, own);
+  }
+  *node = found.front();
+  const auto of = [&](int block) -> const Node& { return found[&of_block(block) - passages.data()]; };
+  for (int k = 0; k < plan.links; ++k) {
+    const TreeJoint& j = plan.joints[k];
+    const bool turns_freely = j.type == TREE_S;
+    for (int f = 0; f < unit.tree_types[j.type].freedoms; ++f) {
+      const int block = plan.column_block[j.column + f];
+      if (block < 0) continue;
+      if (!turns_freely)
+        node->state[j.state + f] = of(block).state[j.state + f];
+      else
+        std::copy_n(&of(block).state[j.state], 4, &node->state[j.state]);
+    }
+  }
+  for (int b = 0; b < plan.blocks; ++b)
+    for (const ClosingTurn& t : turns)
+      if (t.closing >= plan.block[b].closing_begin && t.closing < plan.block[b].closing_end)
+        std::copy_n(&of(b).turn[t.slot], t.width, &node->turn[t.slot]);
+  return true;
+}
+
+long Stretch::steps() const {
+  long sum = 0;
+  for (const Passage& p : passages) sum += p.steps;
+  return sum;
+}
+long Stretch::rejected() const {
+  long sum = 0;
+  for (const Passage& p : passages) sum += p.rejected;
+  return sum;
+}
+
+Stretch walk_stretch(const Path& path, const KernelUnit& unit, const StepLimits& limits, const Node& from,
+                     double refused, double until) {
+  const Plan& plan = path.plan(0.0);
+  const int n = plan.blocks;
+  const std::vector<char> upstream = upstream_blocks(plan, unit);
+  int first = 0;
+  for (int b = 0; b < n; ++b)
+    if (from.danger[b] > from.danger[first]) first = b;
+  Stretch stretch;
+  std::vector<int> trouble = {first};
+  const Walker walker(limits, refused, until);
+  long steps = 0, rejected = 0;
+  for (std::size_t k = 0; k < trouble.size(); ++k) {
+    const int block = trouble[k];
+    Passage p;
+    for (bool again = true; again;) {
+      again = false;
+      std::vector<char> carried(n, 1);
+      for (int other : trouble)
+        if (other != block)
+          for (int b = 0; b < n; ++b)
+            if (b == other || upstream[b * n + other]) carried[b] = 0;
+      p = Passage();
+      p.block = block, p.arc = std::make_unique<Arc>(path, unit, limits, block, carried);
+      walker.walk(from, &p);
+      if (p.end == PassageEnd::lost && p.blame >= 0) {
+        if (std::find(trouble.begin(), trouble.end(), p.blame) == trouble.end()) {
+          trouble.push_back(p.blame);
+          again = !upstream[block * n + p.blame];
+        }
+        // what it hangs on tells how far it goes
+        if (!again && p.nodes.size() > 1) p.end = PassageEnd::through;
+      }
+      steps += p.steps, rejected += p.rejected;
+    }
+    if (p.nodes.empty()) p.nodes.assign(1, from);
+    stretch.passages.push_back(std::move(p));
+  }
+  for (std::size_t k = 0; k < stretch.passages.size(); ++k)
+    if (stretch.ends < 0 || stretch.passages[k].reach() < stretch.reach()) stretch.ends = (int)k;
+  stretch.passages.front().steps += steps - stretch.steps();
+  stretch.passages.front().rejected += rejected - stretch.rejected();
+  return stretch;
+}

@@ -1,0 +1,63 @@
+"""Parallelograms and coupled wheels at their branch points, with the key that passes them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import mechkin_cli as mk
+
+JOINT = "  {name}: {{type: {kind}, links: [{links}], point: [{x}, {y}, 0]{axis}}}\n"
+
+
+def joint(name: str, kind: str, links: str, x: float, y: float) -> str:
+    axis = "" if kind == "S" else ", axis: [0, 0, 1]"
+    return JOINT.format(name=name, kind=kind, links=links, x=x, y=y, axis=axis)
+
+
+def wheels(count: int, pairs: str, motion: str, more: str) -> str:
+    """Wheels of radius 3 in a row, 10 apart, each on a rod to the one before, drawn upright."""
+    links, joints = ["wheel0"], joint("A", "R", "ground, wheel0", 0, 0)
+    for k in range(1, count):
+        links += [f"rod{k}", f"wheel{k}"]
+        joints += joint(f"P{k}", pairs[0], f"wheel{k - 1}, rod{k}", 10 * (k - 1), 3)
+        joints += joint(f"Q{k}", pairs[1], f"rod{k}, wheel{k}", 10 * k, 3)
+        joints += joint(f"D{k}", "R", f"ground, wheel{k}", 10 * k, 0)
+    return (
+        "format: 1\nname: wheels\nunits: {length: mm, angle: deg}\n"
+        f"links: {{{', '.join(f'{link}: {{}}' for link in links)}}}\njoints:\n{joints}"
+        f"motion: {{inputs: {{A.theta: {motion}}}}}\n{more}"
+    )
+
+
+STRAIGHT = "assembly: {at_branch_points: straight}\n"
+
+
+@pytest.mark.parametrize("pairs", ["SS", "RR", "CS", "RC"])
+@pytest.mark.parametrize("count", [2, 3, 4])
+@pytest.mark.parametrize("motion", [
+    "{from: 0, to: 720, step: 7}", "{from: 0, to: -3600, step: 77}", "{from: 0, to: 360, step: 90}",
+])  # fmt: skip
+def test_straight_on_wheels_turn_together(count: int, pairs: str, motion: str) -> None:
+    result = mk.loads(wheels(count, pairs, motion, STRAIGHT)).analyze()
+    turned = result["A.theta"]
+    # at the branch points themselves a row may be anything that says so
+    at = np.abs(np.remainder(turned - 90 + 1e-6, 180)) < 2e-6
+    for k in range(1, count):
+        assert np.abs(result[f"D{k}.theta"] - turned)[~at].max() < 1e-6
+    assert set(result["row.status"][~at].tolist()) <= {"ok", "near-singular"}
+    assert any("branch point" in str(note) for note in result.diagnostics)
+
+
+@pytest.mark.parametrize("pairs", ["SS", "RR", "CS", "RC"])
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_without_the_key_the_branch_is_lost_there(count: int, pairs: str) -> None:
+    result = mk.loads(wheels(count, pairs, "{from: 0, to: 200, step: 7}", "")).analyze()
+    turned = result["A.theta"]
+    before = turned < 90 - 1e-6
+    assert set(result["row.status"][before].tolist()) == {"ok"}
+    assert set(result["row.status"][~before].tolist()) == {"branch-lost"}
+    for k in range(1, count):
+        assert np.abs(result[f"D{k}.theta"] - turned)[before].max() < 1e-6
+    (note,) = [d for d in result.diagnostics if "branch point" in d.message]
+    assert any(abs(number.value - 90) < 1e-9 for number in note.numbers)

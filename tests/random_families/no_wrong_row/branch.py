@@ -1,0 +1,151 @@
+"""How far the drawn branch goes either way, and how near it comes to its end on the way.
+
+Discriminants are read on a fine grid; every low minimum and every change of sign is enlarged
+until its place is known to 1e-13, and what is near zero is decided at 50 digits. Places where a
+loop turns fast because another is nearly singular get points of their own.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from mpmath import mpf
+from numpy.typing import NDArray
+from random_families.no_wrong_row.field import EXACT, FAST
+from random_families.no_wrong_row.linkage import Linkage
+
+Array = NDArray[np.float64]
+TURN = 2 * math.pi
+GRID = 720
+"""Points of a turn."""
+LOW = 2e-3
+"""A minimum of a discriminant below this is enlarged; between points of the grid it changes by
+about 1e-4."""
+DECIDED = 1e-8
+"""Below this float64 does not tell a discriminant's sign behind another loop nearly singular."""
+UNDECIDED = 3e-15
+"""A discriminant below this may have either sign for numbers rounded to float64."""
+
+
+class Undecided(Exception):
+    """A minimum is zero to rounding: nothing can be asked of the mechanism."""
+
+
+@dataclass
+class Way:
+    """The branch for 0 <= t <= end in one direction: places t with their values and margins."""
+
+    sign: int
+    end: float
+    folds: str | None  # the body that ends it
+    t: Array
+    margin: dict[str, Array]
+    value: dict[str, Array]
+    critical: list[tuple[float, str, float]] = field(default_factory=list)
+    periodic: bool = False
+
+    def reduced(self, t: Array) -> tuple[Array, Array]:
+        """Distances from the start, and whole turns, of places on the way."""
+        turns = np.floor(t / TURN) if self.periodic else np.zeros_like(t)
+        return t - turns * TURN, turns
+
+
+def way(linkage: Linkage, sign: int, span: float) -> Way:
+    """The way from the drawing to |t| = span, or once around where that is its period.
+
+    Raises:
+        Undecided: a discriminant touches zero.
+    """
+    factors = [body.drive for body in linkage.bodies if body.drive is not None]
+    repeats = all(float(f).is_integer() for f in factors)
+    reach = min(span, TURN) if repeats else span
+    t = np.linspace(0.0, reach, max(3, math.ceil(GRID * reach / TURN) + 1))
+    end, folds, critical = reach, None, []
+    for body in linkage.bodies:
+        if body.rod is None:
+            continue
+        margin = linkage.at(sign * t, FAST, body.name).margin[body.name]
+        for low, high in low_places(margin, t):
+            place, least = lowest(linkage, body.name, sign, low, high)
+            critical.append((place, body.name, max(least, 0.0)))
+            t = np.union1d(t, fine(place, end))
+            if least <= 0:
+                end, folds = first_zero(linkage, body.name, sign, low, place), body.name
+                break
+        t = np.append(t[t < end], end)
+    critical = [item for item in critical if item[0] < end or item[1] == folds]
+    final = linkage.at(sign * t, FAST)
+    return Way(
+        sign,
+        end if folds else math.inf,
+        folds,
+        t,
+        {name: np.maximum(m, 0.0) for name, m in final.margin.items()},
+        {name: np.unwrap(v) for name, v in final.value.items()},
+        critical,
+        folds is None and repeats and reach == TURN,
+    )
+
+
+def low_places(margin: Array, t: Array) -> list[tuple[float, float]]:
+    """Intervals about low minima, in their order; the last one ends where a sign changes."""
+    places = []
+    for i in range(len(t)):
+        before, after = margin[max(i - 1, 0)], margin[min(i + 1, len(t) - 1)]
+        if margin[i] <= 0 or (margin[i] < LOW and margin[i] <= before and margin[i] <= after):
+            places.append((float(t[max(i - 1, 0)]), float(t[min(i + 1, len(t) - 1)])))
+            if margin[i] <= 0:
+                break
+    return places
+
+
+def one(linkage: Linkage, name: str, sign: int, t: Any) -> Any:
+    """A body's margin."""
+    return linkage.at(sign * t, FAST, name).margin[name]
+
+
+def lowest(linkage: Linkage, name: str, sign: int, low: float, high: float) -> tuple[float, float]:
+    """Place and value of the least margin between two places.
+
+    Raises:
+        Undecided: it is zero to rounding.
+    """
+    while True:
+        t = np.linspace(low, high, 41)
+        margin = one(linkage, name, sign, t)
+        best = int(np.argmin(margin))
+        if margin[best] < -DECIDED or high - low < 1e-13 * max(1.0, high) + 1e-15:
+            break
+        low, high = float(t[max(best - 1, 0)]), float(t[min(best + 1, 40)])
+    place, least = float(t[best]), float(margin[best])
+    if abs(least) < DECIDED:
+        least = float(linkage.at(sign * mpf(place), EXACT, name).margin[name])
+        if abs(least) < UNDECIDED:
+            raise Undecided
+    return place, least
+
+
+def first_zero(linkage: Linkage, name: str, sign: int, low: float, high: float) -> float:
+    """The first place where the margin is not positive; it is at `high`, and positive at `low`."""
+    while high - low > 1e-15 * max(1.0, high):
+        t = np.linspace(low, high, 41)
+        gone = one(linkage, name, sign, t) <= 0
+        gone[-1] = True
+        first = int(np.argmax(gone))
+        if first == 0:
+            break
+        new = float(t[first - 1]), float(t[first])
+        if new == (low, high):
+            break
+        low, high = new
+    return high
+
+
+def fine(place: float, end: float) -> Array:
+    """Points that come closer to a place in equal ratios."""
+    steps = 10.0 ** np.arange(-9, -2, 0.125)
+    points = np.concatenate([place - steps, [place], place + steps])
+    return points[(points > 0) & (points < end)]
