@@ -187,6 +187,14 @@ COURSE_REST: Final = 1e-6
 """Rate, in parts of each input's fastest, up to which all of them rest: a zero of the rates is
 found to the root of a rounding where they only touch it."""
 
+FREE_INPUT_STEP: Final = 3e-4
+"""Step of an input (rad, length units) after which the loops must still close where it is free: a
+prediction of second order misses by its cube, 3e-11, times third derivatives."""
+
+FREE_INPUT_MISS: Final = 3e-9
+"""Closing equation after that step above which an input may be locked, and the mobility is asked: a
+locked one misses by a part of the step or of its square, 9e-8."""
+
 PATH_STRAY: Final = 1e-3
 """Distance of a row's inputs from the curve between two nodes in parts of the step: a twentieth of
 what a row filled in may be off."""

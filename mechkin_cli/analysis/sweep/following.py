@@ -57,7 +57,7 @@ def _explain(session: Session, path: Floats, followed: Followed, rows: Rows) -> 
         from mechkin_cli.analysis.sweep.branch_end import crossing_note
 
         rows.diagnostics.append(crossing_note(session, followed))
-    if followed.end != TrackEnd.FINISHED:
+    if followed.end != TrackEnd.FINISHED and not rows.reached.all():
         from mechkin_cli.analysis.sweep.branch_end import explain_end
 
         explain_end(session, path, followed, rows)
