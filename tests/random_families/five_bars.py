@@ -48,6 +48,16 @@ class FiveBar:
         at = np.arange(rows) / max(rows - 1, 1)
         s = np.unique(np.concatenate([np.linspace(0.0, 1.0, SAMPLES), at]))
         first, second = np.radians(a(s)) + 0.0 * s, np.radians(e(s)) + 0.0 * s
+        angle, margin = self.pin(first, second)
+        beyond = np.flatnonzero(margin < 0.0)
+        end = int(beyond[0]) if beyond.size else s.size
+        rod = np.unwrap(angle)
+        turned = np.degrees(rod - rod[0] - (first - first[0]))
+        return Way(s, np.searchsorted(s, at), turned, margin, end)
+
+    def pin(self, first: Numbers, second: Numbers) -> tuple[Numbers, Numbers]:
+        """The left rod's angle at cranks' angles in rad, and how far the circles are from
+        touching."""
         ends = np.stack([np.cos(first), np.sin(first)])
         others = np.stack([3.0 + np.cos(second), np.sin(second)])
         one, other = np.hypot(self.x - 1.0, self.y), np.hypot(self.x - 4.0, self.y)
@@ -57,16 +67,18 @@ class FiveBar:
         height = np.sqrt(np.maximum(one**2 - along**2, 0.0))
         ahead = way / distance
         rod = along * ahead + height * np.stack([-ahead[1], ahead[0]])
-        angle = np.unwrap(np.arctan2(rod[1], rod[0]))
         margin = np.minimum(distance - abs(one - other), one + other - distance)
-        beyond = np.flatnonzero(margin < 0.0)
-        return Way(
-            s,
-            np.searchsorted(s, at),
-            np.degrees(angle - angle[0] - (first - first[0])),
-            margin,
-            int(beyond[0]) if beyond.size else s.size,
-        )
+        return np.arctan2(rod[1], rod[0]), margin
+
+    def dead_centre(self, way: Way, a: Motion, e: Motion) -> tuple[float, float]:
+        """The cranks' angles in degrees where the circles touch, by bisection."""
+        low, high = way.s[way.end - 1], way.s[way.end]
+        for _ in range(60):
+            middle = np.array([0.5 * (low + high)])
+            _, margin = self.pin(np.radians(a(middle)), np.radians(e(middle)))
+            low, high = (low, middle[0]) if margin[0] < 0.0 else (middle[0], high)
+        at = np.array([low])
+        return float(a(at)[0]), float(e(at)[0])
 
 
 @dataclass

@@ -122,6 +122,15 @@ def test_rows_along_laws_and_ties() -> None:
         assert good.tolist() == (np.arange(rows) < way.reached).tolist(), motion
         want = way.angle[way.rows][: way.reached]
         assert found["B.theta"][: way.reached] == pytest.approx(want, abs=1e-6), motion
-        decided, ended = decided + 1, ended + (way.reached < rows)
+        decided += 1
+        if way.reached == rows:
+            continue
+        assert set(found["row.status"][way.reached :]) == {"beyond-dead-centre"}, motion
+        (note,) = (d for d in found.diagnostics if d.code == "dead-centre")
+        named = {number.name: number.value for number in note.numbers}
+        first, second = bar.dead_centre(way, a, e)
+        assert named.get("A.theta", first) == pytest.approx(first, abs=1e-6), motion
+        assert named.get("E.theta", second) == pytest.approx(second, abs=1e-6), motion
+        ended += 1
     assert decided > 30
     assert ended > 5
