@@ -2,7 +2,7 @@
 
 The parameter is the time where there is one, else the one input that the others follow, else the
 number of the row. Laws and expressions are written down on a tape as they stand in the file; where
-they bend, jump or rest is found on that tape (`building.cells`).
+they bend, jump or rest is found on that tape (`solver.cells`).
 """
 
 from __future__ import annotations
@@ -13,12 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mechkin_cli.arrays import Floats
-from mechkin_cli.building.cells import Formula, cells_of
 from mechkin_cli.building.coordinates import dimension_of
 from mechkin_cli.building.fields import Fields
 from mechkin_cli.building.law_pieces import LawPieces, law_pieces
 from mechkin_cli.building.laws import Clock
-from mechkin_cli.building.places import places_of
 from mechkin_cli.expressions import Expression, Quantity
 from mechkin_cli.expressions.fields import scalar
 from mechkin_cli.mechanism.course import Course, Parameter
@@ -30,8 +28,11 @@ from mechkin_cli.schema.motion import (
     MotionSection,
     SweptInput,
 )
+from mechkin_cli.solver.cells import Formula, cells_of
+from mechkin_cli.solver.places import places_of
 from mechkin_cli.tape.recorder import Recorder
 from mechkin_cli.tape.rows import is_traced
+from mechkin_cli.tape.tape import Tape
 from mechkin_cli.tape.traced import Traced, TraceLost, register
 from mechkin_cli.units import TIME
 
@@ -65,7 +66,8 @@ def build_course(
         return None
     formula = _recorded(fields, inputs, expressions, sources)
     cells = cells_of(formula, sources.at)
-    return places_of(formula, cells, sources.parameter, sources.at, inputs)
+    values = np.stack([item.values for item in inputs])
+    return places_of(formula, cells, sources.parameter, sources.at, values)
 
 
 class _Sources(NamedTuple):
@@ -146,6 +148,60 @@ def _recorded(
         written: Any = pieces.value(registers[0], registers[used : used + counts[name]])
         known[name] = Quantity(fields.units.to_si(written, dimension), dimension)
         used += counts[name]
+    tape = _tape(fields, inputs, expressions, known, recorder)
+
+    def constants(parameter: float) -> list[float]:
+        return [c for pieces in sources.pieces.values() for c in pieces.constants(parameter)]
+
+    edges = [edge for pieces in sources.pieces.values() for edge in pieces.edges]
+    return Formula(tape, edges, constants)
+
+
+def build_ties(
+    fields: Fields,
+    inputs: Sequence[DrivenInput],
+    expressions: Mapping[str, Expression],
+    time: Moments | None,
+) -> tuple[tuple[str, Tape], ...]:
+    """Each input that others follow, and all inputs as a function of it in SI.
+
+    The further inputs of a tape are those that follow none, in the order of the file, and the time
+    where there is one.
+    """
+    own = [item for item in inputs if item.name not in expressions]
+    values = [float(item.values[0]) for item in own]
+    moment = [] if time is None else [float(time.values[0])]
+    ties = []
+    for leader in own:
+        if leader.name not in _leaders(expressions):
+            continue
+        given = [float(leader.values[0]), *values, *moment]
+        recorder = Recorder([f"c{k}" for k in range(len(given))], given)
+        registers: list[Any] = [Traced(recorder, number) for number in range(len(given))]
+        known = {
+            item.name: Quantity(
+                registers[0 if item is leader else k], dimension_of(item.coordinate)
+            )
+            for k, item in enumerate(own, start=1)
+        }
+        if time is not None:
+            known["time"] = Quantity(registers[-1], TIME)
+        ties.append((leader.name, _tape(fields, inputs, expressions, known, recorder)))
+    return tuple(ties)
+
+
+def _leaders(expressions: Mapping[str, Expression]) -> set[str]:
+    return {name for expression in expressions.values() for name in expression.names}
+
+
+def _tape(
+    fields: Fields,
+    inputs: Sequence[DrivenInput],
+    expressions: Mapping[str, Expression],
+    known: dict[str, Quantity],
+    recorder: Recorder,
+) -> Tape:
+    """The tape to all inputs in SI, from those `known`; evaluates the others."""
     for item in inputs:
         if item.name not in known and item.name not in expressions:
             known[item.name] = Quantity(float(item.values[0]), dimension_of(item.coordinate))
@@ -154,12 +210,7 @@ def _recorded(
         value = scalar(expression, dimension, fields.units, _lookup(fields, known))
         known[name] = Quantity(value, dimension)
     outputs = [register(recorder, known[item.name].value) for item in inputs]
-
-    def constants(parameter: float) -> list[float]:
-        return [c for pieces in sources.pieces.values() for c in pieces.constants(parameter)]
-
-    edges = [edge for pieces in sources.pieces.values() for edge in pieces.edges]
-    return Formula(recorder.tape(outputs, guarded=False), edges, constants)
+    return recorder.tape(outputs, guarded=False)
 
 
 def _lookup(fields: Fields, known: Mapping[str, Quantity]) -> Callable[[str], Quantity]:

@@ -33,8 +33,9 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.demand import Slot
-    from mechkin_cli.solver.route import Route
+    from mechkin_cli.solver.route import Route, Way
     from mechkin_cli.solver.search import Found, Within
+    from mechkin_cli.solver.tie import Tie
 
 T = TypeVar("T")
 
@@ -125,6 +126,17 @@ class Session:
 
         units = [input_unit(self.layout, item) for item in self.problem.motion.inputs]
         return Route(course, self.inputs.values, np.array(units))
+
+    def tie(self, number: int, row: int = 0) -> Tie | None:
+        """What follows input `number` where all others stand as in a row; None where nothing
+        does."""
+        name = self.problem.motion.inputs[number].name
+        tapes = dict(self.problem.motion.ties)
+        if name not in tapes:
+            return None
+        from mechkin_cli.solver.tie import Tie
+
+        return self.once(("tie", number, row), lambda: Tie(self, tapes[name], number, row))
 
     @property
     def is_redundant(self) -> bool:
@@ -218,6 +230,10 @@ class Session:
         straight = self.problem.assembly.straight
         way = self.route.way(row, step)
         return follow_along(self.plan, way, start, every_row=every_row, straight=straight)
+
+    def follow_way(self, way: Way, start: Floats) -> Followed:
+        """Follows the branch through `start` (states,) along a way of all inputs."""
+        return follow_along(self.plan, way, start, straight=self.problem.assembly.straight)
 
     def search(self, inputs: Floats, within: Within | None = None) -> Found:
         """All assemblies at some inputs (inputs,) that random starts find, or those `within` a

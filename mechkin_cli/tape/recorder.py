@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from mechkin_cli.tape.floats import meaning
-from mechkin_cli.tape.operations import Operation
+from mechkin_cli.tape.operations import ARITY, Operation
 from mechkin_cli.tape.tape import Tape
 
 Instruction = tuple[Operation, int, int, int]
@@ -109,22 +109,3 @@ def _renumbered(instruction: Instruction, number: dict[int, int]) -> tuple[int, 
     count = ARITY[operation]
     a, b, c = ([number[r] for r in operands[:count]] + [0, 0])[:3]
     return a, b, c
-
-
-_ONE = {
-    Operation.NEGATE,
-    Operation.MAGNITUDE,
-    Operation.SQUARE_ROOT,
-    Operation.POWER_OF_TWO,
-    Operation.WHOLE,
-    Operation.SIN,
-    Operation.COS,
-    Operation.TAN,
-    Operation.ASIN,
-    Operation.ACOS,
-    Operation.ATAN,
-    Operation.EXP,
-    Operation.LOG,
-}
-ARITY = dict.fromkeys(Operation, 2) | dict.fromkeys(_ONE, 1) | {Operation.CHOOSE: 3}
-"""How many operands an operation has."""

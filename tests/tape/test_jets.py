@@ -81,7 +81,7 @@ def ways_at(text: str, x: float) -> np.ndarray:
 
 
 def wrap_ways(x: float) -> np.ndarray:
-    from mechkin_cli.building.cells import Formula
+    from mechkin_cli.solver.cells import Formula
     from mechkin_cli.tape.tape import Tape
 
     recorder = Recorder(["x"], [x])

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from mechkin_cli.arrays import Floats
-from mechkin_cli.building.cells import Cells, Formula
 from mechkin_cli.mechanism.course import Course, Parameter
-from mechkin_cli.mechanism.motion import DrivenInput
+from mechkin_cli.solver.cells import Cells, Formula
 from mechkin_cli.tolerances import COURSE_JUMP
 
 
@@ -18,10 +15,10 @@ def places_of(
     cells: Cells,
     parameter: Parameter,
     at: Floats,
-    inputs: Sequence[DrivenInput],
+    values: Floats,
 ) -> Course:
-    """Rows at the parameters `at` with the ends of cells between them."""
-    values = np.stack([item.values for item in inputs])
+    """Rows at the parameters `at` (rows,), where the inputs are `values` (inputs, rows) in SI, with
+    the ends of cells between them."""
     ends = _Ends(formula, cells)
     rows: list[int] = [0]
     places: list[float] = [float(at[0])]
