@@ -21,13 +21,22 @@ std::vector<char> upstream_blocks(const Plan& plan, const KernelUnit& unit) {
   return before;
 }
 
-Arc::Arc(const Path& path, const KernelUnit& unit, const StepLimits& limits, int block, std::vector<char> carried)
-    : Stepper(path, unit, limits), block_(block), rows_(plan_.block[block].rows), size_(plan_.block[block].size),
-      carried_(std::move(carried)) {
+Arc::Arc(const Path& path, const KernelUnit& unit, const StepLimits& limits, std::vector<char> own,
+         std::vector<char> carried)
+    : Stepper(path, unit, limits), own_(std::move(own)), before_(plan_.blocks, 0), carried_(std::move(carried)) {
   const std::vector<char> upstream = upstream_blocks(plan_, unit);
-  before_.assign(upstream.begin() + (long)block * plan_.blocks, upstream.begin() + (long)(block + 1) * plan_.blocks);
+  const int n = plan_.blocks;
+  for (int b = 0; b < n; ++b) {
+    if (!own_[b]) continue;
+    const Block& block = plan_.block[b];
+    if (first_ < 0) first_ = b;
+    rows_ += block.rows, size_ += block.size;
+    unknown_.insert(unknown_.end(), plan_.unknown + block.column_begin, plan_.unknown + block.column_begin + block.size);
+    for (int other = 0; other < n; ++other)
+      if (upstream[b * n + other] && !own_[other]) before_[other] = 1;
+  }
   for (const ClosingTurn& t : turns())
-    for (int b = 0; b < plan_.blocks; ++b)
+    for (int b = 0; b < n; ++b)
       if (carries(b) && t.closing >= plan_.block[b].closing_begin && t.closing < plan_.block[b].closing_end)
         carried_turns_.push_back(t);
 }
@@ -42,14 +51,15 @@ bool Arc::look(const double* guess, bool complete, const std::vector<double>& ra
     input_rates[i] = point_.first[i] * sigma_rate;
     input_accelerations[i] = point_.second[i] * sigma_rate * sigma_rate + point_.first[i] * sigma_bend;
   }
-  std::vector<unsigned char> solved(plan_.blocks);
+  std::vector<unsigned char> use(plan_.blocks);
   bool all = true;
   for (int b = 0; b < plan_.blocks; ++b) {
-    solved[b] = before_[b] || (complete && carried_[b]);
-    all = all && (solved[b] || b == block_);
+    const bool solved = before_[b] || (complete && carried_[b]);
+    use[b] = own_[b] ? BLOCK_HELD : solved ? BLOCK_SOLVED : BLOCK_LEFT;
+    all = all && use[b] != BLOCK_LEFT;
   }
   out->equations.assign(rows_, 0.0), out->first.assign(rows_, 0.0), out->second.assign(rows_, 0.0);
-  const Held held = {block_, solved.data(), complete && all, rates.data(), accelerations.data(),
+  const Held held = {use.data(), complete && all, rates.data(), accelerations.data(),
                      out->equations.data(), out->first.data(), out->second.data()};
   size_node(node);
   double residual = 0.0;
@@ -72,23 +82,46 @@ bool Arc::look(const double* guess, bool complete, const std::vector<double>& ra
   r.tight = limits_.tight, r.coarse = limits_.coarse, r.accept = limits_.accept;
   std::fill(node->pivot.begin(), node->pivot.end(), 1.0);
   unit_.run(plan_, r, memory_.data());
-  // the held block's equations are Newton's business until it has ended
+  // the held blocks' equations are Newton's business until it has ended
   return complete ? flags == 0 : true;
 }
 
-Matrix Arc::extended(const Node& node) const {
-  const Matrix j = block_matrix(node.jacobian, block_);
-  Matrix e(rows_, size_ + 1);
-  for (int i = 0; i < rows_; ++i) {
-    for (int u = 0; u < size_; ++u) e(i, u) = j(i, u);
-    e(i, size_) = node.by_sigma[i] / speed_;
+// Of one block as the kernel has it; of several by rates of one unknown after the other, since one block's equations
+// read the unknowns of those before it.
+Matrix Arc::own_jacobian(const Node& node) {
+  int blocks = 0;
+  for (char own : own_) blocks += own;
+  if (blocks == 1) return block_matrix(node.jacobian, first_);
+  Matrix j(rows_, size_);
+  std::vector<double> rates(size_, 0.0);
+  const std::vector<double> none(size_, 0.0);
+  for (int u = 0; u < size_; ++u) {
+    rates[u] = 1.0;
+    Node copy = node;
+    Looked seen;
+    look(node.state.data(), false, rates, 0.0, none, 0.0, 0, DEMAND_VELOCITY, &copy, &seen);
+    for (int i = 0; i < rows_; ++i) j(i, u) = seen.first[i];
+    rates[u] = 0.0;
   }
-  return e;
+  return j;
 }
+
+namespace {
+
+Matrix with_column(const Matrix& a, const std::vector<double>& column, double factor) {
+  Matrix b(a.rows, a.columns + 1);
+  for (int i = 0; i < a.rows; ++i) {
+    for (int j = 0; j < a.columns; ++j) b(i, j) = a(i, j);
+    b(i, a.columns) = column[i] * factor;
+  }
+  return b;
+}
+
+}  // namespace
 
 std::vector<double> Arc::tangent(const Node& node) const {
   std::vector<double> t(size_ + 1);
-  for (int u = 0; u < size_; ++u) t[u] = node.first[unknown(u)];
+  for (int u = 0; u < size_; ++u) t[u] = node.first[unknown_[u]];
   t[size_] = node.rate * speed_;
   return t;
 }
@@ -121,7 +154,7 @@ Matrix Arc::bordered(const Node& node) const { return with_row(extended(node), t
 // Increments of the unknowns; a turn's third order does not matter to Newton's method.
 void Arc::advance(const std::vector<double>& step, double* state) const {
   for (int u = 0; u < size_; ++u) {
-    const int column = unknown(u);
+    const int column = unknown_[u];
     const TreeJoint& j = plan_.joints[plan_.column_joint[column]];
     if (j.type != TREE_S) {
       state[j.state + column - j.column] += step[u];
@@ -131,7 +164,7 @@ void Arc::advance(const std::vector<double>& step, double* state) const {
     double* const q = state + j.state;
     double w[3] = {};
     for (int v = 0; v < size_; ++v)
-      if (plan_.column_joint[unknown(v)] == plan_.column_joint[column]) w[unknown(v) - j.column] = 0.5 * step[v];
+      if (plan_.column_joint[unknown_[v]] == plan_.column_joint[column]) w[unknown_[v] - j.column] = 0.5 * step[v];
     const double turned[4] = {q[0] - w[0] * q[1] - w[1] * q[2] - w[2] * q[3],
                               q[1] + w[0] * q[0] + w[1] * q[3] - w[2] * q[2],
                               q[2] + w[1] * q[0] + w[2] * q[1] - w[0] * q[3],
@@ -154,7 +187,7 @@ bool Arc::close_by(std::vector<double> state, double sigma, const std::vector<do
     node->sigma = sigma;
     look(state.data(), false, none, 1.0, none, 0.0, limits_.iterations, DEMAND_VELOCITY, node, &seen);
     state = node->state;
-    node->by_sigma = seen.first;
+    node->extended = with_column(own_jacobian(*node), seen.first, 1.0 / speed_);
     if (short_step) break;
     std::vector<double> right(rows_ + 1);
     for (int i = 0; i < rows_; ++i) right[i] = -seen.equations[i];
@@ -185,7 +218,7 @@ bool Arc::differentiate(Node* node) {
   for (double& x : t) x /= size;
   const std::vector<double> rates(t.begin(), t.end() - 1), none(size_, 0.0);
   const double rate = t[size_] / speed_;
-  const std::vector<double> state = node->state, by_sigma = node->by_sigma;
+  const std::vector<double> state = node->state;
   const double correction = node->correction;
   Looked seen;
   look(state.data(), false, rates, rate, none, 0.0, limits_.iterations, DEMAND_VELOCITY | DEMAND_ACCELERATION, node,
@@ -199,9 +232,10 @@ bool Arc::differentiate(Node* node) {
   if (!is_finite(second) || !look(state.data(), true, rates, rate, accelerations, bend, limits_.iterations,
                                   DEMAND_VELOCITY | DEMAND_ACCELERATION, node, &seen))
     return false;
-  node->rate = rate, node->bend = bend, node->by_sigma = by_sigma;
+  node->rate = rate, node->bend = bend;
   node->correction = std::fmax(correction, node->correction);
-  node->pivot[block_] = matrix.least_pivot();
+  for (int b = 0; b < plan_.blocks; ++b)
+    if (own_[b]) node->pivot[b] = matrix.least_pivot();
   clear_uncarried(node);
   differentiate_states(node), differentiate_turns(node);
   return is_finite(node->first) && is_finite(node->second);
@@ -228,15 +262,15 @@ bool Arc::enter(const Node& node, Node* start) {
   const std::vector<double> none(size_, 0.0);
   std::vector<double> border(size_ + 1);
   double size = 0.0;
-  for (int u = 0; u < size_; ++u) border[u] = node.first[unknown(u)];
+  for (int u = 0; u < size_; ++u) border[u] = node.first[unknown_[u]];
   border[size_] = node.rate * speed_;
   size = length_of(border);
   if (!(size > 0.0) || !std::isfinite(size)) return false;
   for (double& x : border) x /= size;
-  for (int u = 0; u < size_; ++u) start->first[unknown(u)] = border[u];
+  for (int u = 0; u < size_; ++u) start->first[unknown_[u]] = border[u];
   start->rate = border[size_] / speed_;
   if (!close_by(node.state, node.sigma, border, 0.0, start)) return false;
-  for (int u = 0; u < size_; ++u) start->first[unknown(u)] = border[u];
+  for (int u = 0; u < size_; ++u) start->first[unknown_[u]] = border[u];
   start->rate = border[size_] / speed_;
   const bool good = differentiate(start);
   start->turn = node.turn.size() == start->turn.size() ? node.turn : start->turn;
@@ -252,7 +286,7 @@ bool Arc::close_from(const Node& a, double h, Node* b) {
   *b = a;
   if (!close_by(std::move(guess), sigma, border, 0.0, b)) return false;
   b->place = a.place + h;
-  for (int u = 0; u < size_; ++u) b->first[unknown(u)] = border[u];
+  for (int u = 0; u < size_; ++u) b->first[unknown_[u]] = border[u];
   b->rate = a.rate;
   return differentiate(b);
 }
@@ -268,8 +302,14 @@ Matrix Arc::extended_at(const Node& near, const std::vector<double>& state, doub
   copy.sigma = sigma;
   Looked seen;
   look(state.data(), false, none, 1.0, none, 0.0, limits_.iterations, DEMAND_VELOCITY, &copy, &seen);
-  copy.by_sigma = seen.first;
-  return extended(copy);
+  return with_column(own_jacobian(copy), seen.first, 1.0 / speed_);
+}
+
+double Arc::own_step(const Node& n) const {
+  double bend = n.bend * speed_ * n.bend * speed_;
+  for (int u = 0; u < size_; ++u) bend += n.second[unknown_[u]] * n.second[unknown_[u]];
+  const double most = std::fmin(limits_.longest_step, 0.8 * limits_.radius / own_danger(n));
+  return std::fmin(most, std::fmin(limits_.bend, limits_.turn) / std::sqrt(bend));
 }
 
 bool Arc::same_side(const Node& a, Node* b, int* blame) {
@@ -283,14 +323,16 @@ bool Arc::same_side(const Node& a, Node* b, int* blame) {
   for (double& x : t) x /= size;
   Looked seen;
   look(guess.data(), true, none, 1.0, none, 0.0, 0, DEMAND_VELOCITY, &half, &seen);
-  half.by_sigma = seen.first;
+  half.extended = with_column(own_jacobian(half), seen.first, 1.0 / speed_);
+  double own_danger = 0.0;
+  const bool own_same =
+      is_regular_segment(bordered(a), with_row(half.extended, t), bordered(*b), limits_.radius, &own_danger);
   for (int k = 0; k < plan_.blocks; ++k) {
     if (!carries(k)) continue;
-    double danger = 0.0;
-    const bool same =
-        k == block_ ? is_regular_segment(bordered(a), with_row(extended(half), t), bordered(*b), limits_.radius, &danger)
-                    : is_regular_segment(block_matrix(a.jacobian, k), block_matrix(half.jacobian, k),
-                                         block_matrix(b->jacobian, k), limits_.radius, &danger);
+    double danger = own_danger;
+    const bool same = own_[k] ? own_same
+                              : is_regular_segment(block_matrix(a.jacobian, k), block_matrix(half.jacobian, k),
+                                                   block_matrix(b->jacobian, k), limits_.radius, &danger);
     b->danger[k] = danger / std::fabs(h);
     if (!same) {
       *blame = k;
@@ -306,7 +348,7 @@ bool Arc::step(const Node& a, double h, Node* b, int* blame) {
   const double length = std::fabs(h) * std::sqrt(tangent_product(a, a));
   if (!(b->correction <= limits_.jump * length)) return false;
   for (int k = 0; k < plan_.blocks; ++k)
-    if (carries(k) && !(b->pivot[k] >= (k == block_ ? limits_.arc_pivot : limits_.pivot))) {
+    if (carries(k) && !(b->pivot[k] >= (own_[k] ? limits_.arc_pivot : limits_.pivot))) {
       *blame = k;
       return false;
     }

@@ -6,6 +6,22 @@
 
 namespace {
 
+// A block that is neither solved nor looked at: its joints are placed as they are, for others may hang on them, and its
+// unknowns stand still.
+inline void leave_block(const Plan& p, Workspace& w, int index) {
+  const Block& b = p.block[index];
+  place_block(p, w, b);
+  block_screws(p, w, b);
+  for (int u = 0; u < b.size; ++u) {
+    const int column = p.unknown[b.column_begin + u];
+    w.rate[column] = w.acceleration[column] = 0.0;
+  }
+}
+inline void leave_motion(const Plan& p, Workspace& w, int index, bool second) {
+  const Block& b = p.block[index];
+  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], second);
+}
+
 // Equations and Jacobian (not factored) at the states as they are.
 template <class Out>
 inline Residual hold_block(const Plan& p, Workspace& w, int index, Out&& equations) {
@@ -19,11 +35,11 @@ inline Residual hold_block(const Plan& p, Workspace& w, int index, Out&& equatio
 }
 
 template <class In, class Out>
-inline void hold_velocities(const Plan& p, Workspace& w, int index, const Held& held, In&& given, Out&& first) {
+inline void hold_velocities(const Plan& p, Workspace& w, int index, In&& rate, Out&& first) {
   const Block& b = p.block[index];
   const Pack* const jacobian = matrices_of(p, w, index).jacobian;
   known_rates(p, w, index, w.right);
-  for (int u = 0; u < b.size; ++u) w.rate[p.unknown[b.column_begin + u]] = given(held.rates, u);
+  for (int u = 0; u < b.size; ++u) w.rate[p.unknown[b.column_begin + u]] = rate(u);
   for (int i = 0; i < b.rows; ++i) {
     Pack sum = -w.right[i];
     for (int u = 0; u < b.size; ++u) sum += jacobian[i * b.size + u] * w.rate[p.unknown[b.column_begin + u]];
@@ -33,9 +49,9 @@ inline void hold_velocities(const Plan& p, Workspace& w, int index, const Held& 
 }
 
 template <class In, class Out>
-inline void hold_accelerations(const Plan& p, Workspace& w, int index, const Held& held, In&& given, Out&& second) {
+inline void hold_accelerations(const Plan& p, Workspace& w, int index, In&& acceleration, Out&& second) {
   const Block& b = p.block[index];
-  for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = given(held.accelerations, u);
+  for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = acceleration(u);
   for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
   second_of_equations(p, w, b);
   for (int i = 0; i < b.rows; ++i) second.put(i, -w.right[i]);

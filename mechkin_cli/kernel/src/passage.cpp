@@ -10,8 +10,11 @@ namespace {
 
 // A block other than the arc's own stands in the way where its matrix changes this many times faster.
 constexpr double FASTER = 3.0;
-// Halvings of the wanted step after which it is asked which block stands in the way.
-constexpr double SHORTENED = 1.0 / 8.0;
+// A block that the arc's own hangs on passes its trouble on: it stands in the way where its own change is not small
+// beside that.
+constexpr double BEFORE = 0.5;
+// Part of the step that the arc's own block wants, below which it is asked which other one stands in the way.
+constexpr double SHORTENED = 1.0 / 64.0, STUCK = 1.0 / 1024.0;
 // Speed of the path along the arc below which rows are closed one by one: next to a dead centre.
 constexpr double SLOW = 1e-2;
 // Correction of such a row: the root of a rounding, by which its place next to a dead centre may be off.
@@ -20,6 +23,8 @@ constexpr double CLOSED = 1e-7;
 // over its root.
 constexpr double LEAST_ARC = 1e-10;
 constexpr double SINGULAR_STEP = 1e-6;
+// Pivots of a matrix that is singular a little farther on, in parts of the least that steps may have.
+constexpr double SINGULAR_PIVOTS = 10.0;
 // Least ratio of sigma's second derivative at a dead centre and its mean over the step that it lies in.
 constexpr double SAME_BEND = 0.2;
 
@@ -84,11 +89,13 @@ class Walker {
     Node a, b;
     if (!arc.enter(from, &a)) return;
     p->nodes.assign(1, a);
-    double wanted = arc.wanted_step(a), h = std::fmin(wanted, refused_ / a.rate);
+    double h = std::fmin(arc.wanted_step(a), refused_ / a.rate);
+    int refuses = -1;  // the block that refused the last step
     while (p->steps + p->rejected < limits_.arc_steps) {
+      if (stands_in_the_way(arc, a, refuses, h, p)) return;
       if (h < LEAST_ARC) {
         if (!cross_branch_point(p, &a)) return;
-        h = wanted = arc.wanted_step(a);
+        h = arc.wanted_step(a);
       }
       int blame = -1;
       const bool good = arc.step(a, h, &b, &blame) && (continue_turns(arc, a, &b) || h <= limits_.angle_step) &&
@@ -96,10 +103,9 @@ class Walker {
       if (!good) {
         ++p->rejected;
         
-        if (stands_in_the_way(arc, a, blame, h, wanted, p)) return;
         // at a branch point steps of any length end where the pivots are rounding
-        const bool singular = h < SINGULAR_STEP && blame == arc.block() && b.pivot[blame] < limits_.arc_pivot;
-        h = singular ? 0.0 : 0.5 * h;
+        const bool singular = h < SINGULAR_STEP && blame >= 0 && arc.owns(blame) && arc.own_pivot(b) < limits_.arc_pivot;
+        h = singular ? 0.0 : 0.5 * h, refuses = blame;
         continue;
       }
       ++p->steps;
@@ -114,14 +120,13 @@ class Walker {
         continue;
       }
       p->nodes.push_back(b);
-      wanted = arc.wanted_step(b);
       // a step of twice what the path's own steps are refused at: they can go on
       if (b.sigma >= until_ || std::fmin(b.rate, a.rate) * arc.speed() * h >= 2.0 * limits_.narrow) {
         p->end = PassageEnd::through;
         return;
       }
-      h = std::fmin(wanted, 4.0 * h);
-      a = b;
+      h = std::fmin(arc.wanted_step(b), 4.0 * h);
+      a = b, refuses = -1;
     }
   }
 
@@ -142,12 +147,21 @@ class Walker {
   }
 
   // Whether another block is what refuses the steps; then the walk ends here.
-  bool stands_in_the_way(const Arc& arc, const Node& a, int blame, double h, double wanted, Passage* p) const {
-    if (h > SHORTENED * wanted) return false;
-    const int own = arc.block();
-    int other = blame >= 0 && blame != own ? blame : -1;
-    for (std::size_t k = 0; other < 0 && k < a.danger.size(); ++k)
-      if ((int)k != own && arc.carries((int)k) && a.danger[k] > FASTER * std::fmax(a.danger[own], 1.0)) other = (int)k;
+  bool stands_in_the_way(const Arc& arc, const Node& a, int blame, double h, Passage* p) const {
+    const double own = arc.own_danger(a);
+    for (std::size_t k = 0; k < a.danger.size(); ++k)
+      if (arc.before()[k] && a.danger[k] > std::fmax(BEFORE * own, 1.0 / limits_.narrow)) {
+        p->blame = (int)k;
+        return true;
+      }
+    if (h > SHORTENED * arc.own_step(a)) return false;
+    int other = blame >= 0 && !arc.owns(blame) ? blame : -1;
+    // far below its own step it is another one in any case
+    const double least = h > STUCK * arc.own_step(a) ? FASTER * std::fmax(own, 1.0) : 0.0;
+    for (std::size_t k = 0; blame < 0 && k < a.danger.size(); ++k) {
+      if (arc.owns((int)k) || !arc.carries((int)k) || !(a.danger[k] > least)) continue;
+      if (other < 0 || a.danger[k] > a.danger[other]) other = (int)k;
+    }
     if (other < 0) return false;
     p->blame = other;
     return true;
@@ -173,6 +187,7 @@ class Walker {
 
   bool cross_branch_point(Passage* p, Node* a) const {
     BranchPointAhead point;
+    if (p->arc->own_pivot(*a) > SINGULAR_PIVOTS * limits_.arc_pivot) return false;
     if (p->nodes.size() < 2 || !branch_point_ahead(*p->arc, p->nodes, &point)) return false;
     p->end = PassageEnd::branch_point;
     Node before, after;
@@ -228,7 +243,7 @@ bool Passage::at(double sigma, Node* node, double* limit) const {
 
 const Passage& Stretch::of_block(int block) const {
   for (const Passage& p : passages)
-    if (p.block == block) return p;
+    if (p.arc->owns(block)) return p;
   for (const Passage& p : passages)
     if (p.arc->carries(block)) return p;
   return passages.front();
@@ -264,58 +279,77 @@ bool Stretch::at(const Plan& plan, const KernelUnit& unit, const std::vector<Clo
   return true;
 }
 
-long Stretch::steps() const {
-  long sum = 0;
-  for (const Passage& p : passages) sum += p.steps;
-  return sum;
+bool Stretch::carries_all(int blocks) const {
+  for (int b = 0; b < blocks; ++b)
+    if (!of_block(b).arc->carries(b)) return false;
+  return true;
 }
-long Stretch::rejected() const {
-  long sum = 0;
-  for (const Passage& p : passages) sum += p.rejected;
-  return sum;
+
+namespace {
+
+// The blocks in trouble that a block hangs on, itself, and all that lies between them: what is walked together.
+std::vector<char> chain_of(int block, const std::vector<int>& trouble, const std::vector<char>& upstream, int n) {
+  std::vector<char> own(n, 0);
+  own[block] = 1;
+  for (int other : trouble) {
+    if (!upstream[block * n + other]) continue;
+    own[other] = 1;
+    for (int b = 0; b < n; ++b)
+      if (upstream[b * n + other] && upstream[block * n + b]) own[b] = 1;
+  }
+  return own;
 }
+
+// All but the other blocks in trouble and what hangs on them.
+std::vector<char> carried_with(const std::vector<char>& own, const std::vector<int>& trouble,
+                               const std::vector<char>& upstream, int n) {
+  std::vector<char> carried(n, 1);
+  for (int other : trouble)
+    for (int b = 0; b < n && !own[other]; ++b)
+      if (b == other || upstream[b * n + other]) carried[b] = 0;
+  return carried;
+}
+
+// The block whose matrix changes fastest; at the start of a path no step has told that yet.
+int worst_block(const Node& node) {
+  int worst = 0;
+  for (int b = 1; b < (int)node.danger.size(); ++b) {
+    const bool told = node.danger[b] != node.danger[worst];
+    if (told ? node.danger[b] > node.danger[worst] : node.pivot[b] < node.pivot[worst]) worst = b;
+  }
+  return worst;
+}
+
+}  // namespace
 
 Stretch walk_stretch(const Path& path, const KernelUnit& unit, const StepLimits& limits, const Node& from,
                      double refused, double until) {
-  const Plan& plan = path.plan(0.0);
-  const int n = plan.blocks;
-  const std::vector<char> upstream = upstream_blocks(plan, unit);
-  int first = 0;
-  for (int b = 0; b < n; ++b)
-    if (from.danger[b] > from.danger[first]) first = b;
-  Stretch stretch;
-  std::vector<int> trouble = {first};
+  const int n = path.plan(0.0).blocks;
+  const std::vector<char> upstream = upstream_blocks(path.plan(0.0), unit);
   const Walker walker(limits, refused, until);
-  long steps = 0, rejected = 0;
-  for (std::size_t k = 0; k < trouble.size(); ++k) {
-    const int block = trouble[k];
-    Passage p;
-    for (bool again = true; again;) {
-      again = false;
-      std::vector<char> carried(n, 1);
-      for (int other : trouble)
-        if (other != block)
-          for (int b = 0; b < n; ++b)
-            if (b == other || upstream[b * n + other]) carried[b] = 0;
-      p = Passage();
-      p.block = block, p.arc = std::make_unique<Arc>(path, unit, limits, block, carried);
+  std::vector<int> trouble = {worst_block(from)};
+  Stretch stretch;
+  // every block that is found to stand in the way changes what is walked together, and what is carried along
+  for (bool again = true; again;) {
+    again = false;
+    stretch.passages.clear();
+    for (std::size_t k = 0; k < trouble.size() && !again; ++k) {
+      Passage p;
+      p.block = trouble[k];
+      const std::vector<char> own = chain_of(p.block, trouble, upstream, n);
+      p.arc = std::make_unique<Arc>(path, unit, limits, own, carried_with(own, trouble, upstream, n));
       walker.walk(from, &p);
-      if (p.end == PassageEnd::lost && p.blame >= 0) {
-        if (std::find(trouble.begin(), trouble.end(), p.blame) == trouble.end()) {
-          trouble.push_back(p.blame);
-          again = !upstream[block * n + p.blame];
-        }
-        // what it hangs on tells how far it goes
-        if (!again && p.nodes.size() > 1) p.end = PassageEnd::through;
+      stretch.steps += p.steps, stretch.rejected += p.rejected;
+      const bool is_new = std::find(trouble.begin(), trouble.end(), p.blame) == trouble.end();
+      if (p.end == PassageEnd::lost && p.blame >= 0 && is_new) {
+        again = true;
+        trouble.push_back(p.blame);
       }
-      steps += p.steps, rejected += p.rejected;
+      if (p.nodes.empty()) p.nodes.assign(1, from);
+      stretch.passages.push_back(std::move(p));
     }
-    if (p.nodes.empty()) p.nodes.assign(1, from);
-    stretch.passages.push_back(std::move(p));
   }
   for (std::size_t k = 0; k < stretch.passages.size(); ++k)
     if (stretch.ends < 0 || stretch.passages[k].reach() < stretch.reach()) stretch.ends = (int)k;
-  stretch.passages.front().steps += steps - stretch.steps();
-  stretch.passages.front().rejected += rejected - stretch.rejected();
   return stretch;
 }

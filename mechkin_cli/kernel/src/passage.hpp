@@ -8,10 +8,10 @@
 
 enum class PassageEnd : int { through = 0, dead_centre = 1, branch_point = 2, lost = 3 };
 
-// The walk of one block with all that could be carried along.
+// The walk of a block in trouble with all that could be carried along.
 struct Passage {
   PassageEnd end = PassageEnd::lost;
-  int block = 0;
+  int block = 0;                  // and those in trouble that it hangs on
   int blame = -1;                 // lost: the block that stood in the way
   std::unique_ptr<Arc> arc;
   std::vector<Node> nodes;        // sigma does not fall from one to the next
@@ -29,15 +29,16 @@ struct Passage {
 struct Stretch {
   std::vector<Passage> passages;  // of each block in trouble
   int ends = -1;                  // the passage that reaches the least far
+  long steps = 0, rejected = 0;
   const Passage& last() const { return passages[ends]; }
   PassageEnd end() const { return ends < 0 ? PassageEnd::lost : last().end; }
   double reach() const { return last().reach(); }
   // The passage that tells a block's unknowns.
   const Passage& of_block(int block) const;
+  // Whether every block was carried along by one: none that hangs on two blocks in trouble is.
+  bool carries_all(int blocks) const;
   bool at(const Plan& plan, const KernelUnit& unit, const std::vector<ClosingTurn>& turns, double sigma,
           Node* node, double* limit) const;
-  long steps() const;
-  long rejected() const;
 };
 
 // `refused`: the step that could not be taken; `until`: the path's end.

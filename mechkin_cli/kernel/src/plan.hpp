@@ -219,15 +219,20 @@ struct ClosingTurn {
   int slot, width;  // first of its values, and how many: 1 or 4
 };
 
-// A block whose unknowns are given instead of solved for, so that its equations can be looked at where they need not
-// hold; the arrays as in a Request. Of the other blocks only those in `solved` are closed and moved.
+enum BlockUse : unsigned char {
+  BLOCK_LEFT = 0,    // its unknowns stay as they are
+  BLOCK_SOLVED = 1,
+  BLOCK_HELD = 2     // they are given, and its equations looked at, which need not hold
+};
+
+// Blocks whose unknowns are given instead of solved for; the arrays as in a Request, unknowns and equations of the held
+// blocks one after the other.
 struct Held {
-  int block;
-  const unsigned char* solved;   // blocks: not zero for those that are closed; the held one's entry does not count
-  bool complete;                 // whether `solved` holds all that the plan's remaining joints hang on
-  const double* rates;           // its unknowns x rows
+  const unsigned char* use;      // blocks: BlockUse
+  bool complete;                 // whether no block is left that the plan's remaining joints hang on
+  const double* rates;           // unknowns x rows
   const double* accelerations;
-  double* equations;             // its equations x rows
+  double* equations;             // equations x rows
   double* first;                 // their first derivatives, with DEMAND_VELOCITY
   double* second;                // their second ones, with DEMAND_ACCELERATION
 };

@@ -79,7 +79,7 @@ struct Node {
   std::vector<double> state_first, state_second;  // derivatives of the raw states
   std::vector<double> side, pivot;                // blocks: sign of a square block's determinant; least pivot
   std::vector<double> jacobian;                   // blocks, one after the other, rows x size
-  std::vector<double> by_sigma;                   // by arclength: rates of its block's equations with sigma
+  Matrix extended;                                // by arclength: [J g] of its own equations
   std::vector<double> danger;                     // blocks: radius of J^+ J_a - I by a unit of the step that led here from a;
                                                   // about 1 / the distance to a singular place
   std::vector<double> turn, turn_first, turn_second;  // of closing joints, see ClosingTurn; as the kernel has them

@@ -9,6 +9,8 @@ namespace {
 constexpr double ON_DEAD_CENTRE = 1e-14;
 // The same of a branch point, which is extrapolated: a row so near has no branch of its own.
 constexpr double ON_BRANCH_POINT = 1e-11;
+// How near steps as short as they may be come to a place that ends a branch: the root of the square of a pivot.
+constexpr double NEAR_LIMIT = 1e-10;
 
 // Whether the inputs between two nodes are where the nodes' derivatives say: what the path does between them is seen.
 bool sees_between(const Path& path, const Stepper& stepper, const Node& a, const Node& b) {
@@ -53,6 +55,9 @@ class Tracker {
  private:
   bool stop(TrackEnd end, double refused) {
     track_.end = end, track_.refused_step = refused;
+    // what was seen ahead ended the branch only if it came there
+    const double ahead = track_.limit.at.sigma - node_.sigma;
+    if (refused > 0.0 && !(std::fabs(ahead) <= NEAR_LIMIT)) track_.limit = {};
     return false;
   }
 
@@ -99,9 +104,15 @@ class Tracker {
   // What refuses the steps, by arclength.
   bool look() {
     const Stretch stretch = walk_stretch(path_, unit_, limits_, node_, step_, end_);
-    track_.steps += stretch.steps(), track_.rejected += stretch.rejected();
+    track_.steps += stretch.steps, track_.rejected += stretch.rejected;
     const PassageEnd kind = stretch.end();
     const bool ends = kind == PassageEnd::dead_centre || kind == PassageEnd::branch_point;
+    if (!stretch.carries_all(plan().blocks)) {
+      // blocks that nobody carried are followed by steps as short as it takes, and what was seen ends them
+      looks_ = false;
+      if (ends) keep_limit(stretch);
+      return true;
+    }
     if (!ends && !(stretch.reach() > node_.sigma)) {
       looks_ = false;
       return true;
@@ -114,8 +125,7 @@ class Tracker {
       if (!place_row(stretch, std::fmin(sigma_[row_], reach))) break;
     for (double sigma : stretch.last().crossings) track_.crossings.push_back(sigma);
     if (ends && row_ < rows_) {
-      track_.limit.kind = kind, track_.limit.block = stretch.last().block;
-      track_.limit.at = stretch.last().nodes.back(), track_.limit.beyond = stretch.last().beyond;
+      keep_limit(stretch);
       return stop(TrackEnd::stalled, 0.0);
     }
     Node guess, next;
@@ -128,10 +138,19 @@ class Tracker {
       path_inputs(target, &next.inputs);
     } else {
       adopt_turns(stepper_, guess.turn, &next);
+      for (int b = 0; b < plan().blocks; ++b) {
+        const Node& last = stretch.of_block(b).nodes.back();
+        next.danger[b] = last.danger[b] / std::fmax(last.rate, 1e-3);
+      }
     }
     node_ = next;
     step_ = stepper_.wanted_step(node_);
     return true;
+  }
+
+  void keep_limit(const Stretch& stretch) {
+    const Passage& last = stretch.last();
+    track_.limit = {last.end, last.block, last.nodes.back(), last.beyond};
   }
 
   void path_inputs(double sigma, std::vector<double>* inputs) const {

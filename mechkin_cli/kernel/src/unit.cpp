@@ -64,18 +64,35 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
 
   Pack residual = 0.0, correction = 0.0, condition = 0.0;
   Mask converged = all_lanes(true), side = all_lanes(true);
-  const auto skips = [&](int b) { return r.held && b != r.held->block && !r.held->solved[b]; };
-  const auto holds = [&](int b) { return r.held && b == r.held->block; };
-  const auto given = [&](const double* base, int u) { return in.get(base, u); };
+  const auto skips = [&](int b) { return r.held && r.held->use[b] == BLOCK_LEFT; };
+  const auto holds = [&](int b) { return r.held && r.held->use[b] == BLOCK_HELD; };
+  // first unknown and first equation of a held block among those of all
+  const auto first_held = [&](int b) {
+    struct {
+      long unknown, equation;
+    } first = {0, 0};
+    for (int other = 0; other < b; ++other)
+      if (holds(other)) first.unknown += p.block[other].size, first.equation += p.block[other].rows;
+    return first;
+  };
+  const auto given = [&](const double* base, int b) {
+    return [&in, base, from = first_held(b).unknown](int u) { return in.get(base, from + u); };
+  };
+  const auto equations = [&](double* base, int b) {
+    return Writer{base + first_held(b).equation * in.rows, in.rows, in.row, in.count};
+  };
   const auto writer = [&](double* base) { return Writer{base, in.rows, in.row, in.count}; };
   const auto write_jacobian = [&](const BlockMatrices& at) {
     if (!r.jacobian) return;
     for (long e = 0; e < at.m * at.n; ++e) writer(r.jacobian).put(at.jacobian - w.jacobian + e, at.jacobian[e]);
   };
   for (int b = 0; b < p.blocks; ++b) {
-    if (skips(b)) continue;
+    if (skips(b)) {
+      leave_block(p, w, b);
+      continue;
+    }
     if (holds(b)) {
-      const Residual held = hold_block(p, w, b, writer(r.held->equations));
+      const Residual held = hold_block(p, w, b, equations(r.held->equations, b));
       converged = converged & (held.test <= Pack(r.accept));
       side = side & block_side_conditions(p, w, p.block[b]);
       write_jacobian(matrices_of(p, w, b));
@@ -102,8 +119,10 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int i = 0; i < p.inputs; ++i) w.rate[p.input_column[i]] = in.get(r.rates, i);
     for (int b = 0; b < p.blocks; ++b)
       if (holds(b))
-        hold_velocities(p, w, b, *r.held, given, writer(r.held->first));
-      else if (!skips(b))
+        hold_velocities(p, w, b, given(r.held->rates, b), equations(r.held->first, b));
+      else if (skips(b))
+        leave_motion(p, w, b, false);
+      else
         block_velocities(p, w, b);
     for (int k = 0; k < rest_count; ++k) move_link(p, w, p.rest[k], false);
   }
@@ -111,8 +130,10 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int i = 0; i < p.inputs; ++i) w.acceleration[p.input_column[i]] = in.get(r.accelerations, i);
     for (int b = 0; b < p.blocks; ++b)
       if (holds(b))
-        hold_accelerations(p, w, b, *r.held, given, writer(r.held->second));
-      else if (!skips(b))
+        hold_accelerations(p, w, b, given(r.held->accelerations, b), equations(r.held->second, b));
+      else if (skips(b))
+        leave_motion(p, w, b, true);
+      else
         block_accelerations(p, w, b);
     for (int k = 0; k < rest_count; ++k) move_link(p, w, p.rest[k], true);
   }
