@@ -91,6 +91,10 @@ class Walker:
         backward, _ = self._walk(first, lower, -1.0)
         return [first, *onward, *backward]
 
+    def end(self, start: Passage, direction: float) -> End:
+        """Where the branch through a place ends in a direction."""
+        return self._climb(start, direction, start)[0]
+
     def _walk(self, first: Branch, end: End, direction: float) -> tuple[list[Branch], bool]:
         """The branches beyond an end of the first one; whether they lead back to its other end."""
         found: list[Branch] = []

@@ -12,8 +12,9 @@ from mechkin_cli.analysis.assembly.start import MAY_BE_RIGID
 from mechkin_cli.analysis.sweep.rows import Rows
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.solver.branch_limit import BranchPoint, DeadCentre, find_limit
+from mechkin_cli.solver.circuit import Passage, Walker
 from mechkin_cli.solver.follow import Followed
-from mechkin_cli.solver.inputs import input_numbers, input_text
+from mechkin_cli.solver.inputs import input_number, input_numbers, input_text
 from mechkin_cli.solver.runaway import Runaway
 from mechkin_cli.status import Status
 from mechkin_cli.units import LENGTH, TIME
@@ -48,7 +49,7 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) 
     elif isinstance(limit, BranchPoint):
         rows.diagnostics.append(_branch_point_note(session, followed, limit, rows))
     else:
-        rows.diagnostics.append(_lost_note(session, followed, rows))
+        rows.diagnostics.append(_lost_note(session, followed, path, rows))
 
 
 def crossing_note(session: Session, followed: Followed) -> Diagnostic:
@@ -122,14 +123,49 @@ def _dead_centre_note(
     shown = _place(session, followed, limit.inputs, moving if moving.size else None)
     beyond = _all_beyond(limit, path, rows)
     where = "beyond it" if beyond else "beyond it on the way of the rows"
+    again = _assembled_again(session, followed, limit, path, rows)
+    cure = "end the sweep before it, or choose another assembly"
+    if again:
+        cure = f"end the sweep before it; from {input_text(again)} on it can be assembled again"
     return Diagnostic(
         "dead-centre",
         "warning",
         f"the branch ends at a dead centre; {_stay_empty(rows, where)}",
         measured=", ".join(map(input_text, shown)),
-        hint="end the sweep before it, or choose another assembly",
+        hint=f"{cure}{_chords(session, path)}",
         numbers=shown,
     )
+
+
+def _chords(session: Session, path: Floats) -> str:
+    """What to know of rows that no law joins."""
+    course = session.problem.motion.course
+    together = np.count_nonzero((path != path[:, :1]).any(axis=1)) > 1
+    if not together or (course is not None and course.parameter.name != "row"):
+        return ""
+    return "; between rows that list their values the inputs go straight from one to the next"
+
+
+def _assembled_again(
+    session: Session, followed: Followed, limit: DeadCentre, path: Floats, rows: Rows
+) -> Number | None:
+    """Where a sweep of one turning input comes to the branch's other end, a whole turn on, before
+    its last row."""
+    moving = np.flatnonzero((path != path[:, :1]).any(axis=1))
+    if moving.size != 1 or not rows.reached[0]:
+        return None
+    number = int(moving[0])
+    walker = Walker(session, number, path[:, 0])
+    direction = float(np.sign(followed.direction[number]))
+    if walker.period is None or direction == 0.0:
+        return None
+    other = walker.end(Passage(float(path[number, 0]), rows.states[:, 0]), -direction)
+    value = other.value + direction * walker.period
+    ahead = direction * (path[number, ~rows.reached] - value)
+    behind = direction * (value - float(limit.inputs[number]))
+    if other.kind != "dead-centre" or behind <= 0.0 or not (ahead >= 0.0).any():
+        return None
+    return input_number(session.problem, session.layout, number, value)
 
 
 def _all_beyond(limit: DeadCentre, path: Floats, rows: Rows) -> bool:
@@ -171,13 +207,13 @@ def _branch_point_note(
     )
 
 
-def _lost_note(session: Session, followed: Followed, rows: Rows) -> Diagnostic:
+def _lost_note(session: Session, followed: Followed, path: Floats, rows: Rows) -> Diagnostic:
     places = _place(session, followed, followed.inputs)
     return Diagnostic(
         "branch-lost",
         "error",
         f"the branch could not be followed further; {_stay_empty(rows)}",
         measured=f"last place {', '.join(map(input_text, places))}",
-        hint=MAY_BE_RIGID if session.is_redundant else MAY_BE_SPECIAL,
+        hint=(MAY_BE_RIGID if session.is_redundant else MAY_BE_SPECIAL) + _chords(session, path),
         numbers=places,
     )

@@ -23,7 +23,7 @@ std::vector<double> copy_of(const Row& a) { return {a.data(), a.data() + a.shape
 std::vector<double> copy_of(const Rows& a) { return {a.data(), a.data() + a.shape(0) * a.shape(1)}; }
 
 void need_piece(const Course& course, long piece) {
-  if (piece < 0 || piece >= (long)course.pieces().size()) throw nb::index_error("no such piece");
+  if (piece < 0 || piece >= (long)course.pieces().size()) throw nb::value_error("no such piece");
 }
 
 // Inputs and their derivatives by the length of the way, (3, inputs).
