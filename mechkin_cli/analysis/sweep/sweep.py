@@ -172,8 +172,8 @@ def _judge_condition(rows: Rows, batch: Batch) -> None:
 
 
 def _judge_inputs(session: Session, rows: Rows) -> None:
-    """Rates of no row mean anything where an input cannot move: more equations than unknowns leave
-    a least square, whose condition tells nothing."""
+    """Names inputs that cannot move; the rates of no row mean anything where they are to move: more
+    equations than unknowns leave a least square, whose condition tells nothing."""
     if not session.is_redundant or not session.driven or not rows.reached.any():
         return
     from mechkin_cli.analysis.sweep.branch_end import input_faults
@@ -181,7 +181,9 @@ def _judge_inputs(session: Session, rows: Rows) -> None:
     row = int(np.argmax(rows.reached))
     if moves_freely(session, session.inputs.values[:, row], rows.states[:, row]):
         return
-    if input_faults(session):
+    faults = input_faults(session)
+    rows.diagnostics.extend(fault for fault in faults if fault not in rows.diagnostics)
+    if faults and any(moved.any() for moved in session.inputs[1:]):
         rows.status[rows.reached] = Status.rank_unclear
 
 

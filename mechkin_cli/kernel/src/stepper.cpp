@@ -144,14 +144,14 @@ double Stepper::wanted_step(const Node& n) const {
 
 // The step in which no input moves farther than it may: s h + b h^2 / 2 with the fastest one's derivatives.
 double Stepper::longest_step(const Node& n) const {
+  if (path_.is_straight()) return limits_.longest_step;
   double speed = 0.0, bend = 0.0;
   for (int i = 0; i < plan_.inputs; ++i) {
     speed = std::fmax(speed, std::fabs(n.first[plan_.input_column[i]]));
     bend = std::fmax(bend, std::fabs(n.second[plan_.input_column[i]]));
   }
-  const double longest = limits_.longest_step;
-  if (n.own != 0.0 || (speed == 0.0 && bend == 0.0)) return longest;
-  return bend == 0.0 ? longest / speed : 2.0 * longest / (speed + std::sqrt(speed * speed + 2.0 * bend * longest));
+  const double longest = limits_.longest_step, fast = speed + std::sqrt(speed * speed + 2.0 * bend * longest);
+  return fast > 2.0 ? 2.0 * longest / fast : longest;
 }
 
 void Stepper::normalise_quaternions(double* state, long stride) const {
