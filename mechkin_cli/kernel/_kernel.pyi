@@ -87,6 +87,12 @@ class TrackEnd(IntEnum):
     EXHAUSTED = 2
     START_NOT_CLOSED = 3
 
+class PassageEnd(IntEnum):
+    THROUGH = 0
+    DEAD_CENTRE = 1
+    BRANCH_POINT = 2
+    LOST = 3
+
 class Operation(IntEnum):
     SIN = 0
     COS = 1
@@ -381,6 +387,11 @@ class StepLimits:
         angle_step: float,
         angle_miss: float,
         plan_step: float,
+        arc_pivot: float,
+        radius: float,
+        narrow: float,
+        arc_steps: int,
+        straight: bool,
     ) -> None: ...
 
 class Node:
@@ -471,5 +482,8 @@ def follow_rows(
     """Fills guess, limit and turns, which share no memory with one another or with inputs.
 
     Returns how it ended (`TrackEnd`), rows reached, steps taken and rejected, and inputs, state,
-    turn and direction at the last place; where that lies on the course, its piece and parameter.
+    turn and direction at the last place; what ended the branch if it is known (`PassageEnd`, block,
+    inputs, states, columns' derivatives by arclength, second ones, that of the path's parameter,
+    inputs and states beyond); the branch points that were passed (first row behind, inputs); on the
+    course its piece, else -1, and parameter there.
     """

@@ -201,8 +201,8 @@ def _branch_point_note(
         "the branch comes to a branch point, where it crosses another and the mechanism may go "
         f"either way; {_stay_empty(rows)}",
         measured=", ".join(map(input_text, places)),
-        hint="assembly: {at_branch_points: straight} goes on along the smooth continuation; or begin "
-        "another sweep beyond it with assembly: {near: ...}",
+        hint="assembly: {at_branch_points: straight} goes on along the smooth continuation; or "
+        "begin another sweep beyond it with assembly: {near: ...}",
         numbers=places,
     )
 
