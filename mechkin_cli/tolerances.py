@@ -162,6 +162,39 @@ PATH_CORNER_COSINE: Final = 0.9887710779360422
 """Cosine of 8.6 degrees: a path that turns more from row to row has a corner there, or its rows are
 too far apart to tell its curve."""
 
+COURSE_SAMPLES: Final = 513
+"""Least number of places at which a course of inputs is looked at for kinks and turning points: a
+dozen for each period of a law that swings forty times."""
+
+MOST_COURSE_SAMPLES: Final = 20001
+"""Most of them, where there are many rows: 20 ms of work."""
+
+MOST_COURSE_CELLS: Final = 10_000
+"""Kinks of a course that are told apart."""
+
+COURSE_SAME: Final = 1e-12
+"""Parts of a course's range within which two places are one: bisection ends at roundings."""
+
+COURSE_JUMP: Final = 1e-9
+"""Change of an input (rad or m, with its size) at a place above which it jumps there: what is
+continuous differs by roundings."""
+
+MOST_COURSE_ORDER: Final = 8
+"""Order in which inputs leave a rest: the change over a hundredth of a cell and half of it tells
+orders up to it from rounding."""
+
+COURSE_REST: Final = 1e-6
+"""Rate, in parts of each input's fastest, up to which all of them rest: a zero of the rates is
+found to the root of a rounding where they only touch it."""
+
+FREE_INPUT_STEP: Final = 3e-4
+"""Step of an input (rad, length units) after which the loops must still close where it is free: a
+prediction of second order misses by its cube, 3e-11, times third derivatives."""
+
+FREE_INPUT_MISS: Final = 3e-9
+"""Closing equation after that step above which an input may be locked, and the mobility is asked: a
+locked one misses by a part of the step or of its square, 9e-8."""
+
 PATH_STRAY: Final = 1e-3
 """Distance of a row's inputs from the curve between two nodes in parts of the step: a twentieth of
 what a row filled in may be off."""

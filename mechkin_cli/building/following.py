@@ -33,7 +33,8 @@ class Following:
     """Evaluates the inputs that follow, one after another.
 
     `orders` holds value, rate, acceleration and jerk (4, rows) in the file's units of the inputs
-    that are known, by name.
+    that are known, by name; `expressions` gets those of inputs that follow, in the order in which
+    they are evaluated.
     """
 
     def __init__(
@@ -43,6 +44,7 @@ class Following:
         self.orders = orders
         self.rows = rows
         self.time = time
+        self.expressions: dict[str, Expression] = {}
 
     def add_all(self, sections: Mapping[str, FollowingInput], coordinates: frozenset[str]) -> None:
         """Adds all inputs of some sections to `orders`; errors are noted in `fields`.
@@ -128,6 +130,7 @@ class Following:
         self.orders[name] = np.stack(
             [units.from_si(in_si[k], dimension_of(coordinate, k)) for k in range(4)]
         )
+        self.expressions[name] = expression
 
     def _note_undefined(self, name: str, expression: Expression, in_si: Floats, row: int) -> None:
         words = ("value", "rate", "second rate", "third rate")

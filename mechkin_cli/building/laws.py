@@ -52,30 +52,47 @@ def law_values(fields: Fields, path: Path, law: Law, coordinate: str, clock: Clo
 def _constant_rate(
     fields: Fields, path: Path, law: ConstantRate, coordinate: str, clock: Clock
 ) -> Floats:
+    coefficients = _of_constant_rate(fields, path, law, coordinate)
+    return _power_series(fields.units, coordinate, coefficients, clock)
+
+
+def _of_constant_rate(
+    fields: Fields, path: Path, law: ConstantRate, coordinate: str
+) -> list[float]:
     at = fields.written((*path, "at"), law.at, dimension_of(coordinate))
-    rate = fields.written((*path, "rate"), law.rate, dimension_of(coordinate, 1))
-    return _power_series(fields.units, coordinate, [at, rate], clock)
+    return [at, fields.written((*path, "rate"), law.rate, dimension_of(coordinate, 1))]
 
 
 def _constant_acceleration(
     fields: Fields, path: Path, law: ConstantAcceleration, coordinate: str, clock: Clock
 ) -> Floats:
+    coefficients = _of_constant_acceleration(fields, path, law, coordinate)
+    return _power_series(fields.units, coordinate, coefficients, clock)
+
+
+def _of_constant_acceleration(
+    fields: Fields, path: Path, law: ConstantAcceleration, coordinate: str
+) -> list[float]:
     texts = (law.at, law.rate, law.acceleration)
     at, rate, acceleration = (
         fields.written((*path, key), text, dimension_of(coordinate, order))
         for order, (key, text) in enumerate(zip(("at", "rate", "acceleration"), texts, strict=True))
     )
-    return _power_series(fields.units, coordinate, [at, rate, acceleration / 2.0], clock)
+    return [at, rate, acceleration / 2.0]
 
 
 def _polynomial(
     fields: Fields, path: Path, law: Polynomial, coordinate: str, clock: Clock
 ) -> Floats:
-    coefficients = [
+    coefficients = _of_polynomial(fields, path, law, coordinate)
+    return _power_series(fields.units, coordinate, coefficients, clock)
+
+
+def _of_polynomial(fields: Fields, path: Path, law: Polynomial, coordinate: str) -> list[float]:
+    return [
         fields.written((*path, "coefficients", k), text, dimension_of(coordinate, k))
         for k, text in enumerate(law.coefficients)
     ]
-    return _power_series(fields.units, coordinate, coefficients, clock)
 
 
 def _power_series(

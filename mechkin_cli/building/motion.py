@@ -11,6 +11,7 @@ from mechkin_cli.building.coordinates import dimension_of, is_coordinate
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.memory import RowLimit
 from mechkin_cli.building.spacing import spaced
+from mechkin_cli.expressions import Expression
 from mechkin_cli.mechanism.model import Joint
 from mechkin_cli.mechanism.motion import DrivenInput, Moments, Motion
 from mechkin_cli.schema.laws import Law
@@ -45,20 +46,39 @@ def build_motion(
     rows = time.written.size if time else _row_count(fields, orders)
     if fields.error_count == errors:
         limit.is_exceeded(fields, ("motion", "inputs"), rows)
+    expressions: dict[str, Expression] = {}
     if fields.error_count == errors and following:
         from mechkin_cli.building.following import Following
 
         coordinates = frozenset(c for joint in joints.values() for c in joint.coordinates)
-        Following(fields, orders, rows, time).add_all(following, coordinates)
+        tied = Following(fields, orders, rows, time)
+        tied.add_all(following, coordinates)
+        expressions = tied.expressions
     if fields.error_count == errors:
         names = [name for name in section.inputs if name in orders]
         inputs = [_driven(fields, name, orders[name], rows) for name in names]
         if fields.error_count == errors:
-            return Motion(tuple(inputs), rows, time)
+            moving = Motion(tuple(inputs), rows, time)
+            return _with_course(fields, section, moving, expressions)
     fields.refused.add("time")
     for joint in joints.values():
         fields.refused.update(f"{name}.effort" for name in (joint.name, *joint.coordinates))
     return nothing
+
+
+def _with_course(
+    fields: Fields, section: MotionSection, motion: Motion, expressions: dict[str, Expression]
+) -> Motion:
+    """A motion with its inputs between the rows, where they do not simply run from one to the
+    next."""
+    inputs, time = motion.inputs, motion.time
+    if not inputs or (time is None and not expressions):
+        return motion
+    from mechkin_cli.building.course import build_course, build_ties
+
+    course = build_course(fields, section, inputs, expressions, time)
+    ties = build_ties(fields, inputs, expressions, time) if expressions else motion.ties
+    return motion._replace(course=course, ties=ties)
 
 
 def _moments(fields: Fields, section: TimeSection | None, limit: RowLimit) -> Moments | None:

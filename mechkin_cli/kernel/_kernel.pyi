@@ -87,6 +87,12 @@ class TrackEnd(IntEnum):
     EXHAUSTED = 2
     START_NOT_CLOSED = 3
 
+class PassageEnd(IntEnum):
+    THROUGH = 0
+    DEAD_CENTRE = 1
+    BRANCH_POINT = 2
+    LOST = 3
+
 class Operation(IntEnum):
     SIN = 0
     COS = 1
@@ -137,6 +143,21 @@ class Tape:
         advice: NDArray[np.uint8],
     ) -> None: ...
     def replay(self, inputs: Floats, lanes: int = 0) -> tuple[Floats, NDArray[np.uint8]]: ...
+    def jets(self, inputs: Floats, ways: Floats) -> Floats: ...
+
+class Course:
+    def __init__(
+        self,
+        tape: Tape,
+        pieces: Sequence[tuple[int, int, float, float, float, float]],
+        constants: Floats,
+        ways: Floats,
+        units: Floats,
+        parameter: Floats,
+    ) -> None: ...
+    def at(self, piece: int, sigma: float) -> Floats: ...
+    def sigma(self, piece: int, parameter: float) -> float: ...
+    def parameter(self, piece: int, sigma: float) -> float: ...
 
 class PlanBuilder:
     def __init__(self, length: float, origin: Triple, size: float) -> None: ...
@@ -303,6 +324,7 @@ class Variants:
         continuation: StepLimits,
         following: StepLimits,
         angles: Sequence[tuple[int, int]],
+        ways: Sequence[tuple[int, Sequence[int], Floats, Course | None]] = ...,
     ) -> None: ...
     def run(
         self, parameters: Floats, lanes: int = 0, threads: int = 1
@@ -365,6 +387,11 @@ class StepLimits:
         angle_step: float,
         angle_miss: float,
         plan_step: float,
+        arc_pivot: float,
+        radius: float,
+        narrow: float,
+        arc_steps: int,
+        straight: bool,
     ) -> None: ...
 
 class Node:
@@ -437,9 +464,26 @@ def follow_rows(
     guess: Floats,
     limit: Floats,
     turns: Floats | None,
-) -> tuple[int, int, int, int, Floats, Floats, Floats, Floats]:
+    course: Course | None = None,
+) -> tuple[
+    int,
+    int,
+    int,
+    int,
+    Floats,
+    Floats,
+    Floats,
+    Floats,
+    tuple[int, int, Floats, Floats, Floats, Floats, float, Floats, Floats] | None,
+    list[tuple[int, Floats]],
+    int,
+    float,
+]:
     """Fills guess, limit and turns, which share no memory with one another or with inputs.
 
     Returns how it ended (`TrackEnd`), rows reached, steps taken and rejected, and inputs, state,
-    turn and direction at the last place.
+    turn and direction at the last place; what ended the branch if it is known (`PassageEnd`, block,
+    inputs, states, columns' derivatives by arclength, second ones, that of the path's parameter,
+    inputs and states beyond); the branch points that were passed (first row behind, inputs); on the
+    course its piece, else -1, and parameter there.
     """

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.mechanism.course import Course
+    from mechkin_cli.tape.tape import Tape
 
 ORDERS = ("", "_dot", "_ddot", "_dddot")
 """What the names of a coordinate's derivatives end in, from order 0 on."""
@@ -55,11 +57,15 @@ class Moments(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """All inputs; a mechanism without inputs has one row. `time` is there where the file has it."""
+    """All inputs; a mechanism without inputs has one row. `time` is there where the file has it,
+    `course` where inputs move by laws or follow others; `ties` are all inputs as functions of each
+    one that others follow (`building.course`)."""
 
     inputs: tuple[DrivenInput, ...]
     rows: int
     time: Moments | None = None
+    course: Course | None = None
+    ties: tuple[tuple[str, Tape], ...] = ()
 
     @property
     def driven(self) -> list[tuple[str, str]]:

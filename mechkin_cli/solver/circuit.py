@@ -22,7 +22,9 @@ from mechkin_cli.solver.runaway import Runaway
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.solver.follow import Followed
     from mechkin_cli.solver.session import Session
+    from mechkin_cli.solver.tie import Tie
 
 EndKind = Literal["dead-centre", "branch-point", "unbounded", "branch-lost", "full-turn", "far"]
 
@@ -56,16 +58,19 @@ class Branch:
 
 
 class Walker:
-    """Walks along the branches of one input; the other inputs are held.
+    """Walks along the branches of one input; the other inputs are held, or follow it.
 
     Args:
         session: the mechanism as it is driven.
         number: the input that moves.
         inputs: (inputs,) where places are taken.
+        tie: what follows it.
     """
 
-    def __init__(self, session: Session, number: int, inputs: Floats) -> None:
-        self.session, self.number, self.inputs = session, number, inputs
+    def __init__(
+        self, session: Session, number: int, inputs: Floats, tie: Tie | None = None
+    ) -> None:
+        self.session, self.number, self.inputs, self.tie = session, number, inputs, tie
         layout = session.layout
         edge, freedom = layout.graph.inputs[number]
         joint = layout.graph.edges[edge].joint
@@ -85,6 +90,10 @@ class Walker:
             return [first, *onward]
         backward, _ = self._walk(first, lower, -1.0)
         return [first, *onward, *backward]
+
+    def end(self, start: Passage, direction: float) -> End:
+        """Where the branch through a place ends in a direction."""
+        return self._climb(start, direction, start)[0]
 
     def _walk(self, first: Branch, end: End, direction: float) -> tuple[list[Branch], bool]:
         """The branches beyond an end of the first one; whether they lead back to its other end."""
@@ -110,9 +119,7 @@ class Walker:
         places: list[Passage] = []
         for _ in range(tolerances.MOST_TURNS):
             target = self._next(place.value, direction)
-            path = np.repeat(self.inputs[:, None], 2, axis=1)
-            path[self.number] = place.value, target
-            way = self.session.follow(path, place.state)
+            way = self.follow(np.array([place.value, target]), place.state)
             if way.end != TrackEnd.FINISHED:
                 limit = find_limit(self.session, way)
                 last = float(way.inputs[self.number])
@@ -130,6 +137,22 @@ class Walker:
                 return End("full-turn", target), places
             places.append(place)
         return End("far", place.value), places
+
+    def follow(self, values: Floats, state: Floats) -> Followed:
+        """The branch through a state along values of the input."""
+        if self.tie is not None:
+            return self.session.follow_way(self.tie.way(values), state)
+        return self.session.follow(np.ascontiguousarray(self.at(values)[0]), state)
+
+    def at(self, values: Floats) -> Floats:
+        """All inputs, and first and second derivatives by the one that moves, (3, inputs,
+        places)."""
+        if self.tie is not None:
+            return self.tie.derivatives(values)
+        found = np.zeros((3, self.inputs.size, values.size))
+        found[0] = self.inputs[:, None]
+        found[0, self.number], found[1, self.number] = values, 1.0
+        return found
 
     def _next(self, value: float, direction: float) -> float:
         """The next value in a direction at which a place is taken, or the end of the reach."""

@@ -18,6 +18,7 @@ from mechkin_cli.solver.stepping import step_limits
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.route import Way
 
 
 class Ending(NamedTuple):
@@ -55,7 +56,8 @@ class Followed(NamedTuple):
     quaternions of closing joints, continuous from the first row, where they were asked for
     (`solver.closing_turns`). If the branch could not be followed further, `inputs` and `state` are
     the last place on it, `turn` the closing joints' turns there, and `direction` the way the inputs
-    were going.
+    were going; where that lies on a piece of their course, `parameter` is the course's, at the
+    ending where it is known.
     """
 
     guess: Floats
@@ -70,6 +72,7 @@ class Followed(NamedTuple):
     turn: Floats | None = None
     ending: Ending | None = None
     crossings: tuple[Crossing, ...] = ()
+    parameter: float | None = None
 
 
 def follow(
@@ -81,6 +84,7 @@ def follow(
     turns: bool = False,
     turn: Floats | None = None,
     straight: bool = False,
+    course: _kernel.Course | None = None,
 ) -> Followed:
     """Follows the branch through `start` (states at the first row) along all rows.
 
@@ -92,26 +96,28 @@ def follow(
         turns: carry the turns of closing joints along.
         turn: (turn slots,) turns at the first row, where they are known from a way before it.
         straight: pass branch points along the smooth continuation.
+        course: of the inputs between the rows, where they do not go straight.
     """
     rows = inputs.shape[1]
     guess, limit = np.empty((start.size, rows)), np.empty(rows)
     along = np.empty((turn_count(plan), rows)) if turns else None
     given = [] if turn is None else turn.tolist()
-    end, reached, steps, _, place, state, last_turn, direction, ending, crossings = (
-        _kernel.follow_rows(
-            plan,
-            np.ascontiguousarray(inputs),
-            start.tolist(),
-            given,
-            every_row,
-            step_limits(straight=straight),
-            guess,
-            limit,
-            along,
-        )
+    found = _kernel.follow_rows(
+        plan,
+        np.ascontiguousarray(inputs),
+        start.tolist(),
+        given,
+        every_row,
+        step_limits(straight=straight),
+        guess,
+        limit,
+        along,
+        course,
     )
+    end, reached, steps, _, place, state, last_turn, direction = found[:8]
+    limits, crossings, piece, parameter = found[8:]
     guess[:, reached:] = np.nan
-    found = None if ending is None else Ending(PassageEnd(ending[0]), *ending[1:])
+    ending = None if limits is None else Ending(PassageEnd(limits[0]), *limits[1:])
     crossed = tuple(Crossing(*each) for each in crossings)
     return Followed(
         guess,
@@ -124,6 +130,45 @@ def follow(
         direction,
         along,
         last_turn,
-        found,
+        ending,
         crossed,
+        parameter if piece >= 0 else None,
+    )
+
+
+def follow_way(
+    plan: Plan,
+    way: Way,
+    start: Floats,
+    *,
+    every_row: bool = False,
+    straight: bool = False,
+) -> Followed:
+    """Follows the branch along a way, with the turns of closing joints, and gives its rows alone;
+    arguments as those of `follow`."""
+    found = follow(
+        plan,
+        way.values,
+        start,
+        every_row=every_row,
+        turns=True,
+        straight=straight,
+        course=way.course,
+    )
+    if found.end != TrackEnd.FINISHED and found.parameter is None:
+        inputs = found.inputs if found.ending is None else found.ending.inputs
+        found = found._replace(parameter=way.parameter_of(found.reached - 1, inputs))
+    real = way.real
+    if real.size == way.rows.size:
+        return found
+    assert found.turns is not None
+    return found._replace(
+        guess=np.ascontiguousarray(found.guess[:, real]),
+        limit=found.limit[real],
+        reached=int(np.count_nonzero(real < found.reached)),
+        turns=np.ascontiguousarray(found.turns[:, real]),
+        crossings=tuple(
+            Crossing(int(np.count_nonzero(real < crossing.row)), crossing.inputs)
+            for crossing in found.crossings
+        ),
     )

@@ -20,8 +20,9 @@ from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.follow import Followed
 from mechkin_cli.solver.follow import follow as follow_path
+from mechkin_cli.solver.follow import follow_way as follow_along
 from mechkin_cli.solver.graph import SolverGraph, build_graph, is_redundant
-from mechkin_cli.solver.inputs import KernelInputs, kernel_inputs
+from mechkin_cli.solver.inputs import KernelInputs, input_unit, kernel_inputs
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
@@ -32,7 +33,9 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.demand import Slot
+    from mechkin_cli.solver.route import Route, Way
     from mechkin_cli.solver.search import Found, Within
+    from mechkin_cli.solver.tie import Tie
 
 T = TypeVar("T")
 
@@ -113,6 +116,28 @@ class Session:
         """The inputs of all rows of the problem's motion."""
         return kernel_inputs(self.problem, self.layout)
 
+    @cached_property
+    def route(self) -> Route | None:
+        """The way along all rows; None where it goes straight from each to the next."""
+        course = self.problem.motion.course
+        if course is None:
+            return None
+        from mechkin_cli.solver.route import Route
+
+        units = [input_unit(self.layout, item) for item in self.problem.motion.inputs]
+        return Route(course, self.inputs.values, np.array(units))
+
+    def tie(self, number: int, row: int = 0) -> Tie | None:
+        """What follows input `number` where all others stand as in a row; None where nothing
+        does."""
+        name = self.problem.motion.inputs[number].name
+        tapes = dict(self.problem.motion.ties)
+        if name not in tapes:
+            return None
+        from mechkin_cli.solver.tie import Tie
+
+        return self.once(("tie", number, row), lambda: Tie(self, tapes[name], number, row))
+
     @property
     def is_redundant(self) -> bool:
         """Whether some loop has more closing equations than unknowns."""
@@ -192,6 +217,23 @@ class Session:
             turn=turn,
             straight=self.problem.assembly.straight,
         )
+
+    def follow_rows(
+        self, start: Floats, row: int = 0, step: int = 1, *, every_row: bool = False
+    ) -> Followed:
+        """Follows the branch through `start` (states,) at a row along the rows from there on, or
+        with step -1 back from there, with the turns of closing joints; between the rows the inputs
+        follow their laws and ties."""
+        if self.route is None:
+            path = np.ascontiguousarray(self.inputs.values[:, row::step])
+            return self.follow(path, start, every_row=every_row, turns=True)
+        straight = self.problem.assembly.straight
+        way = self.route.way(row, step)
+        return follow_along(self.plan, way, start, every_row=every_row, straight=straight)
+
+    def follow_way(self, way: Way, start: Floats) -> Followed:
+        """Follows the branch through `start` (states,) along a way of all inputs."""
+        return follow_along(self.plan, way, start, straight=self.problem.assembly.straight)
 
     def search(self, inputs: Floats, within: Within | None = None) -> Found:
         """All assemblies at some inputs (inputs,) that random starts find, or those `within` a

@@ -110,7 +110,16 @@ class Reading:
             ),
             following=step_limits(straight=base.problem.assembly.straight),
             angles=variation.closing_angles(self.slots, turns),
+            ways=_ways(base, start.row),
         )
+
+
+def _ways(base: Session, row: int) -> list[tuple[int, list[int], Floats, _kernel.Course | None]]:
+    """The ways along the inputs' course on and back from a row, where they have one."""
+    if base.route is None:
+        return []
+    ways = [(step, base.route.way(row, step)) for step in (1, -1)]
+    return [(step, way.rows.tolist(), way.values, way.course) for step, way in ways]
 
 
 class Variation:

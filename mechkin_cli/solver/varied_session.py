@@ -40,7 +40,7 @@ class VariedSession(Session):
         self.values = values
         self.problem = problem
         self.graph = graph_of(problem.mechanism, base.graph)
-        for found in ("plan", "layout", "inputs"):
+        for found in ("plan", "layout", "inputs", "route"):
             self.__dict__.pop(found, None)
         self._readouts, self._kept = {}, {}
         end, size, state = variation.reading(()).runs(Demand.POSITION, start).start(values)

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from mechkin_cli.tape.floats import meaning
-from mechkin_cli.tape.operations import Operation
-from mechkin_cli.tape.recorder import ARITY
+from mechkin_cli.tape.operations import ARITY, Operation
 from mechkin_cli.tape.tape import Tape, Verdict
 
 

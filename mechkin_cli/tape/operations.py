@@ -43,3 +43,21 @@ class Operation(IntEnum):
 
 CONDITIONS = (Operation.LESS, Operation.NOT_MORE, Operation.EQUAL)
 """What a guard may ask."""
+
+_ONE = {
+    Operation.NEGATE,
+    Operation.MAGNITUDE,
+    Operation.SQUARE_ROOT,
+    Operation.POWER_OF_TWO,
+    Operation.WHOLE,
+    Operation.SIN,
+    Operation.COS,
+    Operation.TAN,
+    Operation.ASIN,
+    Operation.ACOS,
+    Operation.ATAN,
+    Operation.EXP,
+    Operation.LOG,
+}
+ARITY = dict.fromkeys(Operation, 2) | dict.fromkeys(_ONE, 1) | {Operation.CHOOSE: 3}
+"""How many operands an operation has."""

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from mechkin_cli.tape.floats import meaning
-from mechkin_cli.tape.operations import Operation
+from mechkin_cli.tape.operations import ARITY, Operation
 from mechkin_cli.tape.tape import Tape
 
 Instruction = tuple[Operation, int, int, int]
@@ -62,10 +62,11 @@ class Recorder:
             self._guards[instruction] = found
         return self._guards[instruction]
 
-    def tape(self, outputs: Iterable[int]) -> Tape:
-        """The tape of some registers, with all guards so far."""
+    def tape(self, outputs: Iterable[int], *, guarded: bool = True) -> Tape:
+        """The tape of some registers, with all guards so far or with none."""
         outputs = list(outputs)
-        needed = self._needed([*outputs, *(r for g in self._guards for r in g[1:3])])
+        asked = self._guards if guarded else {}
+        needed = self._needed([*outputs, *(r for g in asked for r in g[1:3])])
         first = len(self.inputs)
         computed = [r for r in needed if r in self._written]
         constants = [r for r in needed if r >= first and r not in self._written]
@@ -73,7 +74,7 @@ class Recorder:
         number |= {r: first + k for k, r in enumerate((*constants, *computed))}
         written = [self._written[r] for r in computed]
         operands = [_renumbered(instruction, number) for instruction in written]
-        guards = [(g[0], number[g[1]], number[g[2]]) for g in self._guards]
+        guards = [(g[0], number[g[1]], number[g[2]]) for g in asked]
         return Tape(
             self.inputs,
             np.array([self.values[r] for r in constants], dtype=np.float64),
@@ -81,8 +82,8 @@ class Recorder:
             np.array(operands, dtype=np.int32).reshape(-1, 3),
             np.array([number[r] for r in outputs], dtype=np.int32),
             np.array(guards, dtype=np.int32).reshape(-1, 3),
-            np.array(list(self._guards.values()), dtype=np.bool_),
-            np.array([g not in self._serious for g in self._guards], dtype=np.bool_),
+            np.array(list(asked.values()), dtype=np.bool_),
+            np.array([g not in self._serious for g in asked], dtype=np.bool_),
         )
 
     def _register(self, value: float) -> int:
@@ -108,22 +109,3 @@ def _renumbered(instruction: Instruction, number: dict[int, int]) -> tuple[int, 
     count = ARITY[operation]
     a, b, c = ([number[r] for r in operands[:count]] + [0, 0])[:3]
     return a, b, c
-
-
-_ONE = {
-    Operation.NEGATE,
-    Operation.MAGNITUDE,
-    Operation.SQUARE_ROOT,
-    Operation.POWER_OF_TWO,
-    Operation.WHOLE,
-    Operation.SIN,
-    Operation.COS,
-    Operation.TAN,
-    Operation.ASIN,
-    Operation.ACOS,
-    Operation.ATAN,
-    Operation.EXP,
-    Operation.LOG,
-}
-ARITY = dict.fromkeys(Operation, 2) | dict.fromkeys(_ONE, 1) | {Operation.CHOOSE: 3}
-"""How many operands an operation has."""

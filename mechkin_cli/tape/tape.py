@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.tape.operations import ARITY, Operation
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -53,6 +55,15 @@ class Tape:
     def registers(self) -> int:
         """Number of registers."""
         return len(self.inputs) + self.constants.size + self.operations.size
+
+    def depends(self, output: int, given: int = 0) -> bool:
+        """Whether an output depends on an input."""
+        first = len(self.inputs) + self.constants.size
+        moved = {given}
+        for k, operands in enumerate(self.operands.tolist(), start=first):
+            if moved.intersection(operands[: ARITY[Operation(int(self.operations[k - first]))]]):
+                moved.add(k)
+        return int(self.outputs[output]) in moved
 
     @cached_property
     def fixed(self) -> NDArray[np.bool_]:

@@ -8,6 +8,7 @@ arguments; threads call at once, and change the arrays of calls that run.
 from __future__ import annotations
 
 import gc
+import itertools
 import random
 import sys
 import threading
@@ -22,6 +23,7 @@ from references import MECHANISMS
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.solver.cells import SWITCHES
 from mechkin_cli.solver.stepping import step_limits
 from mechkin_cli.tape.operations import CONDITIONS, Operation
 
@@ -48,6 +50,11 @@ USUAL: dict[str, Any] = {
     "angle_step": 0.1,
     "angle_miss": 1.0,
     "plan_step": 1e-3,
+    "arc_pivot": 1e-8,
+    "radius": 0.5,
+    "narrow": 1e-2,
+    "arc_steps": 100,
+    "straight": False,
 }
 """Limits of a step that follow a branch."""
 STRANGE: list[Any] = [(), (None,) * 4, ([1.0], True, 2, False), (np.zeros(1, np.int32), ["a"], 1)]
@@ -79,6 +86,7 @@ class HostileRuns(Hostile):
     def __init__(self, seed: int) -> None:
         super().__init__(seed)
         self.noise = np.random.default_rng(seed)
+        self.codes: dict[int, Any] = {}
 
     def kept(self, kind: str, own: Any) -> Any:
         """An object of this trial, or now and then one of another plan; `own` is kept, too."""
@@ -169,6 +177,7 @@ class HostileRuns(Hostile):
             self.numbers_of(np.uint8, guards, 2),
         ]
         tape = self.attempt(_kernel.Tape, *arguments)
+        self.codes[id(tape)] = np.ravel(arguments[2]) if tape is not None else ()
         if tape is not None and self.bad():
             self.attempt(tape.__init__, *arguments)
         return tape
@@ -184,6 +193,9 @@ class HostileRuns(Hostile):
         values = (wild.astype(np.uint64) * np.uint64(2)).view(np.float64)
         values = self.either(values, values.T, values.astype(np.float32), self.array(inputs, 9))
         self.attempt(tape.replay, values, self.either(0, *INDICES))
+        switches = sum(int(code) in SWITCHES for code in self.codes.get(id(tape), ()))
+        ways = self.noise.choice([-1.0, 0.0, 1.0, 5.0], switches)
+        self.attempt(tape.jets, values, self.either(ways, ways[:-1], ways.astype(np.float32)))
 
     # --- variants and positions -----------------------------------------------------------------
 
@@ -370,6 +382,32 @@ class HostileRuns(Hostile):
                 return
             before, node = node, self.attempt(stepper.step, node, 0.01) or node
 
+    def course(self, plan: Any, rows: int) -> Any:
+        """Pieces of random tapes over the rows, and a look at some places of them."""
+        tape = self.tape(2, plan.inputs)
+        if tape is None:
+            return None
+        switches = sum(int(code) in SWITCHES for code in self.codes.get(id(tape), ()))
+        cuts = sorted(self.random.sample(range(rows), min(rows, self.random.randint(2, 4))))
+        pieces = [
+            (first, last, self.number(), self.number(), self.either(1.0, *NUMBERS), power)
+            for first, last in itertools.pairwise(cuts)
+            for power in [self.either(1.0, 2.0, -3.0, 0.0, 1e9)]
+        ]
+        arguments = [
+            tape,
+            self.either(pieces, pieces[::-1], [(0,)], None),
+            self.array(len(pieces), 1),
+            self.array(len(pieces), switches),
+            self.either(np.ones(plan.inputs), np.zeros(plan.inputs), np.ones(plan.inputs + 1)),
+            self.noise.normal(size=rows),
+        ]
+        made = self.attempt(_kernel.Course, *arguments)
+        if isinstance(made, _kernel.Course):
+            for call in (made.at, made.sigma, made.parameter):
+                self.attempt(call, self.either(0, *INDICES), self.either(0.3, *NUMBERS))
+        return made
+
     def followed(self) -> None:
         plan, inputs, state = self.some_plan()
         limits = self.limits()
@@ -387,8 +425,10 @@ class HostileRuns(Hostile):
         start = self.either(state.tolist(), state[:-1].tolist())
         arguments = [plan, inputs, start, begin, self.either(False, True), limits]
 
+        course = self.either(None, self.course(plan, rows))
+
         def call() -> None:
-            found = self.attempt(_kernel.follow_rows, *arguments, guess, limit, carried)
+            found = self.attempt(_kernel.follow_rows, *arguments, guess, limit, carried, course)
             self.counts["rows followed"] += 0 if found is None else found[1]
 
         self.at_once(call, inputs)

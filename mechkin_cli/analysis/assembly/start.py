@@ -45,7 +45,8 @@ MAY_BE_RIGID = (
 class Start:
     """States at a row (the first, or the one nearest to an assembled home) and the mode's name,
     where it is known (`near` and `home` stand for one that nobody asked for); `how` says how it was
-    found. Without states `status` says why there are none."""
+    found. Without states `status` says why there are none, and `stuck` whether the inputs did not
+    move from the drawing at all."""
 
     state: Floats | None
     mode: str
@@ -53,6 +54,7 @@ class Start:
     diagnostics: list[Diagnostic] = field(default_factory=list)
     status: Status = Status.not_assembled
     row: int = 0
+    stuck: bool = False
 
 
 def choose_start(session: Session) -> Start:
@@ -176,6 +178,14 @@ def _from_home(session: Session, path: Floats) -> Start:
     followed = follow_from_home(session, path[:, row])
     if followed.end == TrackEnd.FINISHED:
         return Start(followed.state, "home", "followed from the home drawing", row=row)
+    turned = _without_turns(session, path)
+    if (turned != path).any():
+        # the drawing serves whole turns away from it as well
+        there = nearest_to_home(turned)
+        again = follow_from_home(session, np.ascontiguousarray(turned[:, there]))
+        if again.end == TrackEnd.FINISHED:
+            words = "followed from the home drawing, whole turns away"
+            return Start(again.state, "home", words, row=there)
     places = input_numbers(problem, layout, followed.inputs)
     rigid = f"; {MAY_BE_RIGID}" if session.is_redundant else ""
     diagnostic = Diagnostic(
@@ -191,7 +201,19 @@ def _from_home(session: Session, path: Floats) -> Start:
     limit = find_limit(session, followed)
     folds = isinstance(limit, DeadCentre)
     status = Status.beyond_dead_centre if folds else Status.branch_lost
-    return Start(None, "home", "", [diagnostic], status)
+    stuck = float(np.max(np.abs(followed.inputs), initial=0.0)) <= tolerances.PASSED
+    return Start(None, "home", "", [diagnostic], status, stuck=stuck)
+
+
+def _without_turns(session: Session, path: Floats) -> Floats:
+    """Inputs (inputs, rows) without the whole turns after which the mechanism stands as drawn; as
+    they are where a thread counts turns."""
+    joints = session.problem.mechanism.joints
+    if any(joint.type.is_threaded for joint in joints.values()):
+        return path
+    cyclic = np.array([is_cyclic(session.problem.mechanism, f"{j}.{c}") for j, c in session.driven])
+    turns = np.rint(path / (2.0 * np.pi))
+    return np.where(cyclic[:, None], path - turns * (2.0 * np.pi), path)
 
 
 def nothing_found(session: Session, found: Found, place: str = "at the first row") -> Diagnostic:

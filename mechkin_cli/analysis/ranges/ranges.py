@@ -91,21 +91,53 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
                 f"there is no coordinate {output[:LONGEST_NAME]}; coordinates are "
                 f"{', '.join(problem.mechanism.coordinates)}"
             )
-    path = session.inputs.values
-    first = path[:, 0]
-    named = name_modes(session, first)
+    path, row = session.inputs.values, 0
+    named = name_modes(session, path[:, row])
     if named.number == 0 and is_home_assembled(session):
-        first = path[:, nearest_to_home(path)]
-        named = name_modes(session, first)
-    item = problem.motion.inputs[number]
-    at = {i.name: float(i.written[0]) for i in problem.motion.inputs if i is not item}
+        row = nearest_to_home(path)
+        named = name_modes(session, path[:, row])
+    item, first = problem.motion.inputs[number], path[:, row]
+    leader, tied = _leader(session, number)
+    at = {
+        i.name: float(i.written[row])
+        for i in problem.motion.inputs
+        if i is not item and i.name not in tied
+    }
     unit = problem.units.label(dimension_of(item.coordinate))
     if named.number == 0:
         note = nothing_found(session, named.found)
         return Ranges(item.name, unit, at, (), (), (*problem.diagnostics, note))
-    walker = Walker(session, number, first)
-    ranges, circuits = _Survey(session, named, walker, outputs).ranges()
-    return Ranges(item.name, unit, at, ranges, circuits, problem.diagnostics)
+    walker = Walker(session, leader, first, session.tie(leader, row))
+    ranges, circuits = _Survey(session, named, walker, number, outputs).ranges()
+    notes = (*problem.diagnostics, *_tied_note(problem, number, leader))
+    return Ranges(item.name, unit, at, ranges, circuits, notes)
+
+
+def _leader(session: Session, number: int) -> tuple[int, set[str]]:
+    """The input that moves where `number` is asked for, and all that move with it."""
+    if not session.problem.motion.ties:
+        return number, set()
+    from mechkin_cli.solver.tie import followers_of
+
+    names = [item.name for item in session.problem.motion.inputs]
+    followers = followers_of(session)
+    leader = followers.get(names[number], names[number])
+    moved = session.tie(names.index(leader))
+    return names.index(leader), {leader, *(moved.followers if moved else ())}
+
+
+def _tied_note(problem: Problem, number: int, leader: int) -> list[Diagnostic]:
+    """That an input moves with the one that it follows."""
+    if number == leader:
+        return []
+    name, moved = problem.motion.inputs[number].name, problem.motion.inputs[leader].name
+    return [
+        Diagnostic(
+            "tied-input",
+            "note",
+            f"{name} follows {moved}, which is moved; values are those of {name} on that way",
+        )
+    ]
 
 
 def _input_number(problem: Problem, name: str | None) -> int:
@@ -129,10 +161,11 @@ class _Survey:
         session: Session,
         named: NamedModes,
         walker: Walker,
+        shown: int,
         outputs: tuple[str, ...],
     ) -> None:
         self.session, self.problem, self.layout = session, session.problem, session.layout
-        self.named, self.walker = named, walker
+        self.named, self.walker, self.shown = named, walker, shown
         quantities = self.problem.quantities()
         self.outputs = [quantities[name] for name in outputs]
         self.keys = pose_keys(self.layout, named.found.states)
@@ -171,11 +204,13 @@ class _Survey:
             turns = round((branch.upper.value - branch.lower.value) / period)
             return Range(name, limit, limit, turns, circuit, extremes)
         lower, upper = (self._limit(end, shift) for end in (branch.lower, branch.upper))
+        if self.shown != self.walker.number and lower.value > upper.value:
+            # an input that follows may fall while the other rises
+            lower, upper = upper, lower
         return Range(name, lower, upper, 0, circuit, extremes)
 
     def _limit(self, end: End, shift: float) -> Limit:
-        number = input_number(self.problem, self.layout, self.walker.number, end.value - shift)
-        return Limit(end.kind, number.value)
+        return Limit(end.kind, self._limit_value(end.value - shift))
 
     def _extremes(self, branch: Branch, shift: float) -> tuple[Extreme, ...]:
         """Dead centres of the outputs along a branch: where their rate by the input vanishes."""
@@ -190,7 +225,9 @@ class _Survey:
         return tuple(found)
 
     def _limit_value(self, value: float) -> float:
-        return input_number(self.problem, self.layout, self.walker.number, value).value
+        if self.shown != self.walker.number:
+            value = float(self.walker.at(np.array([value]))[0, self.shown, 0]) + 0.0
+        return input_number(self.problem, self.layout, self.shown, value).value
 
     def _shown(self, wanted: Wanted, value: float) -> float:
         return float(self.problem.units.from_si(value, wanted.dimension))
@@ -219,49 +256,43 @@ class _Stationary:
             steps = (
                 first + (last - first) * np.linspace(0.0, 1.0, tolerances.RANGE_SAMPLES + 1)[:-1]
             )
-            path = np.repeat(self.walker.inputs[:, None], steps.size, axis=1)
-            path[self.walker.number] = steps
-            way = self.session.follow(path, start.state)
+            way = self.walker.follow(steps, start.state)
             count = way.reached
-            rates = self._derivatives(path[:, :count], way.guess[:, :count])[1]
+            rates = self._derivatives(steps[:count], way.guess[:, :count])[1]
             for k in np.flatnonzero(rates[:-1] * rates[1:] <= 0.0):
-                place = self._refined(path[:, k], way.guess[:, k], steps[k], steps[k + 1])
+                place = self._refined(way.guess[:, k], steps[k], steps[k + 1])
                 if place is not None and not any(place[0] == other[0] for other in found):
                     found.append(place)
         return sorted(found)
 
-    def _derivatives(self, inputs: Floats, guess: Floats) -> Floats:
+    def _derivatives(self, values: Floats, guess: Floats) -> Floats:
         """The output and its first two derivatives by the input, (3, places)."""
-        rates = np.zeros_like(inputs)
-        rates[self.walker.number] = 1.0
+        inputs, rates, accelerations = np.ascontiguousarray(self.walker.at(values))
         batch = self.session.run(
             inputs,
             guess,
             readout=self.readout,
             rates=rates,
-            accelerations=np.zeros_like(rates),
+            accelerations=accelerations,
             demand=Demand.VELOCITY | Demand.ACCELERATION,
         )
         assert batch.outputs is not None
         return batch.outputs[self.slots]
 
-    def _refined(
-        self, inputs: Floats, guess: Floats, first: float, last: float
-    ) -> tuple[float, float] | None:
+    def _refined(self, guess: Floats, first: float, last: float) -> tuple[float, float] | None:
         """Newton within a bracket of the rate's zero, by bisection where it would leave it."""
         low, high = min(first, last), max(first, last)
         value = 0.5 * (low + high)
         sign_low: float | None = None
         state = guess
         for _ in range(tolerances.DEAD_CENTRE_ITERATIONS):
-            path = np.stack([inputs, inputs], axis=1)
-            path[self.walker.number] = first, value
-            state = self.session.follow(path, guess).state
+            places = np.array([first, value])
+            state = self.walker.follow(places, guess).state
             output, rate, bend = (
-                float(x) for x in self._derivatives(path[:, 1:], state[:, None])[:, 0]
+                float(x) for x in self._derivatives(places[1:], state[:, None])[:, 0]
             )
             if sign_low is None:
-                ends = self._derivatives(path[:, :1], guess[:, None])[1, 0]
+                ends = self._derivatives(places[:1], guess[:, None])[1, 0]
                 sign_low = float(ends) if first == low else -float(ends)
             low, high = (value, high) if rate * sign_low > 0.0 else (low, value)
             step = -rate / bend if bend != 0.0 else np.inf

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,13 +10,14 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.start import MAY_BE_RIGID
 from mechkin_cli.analysis.sweep.rows import Rows
-from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.solver.branch_limit import BranchPoint, DeadCentre, find_limit
+from mechkin_cli.solver.circuit import Passage, Walker
 from mechkin_cli.solver.follow import Followed
-from mechkin_cli.solver.inputs import input_numbers, input_text
+from mechkin_cli.solver.inputs import input_number, input_numbers, input_text
 from mechkin_cli.solver.runaway import Runaway
 from mechkin_cli.status import Status
-from mechkin_cli.units import LENGTH
+from mechkin_cli.units import LENGTH, TIME
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -23,12 +25,6 @@ if TYPE_CHECKING:
 
 
 MAY_BE_SPECIAL = "this may be a branch point or a special position; sweep from its other side"
-MAY_BE_FOLD = (
-    "this may be a dead centre of the inputs that move together (it is located where one moves), a "
-    "branch point or a special position"
-)
-
-
 MOST_SHOWN = 4
 """Places that a message shows."""
 
@@ -40,20 +36,20 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) 
     """
     missing = ~rows.reached
     rows.status[missing] = Status.branch_lost
-    locked = _locked_inputs(session, path, followed)
+    locked = locked_inputs(session, followed.inputs - path[:, 0])
     if locked:
-        rows.diagnostics.extend(locked)
+        rows.diagnostics.extend(fault for fault in locked if fault not in rows.diagnostics)
         return
     limit = find_limit(session, followed) if len(path) else None
     if isinstance(limit, DeadCentre):
         rows.status[missing] = Status.beyond_dead_centre
-        rows.diagnostics.append(_dead_centre_note(session, limit, path, rows))
+        rows.diagnostics.append(_dead_centre_note(session, followed, limit, path, rows))
     elif isinstance(limit, Runaway):
         rows.diagnostics.append(_runaway_note(session, followed, limit, rows))
     elif isinstance(limit, BranchPoint):
-        rows.diagnostics.append(_branch_point_note(session, limit, rows))
+        rows.diagnostics.append(_branch_point_note(session, followed, limit, rows))
     else:
-        rows.diagnostics.append(_lost_note(session, followed, rows))
+        rows.diagnostics.append(_lost_note(session, followed, path, rows))
 
 
 def crossing_note(session: Session, followed: Followed) -> Diagnostic:
@@ -89,9 +85,9 @@ def input_faults(session: Session) -> list[Diagnostic]:
     return [diagnostic for diagnostic in found.diagnostics if diagnostic.code in codes]
 
 
-def _locked_inputs(session: Session, path: Floats, followed: Followed) -> list[Diagnostic]:
-    """The same of inputs that hardly moved."""
-    way = float(np.max(np.abs(followed.inputs - path[:, 0]), initial=0.0))
+def locked_inputs(session: Session, moved: Floats) -> list[Diagnostic]:
+    """The same of inputs that hardly `moved` (inputs,)."""
+    way = float(np.max(np.abs(moved), initial=0.0))
     return input_faults(session) if way <= tolerances.PASSED else []
 
 
@@ -107,20 +103,69 @@ def _stay_empty(rows: Rows, where: str = "") -> str:
     return f"{_row_span(rows)} {lie}{'stays' if one else 'stay'} empty"
 
 
-def _dead_centre_note(session: Session, limit: DeadCentre, path: Floats, rows: Rows) -> Diagnostic:
-    places = input_numbers(session.problem, session.layout, limit.inputs)
+def _place(
+    session: Session, followed: Followed, inputs: Floats, shown: Iterable[int] | None = None
+) -> tuple[Number, ...]:
+    """Where a way ended: the time, where inputs move by laws, and the inputs, or those `shown`."""
+    course = session.problem.motion.course
+    numbers = input_numbers(session.problem, session.layout, inputs)
+    found = numbers if shown is None else tuple(numbers[number] for number in shown)
+    if followed.parameter is None or course is None or course.parameter.name != "time":
+        return found
+    moment = Number("time", followed.parameter, session.problem.units.label(TIME))
+    return (moment, *found)
+
+
+def _dead_centre_note(
+    session: Session, followed: Followed, limit: DeadCentre, path: Floats, rows: Rows
+) -> Diagnostic:
     moving = np.flatnonzero(limit.inputs_beyond != limit.inputs)
-    shown = [places[number] for number in moving] or places
+    shown = _place(session, followed, limit.inputs, moving if moving.size else None)
     beyond = _all_beyond(limit, path, rows)
     where = "beyond it" if beyond else "beyond it on the way of the rows"
+    again = _assembled_again(session, followed, limit, path, rows)
+    cure = "end the sweep before it, or choose another assembly"
+    if again:
+        cure = f"end the sweep before it; from {input_text(again)} on it can be assembled again"
     return Diagnostic(
         "dead-centre",
         "warning",
         f"the branch ends at a dead centre; {_stay_empty(rows, where)}",
         measured=", ".join(map(input_text, shown)),
-        hint="end the sweep before it, or choose another assembly",
-        numbers=tuple(shown),
+        hint=f"{cure}{_chords(session, path)}",
+        numbers=shown,
     )
+
+
+def _chords(session: Session, path: Floats) -> str:
+    """What to know of rows that no law joins."""
+    course = session.problem.motion.course
+    together = np.count_nonzero((path != path[:, :1]).any(axis=1)) > 1
+    if not together or (course is not None and course.parameter.name != "row"):
+        return ""
+    return "; between rows that list their values the inputs go straight from one to the next"
+
+
+def _assembled_again(
+    session: Session, followed: Followed, limit: DeadCentre, path: Floats, rows: Rows
+) -> Number | None:
+    """Where a sweep of one turning input comes to the branch's other end, a whole turn on, before
+    its last row."""
+    moving = np.flatnonzero((path != path[:, :1]).any(axis=1))
+    if moving.size != 1 or not rows.reached[0]:
+        return None
+    number = int(moving[0])
+    walker = Walker(session, number, path[:, 0])
+    direction = float(np.sign(followed.direction[number]))
+    if walker.period is None or direction == 0.0:
+        return None
+    other = walker.end(Passage(float(path[number, 0]), rows.states[:, 0]), -direction)
+    value = other.value + direction * walker.period
+    ahead = direction * (path[number, ~rows.reached] - value)
+    behind = direction * (value - float(limit.inputs[number]))
+    if other.kind != "dead-centre" or behind <= 0.0 or not (ahead >= 0.0).any():
+        return None
+    return input_number(session.problem, session.layout, number, value)
 
 
 def _all_beyond(limit: DeadCentre, path: Floats, rows: Rows) -> bool:
@@ -131,7 +176,7 @@ def _all_beyond(limit: DeadCentre, path: Floats, rows: Rows) -> bool:
 
 
 def _runaway_note(session: Session, followed: Followed, limit: Runaway, rows: Rows) -> Diagnostic:
-    places = input_numbers(session.problem, session.layout, followed.inputs)
+    places = _place(session, followed, followed.inputs)
     units = session.problem.units
     slide = float(units.from_si(limit.slide * session.layout.length, LENGTH))
     return Diagnostic(
@@ -146,29 +191,29 @@ def _runaway_note(session: Session, followed: Followed, limit: Runaway, rows: Ro
     )
 
 
-def _branch_point_note(session: Session, point: BranchPoint, rows: Rows) -> Diagnostic:
-    places = input_numbers(session.problem, session.layout, point.inputs)
+def _branch_point_note(
+    session: Session, followed: Followed, point: BranchPoint, rows: Rows
+) -> Diagnostic:
+    places = _place(session, followed, point.inputs)
     return Diagnostic(
         "branch-point",
         "error",
         "the branch comes to a branch point, where it crosses another and the mechanism may go "
         f"either way; {_stay_empty(rows)}",
         measured=", ".join(map(input_text, places)),
-        hint="assembly: {at_branch_points: straight} goes on along the smooth continuation; or begin "
-        "another sweep beyond it with assembly: {near: ...}",
+        hint="assembly: {at_branch_points: straight} goes on along the smooth continuation; or "
+        "begin another sweep beyond it with assembly: {near: ...}",
         numbers=places,
     )
 
 
-def _lost_note(session: Session, followed: Followed, rows: Rows) -> Diagnostic:
-    places = input_numbers(session.problem, session.layout, followed.inputs)
-    together = np.count_nonzero(followed.direction) > 1
-    special = MAY_BE_FOLD if together else MAY_BE_SPECIAL
+def _lost_note(session: Session, followed: Followed, path: Floats, rows: Rows) -> Diagnostic:
+    places = _place(session, followed, followed.inputs)
     return Diagnostic(
         "branch-lost",
         "error",
         f"the branch could not be followed further; {_stay_empty(rows)}",
         measured=f"last place {', '.join(map(input_text, places))}",
-        hint=MAY_BE_RIGID if session.is_redundant else special,
+        hint=(MAY_BE_RIGID if session.is_redundant else MAY_BE_SPECIAL) + _chords(session, path),
         numbers=places,
     )

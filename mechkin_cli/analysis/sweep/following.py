@@ -31,14 +31,16 @@ def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> R
         rows.status[:] = start.status
         return rows
     if start.row == 0:
-        followed = session.follow(values, start.state, every_row=every_row, turns=True)
+        followed = session.follow_rows(start.state, every_row=every_row)
         rows = Rows.followed(followed)
         _explain(session, values, followed, rows)
     else:
         rows = Rows.without_guesses(session.layout.states, turn_count(session.plan), count)
         for way in (slice(start.row, None, -1), slice(start.row, None)):
             path = np.ascontiguousarray(values[:, way])
-            followed = session.follow(path, start.state, every_row=every_row, turns=True)
+            followed = session.follow_rows(
+                start.state, start.row, way.step or 1, every_row=every_row
+            )
             part = rows.part(way)
             part.take(followed, 0)
             if way.step == -1:
@@ -55,7 +57,7 @@ def _explain(session: Session, path: Floats, followed: Followed, rows: Rows) -> 
         from mechkin_cli.analysis.sweep.branch_end import crossing_note
 
         rows.diagnostics.append(crossing_note(session, followed))
-    if followed.end != TrackEnd.FINISHED:
+    if followed.end != TrackEnd.FINISHED and not rows.reached.all():
         from mechkin_cli.analysis.sweep.branch_end import explain_end
 
         explain_end(session, path, followed, rows)

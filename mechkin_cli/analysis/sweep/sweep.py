@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +19,7 @@ from mechkin_cli.mechanism.load_laws import quantities_read
 from mechkin_cli.solver.batch import assembly_size
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
+from mechkin_cli.solver.free_inputs import moves_freely
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
@@ -49,6 +51,10 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     asked = [known[name] for name in dict.fromkeys(quantities)]
     session = _followed_part(session, asked)
     session, start = first_assembly(session)
+    if start.stuck:
+        from mechkin_cli.analysis.sweep.branch_end import input_faults
+
+        start = replace(start, diagnostics=input_faults(session) or start.diagnostics)
     asked += _held(session.problem, asked)
     result = _closed(session, start, asked, verdicts=verdicts)
     if result.row_states.has_failed:
@@ -113,6 +119,7 @@ def _closed(
         else:
             rows.states[:, rows.reached] = batch.states[:, rows.reached]
         _judge_condition(rows, batch)
+        _judge_inputs(session, rows)
     result.keep(batch, wanted, demand)
     return result
 
@@ -162,6 +169,22 @@ def _judge_condition(rows: Rows, batch: Batch) -> None:
     unclear = rows.reached & ~(condition <= tolerances.CONDITION_RANK_UNCLEAR)
     rows.status[singular & (rows.status == Status.ok)] = Status.near_singular
     rows.status[unclear & (rows.status == Status.near_singular)] = Status.rank_unclear
+
+
+def _judge_inputs(session: Session, rows: Rows) -> None:
+    """Names inputs that cannot move; the rates of no row mean anything where they are to move: more
+    equations than unknowns leave a least square, whose condition tells nothing."""
+    if not session.is_redundant or not session.driven or not rows.reached.any():
+        return
+    from mechkin_cli.analysis.sweep.branch_end import input_faults
+
+    row = int(np.argmax(rows.reached))
+    if moves_freely(session, session.inputs.values[:, row], rows.states[:, row]):
+        return
+    faults = input_faults(session)
+    rows.diagnostics.extend(fault for fault in faults if fault not in rows.diagnostics)
+    if faults and any(moved.any() for moved in session.inputs[1:]):
+        rows.status[rows.reached] = Status.rank_unclear
 
 
 def _read_by_loads(result: Result) -> list[Wanted]:

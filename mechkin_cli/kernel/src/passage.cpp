@@ -23,6 +23,9 @@ constexpr double CLOSED = 1e-7;
 // over its root.
 constexpr double LEAST_ARC = 1e-10;
 constexpr double SINGULAR_STEP = 1e-6;
+// Rate of sigma below which the branch is about to turn back, and what may be left of sigma before it does, in parts of
+// max(1, |sigma|).
+constexpr double STEEP = 0.1, ROUNDING_LEFT = 1e-12;
 // Pivots of a matrix that is singular a little farther on, in parts of the least that steps may have.
 constexpr double SINGULAR_PIVOTS = 10.0;
 // Least ratio of sigma's second derivative at a dead centre and its mean over the step that it lies in.
@@ -94,7 +97,7 @@ class Walker {
     while (p->steps + p->rejected < limits_.arc_steps) {
       if (stands_in_the_way(arc, a, refuses, h, p)) return;
       if (h < LEAST_ARC) {
-        if (!cross_branch_point(p, &a)) return;
+        if (touches_dead_centre(p) || !cross_branch_point(p, &a)) return;
         h = arc.wanted_step(a);
       }
       int blame = -1;
@@ -183,6 +186,20 @@ class Walker {
     const double bend = (b.rate - a.rate) / (b.place - a.place);
     return std::fabs(fold->rate) * arc.speed() <= 1e-7 && fold->bend < SAME_BEND * bend &&
            bend < SAME_BEND * fold->bend;
+  }
+
+  // Where two branches pass at a gap near rounding, steps end shortly before a dead centre. The last nodes tell it if
+  // what is left of sigma is a rounding.
+  bool touches_dead_centre(Passage* p) const {
+    if (p->nodes.size() < 2) return false;
+    const Node &a = p->nodes[p->nodes.size() - 2], &b = p->nodes.back();
+    const double bend = (b.rate - a.rate) / (b.place - a.place);
+    if (!(b.bend < SAME_BEND * bend && bend < SAME_BEND * b.bend && b.bend < 0.0)) return false;
+    const double left = -0.5 * b.rate * b.rate / b.bend;
+    if (!(b.rate * p->arc->speed() < STEEP && left <= ROUNDING_LEFT * std::fmax(1.0, std::fabs(b.sigma)))) return false;
+    if (!p->arc->close_from(b, -2.0 * b.rate / b.bend, &p->beyond)) p->beyond = b;
+    p->end = PassageEnd::dead_centre;
+    return true;
   }
 
   bool cross_branch_point(Passage* p, Node* a) const {

@@ -13,19 +13,22 @@
 
 namespace {
 
-enum class Way { rest, line, curve };
+enum class Way { rest, line, curve, course };
+
+constexpr double ROUNDING = 0x1p-50;  // some units in the last place
 
 // Rows (first, last] that are reached one way from row `first`.
 struct Piece {
   Way way;
   long first, last;
+  long number = -1;  // of the course's piece
 };
 
 class RowFollower {
  public:
   RowFollower(const Plan& plan, const KernelUnit& unit, const InputRows& rows, const StepLimits& limits,
-              const RowGuesses& out)
-      : plan_(plan), unit_(unit), rows_(rows), limits_(limits), out_(out), scale_(rows.inputs, 0.0),
+              const RowGuesses& out, const Course* course)
+      : plan_(plan), unit_(unit), rows_(rows), limits_(limits), out_(out), course_(course), scale_(rows.inputs, 0.0),
         result_{TrackEnd::finished, 1, 0, 0, {}, {}, {}, std::vector<double>(rows.inputs, 0.0), {}, {}, {}} {
     for (int i = 0; i < rows.inputs; ++i)
       for (long r = 0; r < rows.rows; ++r) scale_[i] = std::fmax(scale_[i], std::fabs(rows.at(i, r)));
@@ -40,6 +43,7 @@ class RowFollower {
       if (piece.way == Way::rest) rest(piece);
       if (piece.way == Way::line && !line(piece.first, piece.last)) return result_;
       if (piece.way == Way::curve && !curve(piece)) return result_;
+      if (piece.way == Way::course && !along_course(piece, every_row)) return result_;
     }
     place_inputs(rows_.rows - 1);
     return result_;
@@ -67,24 +71,27 @@ class RowFollower {
     for (int i = 0; i < rows_.inputs; ++i) result_.inputs[i] = rows_.at(i, row);
   }
 
-  // Direction from a row to the next, its largest part 1 (or -1), and which part that is; false where they coincide.
+  // Direction from a row to the next, its largest part 1 (or -1), and which part that is; false where they coincide but
+  // for roundings of the inputs, which are no way to go.
   bool direction_from(long row, std::vector<double>* u, int* leading) const {
     u->assign(rows_.inputs, 0.0), *leading = 0;
     double size = 0.0;
+    bool moves = false;
     for (int i = 0; i < rows_.inputs; ++i) {
       (*u)[i] = rows_.at(i, row + 1) - rows_.at(i, row);
+      moves = moves || !(std::fabs((*u)[i]) <= ROUNDING * scale_[i]);
       if (std::fabs((*u)[i]) > size) size = std::fabs((*u)[i]), *leading = i;
     }
-    if (size == 0.0) return false;
+    if (size == 0.0 || !moves) return false;
     for (double& part : *u) part /= size;
     return true;
   }
 
   // The last row that lies on the straight way from `first` through the row after it.
-  long end_of_line(long first, const std::vector<double>& u, int leading) const {
+  long end_of_line(long first, long end, const std::vector<double>& u, int leading) const {
     double before = 0.0;
     long row = first + 1;
-    for (; row < rows_.rows; ++row) {
+    for (; row <= end; ++row) {
       const double along = (rows_.at(leading, row) - rows_.at(leading, first)) * u[leading];
       bool onward = along > before;
       for (int i = 0; onward && rows_.inputs > 1 && i < rows_.inputs; ++i) {
@@ -101,11 +108,20 @@ class RowFollower {
     std::vector<Piece> found;
     std::vector<double> u;
     int leading = 0;
+    long next = 0;  // piece of the course
+    const long courses = course_ ? (long)course_->pieces().size() : 0;
     for (long first = 0, last = 0; first + 1 < rows_.rows; first = last) {
+      if (next < courses && course_->pieces()[next].first == first) {
+        last = course_->pieces()[next].last;
+        found.push_back({Way::course, first, last, next});
+        ++next;
+        continue;
+      }
       last = first + 1;
       Way way = Way::rest;
       if (direction_from(first, &u, &leading)) {
-        if (!every_row) last = end_of_line(first, u, leading);
+        const long end = next < courses ? course_->pieces()[next].first : rows_.rows - 1;
+        if (!every_row) last = end_of_line(first, end, u, leading);
         const bool whole = first == 0 && last == rows_.rows - 1;
         const bool far = last > first + 1 && rows_.distance(first, last) >= limits_.knot;
         way = every_row || whole || far || rows_.inputs == 1 ? Way::line : Way::curve;
@@ -138,28 +154,67 @@ class RowFollower {
       sigma[row - first - 1] = std::fabs(rows_.at(leading, row) - origin[leading]);
     const Track track = follow_line(plan_, unit_, origin.data(), result_.direction.data(), last - first, sigma.data(),
                                     result_.state.data(), result_.turn, limits_, out_, first + 1);
+    for (double place : track.crossings) {
+      std::vector<double> inputs = origin;
+      for (int i = 0; i < rows_.inputs; ++i) inputs[i] += place * result_.direction[i];
+      note_crossing(inputs, place, sigma.data(), first, last);
+    }
+    return adopt(track, first, last, origin);
+  }
+  // The end of a way along rows (first, last]; whether it reached the last.
+  bool adopt(const Track& track, long first, long last, const std::vector<double>& origin) {
     // a row that is no number ends nothing, and is not reached either
     const bool missed = track.end == TrackEnd::finished && track.reached < last - first;
     result_.end = missed ? TrackEnd::stalled : track.end;
     result_.steps += track.steps, result_.rejected += track.rejected;
     result_.reached = first + 1 + track.reached;
     result_.limit = track.limit;
-    for (double place : track.crossings) note_crossing(origin, place, sigma, first);
     if (track.end == TrackEnd::start_not_closed)
       result_.inputs = origin;
     else
       take(track.last);
     return result_.end == TrackEnd::finished;
   }
-  // A branch point that was passed on the line from `first`.
-  void note_crossing(const std::vector<double>& origin, double place, const std::vector<double>& sigma, long first) {
-    std::vector<double> inputs = origin;
-    for (int i = 0; i < rows_.inputs; ++i) inputs[i] += place * result_.direction[i];
-    const long behind = std::upper_bound(sigma.begin(), sigma.end(), place) - sigma.begin();
+  // A branch point that was passed at a place of the way along rows (first, last], whose places are `sigma`.
+  void note_crossing(const std::vector<double>& inputs, double place, const double* sigma, long first, long last) {
+    const long behind = std::upper_bound(sigma, sigma + (last - first), place) - sigma;
     result_.crossings.push_back(inputs), result_.crossed_before.push_back(first + 1 + behind);
   }
   void take(const Node& node) {
     result_.inputs = node.inputs, result_.state = node.state, result_.turn = node.turn;
+  }
+
+  // Rows (first, last] of a piece of the course, all in one way or each for itself.
+  bool along_course(const Piece& piece, bool every_row) {
+    std::vector<double> sigma(piece.last - piece.first + 1);
+    for (long row = piece.first; row <= piece.last; ++row)
+      sigma[row - piece.first] = course_->sigma_of_row(piece.number, row);
+    const CoursePath path(plan_, *course_, piece.number,
+                          {sigma.data(), (long)sigma.size(), rows_.values + piece.first, rows_.rows});
+    PathPoint point;
+    for (long first = piece.first, last = first; first < piece.last; first = last) {
+      last = every_row ? first + 1 : piece.last;
+      const double begin = sigma[first - piece.first], *const places = &sigma[first + 1 - piece.first];
+      std::vector<double> origin(rows_.inputs);
+      for (int i = 0; i < rows_.inputs; ++i) origin[i] = rows_.at(i, first);
+      const Track track = follow_path(path, unit_, begin, last - first, places, result_.state.data(), result_.turn,
+                                      limits_, out_, first + 1);
+      const bool on = adopt(track, first, last, origin);
+      for (double place : track.crossings) {
+        path.at(place, &point);
+        note_crossing(point.inputs, place, places, first, last);
+      }
+      const double end = track.last.state.empty() ? begin : track.last.sigma;
+      path.at(end, &point);
+      double size = 0.0;
+      for (double part : point.first) size = std::fmax(size, std::fabs(part));
+      for (int i = 0; i < rows_.inputs; ++i) result_.direction[i] = size > 0.0 ? point.first[i] / size : 0.0;
+      if (on) continue;
+      const bool known = track.limit.kind != PassageEnd::lost;
+      result_.piece = piece.number, result_.parameter = course_->parameter(piece.number, known ? track.limit.at.sigma : end);
+      return false;
+    }
+    return true;
   }
 
   bool curve(const Piece& piece) {
@@ -232,6 +287,7 @@ class RowFollower {
   const InputRows& rows_;
   const StepLimits& limits_;
   const RowGuesses& out_;
+  const Course* course_;
   std::vector<double> scale_;
   Followed result_;
 };
@@ -240,7 +296,7 @@ class RowFollower {
 
 Followed follow_rows(const Plan& plan, const KernelUnit& unit, const double* inputs, const double* start,
                      const std::vector<double>& turn, bool every_row, const StepLimits& limits,
-                     const RowGuesses& out) {
+                     const RowGuesses& out, const Course* course) {
   const InputRows rows = {inputs, plan.inputs, out.rows};
-  return RowFollower(plan, unit, rows, limits, out).follow(start, turn, every_row);
+  return RowFollower(plan, unit, rows, limits, out, course).follow(start, turn, every_row);
 }

@@ -129,7 +129,7 @@ bool Stepper::step(const Node& a, double h, double sigma, Node* b) {
 
 // The inputs are columns too, so the first derivatives hold the whole tangent of the branch.
 double Stepper::wanted_step(const Node& n) const {
-  double b2 = 0.0, along = 0.0, most = limits_.longest_step;
+  double b2 = 0.0, along = 0.0, most = longest_step(n);
   // a fifth less than what would be refused
   for (double danger : n.danger) most = std::fmin(most, 0.8 * limits_.radius / danger);
   for (double s : n.second) b2 += s * s;
@@ -140,6 +140,18 @@ double Stepper::wanted_step(const Node& n) const {
   const double by_bend = limits_.bend * std::sqrt(t2 / b2);
   const double by_turn = across > 0.0 ? limits_.turn * std::sqrt(t2) / across : HUGE_VAL;
   return std::fmin(most, std::fmin(by_bend, by_turn));
+}
+
+// The step in which no input moves farther than it may: s h + b h^2 / 2 with the fastest one's derivatives.
+double Stepper::longest_step(const Node& n) const {
+  if (path_.is_straight()) return limits_.longest_step;
+  double speed = 0.0, bend = 0.0;
+  for (int i = 0; i < plan_.inputs; ++i) {
+    speed = std::fmax(speed, std::fabs(n.first[plan_.input_column[i]]));
+    bend = std::fmax(bend, std::fabs(n.second[plan_.input_column[i]]));
+  }
+  const double longest = limits_.longest_step, fast = speed + std::sqrt(speed * speed + 2.0 * bend * longest);
+  return fast > 2.0 ? 2.0 * longest / fast : longest;
 }
 
 void Stepper::normalise_quaternions(double* state, long stride) const {

@@ -52,6 +52,8 @@ class Path {
   // Whether the plan's constants change along the path: its derivatives are then read from places nearby,
   // in 0 <= sigma <= 1.
   virtual bool varies() const { return false; }
+  // Whether the inputs are linear in sigma, so that the ends of a step tell all of them between.
+  virtual bool is_straight() const { return true; }
 };
 
 // x0 + sigma u on one plan.
@@ -132,6 +134,7 @@ class Stepper {
   bool same_side(const Node& a, Node* b);
   bool differentiate_by_plan(Node* node);
   void columns_of_states(Node* node) const;
+  double longest_step(const Node& node) const;
 
   std::vector<ClosingTurn> turns_;
   int turn_slots_ = 0;

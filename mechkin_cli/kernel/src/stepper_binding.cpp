@@ -208,7 +208,8 @@ nb::object limit_of(const Followed& found) {
 }
 
 nb::tuple follow_table(const FrozenPlan& store, Table inputs, const Numbers& start, const Numbers& turn, bool every_row,
-                       const StepLimits& limits, Table guess, Column limit, std::optional<Table> turns) {
+                       const StepLimits& limits, Table guess, Column limit, std::optional<Table> turns,
+                       const Course* course) {
   const Plan& plan = store.view();
   const long rows = (long)inputs.shape(1);
   need(rows > 0, "inputs: no rows");
@@ -218,6 +219,7 @@ nb::tuple follow_table(const FrozenPlan& store, Table inputs, const Numbers& sta
   long slots = 0;
   for (const ClosingTurn& t : closing_turns(plan, narrow_unit())) slots += t.width;
   if (!turn.empty()) need_length(turn, slots, "turn");
+  if (course) need(course->rows() == rows && course->inputs() == plan.inputs, "course: of other rows or inputs");
   const RowGuesses out = {rows, table(guess, plan.states, rows, "guess"), limit.data(),
                           turns ? table(*turns, slots, rows, "turns") : nullptr};
   const char* const shared = "guess, limit and turns share no memory with one another or with inputs";
@@ -227,13 +229,14 @@ nb::tuple follow_table(const FrozenPlan& store, Table inputs, const Numbers& sta
   {
     nb::gil_scoped_release released;
     FloatingPointState state;
-    found = follow_rows(plan, narrow_unit(), inputs.data(), start.data(), turn, every_row, limits, out);
+    found = follow_rows(plan, narrow_unit(), inputs.data(), start.data(), turn, every_row, limits, out, course);
   }
   nb::list crossings;
   for (std::size_t k = 0; k < found.crossings.size(); ++k)
     crossings.append(nb::make_tuple(found.crossed_before[k], copied(found.crossings[k])));
   return nb::make_tuple((int)found.end, found.reached, found.steps, found.rejected, copied(found.inputs),
-                        copied(found.state), copied(found.turn), copied(found.direction), limit_of(found), crossings);
+                        copied(found.state), copied(found.turn), copied(found.direction), limit_of(found), crossings,
+                        found.piece, found.parameter);
 }
 
 nb::list turn_table(const FrozenPlan& store) {
@@ -318,5 +321,5 @@ void bind_stepper(nb::module_& m) {
 
   m.def("closing_turns", &turn_table, "plan"_a);
   m.def("follow_rows", &follow_table, "plan"_a, "inputs"_a, "start"_a, "turn"_a, "every_row"_a, "limits"_a, "guess"_a,
-        "limit"_a, "turns"_a.none());
+        "limit"_a, "turns"_a.none(), "course"_a.none() = nb::none());
 }

@@ -54,7 +54,37 @@ nb::tuple replay(const TapeStore& store, Rows<double> inputs, int lanes) {
   return nb::make_tuple(out, verdict);
 }
 
+// inputs x count and the ways of the switches to outputs with first and second derivatives by the first input
+// (count, outputs, 3).
+nb::object jets(const TapeStore& store, Rows<double> inputs, Row<double> ways) {
+  const Tape& t = store.view();
+  if (inputs.shape(0) != (std::size_t)t.inputs) throw nb::value_error("one row of numbers per input of the tape");
+  if (ways.shape(0) != (std::size_t)store.switches()) throw nb::value_error("one way for each switch of the tape");
+  const std::size_t count = inputs.shape(1);
+  double* out;
+  auto found = new_array<double>(&out, {count, (std::size_t)t.outputs, 3});
+  {
+    nb::gil_scoped_release released;
+    FloatingPointState state;
+    const KernelUnit& unit = *kernel_unit(2);
+    std::vector<char> memory(unit.jets_size(t));
+    std::vector<double> given(t.inputs);
+    for (std::size_t k = 0; k < count; ++k) {
+      for (int i = 0; i < t.inputs; ++i) given[i] = inputs.data()[i * count + k];
+      unit.replay_jets(t, given.data(), ways.data(), out + k * 3 * t.outputs, memory.data());
+    }
+  }
+  return nb::cast(found);
+}
+
 }  // namespace
+
+int TapeStore::switches() const {
+  int count = 0;
+  for (std::uint8_t o : operations_)
+    count += o == TAPE_MAGNITUDE || o == TAPE_LARGER || o == TAPE_SMALLER || (o >= TAPE_LESS && o <= TAPE_WHOLE);
+  return count;
+}
 
 TapeStore::TapeStore(int inputs, std::vector<double> constants, std::vector<std::uint8_t> operations,
                      std::vector<std::int32_t> operands, std::vector<std::int32_t> outputs,
@@ -98,5 +128,6 @@ void bind_tape(nb::module_& m) {
                                   copy_of(guards), copy_of(expected), copy_of(advice));
            },
            "inputs"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "guards"_a, "expected"_a, "advice"_a)
-      .def("replay", &replay, "inputs"_a, "lanes"_a = 0);
+      .def("replay", &replay, "inputs"_a, "lanes"_a = 0)
+      .def("jets", &jets, "inputs"_a, "ways"_a);
 }

@@ -18,6 +18,8 @@ class TapeStore {
             std::vector<std::uint8_t> expected, std::vector<std::uint8_t> advice);
   TapeStore(const TapeStore&) = delete;
   const Tape& view() const { return tape_; }
+  // Instructions that choose: their ways are given where a tape is replayed with derivatives.
+  int switches() const;
 
  private:
   std::vector<double> constants_;

@@ -12,6 +12,22 @@ constexpr double ON_BRANCH_POINT = 1e-11;
 // How near steps as short as they may be come to a place that ends a branch: the root of the square of a pivot.
 constexpr double NEAR_LIMIT = 1e-10;
 
+// Whether the inputs between two nodes are where the nodes' derivatives say: what the path does between them is seen.
+bool sees_between(const Path& path, const Stepper& stepper, const Node& a, const Node& b) {
+  if (path.is_straight()) return true;
+  constexpr int PLACES = 3;
+  const double h = b.sigma - a.sigma;
+  double sigma[PLACES];
+  std::vector<double> inputs(stepper.plan().inputs * PLACES);
+  PathPoint point;
+  for (int k = 0; k < PLACES; ++k) {
+    sigma[k] = a.sigma + h * (k + 1) / (PLACES + 1);
+    path.at(sigma[k], &point);
+    for (std::size_t i = 0; i < point.inputs.size(); ++i) inputs[i * PLACES + k] = point.inputs[i];
+  }
+  return stray(stepper, a, b, sigma, PLACES, inputs.data(), PLACES) <= stepper.limits().stray * h;
+}
+
 // A walk along one path: careful steps while they are long, by arclength where they are refused (passage.hpp).
 class Tracker {
  public:
@@ -20,14 +36,14 @@ class Tracker {
       : path_(path), unit_(unit), rows_(rows), sigma_(sigma), limits_(limits), out_(out), first_(first),
         stepper_(path, unit, limits), track_{TrackEnd::finished, 0, 0, 0, {}, 0.0, {}, {}} {}
 
-  Track follow(const double* start, const std::vector<double>& turn) {
-    if (!stepper_.close(0.0, start, &node_)) {
+  Track follow(double begin, const double* start, const std::vector<double>& turn) {
+    if (!stepper_.close(begin, start, &node_)) {
       track_.end = TrackEnd::start_not_closed;
       return track_;
     }
     if (!turn.empty()) adopt_turns(stepper_, turn, &node_);
-    for (; row_ < rows_ && sigma_[row_] <= 0.0; ++row_) put_row(node_, limits_.jump, first_ + row_, out_);
-    end_ = rows_ ? sigma_[rows_ - 1] : 0.0;
+    for (; row_ < rows_ && sigma_[row_] <= begin; ++row_) put_row(node_, limits_.jump, first_ + row_, out_);
+    end_ = rows_ ? sigma_[rows_ - 1] : begin;
     step_ = stepper_.wanted_step(node_);
     while (node_.sigma < end_ && go_on()) {
     }
@@ -56,7 +72,8 @@ class Tracker {
     if (h * speed() < limits_.narrow && !last && looks()) return look();
     Node next;
     if (stepper_.step(node_, h, last ? end_ : node_.sigma + h, &next) &&
-        (continue_turns(stepper_, node_, &next) || h <= limits_.angle_step)) {
+        (continue_turns(stepper_, node_, &next) || h <= limits_.angle_step) &&
+        sees_between(path_, stepper_, node_, next)) {
       ++track_.steps;
       const long from = row_;
       while (row_ < rows_ && sigma_[row_] <= next.sigma) ++row_;
@@ -170,6 +187,11 @@ class Tracker {
 Track follow_line(const Plan& plan, const KernelUnit& unit, const double* x0, const double* u, long rows,
                   const double* sigma, const double* start, const std::vector<double>& turn, const StepLimits& limits,
                   const RowGuesses& out, long first) {
-  const Line line(plan, x0, u);
-  return Tracker(line, unit, rows, sigma, limits, out, first).follow(start, turn);
+  return follow_path(Line(plan, x0, u), unit, 0.0, rows, sigma, start, turn, limits, out, first);
+}
+
+Track follow_path(const Path& path, const KernelUnit& unit, double begin, long rows, const double* sigma,
+                  const double* start, const std::vector<double>& turn, const StepLimits& limits, const RowGuesses& out,
+                  long first) {
+  return Tracker(path, unit, rows, sigma, limits, out, first).follow(begin, start, turn);
 }

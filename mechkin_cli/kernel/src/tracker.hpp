@@ -5,6 +5,7 @@
 // of closing joints are carried along in the same way, so that whole turns and signs are never lost between rows.
 #pragma once
 
+#include "course.hpp"
 #include "passage.hpp"
 
 enum class TrackEnd : int { finished = 0, stalled = 1, exhausted = 2, start_not_closed = 3 };
@@ -34,13 +35,18 @@ struct Track {
   std::vector<double> crossings;  // sigma of the branch points that were passed
 };
 
-// Rows on a straight path: sigma (rows) must not fall; row 0 of them is number `first` of the guesses.
+// Rows on a path from `begin` on: sigma (rows) must not fall; row 0 of them is number `first` of the guesses.
 // `turn` (turn slots) are the closing joints' continuous turns at the start, empty: as the kernel finds them.
+Track follow_path(const Path& path, const KernelUnit& unit, double begin, long rows, const double* sigma,
+                  const double* start, const std::vector<double>& turn, const StepLimits& limits, const RowGuesses& out,
+                  long first);
+// The same on the straight path x0 + sigma u, from x0 on.
 Track follow_line(const Plan& plan, const KernelUnit& unit, const double* x0, const double* u, long rows,
                   const double* sigma, const double* start, const std::vector<double>& turn, const StepLimits& limits,
                   const RowGuesses& out, long first);
 
-// How far rows were followed: the last place on the branch, and the way the inputs went there (largest part 1).
+// How far rows were followed: the last place on the branch, and the way the inputs went there (largest part 1); on a
+// piece of their course, which one, and the course's parameter at the limit, or at the last place where none is known.
 struct Followed {
   TrackEnd end;
   long reached, steps, rejected;
@@ -49,13 +55,16 @@ struct Followed {
   // branch points that were passed: the inputs there, and the first row behind each
   std::vector<std::vector<double>> crossings;
   std::vector<long> crossed_before;
+  long piece = -1;
+  double parameter = 0.0;
 };
 
 // Follows the branch through `start` along all rows; `inputs` (inputs x rows, column after column). Straight runs of
 // rows are followed as lines, other stretches as smooth curves through the rows, corners between distant rows chord by
-// chord (polyline.cpp). `every_row` makes each row a node.
+// chord (polyline.cpp). `every_row` makes each row a node. Rows on the pieces of a `course` are followed along it.
 Followed follow_rows(const Plan& plan, const KernelUnit& unit, const double* inputs, const double* start,
-                     const std::vector<double>& turn, bool every_row, const StepLimits& limits, const RowGuesses& out);
+                     const std::vector<double>& turn, bool every_row, const StepLimits& limits, const RowGuesses& out,
+                     const Course* course = nullptr);
 
 // --- shared by both -------------------------------------------------------------------------------
 

@@ -7,7 +7,7 @@
 #include "held.hpp"
 #include "outputs.hpp"
 #include "search.hpp"
-#include "tape_replay.hpp"
+#include "tape_jets.hpp"
 
 namespace {
 
@@ -229,7 +229,7 @@ struct PairTypes<Entries<All...>> {
 };
 
 const KernelUnit unit = {LANES, tree_types, PairTypes<Pairs>::table, Pairs::count, workspace_size, run, run_rows, search_rows,
-                         elementwise, replay_size, replay};
+                         elementwise, replay_size, replay, jets_size, replay_jets};
 
 }  // namespace
 

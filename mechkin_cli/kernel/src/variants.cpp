@@ -142,6 +142,8 @@ class Worker {
   }
 
   bool follow_way(const double* inputs, long first, long direction, long count) {
+    for (const VariantWay& way : base_.ways)
+      if (way.step == direction) return follow_course(way);
     const Plan& p = plan_.view();
     const long rows = base_.rows;
     for (int i = 0; i < p.inputs; ++i)
@@ -160,6 +162,30 @@ class Worker {
       section_[first + direction * k] = direction * sections;
     }
     if (!way_turn_.empty()) put(way_turn_, turn_slots_, &turn_);
+    return true;
+  }
+
+  bool follow_course(const VariantWay& way) {
+    const Plan& p = plan_.view();
+    const long rows = base_.rows, count = (long)way.rows.size();
+    way_.resize(p.states * count), way_limit_.resize(count);
+    if (!turn_.empty()) way_turn_.resize(turn_slots_ * count);
+    const RowGuesses guesses = {count, way_.data(), way_limit_.data(), turn_.empty() ? nullptr : way_turn_.data()};
+    const Followed found = follow_rows(p, narrow_, way.values.data(), state_.data(), {}, false, base_.following,
+                                       guesses, way.course.get());
+    if (found.end != TrackEnd::finished) return false;
+    const auto put = [&](const std::vector<double>& from, long columns, std::vector<double>* to) {
+      for (long c = 0; c < columns; ++c)
+        for (long k = 0; k < count; ++k)
+          if (way.rows[k] >= 0) (*to)[c * rows + way.rows[k]] = from[c * count + k];
+    };
+    put(way_, p.states, &guess_), put(way_limit_, 1, &limit_);
+    for (long k = 0; k < count; ++k) {
+      const auto passed = [&](long behind) { return behind <= k; };
+      const long sections = std::count_if(found.crossed_before.begin(), found.crossed_before.end(), passed);
+      if (way.rows[k] >= 0) section_[way.rows[k]] = way.step * sections;
+    }
+    if (!turn_.empty()) put(way_turn_, turn_slots_, &turn_);
     return true;
   }
 
@@ -234,6 +260,14 @@ Variants::Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputLi
   require(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");
   require(!(demand & DEMAND_JERK) || demand & DEMAND_ACCELERATION, "jerks need accelerations");
   require(base_.iterations >= 0 && base_.iterations <= 10000, "iterations: 0 to 10000");
+  for (const VariantWay& w : base_.ways) {
+    const std::size_t places = w.rows.size();
+    require(places > 0 && w.values.size() == p.inputs * places, "ways: wrong shape");
+    for (long row : w.rows) require(row < base_.rows, "ways: no such row");
+    require(!w.course || (w.course->rows() == (long)places && w.course->inputs() == p.inputs),
+            "ways: a course of other rows or inputs");
+    require((std::size_t)t.outputs == constants, "ways: of inputs that do not move with the parameters");
+  }
   int turns = 0;
   for (const ClosingTurn& turn : closing_turns(p, *kernel_unit(2))) turns += turn.width;
   for (const ClosingAngle& a : base_.angles)

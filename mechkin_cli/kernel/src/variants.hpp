@@ -5,6 +5,7 @@
 // neighbour: what it gives does not depend on the other variants, their order, chunks, lanes or threads.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "frozen_plan.hpp"
@@ -29,6 +30,15 @@ struct ClosingAngle {
   int slot, turn;
 };
 
+// The way of the inputs from the first assembly's row on (step 1) or back (-1): rows, and between them (row -1) the places
+// where they turn or bend; `values` (inputs x places).
+struct VariantWay {
+  long step;
+  std::vector<long> rows;
+  std::vector<double> values;
+  std::shared_ptr<const Course> course;  // of the inputs, where it is not straight
+};
+
 // What does not change from variant to variant. The tape's outputs are the plan's constants, then those of the outputs,
 // then, where the inputs move with the parameters, their values, rates, accelerations and jerks (4 x inputs x rows).
 struct VariantBase {
@@ -41,6 +51,7 @@ struct VariantBase {
   int iterations;
   StepLimits continuation, following;
   std::vector<ClosingAngle> angles;
+  std::vector<VariantWay> ways;  // none where the inputs run straight from row to row
 };
 
 // A variant's first assembly.

@@ -1,0 +1,42 @@
+"""Whether each input can move: what follows from its rate closes the loops."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.solver.stepping import step_limits
+from mechkin_cli.tolerances import FREE_INPUT_MISS, FREE_INPUT_STEP
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.solver.session import Session
+
+
+def moves_freely(session: Session, inputs: Floats, state: Floats) -> bool:
+    """Whether the loops still close, to third order, a little further on each input in turn, with
+    the others held; False also where the rates are not known, as next to a dead centre.
+
+    Args:
+        session: the mechanism as it is driven.
+        inputs: (inputs,) in kernel units.
+        state: (states,) closed there.
+    """
+    limits = step_limits()
+    for number in range(inputs.size):
+        direction = np.zeros(inputs.size)
+        direction[number] = 1.0
+        stepper = _kernel.Stepper.straight(
+            session.plan, inputs.tolist(), direction.tolist(), limits
+        )
+        node = stepper.close(0.0, state.tolist())
+        if node is None:
+            return False
+        guess = np.asarray(stepper.predict(node, FREE_INPUT_STEP))[:, None]
+        moved = (inputs + FREE_INPUT_STEP * direction)[:, None]
+        batch = session.run(moved, np.ascontiguousarray(guess), iterations=0)
+        if not batch.residual[0] <= FREE_INPUT_MISS:
+            return False
+    return True
