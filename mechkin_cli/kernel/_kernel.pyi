@@ -243,6 +243,8 @@ class Plan:
         accelerations: Floats | None = None,
         jerks: Floats | None = None,
         loads: Floats | None = None,
+        turned: Floats | None = None,
+        whole: Floats | None = None,
         outputs: Outputs | None = None,
         states: Floats,
         values: Floats | None = None,
@@ -292,6 +294,7 @@ class Variants:
         outputs: Outputs,
         parameters: Floats,
         inputs: Floats,
+        whole: Floats,
         rates: Floats,
         accelerations: Floats,
         jerks: Floats,
@@ -302,7 +305,8 @@ class Variants:
         iterations: int,
         continuation: StepLimits,
         following: StepLimits,
-        angles: Sequence[tuple[int, int]],
+        angles: Sequence[tuple[int, int, bool]],
+        half_turn_side: float,
     ) -> None: ...
     def run(
         self, parameters: Floats, lanes: int = 0, threads: int = 1
@@ -323,6 +327,7 @@ class Positions:
         plan: Plan,
         outputs: Outputs,
         inputs: Floats,
+        whole: Floats,
         rates: Floats,
         accelerations: Floats,
         jerks: Floats,
@@ -331,9 +336,9 @@ class Positions:
         demand: int,
         iterations: int,
         limits: StepLimits,
-        angles: Sequence[tuple[int, int]],
+        angles: Sequence[tuple[int, int, bool]],
     ) -> None: ...
-    def solve(self, inputs: Sequence[float]) -> list[float] | None:
+    def solve(self, inputs: Sequence[float], whole: Sequence[float]) -> list[float] | None:
         """The outputs' slots in SI; None where the branch does not lead there."""
 
 class StepLimits:
@@ -364,6 +369,7 @@ class StepLimits:
         stray: float,
         angle_step: float,
         angle_miss: float,
+        angle_bend: float,
         plan_step: float,
     ) -> None: ...
 
@@ -427,9 +433,13 @@ def closing_turns(plan: Plan) -> list[tuple[int, int, int, int]]:
     Freedom -1 is an orientation, four slots.
     """
 
+def tree_turns(plan: Plan) -> list[tuple[int, int]]:
+    """(state, slot) of the tree's angles whose whole turns following counts; after the former."""
+
 def follow_rows(
     plan: Plan,
     inputs: Floats,
+    whole: Floats | None,
     start: Sequence[float],
     turn: Sequence[float],
     every_row: bool,
@@ -439,6 +449,8 @@ def follow_rows(
     turns: Floats | None,
 ) -> tuple[int, int, int, int, Floats, Floats, Floats, Floats]:
     """Fills guess, limit and turns, which share no memory with one another or with inputs.
+
+    `inputs` are without the `whole` turns of angles, integers, where these are given.
 
     Returns how it ended (`TrackEnd`), rows reached, steps taken and rejected, and inputs, state,
     turn and direction at the last place.

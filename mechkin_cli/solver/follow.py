@@ -23,11 +23,11 @@ class Followed(NamedTuple):
     """Guesses for the rows that were reached.
 
     `guess` (states, rows) and `limit` (rows: largest correction that a fill-in row may still need)
-    hold for the first `reached` rows, and so do `turns` (turn slots, rows), the angles and
-    quaternions of closing joints, continuous from the first row, where they were asked for
-    (`solver.closing_turns`). If the branch could not be followed further, `inputs` and `state` are
-    the last place on it, `turn` the closing joints' turns there, and `direction` the way the inputs
-    were going.
+    hold for the first `reached` rows, and so do `turns` (turn slots, rows) where they were asked
+    for (`solver.closing_turns`): the angles and quaternions of closing joints, continuous from the
+    first row, and the whole turns of the tree's angles, whose states are then within half a turn.
+    If the branch could not be followed further, `inputs` and `state` are the last place on it,
+    `turn` the turns there, and `direction` the way the inputs were going.
     """
 
     guess: Floats
@@ -50,16 +50,19 @@ def follow(
     every_row: bool = False,
     turns: bool = False,
     turn: Floats | None = None,
+    whole: Floats | None = None,
 ) -> Followed:
     """Follows the branch through `start` (states at the first row) along all rows.
 
     Args:
         plan: the kernel's plan.
-        inputs: (inputs, rows) in kernel units.
+        inputs: (inputs, rows) in kernel units; angles without their `whole` turns, if these are
+            given.
         start: (states,) closed at the first row.
         every_row: make each row a node of the skeleton instead of filling in.
-        turns: carry the turns of closing joints along.
+        turns: carry turns along.
         turn: (turn slots,) turns at the first row, where they are known from a way before it.
+        whole: (inputs, rows) whole turns.
     """
     rows = inputs.shape[1]
     guess, limit = np.empty((start.size, rows)), np.empty(rows)
@@ -68,6 +71,7 @@ def follow(
     end, reached, steps, _, place, state, last_turn, direction = _kernel.follow_rows(
         plan,
         np.ascontiguousarray(inputs),
+        None if whole is None else np.ascontiguousarray(whole),
         start.tolist(),
         given,
         every_row,
@@ -77,6 +81,8 @@ def follow(
         along,
     )
     guess[:, reached:] = np.nan
+    if along is not None:
+        along[:, reached:] = np.nan
     return Followed(
         guess, limit, reached, TrackEnd(end), steps, place, state, direction, along, last_turn
     )

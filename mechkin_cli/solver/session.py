@@ -181,10 +181,13 @@ class Session:
         every_row: bool = False,
         turns: bool = False,
         turn: Floats | None = None,
+        whole: Floats | None = None,
     ) -> Followed:
         """Follows the branch through `start` (states,) along a path (inputs, rows); arguments as
         those of `solver.follow.follow`."""
-        return follow_path(self.plan, path, start, every_row=every_row, turns=turns, turn=turn)
+        return follow_path(
+            self.plan, path, start, every_row=every_row, turns=turns, turn=turn, whole=whole
+        )
 
     def search(self, inputs: Floats, within: Within | None = None) -> Found:
         """All assemblies at some inputs (inputs,) that random starts find, or those `within` a
@@ -221,6 +224,8 @@ class Session:
         accelerations: Floats | None = None,
         jerks: Floats | None = None,
         loads: Floats | None = None,
+        turned: Floats | None = None,
+        whole: Floats | None = None,
         derivatives: bool = False,
         shift: int = 0,
         iterations: int = tolerances.NEWTON_ITERATIONS,
@@ -236,6 +241,8 @@ class Session:
             accelerations=accelerations,
             jerks=jerks,
             loads=loads,
+            turned=turned,
+            whole=whole,
             demand=demand,
             outputs=None if readout is None else readout.outputs,
             derivatives=derivatives,

@@ -190,7 +190,7 @@ def test_angles_against_small_steps(name: str, coarse: int) -> None:
     rows = run(plan, path, followed.guess, outputs=angles).outputs
     for place, slot in slots.items():
         wanted = np.unwrap(brute[outputs[place]])[::400]
-        found = continuous_angle(rows[outputs[place]], followed.turns[slot], 0)
+        found = continuous_angle(rows[outputs[place]], followed.turns[slot])
         assert np.max(np.abs(found - wanted)) <= 1e-9
 
 
@@ -216,14 +216,6 @@ def test_signs_against_small_steps(name: str) -> None:
     assert np.all(signs == 1.0)
     flipped = tuple(part * (-1.0) ** np.arange(part.size) for part in wanted)
     assert np.array_equal(continuous_signs(flipped, q, 0), (-1.0) ** np.arange(path.shape[1]))
-
-
-def test_rows_that_were_not_filled_in_take_their_neighbours_turn() -> None:
-    angle = np.linspace(0.0, 20.0, 60)
-    wrapped = np.arctan2(np.sin(angle), np.cos(angle))
-    followed = angle + 0.3
-    followed[[0, 20, 21, 59]] = np.nan
-    assert np.max(np.abs(continuous_angle(wrapped, followed, 0) - angle)) <= 1e-12
 
 
 @pytest.mark.parametrize("row", [1, 57, 99])

@@ -1,45 +1,51 @@
-"""Continuous angles of closing joints.
-
-The kernel has the angle of a closing joint from an arctangent; whole turns come from what following
-carried along (`solver.closing_turns`).
-"""
+"""Continuous angles: the kernel gives them within a turn, following counts whole turns
+(`solver.closing_turns`)."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.mechanism.joint_table import is_angle
-from mechkin_cli.solver.closing_turns import continuous_angle, turn_slots
+from mechkin_cli.solver.closing_turns import continuous_angle, tree_slots, turn_slots
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.sweep.result import Columns, Result
     from mechkin_cli.mechanism.quantities import Wanted
-    from mechkin_cli.solver.layout import Layout
 
 
 def make_continuous(result: Result, wanted: Sequence[Wanted], columns: Columns) -> None:
-    """Makes the angles of closing joints in `columns` continuous from the first row, in place."""
+    """Makes angles in `columns` continuous from the first row, in place."""
     rows, layout = result.row_states, result.session.layout
-    angles = [quantity for quantity in wanted if _is_closing_angle(layout, quantity)]
+    angles = [quantity for quantity in wanted if _is_angle(quantity)]
     if not angles or not rows.reached.any():
         return
-    slots = turn_slots(result.session.plan)
+    closing, tree = turn_slots(result.session.plan), tree_slots(result.session.plan)
     reached = np.flatnonzero(rows.reached)
+    driven = {item.name: item.values for item in result.problem.motion.inputs}
     for quantity in angles:
-        number = -1 - layout.joint_reference[quantity.owner]
+        reference = layout.joint_reference[quantity.owner]
         freedom = layout.mechanism.joints[quantity.owner].type.freedom_of[quantity.coordinate]
-        followed = rows.turns[slots[number, freedom], reached]
         column = columns[quantity.name][0]
-        column[reached] = continuous_angle(column[reached], followed, 0)
+        if quantity.name in driven:
+            column[reached] = driven[quantity.name][reached]
+            continue
+        if reference < 0:
+            followed = rows.turns[closing[-1 - reference, freedom], reached]
+            column[reached] = continuous_angle(column[reached], followed)
+            continue
+        slot = tree.get(layout.state(layout.edge_number[quantity.owner], freedom))
+        if slot is not None:
+            # closing may have taken a state beyond half a turn; its turns are counted within
+            angle = column[reached]
+            beyond = np.where(angle > pi, 1.0, np.where(angle <= -pi, -1.0, 0.0))
+            column[reached] = (angle - beyond * (2.0 * pi)) + rows.turns[slot, reached] * (2.0 * pi)
 
 
-def _is_closing_angle(layout: Layout, quantity: Wanted) -> bool:
+def _is_angle(quantity: Wanted) -> bool:
     return (
-        quantity.kind == "coordinate"
-        and is_angle(quantity.coordinate)
-        and quantity.order == 0
-        and layout.joint_reference[quantity.owner] < 0
+        quantity.kind == "coordinate" and is_angle(quantity.coordinate) and quantity.order == 0
     )

@@ -2,21 +2,46 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from math import pi
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.analysis.sweep.rows import Rows
-from mechkin_cli.solver.closing_turns import turn_count
+from mechkin_cli.solver.closing_turns import (
+    ORIENTATION,
+    tree_slots,
+    turn_count,
+    turn_slots,
+)
 from mechkin_cli.solver.follow import TrackEnd
-from mechkin_cli.solver.search import wrap_angles
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from mechkin_cli.analysis.assembly.start import Start
     from mechkin_cli.arrays import Floats
     from mechkin_cli.solver.follow import Followed
-    from mechkin_cli.solver.layout import Layout
     from mechkin_cli.solver.session import Session
+
+
+class _Way(NamedTuple):
+    """Inputs (inputs, rows) on the way: as they are, and angles without their whole turns."""
+
+    values: Floats
+    reduced: Floats
+    whole: Floats
+
+    def part(self, rows: slice) -> _Way:
+        return _Way(*(np.ascontiguousarray(table[:, rows]) for table in self))
+
+    def after(self, place: Floats, row: int) -> _Way:
+        """From a place (inputs,) on to the rows from `row` on; the place's angles have the whole
+        turns of that row."""
+        reduced = place - (self.values[:, row] - self.reduced[:, row])
+        tables = zip(self, (place, reduced, self.whole[:, row]), strict=True)
+        return _Way(*(np.column_stack((first, table[:, row:])) for table, first in tables))
 
 
 def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> Rows:
@@ -24,56 +49,117 @@ def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> R
 
     With `every_row` each row is a careful step instead of a place filled in between two.
     """
-    values = session.inputs.values
-    count = values.shape[1]
+    inputs = session.inputs
+    way = _Way(inputs.values, inputs.reduced, inputs.whole)
+    count = way.values.shape[1]
     if start.state is None:
         rows = Rows.without_guesses(session.layout.states, turn_count(session.plan), count)
         rows.status[:] = start.status
         return rows
     if start.row == 0:
-        followed = session.follow(values, start.state, every_row=every_row, turns=True)
+        followed = _follow(session, way, start.state, every_row)
         rows = Rows.followed(followed)
-        rows.nodes = _go_on(session, values, followed, rows, every_row)
+        rows.nodes = _go_on(session, way, followed, rows, every_row)
     else:
         rows = Rows.without_guesses(session.layout.states, turn_count(session.plan), count)
-        for way in (slice(start.row, None, -1), slice(start.row, None)):
-            path = np.ascontiguousarray(values[:, way])
-            followed = session.follow(path, start.state, every_row=every_row, turns=True)
-            part = rows.part(way)
+        for direction in (slice(start.row, None, -1), slice(start.row, None)):
+            path = way.part(direction)
+            followed = _follow(session, path, start.state, every_row)
+            part = rows.part(direction)
             part.take(followed, 0)
             rows.nodes += _go_on(session, path, followed, part, every_row)
-    _wrap_from_first(session.layout, rows)
+    _count_from_first(session, rows)
     return rows
 
 
-def _go_on(session: Session, path: Floats, followed: Followed, rows: Rows, every_row: bool) -> int:
+def _follow(
+    session: Session, way: _Way, state: Floats, every_row: bool, turn: Floats | None = None
+) -> Followed:
+    return session.follow(
+        way.reduced, state, every_row=every_row, turns=True, turn=turn, whole=way.whole
+    )
+
+
+def _go_on(session: Session, way: _Way, followed: Followed, rows: Rows, every_row: bool) -> int:
     """Finds out what ended a way, and follows it on, back from dead centres; returns the steps
     taken in all."""
     steps = followed.steps
     while followed.end != TrackEnd.FINISHED:
         from mechkin_cli.analysis.sweep.branch_end import explain_end
 
-        back = explain_end(session, path, followed, rows)
+        back = _on_one_turn(session, followed, rows, explain_end, way.values)
         if back is None:
             break
         # the row before is near the dead centre: go on from the last regular place of the branch
-        path = np.column_stack((followed.inputs, path[:, back:]))
+        way = way.after(followed.inputs, back)
         rows = rows.part(slice(back - 1, None))
-        state, turn = followed.state, followed.turn
-        followed = session.follow(path, state, every_row=every_row, turns=True, turn=turn)
+        followed = _follow(session, way, followed.state, every_row, followed.turn)
         rows.take(followed, 1)
         steps += followed.steps
     return steps
 
 
-def _wrap_from_first(layout: Layout, rows: Rows) -> None:
-    """Angles are continuous from the first row, which lies in (-180, 180] degrees."""
+def _on_one_turn(
+    session: Session,
+    followed: Followed,
+    rows: Rows,
+    explain: Callable[[Session, Floats, Followed, Rows], int | None],
+    path: Floats,
+) -> int | None:
+    """Explains an end with the tree's angles as they go on from the last place followed; rows that
+    are filled in then get their turns."""
+    assert followed.turn is not None
+    slots = tree_slots(session.plan)
+    near = np.flatnonzero(rows.reached)
+    shift = np.zeros((rows.states.shape[0], rows.reached.size))
+    for state, slot in slots.items():
+        shift[state, near] = (rows.turns[slot, near] - followed.turn[slot]) * (2.0 * pi)
+    rows.states += shift
+    before = rows.reached.copy()
+    back = explain(session, path, followed, rows)
+    rows.states -= shift
+    for row in np.flatnonzero(rows.reached & ~before):
+        _take_turns_beside(session, rows, int(row), followed, slots)
+    return back
+
+
+def _take_turns_beside(
+    session: Session, rows: Rows, row: int, followed: Followed, slots: dict[int, int]
+) -> None:
+    """The turns of a row that was filled in next to a dead centre: those of the row before, or of
+    the last place followed."""
+    turn = followed.turn if row == 0 or not rows.reached[row - 1] else rows.turns[:, row - 1]
+    assert turn is not None
+    known = np.isnan(rows.turns[:, row])
+    rows.turns[known, row] = turn[known]
+    for state, slot in slots.items():
+        whole = np.rint(rows.states[state, row] / (2.0 * pi))
+        rows.states[state, row] -= whole * (2.0 * pi)
+        assert followed.turn is not None
+        rows.turns[slot, row] = followed.turn[slot] + whole
+
+
+def _count_from_first(session: Session, rows: Rows) -> None:
+    """Turns count from the first row, whose angles lie in (-180, 180] degrees."""
     if not rows.reached.any():
         return
     first = int(np.argmax(rows.reached))
-    before = rows.states[:, first].copy()
-    wrapped = before[:, None].copy()
-    wrap_angles(layout, wrapped)
-    turns = wrapped - before[:, None]
-    if turns.any():
-        rows.states += turns
+    # half a turn is +180, whichever side of it rounding has
+    for state, slot in tree_slots(session.plan).items():
+        below = rows.states[state, first] <= tolerances.HALF_TURN_SIDE - pi
+        rows.turns[slot] -= rows.turns[slot, first] - (1.0 if below else 0.0)
+    for (_, freedom), slot in turn_slots(session.plan).items():
+        if freedom != ORIENTATION:
+            beyond = rows.turns[slot, first] - pi - tolerances.HALF_TURN_SIDE
+            turns = np.ceil(beyond / (2.0 * pi))
+            rows.turns[slot] -= turns * (2.0 * pi)
+
+
+def keep_within_half_turn(session: Session, rows: Rows) -> None:
+    """Brings the tree's angles into (-half a turn, half a turn] where closing took them beyond."""
+    for state, slot in tree_slots(session.plan).items():
+        values = rows.states[state]
+        for rest in (np.flatnonzero(values > pi), np.flatnonzero(values <= -pi)):
+            whole = np.sign(values[rest])
+            values[rest] -= whole * (2.0 * pi)
+            rows.turns[slot, rest] += whole

@@ -343,11 +343,13 @@ class Result:
         session = session or self.session
         inputs = inputs or self.session.inputs
         rows = self.row_states
-        values, states = inputs.values, rows.states
+        values, states = inputs.reduced, rows.states
+        turned, whole = rows.turns, self.session.inputs.whole
         if not rows.reached.all():
             first = int(np.argmax(rows.reached))
             stand_in = np.where(rows.reached, np.arange(rows.reached.size), first)
             values, states = values[:, stand_in], states[:, stand_in]
+            turned, whole = turned[:, stand_in], whole[:, stand_in]
         return session.run(
             values,
             states,
@@ -357,6 +359,8 @@ class Result:
             accelerations=inputs.accelerations if demand & Demand.ACCELERATION else None,
             jerks=inputs.jerks if demand & Demand.JERK else None,
             loads=loads,
+            turned=turned if demand & Demand.FORCES else None,
+            whole=whole if demand & Demand.FORCES else None,
             shift=shift,
             iterations=iterations,
         )

@@ -33,10 +33,27 @@ std::vector<ClosingTurn> closing_turns(const Plan& plan, const KernelUnit& unit)
   return turns;
 }
 
+std::vector<TreeTurn> tree_turns(const Plan& plan, const KernelUnit& unit) {
+  int slot = 0;
+  for (const ClosingTurn& t : closing_turns(plan, unit)) slot += t.width;
+  std::vector<TreeTurn> turns;
+  for (int k = 0; k < plan.links; ++k) {
+    const TreeJoint& j = plan.joints[k];
+    if ((j.type == TREE_R || j.type == TREE_C) && plan.column_block[j.column] >= 0) turns.push_back({j.state, slot++});
+  }
+  return turns;
+}
+
+int turn_slots(const Plan& plan, const KernelUnit& unit) {
+  int slots = (int)tree_turns(plan, unit).size();
+  for (const ClosingTurn& t : closing_turns(plan, unit)) slots += t.width;
+  return slots;
+}
+
 Stepper::Stepper(const Path& path, const KernelUnit& unit, const StepLimits& limits)
     : path_(path), plan_(path.plan(0.0)), unit_(unit), limits_(limits), memory_(unit.workspace_size(plan_)),
-      turns_(closing_turns(plan_, unit)) {
-  for (const ClosingTurn& t : turns_) turn_slots_ += t.width;
+      turns_(closing_turns(plan_, unit)), tree_turns_(::tree_turns(plan_, unit)),
+      turn_slots_(::turn_slots(plan_, unit)) {
   for (int b = 0; b < plan_.blocks; ++b) entries_ += plan_.block[b].rows * plan_.block[b].size;
 }
 
@@ -65,6 +82,7 @@ bool Stepper::solve(double sigma, const double* guess, bool moving, Node* node) 
   node->side.assign(plan.blocks, 1.0), node->pivot.resize(plan.blocks);
   node->jacobian.resize(entries_);
   node->turn.resize(turn_slots_), node->turn_first.resize(turn_slots_), node->turn_second.resize(turn_slots_);
+  for (const TreeTurn& t : tree_turns_) node->turn[t.slot] = 0.0;
   double residual = 0.0;
   unsigned char flags = 0;
   Request r = {};
@@ -134,6 +152,19 @@ double Stepper::wanted_step(const Node& n) const {
   const double by_bend = limits_.bend * std::sqrt(t2 / b2);
   const double by_turn = across > 0.0 ? limits_.turn * std::sqrt(t2) / across : HUGE_VAL;
   return std::fmin(limits_.longest_step, std::fmin(by_bend, by_turn));
+}
+
+bool are_whole_turns(const double* numbers, std::size_t count) {
+  for (std::size_t k = 0; k < count; ++k)
+    if (!(std::fabs(numbers[k]) <= 0x1p53) || numbers[k] != std::rint(numbers[k])) return false;
+  return true;
+}
+
+void Stepper::reduce(Node* n) const {
+  for (const TreeTurn& t : tree_turns_) {
+    const double whole = std::rint(n->state[t.state] / FULL_TURN);
+    n->state[t.state] -= FULL_TURN * whole, n->turn[t.slot] += whole;
+  }
 }
 
 void Stepper::normalise_quaternions(double* state, long stride) const {

@@ -17,7 +17,7 @@ struct StepLimits {
   double infill;        // largest correction of an infilled row in parts of the nodes' distance
   double longest_step;  // largest step, rad or length units of the path
   double least_step;    // smallest step in parts of max(1, |sigma|)
-  int most_steps;
+  int most_steps;       // attempts of steps within a longest step's way
   double tight, coarse, accept;  // Newton's tests, see Request
   double pivot;         // least pivot of a node: the tangent next to a singular place is rounding
   int iterations;
@@ -25,8 +25,9 @@ struct StepLimits {
   double knot;          // distance (rad, length units) of the rows from which the path's derivatives are read
   double corner_cosine; // cosine of the turn between neighbouring rows from which on the path has a corner
   double stray;         // distance of a row's inputs from the smooth path, in parts of the step
-  double angle_step;    // a step longer than this is halved where a closing joint turns too fast to be counted
-  double angle_miss;    // rad: largest change of a closing joint's angle against its prediction
+  double angle_step;    // a step longer than this is halved where a closing joint's turns are not sure
+  double angle_miss;    // rad: largest change of a closing joint's angle against the integral of its rate
+  double angle_bend;    // rad: largest part of that integral by the rate's derivatives that is not looked into
   double plan_step;     // sigma: distance of the places from which the derivatives by the plan's change are read
 };
 
@@ -68,8 +69,18 @@ struct Node {
   std::vector<double> state_first, state_second;  // derivatives of the raw states
   std::vector<double> side, pivot;                // blocks: sign of a square block's determinant; least pivot
   std::vector<double> jacobian;                   // blocks, one after the other, rows x size
-  std::vector<double> turn, turn_first, turn_second;  // of closing joints, see ClosingTurn; as the kernel has them
+  // of closing joints, see ClosingTurn, as the kernel has them; then whole turns of the tree's angles, see TreeTurn
+  std::vector<double> turn, turn_first, turn_second;
 };
+
+// An unknown angle of the tree that may turn for ever: its state is kept within half a turn, and `slot` of a node's
+// turns counts its whole turns. Threads advance with each turn and keep theirs.
+struct TreeTurn {
+  int state, slot;
+};
+constexpr double FULL_TURN = 2.0 * 3.14159265358979323846;
+// Whether all are integers that doubles count by one.
+bool are_whole_turns(const double* numbers, std::size_t count);
 
 class Stepper {
  public:
@@ -92,6 +103,9 @@ class Stepper {
   const Plan& plan() const { return plan_; }
   const StepLimits& limits() const { return limits_; }
   const std::vector<ClosingTurn>& turns() const { return turns_; }
+  const std::vector<TreeTurn>& tree_turns() const { return tree_turns_; }
+  // Brings the tree's angles within half a turn and counts what was taken off.
+  void reduce(Node* node) const;
   int turn_slots() const { return turn_slots_; }
   // Numbers of a node's Jacobians.
   long jacobian_entries() const { return entries_; }
@@ -110,6 +124,7 @@ class Stepper {
   const StepLimits& limits_;
   std::vector<char> memory_;
   std::vector<ClosingTurn> turns_;
+  std::vector<TreeTurn> tree_turns_;
   int turn_slots_ = 0;
   long entries_ = 0;
   PathPoint point_;
@@ -120,3 +135,7 @@ double tangent_product(const Node& a, const Node& b);
 
 // The closing joints' angles and orientations of a plan, in the order of the joints.
 std::vector<ClosingTurn> closing_turns(const Plan& plan, const KernelUnit& unit);
+// The unknown angles of the tree's R and C; their slots follow those of the closing joints.
+std::vector<TreeTurn> tree_turns(const Plan& plan, const KernelUnit& unit);
+// Numbers of a node's turns.
+int turn_slots(const Plan& plan, const KernelUnit& unit);

@@ -4,8 +4,8 @@
 #include <utility>
 
 Track follow_line(const Plan& plan, const KernelUnit& unit, const double* x0, const double* u, long rows,
-                  const double* sigma, const double* start, const std::vector<double>& turn, const StepLimits& limits,
-                  const RowGuesses& out, long first) {
+                  const double* sigma, double end, const double* start, const std::vector<double>& turn,
+                  const StepLimits& limits, const RowGuesses& out, long first, std::vector<Stretch>* kept) {
   const Line line(plan, x0, u);
   Stepper stepper(line, unit, limits);
   Track track = {TrackEnd::finished, 0, 0, 0, {}, 0.0};
@@ -15,12 +15,18 @@ Track follow_line(const Plan& plan, const KernelUnit& unit, const double* x0, co
     return track;
   }
   if (!turn.empty()) adopt_turns(stepper, turn, &node);
+  if (out.turn) stepper.reduce(&node);
   long row = 0;
   for (; row < rows && sigma[row] <= 0.0; ++row) put_row(node, limits.jump, first + row, out);
-  const double end = rows ? sigma[rows - 1] : 0.0;
   double h = stepper.wanted_step(node);
+  // longest steps alone would be too many
+  if (!(end <= MOST_PATH_STEPS * limits.longest_step)) {
+    track.end = TrackEnd::exhausted, track.reached = row, track.last = node;
+    return track;
+  }
+  Progress progress(limits);
   while (node.sigma < end) {
-    if (track.steps + track.rejected >= limits.most_steps) {
+    if (!progress.goes_on(node.sigma)) {
       track.end = TrackEnd::exhausted;
       break;
     }
@@ -50,6 +56,8 @@ Track follow_line(const Plan& plan, const KernelUnit& unit, const double* x0, co
     const long from = row;
     while (row < rows && sigma[row] <= next.sigma) ++row;
     infill(stepper, node, next, sigma + from, first + from, first + row, out);
+    if (kept) kept->push_back({node, next});
+    if (out.turn) stepper.reduce(&next);
     h = std::fmin(stepper.wanted_step(next), 4.0 * step);
     std::swap(node, next);
   }
