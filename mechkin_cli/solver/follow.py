@@ -41,6 +41,11 @@ class Followed(NamedTuple):
     turns: Floats | None = None
     turn: Floats | None = None
 
+    @property
+    def turn_is_known(self) -> bool:
+        """Whether turns were asked for, and the first row closed."""
+        return self.turn is not None and self.turn.size > 0
+
 
 def follow(
     plan: Plan,

@@ -48,6 +48,7 @@ USUAL: dict[str, Any] = {
     "stray": 1e-3,
     "angle_step": 0.1,
     "angle_miss": 1.0,
+    "angle_bend": 0.5,
     "plan_step": 1e-3,
 }
 """Limits of a step that follow a branch."""

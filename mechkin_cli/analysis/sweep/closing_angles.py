@@ -39,13 +39,8 @@ def make_continuous(result: Result, wanted: Sequence[Wanted], columns: Columns) 
             continue
         slot = tree.get(layout.state(layout.edge_number[quantity.owner], freedom))
         if slot is not None:
-            # closing may have taken a state beyond half a turn; its turns are counted within
-            angle = column[reached]
-            beyond = np.where(angle > pi, 1.0, np.where(angle <= -pi, -1.0, 0.0))
-            column[reached] = (angle - beyond * (2.0 * pi)) + rows.turns[slot, reached] * (2.0 * pi)
+            column[reached] += rows.turns[slot, reached] * (2.0 * pi)
 
 
 def _is_angle(quantity: Wanted) -> bool:
-    return (
-        quantity.kind == "coordinate" and is_angle(quantity.coordinate) and quantity.order == 0
-    )
+    return quantity.kind == "coordinate" and is_angle(quantity.coordinate) and quantity.order == 0

@@ -108,6 +108,8 @@ def _on_one_turn(
 ) -> int | None:
     """Explains an end with the tree's angles as they go on from the last place followed; rows that
     are filled in then get their turns."""
+    if not followed.turn_is_known:
+        return explain(session, path, followed, rows)
     assert followed.turn is not None
     slots = tree_slots(session.plan)
     near = np.flatnonzero(rows.reached)
@@ -153,13 +155,3 @@ def _count_from_first(session: Session, rows: Rows) -> None:
             beyond = rows.turns[slot, first] - pi - tolerances.HALF_TURN_SIDE
             turns = np.ceil(beyond / (2.0 * pi))
             rows.turns[slot] -= turns * (2.0 * pi)
-
-
-def keep_within_half_turn(session: Session, rows: Rows) -> None:
-    """Brings the tree's angles into (-half a turn, half a turn] where closing took them beyond."""
-    for state, slot in tree_slots(session.plan).items():
-        values = rows.states[state]
-        for rest in (np.flatnonzero(values > pi), np.flatnonzero(values <= -pi)):
-            whole = np.sign(values[rest])
-            values[rest] -= whole * (2.0 * pi)
-            rows.turns[slot, rest] += whole

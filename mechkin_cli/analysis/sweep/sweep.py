@@ -9,7 +9,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.start import choose_start
-from mechkin_cli.analysis.sweep.following import follow_rows, keep_within_half_turn
+from mechkin_cli.analysis.sweep.following import follow_rows
 from mechkin_cli.analysis.sweep.notes import not_converged_note, open_turn_note, redundancy_note
 from mechkin_cli.analysis.sweep.result import Result
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
@@ -112,7 +112,6 @@ def _closed(
             rows.states = batch.states
         else:
             rows.states[:, rows.reached] = batch.states[:, rows.reached]
-        keep_within_half_turn(session, rows)
         _judge_condition(rows, batch)
     result.keep(batch, wanted, demand)
     return result

@@ -191,7 +191,7 @@ class Worker {
     }
   }
 
-  // Angles with their whole turns: states beyond half a turn are brought back as those of a sweep are.
+  // Angles with their whole turns.
   void add_turns(double* outputs, const double* whole) const {
     const long rows = base_.rows;
     for (const ClosingAngle& a : base_.angles) {
@@ -199,12 +199,8 @@ class Worker {
       const double* const known = a.turn >= 0 ? &turn_[a.turn * rows] : whole + (-2 - a.turn) * rows;
       for (long r = 0; r < rows; ++r)
         value[r] = a.closing ? value[r] - std::rint((value[r] - known[r]) / FULL_TURN) * FULL_TURN
-                             : with_turns(value[r], known[r]);
+                             : value[r] + known[r] * FULL_TURN;
     }
-  }
-  static double with_turns(double angle, double turns) {
-    const double over = angle > 0.5 * FULL_TURN ? 1.0 : angle <= -0.5 * FULL_TURN ? -1.0 : 0.0;
-    return (angle - over * FULL_TURN) + (turns + over) * FULL_TURN;
   }
 
   const Tape& tape_;
