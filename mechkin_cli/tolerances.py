@@ -210,7 +210,7 @@ side: short against the way between two of them, long against its own doubt of 1
 
 SAME_TURN: Final = 1e-12
 """Turns by which two rows' inputs may differ from a whole number of them and still stand for the
-same place: decimal degrees become radians by one rounding."""
+same place: written numbers round at 1e-16 of their size."""
 
 MOST_BRANCHES: Final = 64
 """Branches of one circuit that are walked through."""

@@ -427,6 +427,9 @@ class Stepper:
     def step(self, node: Node, h: float) -> Node | None: ...
     def wanted_step(self, node: Node) -> float: ...
 
+MOST_PATH_STEPS: int
+"""Steps of one path at most."""
+
 def closing_turns(plan: Plan) -> list[tuple[int, int, int, int]]:
     """(closing joint, freedom, first slot, slots) of the turns that following carries along.
 

@@ -10,10 +10,11 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.start import MAY_BE_RIGID
 from mechkin_cli.analysis.sweep.rows import Rows
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.kernel._kernel import MOST_PATH_STEPS
 from mechkin_cli.solver.branch_limit import find_limit
 from mechkin_cli.solver.branch_point import BranchPoint
 from mechkin_cli.solver.dead_centre import DeadCentre
-from mechkin_cli.solver.follow import Followed
+from mechkin_cli.solver.follow import Followed, TrackEnd
 from mechkin_cli.solver.inputs import input_number, input_numbers, input_text
 from mechkin_cli.solver.runaway import Runaway
 from mechkin_cli.status import Status
@@ -43,6 +44,10 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) 
     if locked:
         rows.status[~rows.reached] = Status.branch_lost
         rows.diagnostics.extend(locked)
+        return None
+    if followed.end == TrackEnd.EXHAUSTED:
+        rows.status[~rows.reached] = Status.branch_lost
+        rows.diagnostics.append(_exhausted_note(session, followed, rows))
         return None
     if not len(path):
         rows.status[~rows.reached] = Status.branch_lost
@@ -177,6 +182,20 @@ def _branch_point_note(
         measured=", ".join(map(input_text, places)),
         hint="begin another sweep beyond it with assembly: {near: ...}, or change the dimensions "
         "a little",
+        numbers=places,
+    )
+
+
+def _exhausted_note(session: Session, followed: Followed, rows: Rows) -> Diagnostic:
+    places = input_numbers(session.problem, session.layout, followed.inputs)
+    return Diagnostic(
+        "steps-exhausted",
+        "error",
+        "following the branch takes too many steps: the way to the next row is too long, or the "
+        f"mechanism turns too fast on it; {_stay_empty(rows)}",
+        measured=f"{followed.steps} steps, last place {', '.join(map(input_text, places))}",
+        limit=f"{MOST_PATH_STEPS} steps, {tolerances.MOST_STEPS} for half a radian or length unit",
+        hint="check the range of the input and its unit",
         numbers=places,
     )
 

@@ -17,12 +17,14 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.quantities import Wanted
 
 
-def make_continuous(result: Result, wanted: Sequence[Wanted], columns: Columns) -> None:
-    """Makes angles in `columns` continuous from the first row, in place."""
+def make_continuous(result: Result, wanted: Sequence[Wanted], columns: Columns) -> Columns:
+    """Makes angles in `columns` continuous from the first row, in place; returns what they are
+    within a turn."""
     rows, layout = result.row_states, result.session.layout
     angles = [quantity for quantity in wanted if _is_angle(quantity)]
+    rests: Columns = {}
     if not angles or not rows.reached.any():
-        return
+        return rests
     closing, tree = turn_slots(result.session.plan), tree_slots(result.session.plan)
     reached = np.flatnonzero(rows.reached)
     driven = {item.name: item.values for item in result.problem.motion.inputs}
@@ -33,13 +35,21 @@ def make_continuous(result: Result, wanted: Sequence[Wanted], columns: Columns) 
         if quantity.name in driven:
             column[reached] = driven[quantity.name][reached]
             continue
-        if reference < 0:
-            followed = rows.turns[closing[-1 - reference, freedom], reached]
-            column[reached] = continuous_angle(column[reached], followed)
+        slot = (
+            closing.get((-1 - reference, freedom))
+            if reference < 0
+            else tree.get(layout.state(layout.edge_number[quantity.owner], freedom))
+        )
+        if slot is None:
             continue
-        slot = tree.get(layout.state(layout.edge_number[quantity.owner], freedom))
-        if slot is not None:
-            column[reached] += rows.turns[slot, reached] * (2.0 * pi)
+        turned = rows.turns[slot, reached]
+        if np.any(np.abs(turned) > (pi if reference < 0 else 0.0)):
+            rests[quantity.name] = column.copy()
+        if reference < 0:
+            column[reached] = continuous_angle(column[reached], turned)
+        else:
+            column[reached] += turned * (2.0 * pi)
+    return rests
 
 
 def _is_angle(quantity: Wanted) -> bool:

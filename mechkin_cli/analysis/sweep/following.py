@@ -56,8 +56,9 @@ def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> R
         rows = Rows.without_guesses(session.layout.states, turn_count(session.plan), count)
         rows.status[:] = start.status
         return rows
-    if start.row == 0:
-        followed = _follow(session, way, start.state, every_row)
+    first = _first_row(session, way, start, every_row)
+    if first is not None:
+        followed = _follow(session, way, first, every_row)
         rows = Rows.followed(followed)
         rows.nodes = _go_on(session, way, followed, rows, every_row)
     else:
@@ -70,6 +71,17 @@ def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> R
             rows.nodes += _go_on(session, path, followed, part, every_row)
     _count_from_first(session, rows)
     return rows
+
+
+def _first_row(session: Session, way: _Way, start: Start, every_row: bool) -> Floats | None:
+    """The states of the first row where all rows are followed from it: where it is the start, and
+    where a way of whole turns leads back to it, so that one turn serves them all."""
+    if start.row == 0 or start.state is None:
+        return start.state
+    if not np.ptp(way.whole, axis=1).any():
+        return None
+    back = _follow(session, way.part(slice(start.row, None, -1)), start.state, every_row)
+    return back.guess[:, -1] if back.end == TrackEnd.FINISHED else None
 
 
 def _follow(

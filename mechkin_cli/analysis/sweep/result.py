@@ -63,6 +63,7 @@ class Result:
         self.residual = np.full(rows.reached.size, np.nan)
         self.shifts: tuple[int, ...] = SHIFTS if session.is_redundant else ()
         self._columns: Columns = {}
+        self._rests: Columns = {}
         self._shifted: tuple[Columns, ...] = tuple({} for _ in self.shifts)
         self._alternative: int | None = None
         self._condition: Floats | None = None
@@ -231,7 +232,7 @@ class Result:
             raise UnknownName(name, sorted(self._columns), hint_of(name))
         given = self._given(name)
         if given is not None:
-            return Quantity(given, wanted.dimension)
+            return Quantity(given, wanted.dimension, self._input_rest(name))
         if name not in self._columns:
             self.read([wanted])
         columns = self._columns[name]
@@ -239,7 +240,16 @@ class Result:
             columns = self._shifted[self._alternative].get(name, columns)
         if wanted.vector:
             return Quantity(Vector(columns[0], columns[1], columns[2]), wanted.dimension)
-        return Quantity(columns[0], wanted.dimension)
+        return Quantity(columns[0], wanted.dimension, self._rests.get(name))
+
+    def _input_rest(self, name: str) -> Floats | None:
+        """An input without its whole turns, if it has turned."""
+        inputs = self.session.inputs
+        for number, driven in enumerate(self.problem.motion.inputs):
+            if name == driven.name and inputs.whole[number].any():
+                rest: Floats = inputs.reduced[number]
+                return rest
+        return None
 
     def _given(self, name: str) -> Floats | None:
         """Time, an input's value or its rates in SI; None for what is computed."""
@@ -293,7 +303,7 @@ class Result:
         if not wanted:
             return
         columns = self._split(wanted, batch, self.session)
-        make_continuous(self, wanted, columns)
+        self._rests |= make_continuous(self, wanted, columns)
         self._columns |= columns
         reactions = [quantity for quantity in wanted if quantity.kind in WRENCH_KINDS]
         for shift, others in zip(self.shifts if reactions else (), self._shifted, strict=False):

@@ -302,6 +302,7 @@ void bind_stepper(nb::module_& m) {
              return s.stepper->wanted_step(node);
            }, "node"_a);
 
+  m.attr("MOST_PATH_STEPS") = MOST_PATH_STEPS;
   m.def("closing_turns", &turn_table, "plan"_a);
   m.def("tree_turns", &tree_turn_table, "plan"_a);
   m.def("follow_rows", &follow_table, "plan"_a, "inputs"_a, "whole"_a.none(), "start"_a, "turn"_a, "every_row"_a, "limits"_a, "guess"_a,
