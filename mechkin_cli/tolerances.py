@@ -12,6 +12,9 @@ stands beside it with its reason (`kernel/src/`):
 * `search.hpp`: damping of Levenberg-Marquardt steps;
 * `position.hpp`: a Newton step beyond 1e100 is none;
 * `row_curve.cpp`: rows from which a curve's derivatives are read, in parts of step and `PATH_KNOT`;
+* `orbit.hpp`: states within 1e-12 of the start's are back, sought for 16 turns: rounding leaves
+  1e-16 times the condition, and no linkage is known that takes more turns; `tracker.hpp`: 2e7
+  steps of one path;
 * `tracker.cpp`, `dimension_path.cpp`: a rest of 1e-6 of a step is taken along, steps grow fourfold
   at most;
 * `legs.hpp`: `OPPOSITE_COSINE` again;

@@ -300,7 +300,8 @@ def test_what_closes_no_loop_is_not_followed(kind: str) -> None:
         "format: 1\nname: motor\nlinks: {a: {}, b: {}}\njoints:\n"
         "  O: {type: R, links: [ground, a], point: [0, 0, 0], axis: [0, 0, 1]}\n"
         f"  A: {{type: {kind}, links: [a, b], point: [0, 0, 0], axis: [0, 0, 1]}}\n"
-        f"motion: {{inputs: {{O.theta: {{at: 3}}, A.{coordinate}: {{from: 0, to: 1e9, step: 1e8}}}}}}\n"
+        f"motion: {{inputs: {{O.theta: {{at: 3}}, A.{coordinate}: "
+        "{from: 0, to: 1e9, step: 1e8}}}\n"
     )
     result = loads(text).analyze([f"A.{coordinate}"])
     assert is_ok(result)
