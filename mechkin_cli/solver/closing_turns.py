@@ -51,8 +51,8 @@ def angle_slots(session: Session, names: Mapping[str, Slot]) -> list[tuple[int, 
     inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
     found = []
     for name, slot in names.items():
-        quantity = known[name]
-        if quantity.kind != "coordinate" or quantity.order:
+        quantity = known.get(name)
+        if quantity is None or quantity.kind != "coordinate" or quantity.order:
             continue
         freedom = layout.mechanism.joints[quantity.owner].type.freedom_of[quantity.coordinate]
         place = layout.joint_reference[quantity.owner]

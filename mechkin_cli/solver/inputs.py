@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.motion import DrivenInput
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.solver.layout import Layout
+    from mechkin_cli.solver.session import Session
 
 
 class KernelInputs(NamedTuple):
@@ -83,6 +84,15 @@ def turn_of(problem: Problem, item: DrivenInput) -> Fraction | None:
     if not kind.chain[kind.freedom_of[item.coordinate]].is_cyclic:
         return None
     return 2 * PI / problem.units.angle.factor
+
+
+def input_rest(session: Session, name: str) -> Floats | None:
+    """An input (rows,) without its whole turns in rad, None if it has none."""
+    for number, item in enumerate(session.problem.motion.inputs):
+        if name == item.name and session.inputs.whole[number].any():
+            rest: Floats = session.inputs.reduced[number]
+            return rest
+    return None
 
 
 def _reduced(problem: Problem, values: Floats) -> tuple[Floats, Floats]:

@@ -16,7 +16,7 @@ import numpy as np
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
 
-MOST_TURNS = 2.0**52
+MOST_TURNS = float(1 << 52)
 """Whole turns beyond which an angle says nothing of the place within a turn."""
 
 _PART_BITS = 26
@@ -54,7 +54,7 @@ def without_turns(values: Floats, turn: Fraction) -> tuple[Floats, Floats]:
 
 def _subtract(values: Floats, whole: Floats, turn: Fraction) -> Floats:
     """values - whole * turn to the last place."""
-    if np.any(np.abs(whole) >= 2.0**_PART_BITS):
+    if np.any(np.abs(whole) >= float(1 << _PART_BITS)):
         rows = zip(values.tolist(), whole.tolist(), strict=True)
         return np.array([float(Fraction(x) - int(k) * turn) for x, k in rows])
     first, second, third = _parts(turn)
@@ -75,7 +75,8 @@ def _parts(turn: Fraction) -> tuple[float, float, float]:
     found = []
     rest = turn
     for _ in range(2):
-        scale = Fraction(2) ** (_PART_BITS - int(np.frexp(float(rest))[1]))
+        places = _PART_BITS - int(np.frexp(float(rest))[1])
+        scale = Fraction(1 << max(places, 0), 1 << max(-places, 0))
         part = Fraction(int(rest * scale), 1) / scale
         found.append(float(part))
         rest -= part

@@ -21,7 +21,7 @@ def make_continuous(result: Result, wanted: Sequence[Wanted], columns: Columns) 
     """Makes angles in `columns` continuous from the first row, in place; returns what they are
     within a turn."""
     rows, layout = result.row_states, result.session.layout
-    angles = [quantity for quantity in wanted if _is_angle(quantity)]
+    angles = [quantity for quantity in wanted if has_turns(quantity)]
     rests: Columns = {}
     if not angles or not rows.reached.any():
         return rests
@@ -42,15 +42,16 @@ def make_continuous(result: Result, wanted: Sequence[Wanted], columns: Columns) 
         )
         if slot is None:
             continue
-        turned = rows.turns[slot, reached]
-        if np.any(np.abs(turned) > (pi if reference < 0 else 0.0)):
-            rests[quantity.name] = column.copy()
+        turned, rest = rows.turns[slot, reached], column.copy()
         if reference < 0:
             column[reached] = continuous_angle(column[reached], turned)
         else:
             column[reached] += turned * (2.0 * pi)
+        if np.any(column[reached] != rest[reached]):
+            rests[quantity.name] = rest
     return rests
 
 
-def _is_angle(quantity: Wanted) -> bool:
+def has_turns(quantity: Wanted) -> bool:
+    """Whether a quantity is an angle, which may have whole turns."""
     return quantity.kind == "coordinate" and is_angle(quantity.coordinate) and quantity.order == 0

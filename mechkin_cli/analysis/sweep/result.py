@@ -17,6 +17,7 @@ from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of, forces_demand
+from mechkin_cli.solver.inputs import input_rest
 from mechkin_cli.status import Status, has_solution
 from mechkin_cli.units import DIMENSIONLESS, UnitSystem
 
@@ -232,7 +233,7 @@ class Result:
             raise UnknownName(name, sorted(self._columns), hint_of(name))
         given = self._given(name)
         if given is not None:
-            return Quantity(given, wanted.dimension, self._input_rest(name))
+            return Quantity(given, wanted.dimension, input_rest(self.session, name))
         if name not in self._columns:
             self.read([wanted])
         columns = self._columns[name]
@@ -241,15 +242,6 @@ class Result:
         if wanted.vector:
             return Quantity(Vector(columns[0], columns[1], columns[2]), wanted.dimension)
         return Quantity(columns[0], wanted.dimension, self._rests.get(name))
-
-    def _input_rest(self, name: str) -> Floats | None:
-        """An input without its whole turns, if it has turned."""
-        inputs = self.session.inputs
-        for number, driven in enumerate(self.problem.motion.inputs):
-            if name == driven.name and inputs.whole[number].any():
-                rest: Floats = inputs.reduced[number]
-                return rest
-        return None
 
     def _given(self, name: str) -> Floats | None:
         """Time, an input's value or its rates in SI; None for what is computed."""

@@ -97,6 +97,8 @@ class RowFollower {
     const long row = std::min(result_.reached, rows_.rows) - 1;
     for (int i = 0; i < rows_.inputs; ++i)
       if (rows_.still[i] && row >= 0) result_.inputs[i] = rows_.true_at(i, row);
+    // the inputs' states are the inputs, whole turns and all
+    for (int i = 0; i < rows_.inputs; ++i) result_.state[plan_.column_state[plan_.input_column[i]]] = result_.inputs[i];
     return result_;
   }
   // The inputs at a row, angles within half a turn.
