@@ -316,3 +316,64 @@ def test_a_way_that_is_too_long_says_so() -> None:
     result = loads(nut[: nut.index("loads:")]).analyze(["D.s"])
     assert result["row.status"].tolist()[1:] == ["branch-lost"] * 2
     assert "steps-exhausted" in {d.code for d in result.diagnostics}
+
+
+@pytest.mark.parametrize("turns", [0, 1, -2000, 30000])
+@pytest.mark.parametrize("way", [1, -1])
+def test_a_dead_centre_is_as_far_after_any_turns(turns: int, way: int) -> None:
+    """Crank and coupler in line with the rocker's far end: cos(A) = (a^2 + d^2 - (b + c)^2)/2ad."""
+    a, b, c, d = bars = (2.0, 2.2, 2.1, 3.0)
+    first = 360 * turns
+    motion = f"{{inputs: {{A.theta: {{from: {first}, to: {first + way * 200}, step: {way * 8}}}}}}}"
+    result = loads(four_bar(bars, motion)).analyze(["D.theta"])
+    (note,) = [found for found in result.diagnostics if found.code == "dead-centre"]
+    fold = math.degrees(math.acos((a * a + d * d - (b + c) ** 2) / (2 * a * d)))
+    (place,) = note.numbers
+    assert abs(place.value - first - way * fold) <= 1e-9 + 1e-15 * abs(first)
+    crank = np.radians(way * 8.0 * np.arange(26))
+    reached = np.abs(crank) < math.radians(fold)
+    assert np.array_equal(np.asarray(result["row.status"]) == "ok", reached)
+    wanted = np.degrees(rocker(bars, crank[reached]) - rocker(bars, np.zeros(1)))
+    off = result["D.theta"][reached] - wanted
+    assert np.abs(off - 360 * np.rint(off / 360)).max() <= 1e-7
+
+
+def test_there_and_back_by_any_turns() -> None:
+    """Lists of crank angles: each is its own place, whatever came before."""
+    for rng in cases(99, 12):
+        bars = grashof(rng)
+        if min(bars) != bars[0]:
+            continue
+        values = [0]
+        for _ in range(rng.randint(4, 12)):
+            values.append(values[-1] + rng.choice([-1, 1]) * rng.choice([30, 90, 400, 720, 36000]))
+        listed = ", ".join(map(str, values))
+        motion = f"{{inputs: {{A.theta: {{values: [{listed}], rate: 2 rad/s}}}}}}"
+        result = loads(four_bar(bars, motion)).analyze(["D.theta", "D.theta_dot"])
+        assert is_ok(result), motion
+        off = np.radians(result["D.theta"]) - rocker(bars, np.radians(np.array(values) % 360.0))
+        off += rocker(bars, np.zeros(1))
+        assert np.abs(off - 2 * np.pi * np.rint(off / (2 * np.pi))).max() <= 1e-9, motion
+        seen: dict[int, float] = {}
+        for value, rate in zip(values, result["D.theta_dot"].tolist(), strict=True):
+            assert seen.setdefault(value % 360, rate) == rate, motion
+
+
+def test_variants_turn_as_the_file_does() -> None:
+    motion = "{inputs: {A.theta: {from: 0, to: 7200, step: 45, rate: 1 rad/s}}}"
+    spring = "loads:\n  - {type: spring, joint: B, coordinate: theta, stiffness: 2, free: 0}\n"
+    text = four_bar((1, 2.5, 2, 3), motion) + spring
+    text = text.replace("\nlinks:", "\nparameters: {h: 0.2 m}\nlinks:")
+    text = text.replace("point: [0, 0, 0]", "point: [0, 0, h]")
+    names = ["D.theta", "B.theta", "A.effort", "wrap(B.theta)", "sin(A.theta)"]
+    model = loads(text)
+    varied = model.vary({"h": [0.2, 0.3, 0.5]}, names)
+    for k, h in enumerate(("0.2", "0.3", "0.5")):
+        fresh = loads(text.replace("h: 0.2 m", f"h: {h} m")).analyze(plain(names))
+        for name in names:
+            assert np.asarray(varied[name])[k].tobytes() == np.asarray(fresh[name]).tobytes()
+    for value in (90.0, 3_600_090.0, -3_599_910.0):
+        here = model.solve({"A.theta": value}, ["D.theta", "B.theta"])
+        turns = (value - 90) / 360
+        assert abs(here["D.theta"] - model.analyze(["D.theta"])["D.theta"][2]) <= 1e-9
+        assert abs(here["B.theta"] + 360 * turns - model.analyze(["B.theta"])["B.theta"][2]) <= 1e-8

@@ -172,12 +172,10 @@ def _is_unclear(best: float, second: float) -> bool:
 
 
 def _from_home(session: Session) -> Start:
-    """Followed from the drawing to the row whose inputs are nearest to it; more than a turn away,
-    whole turns of the drawing are the same place."""
-    problem, layout, inputs = session.problem, session.layout, session.inputs
-    row = nearest_to_home(inputs.values)
-    far = np.abs(inputs.whole[:, row]).max(initial=0.0) > 1.0
-    path = inputs.reduced if far else inputs.values
+    """Followed from the drawing to the row whose inputs are nearest to it; whole turns of the
+    drawing are the same place."""
+    problem, layout, path = session.problem, session.layout, session.inputs.reduced
+    row = nearest_to_home(path)
     followed = follow_from_home(session, path[:, row])
     if followed.end == TrackEnd.FINISHED:
         return Start(followed.state, "home", "followed from the home drawing", row=row)
