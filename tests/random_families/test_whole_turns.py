@@ -377,3 +377,20 @@ def test_variants_turn_as_the_file_does() -> None:
         turns = (value - 90) / 360
         assert abs(here["D.theta"] - model.analyze(["D.theta"])["D.theta"][2]) <= 1e-9
         assert abs(here["B.theta"] + 360 * turns - model.analyze(["B.theta"])["B.theta"][2]) <= 1e-8
+
+
+@pytest.mark.parametrize("name", ["hooke", "bennett", "slider_crank", "rspp", "swash_plate"])
+def test_the_closing_joint_changes_no_angle(name: str) -> None:
+    problem = loads(swept(name, 3615, -3585, -100)).problem
+    names = list(problem.mechanism.coordinates)
+    driven = problem.motion.inputs[0].joint
+    found = []
+    for joint in [None, *(joint for joint in problem.mechanism.joints if joint != driven)]:
+        session = Session(problem, closed_at=None if joint is None else [joint])
+        result = analyze(session, names)
+        assert result.complete, joint
+        found.append(np.stack([np.asarray(result.quantity(name).value) for name in names]))
+    scale = np.maximum(1.0, np.abs(found[0]).max(axis=1))[:, None]
+    assert len(found) > 2
+    for other in found[1:]:
+        assert (np.abs(other - found[0]) / scale).max() <= 1e-11

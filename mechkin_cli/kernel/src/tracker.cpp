@@ -56,7 +56,11 @@ Track follow_line(const Plan& plan, const KernelUnit& unit, const double* x0, co
     const long from = row;
     while (row < rows && sigma[row] <= next.sigma) ++row;
     infill(stepper, node, next, sigma + from, first + from, first + row, out);
-    if (kept) kept->push_back({node, next});
+    if (kept) {
+      kept->push_back({node, next});
+      // rows need no Jacobians, which are the largest part of a node
+      kept->back().from.jacobian = kept->back().to.jacobian = {};
+    }
     if (out.turn) stepper.reduce(&next);
     h = std::fmin(stepper.wanted_step(next), 4.0 * step);
     std::swap(node, next);
