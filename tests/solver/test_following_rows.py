@@ -168,13 +168,19 @@ def dense(path: np.ndarray, parts: int) -> np.ndarray:
     return np.stack([np.interp(rows, np.arange(path.shape[1]), values) for values in path])
 
 
+def longer_way(setup: Setup) -> np.ndarray:
+    """The inputs from the row of the first assembly to the farther end."""
+    values, row = setup.inputs.values, setup.start.row
+    onward = row < values.shape[1] / 2
+    return values[:, row:] if onward else values[:, row::-1]
+
+
 @pytest.mark.parametrize("name", ["slider_crank", "rchch", "hooke", "double_hooke", "rccc"])
 @pytest.mark.parametrize("coarse", [1, 2, 5])
 def test_angles_against_small_steps(name: str, coarse: int) -> None:
     """Brute force: an arctangent unwrapped over steps too small for half a turn."""
     setup = closing_case(name)
-    values = setup.inputs.values[:, setup.start.row :]
-    path = np.ascontiguousarray(values[:, ::coarse])
+    path = np.ascontiguousarray(longer_way(setup)[:, ::coarse])
     plan = setup.layout.build()
     slots = {place: slot for place, slot in turn_slots(plan).items() if place[1] != ORIENTATION}
     assert slots
@@ -201,7 +207,7 @@ def test_signs_against_small_steps(name: str) -> None:
     (closing,) = setup.layout.graph.closings
     joint, plan = closing.joint, setup.layout.build()
     slot = turn_slots(plan)[0, ORIENTATION]
-    path = np.ascontiguousarray(setup.inputs.values[:, setup.start.row :])
+    path = np.ascontiguousarray(longer_way(setup))
     fine = dense(path, 100)
     coarse = follow(plan, path, setup.start.state, turns=True)
     small = follow(plan, fine, setup.start.state, turns=True)
