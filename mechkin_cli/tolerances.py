@@ -12,6 +12,9 @@ stands beside it with its reason (`kernel/src/`):
 * `search.hpp`: damping of Levenberg-Marquardt steps;
 * `position.hpp`: a Newton step beyond 1e100 is none;
 * `row_curve.cpp`: rows from which a curve's derivatives are read, in parts of step and `PATH_KNOT`;
+* `orbit.hpp`: states within 1e-12 of the start's are back, sought for 16 turns: rounding leaves
+  1e-16 times the condition, and no linkage is known that takes more turns; `tracker.hpp`: 2e7
+  steps of one path;
 * `tracker.cpp`, `dimension_path.cpp`: a rest of 1e-6 of a step is taken along, steps grow fourfold
   at most;
 * `legs.hpp`: `OPPOSITE_COSINE` again;
@@ -199,14 +202,23 @@ PATH_STRAY: Final = 1e-3
 """Distance of a row's inputs from the curve between two nodes in parts of the step: a twentieth of
 what a row filled in may be off."""
 
-CLOSING_ANGLE_STEP: Final = 0.1
-"""A step (rad, length units) that is longer is halved where the angle of a closing joint is not
-where its derivatives say. Shorter ones are taken: an angle may jump by half a turn where the two
-axes of a joint come into line, though the branch is regular there."""
+HALF_TURN_SIDE: Final = 1e-9
+"""Angles (rad) of the first row that are so near to half a turn are +180 degrees: on which side
+they lie is rounding of the drawing, of nine digits and more."""
 
-CLOSING_ANGLE_MISS: Final = 1.0
-"""Change of a closing joint's angle (rad) against its prediction above which whole turns are not
-sure."""
+CLOSING_ANGLE_STEP: Final = 1e-6
+"""A step (rad, length units) that is longer is halved where the angle of a closing joint is not
+where its rate, integrated, takes it. Shorter ones are taken: an angle may jump by half a turn where
+the two axes of a joint come into line, though the branch is regular there."""
+
+CLOSING_ANGLE_MISS: Final = 0.25
+"""Difference (rad) of a closing joint's angle from the integral of its rate over a step above which
+its whole turns are not sure: a turn is 25 times as much."""
+
+CLOSING_ANGLE_BEND: Final = 0.5
+"""Part (rad) that the rate's derivatives have in its integral over a step up to which the integral
+is taken as it is, and the difference up to which both halves of the step agree with it: the
+integral's error is a small part of either."""
 
 PLAN_STEP: Final = 1e-3
 """Part of a path of changing dimensions over which its derivatives are read: differences are wrong
@@ -214,8 +226,8 @@ by its square, 1e-6, and rounding leaves 1e-10 in the second ones; both matter t
 only."""
 
 MOST_STEPS: Final = 20000
-"""Steps of one path. Measured: R-Sg-C takes 32 for 315 degrees; a path that needs thousands is no
-sweep."""
+"""Attempts that may take a path a longest step further; it may be as long as it likes. Measured:
+R-Sg-C takes 32 steps for 315 degrees, and halvings down to `LEAST_STEP` are 50."""
 
 # --- dead centres ------------------------------------------------------------------------------
 
@@ -250,7 +262,7 @@ side: short against the way between two of them, long against its own doubt of 1
 
 SAME_TURN: Final = 1e-12
 """Turns by which two rows' inputs may differ from a whole number of them and still stand for the
-same place: decimal degrees become radians by one rounding."""
+same place: written numbers round at 1e-16 of their size."""
 
 MOST_BRANCHES: Final = 64
 """Branches of one circuit that are walked through."""

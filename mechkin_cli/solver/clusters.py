@@ -11,6 +11,8 @@ from mechkin_cli.kernel import functions
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from numpy.typing import NDArray
 
     from mechkin_cli.arrays import Floats
@@ -63,11 +65,16 @@ class Clusters:
         return crowded or self.tried >= tolerances.SEARCH_MOST_STARTS
 
 
-def pose_keys(layout: Layout, states: Floats) -> Floats:
-    """What tells assemblies apart: cosines and sines of turns, slides, products of quaternions."""
+def pose_keys(layout: Layout, states: Floats, left_out: Collection[tuple[int, int]] = ()) -> Floats:
+    """What tells assemblies apart: cosines and sines of turns, slides, products of quaternions.
+
+    `left_out` are freedoms (tree edge, number) that do not matter.
+    """
     keys: list[Floats] = []
     for carrier in layout.carriers:
         state = carrier.state
+        if (carrier.edge, carrier.first_freedom) in left_out:
+            continue
         if carrier.part.type.is_ball:
             q = states[state : state + 4]
             keys.extend(q[i] * q[j] for i in range(4) for j in range(i, 4))

@@ -1,6 +1,8 @@
 """The inputs of a motion as the kernel takes them, and its numbers in words for messages.
 
-Slides are in the kernel's length unit; a helical joint is driven by its angle.
+Slides are in the kernel's length unit; a helical joint is driven by its angle. An angle that may
+turn for ever is its part within half a turn and its whole turns; their sum is for ways and
+messages, and rounds by its size.
 """
 
 from __future__ import annotations
@@ -11,21 +13,44 @@ import numpy as np
 
 from mechkin_cli.diagnostics import Number
 from mechkin_cli.mechanism.joint_table import dimension_of
+from mechkin_cli.solver.whole_turns import without_turns
+from mechkin_cli.units import ANGLE
+from mechkin_cli.units.table import PI
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from mechkin_cli.arrays import Floats
     from mechkin_cli.mechanism.motion import DrivenInput
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.solver.layout import Layout
+    from mechkin_cli.solver.session import Session
 
 
 class KernelInputs(NamedTuple):
-    """Values and their derivatives over time (inputs, rows) in kernel units."""
+    """Values and their derivatives over time (inputs, rows) in kernel units.
+
+    `reduced` are the values without the `whole` turns of angles, which threads keep.
+    """
 
     values: Floats
     rates: Floats
     accelerations: Floats
     jerks: Floats
+    reduced: Floats
+    whole: Floats
+
+    @classmethod
+    def of(
+        cls, problem: Problem, values: Floats, rates: Floats, accelerations: Floats, jerks: Floats
+    ) -> KernelInputs:
+        """Of a problem's inputs in kernel units."""
+        return cls(values, rates, accelerations, jerks, *_reduced(problem, values))
+
+    @property
+    def orders(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """Values, rates, accelerations and jerks."""
+        return (self.values, self.rates, self.accelerations, self.jerks)
 
     def at_unit_rate(self, number: int) -> KernelInputs:
         """The same places, where input `number` moves at unit rate and all others are held."""
@@ -49,7 +74,41 @@ def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
             return np.empty((0, rows))
         return np.stack([getattr(i, name) / unit for i, unit in zip(inputs, units, strict=True)])
 
-    return KernelInputs(table("values"), table("rates"), table("accelerations"), table("jerks"))
+    orders = (table("values"), table("rates"), table("accelerations"), table("jerks"))
+    return KernelInputs.of(problem, *orders)
+
+
+def turn_of(problem: Problem, item: DrivenInput) -> Fraction | None:
+    """A full turn of an input in the file's unit; None where a turn is not the same place."""
+    kind = problem.mechanism.joints[item.joint].type
+    if not kind.chain[kind.freedom_of[item.coordinate]].is_cyclic:
+        return None
+    return 2 * PI / problem.units.angle.factor
+
+
+def input_rest(session: Session, name: str) -> Floats | None:
+    """An input (rows,) without its whole turns in rad, None if it has none."""
+    for number, item in enumerate(session.problem.motion.inputs):
+        if name == item.name and session.inputs.whole[number].any():
+            rest: Floats = session.inputs.reduced[number]
+            return rest
+    return None
+
+
+def _reduced(problem: Problem, values: Floats) -> tuple[Floats, Floats]:
+    """The values without whole turns, and these; recorded numbers as they are."""
+    whole = np.zeros(values.shape)
+    reduced = values
+    for number, item in enumerate(problem.motion.inputs):
+        turn = turn_of(problem, item)
+        if turn is None or item.written.dtype != np.float64:
+            continue
+        rest, turns = without_turns(item.written, turn)
+        if turns.any():
+            reduced = values.copy() if reduced is values else reduced
+            reduced[number] = problem.units.to_si(rest, ANGLE)
+            whole[number] = turns
+    return reduced, whole
 
 
 def input_unit(layout: Layout, item: DrivenInput) -> float:

@@ -205,6 +205,7 @@ class Session:
         every_row: bool = False,
         turns: bool = False,
         turn: Floats | None = None,
+        whole: Floats | None = None,
     ) -> Followed:
         """Follows the branch through `start` (states,) along a path (inputs, rows); arguments as
         those of `solver.follow.follow`."""
@@ -216,17 +217,19 @@ class Session:
             turns=turns,
             turn=turn,
             straight=self.problem.assembly.straight,
+            whole=whole,
         )
 
     def follow_rows(
         self, start: Floats, row: int = 0, step: int = 1, *, every_row: bool = False
     ) -> Followed:
         """Follows the branch through `start` (states,) at a row along the rows from there on, or
-        with step -1 back from there, with the turns of closing joints; between the rows the inputs
-        follow their laws and ties."""
+        with step -1 back from there, with the turns of angles; between the rows the inputs follow
+        their laws and ties."""
         if self.route is None:
-            path = np.ascontiguousarray(self.inputs.values[:, row::step])
-            return self.follow(path, start, every_row=every_row, turns=True)
+            inputs, rows = self.inputs, slice(row, None, step)
+            path, whole = inputs.reduced[:, rows], inputs.whole[:, rows]
+            return self.follow(path, start, every_row=every_row, turns=True, whole=whole)
         straight = self.problem.assembly.straight
         way = self.route.way(row, step)
         return follow_along(self.plan, way, start, every_row=every_row, straight=straight)
@@ -270,6 +273,8 @@ class Session:
         accelerations: Floats | None = None,
         jerks: Floats | None = None,
         loads: Floats | None = None,
+        turned: Floats | None = None,
+        whole: Floats | None = None,
         derivatives: bool = False,
         shift: int = 0,
         iterations: int = tolerances.NEWTON_ITERATIONS,
@@ -285,6 +290,8 @@ class Session:
             accelerations=accelerations,
             jerks=jerks,
             loads=loads,
+            turned=turned,
+            whole=whole,
             demand=demand,
             outputs=None if readout is None else readout.outputs,
             derivatives=derivatives,

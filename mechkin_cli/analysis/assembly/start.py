@@ -79,9 +79,10 @@ def _continued(continued: Continued) -> Start:
 
 
 def _choose_start(session: Session) -> Start:
-    path, wanted = session.inputs.values, session.problem.assembly
+    # an assembly is the same whole turns of an input away
+    path, wanted = session.inputs.reduced, session.problem.assembly
     if not wanted.near and wanted.mode is None and is_home_assembled(session):
-        return _from_home(session, path)
+        return _from_home(session)
     if wanted.near and wanted.mode is None:
         start = _from_near(session, path[:, 0])
         if start is not None:
@@ -102,7 +103,7 @@ def mode_letter(session: Session, start: Start) -> str:
     where no letter's branch has it."""
     if start.mode != NEAR or start.state is None:
         return start.mode
-    modes = name_modes(session, session.inputs.values[:, 0])
+    modes = name_modes(session, session.inputs.reduced[:, 0])
     keys = pose_keys(session.layout, modes.found.states)
     same = same_poses(keys, pose_keys(session.layout, start.state[:, None]))[:, 0]
     return modes.letters[int(np.argmax(same))] if same.any() else start.mode
@@ -171,9 +172,10 @@ def _is_unclear(best: float, second: float) -> bool:
     return second < max(tolerances.NEAR_RUNNER_UP * best, best + tolerances.SAME_MODE)
 
 
-def _from_home(session: Session, path: Floats) -> Start:
-    """Followed from the drawing to the row whose inputs are nearest to it."""
-    problem, layout = session.problem, session.layout
+def _from_home(session: Session) -> Start:
+    """Followed from the drawing to the row whose inputs are nearest to it; whole turns of the
+    drawing are the same place."""
+    problem, layout, path = session.problem, session.layout, session.inputs.reduced
     row = nearest_to_home(path)
     followed = follow_from_home(session, path[:, row])
     if followed.end == TrackEnd.FINISHED:

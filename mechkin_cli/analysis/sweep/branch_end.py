@@ -11,9 +11,10 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.start import MAY_BE_RIGID
 from mechkin_cli.analysis.sweep.rows import Rows
 from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.kernel._kernel import MOST_PATH_STEPS
 from mechkin_cli.solver.branch_limit import BranchPoint, DeadCentre, find_limit
 from mechkin_cli.solver.circuit import Passage, Walker
-from mechkin_cli.solver.follow import Followed
+from mechkin_cli.solver.follow import Followed, TrackEnd
 from mechkin_cli.solver.inputs import input_number, input_numbers, input_text
 from mechkin_cli.solver.runaway import Runaway
 from mechkin_cli.status import Status
@@ -39,6 +40,9 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) 
     locked = locked_inputs(session, followed.inputs - path[:, 0])
     if locked:
         rows.diagnostics.extend(fault for fault in locked if fault not in rows.diagnostics)
+        return
+    if followed.end == TrackEnd.EXHAUSTED:
+        rows.diagnostics.append(_exhausted_note(session, followed, rows))
         return
     limit = find_limit(session, followed) if len(path) else None
     if isinstance(limit, DeadCentre):
@@ -203,6 +207,20 @@ def _branch_point_note(
         measured=", ".join(map(input_text, places)),
         hint="assembly: {at_branch_points: straight} goes on along the smooth continuation; or "
         "begin another sweep beyond it with assembly: {near: ...}",
+        numbers=places,
+    )
+
+
+def _exhausted_note(session: Session, followed: Followed, rows: Rows) -> Diagnostic:
+    places = _place(session, followed, followed.inputs)
+    return Diagnostic(
+        "steps-exhausted",
+        "error",
+        "following the branch takes too many steps: the way to the next row is too long, or the "
+        f"mechanism turns too fast on it; {_stay_empty(rows)}",
+        measured=f"{followed.steps} steps, last place {', '.join(map(input_text, places))}",
+        limit=f"{MOST_PATH_STEPS} steps, {tolerances.MOST_STEPS} for half a radian or length unit",
+        hint="check the range of the input and its unit",
         numbers=places,
     )
 

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnostic | None:
     """Rows a full turn of the one moving input apart at which the mechanism is not the same.
 
-    `states` (states, rows) in kernel units.
+    A thread that advances with the turn, and what moves with it, is not meant to be. `states`
+    (states, rows) in kernel units.
     """
     inputs = session.inputs.values
     moving = np.flatnonzero(np.ptp(inputs, axis=1) > 0.0)
@@ -32,13 +33,15 @@ def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnost
     item = session.problem.motion.inputs[number]
     if not is_cyclic(session.problem.mechanism, item.name):
         return None
-    turns = (inputs[number] - inputs[number, 0]) / (2.0 * np.pi)
-    whole = (np.rint(turns) != 0.0) & (np.abs(turns - np.rint(turns)) <= tolerances.SAME_TURN)
+    turns = session.inputs.whole[number] - session.inputs.whole[number, 0]
+    rest = (session.inputs.reduced[number] - session.inputs.reduced[number, 0]) / (2.0 * np.pi)
+    whole = (turns != 0.0) & (np.abs(rest) <= tolerances.SAME_TURN)
     rows = np.flatnonzero(whole & reached)
     if not rows.size or not reached[0]:
         return None
     row = int(rows[0])
-    keys = pose_keys(session.layout, np.ascontiguousarray(states[:, [0, row]]))
+    both = np.ascontiguousarray(states[:, [0, row]])
+    keys = pose_keys(session.layout, both, _advanced(session, both))
     if same_poses(keys[:, :1], keys[:, 1:])[0, 0]:
         return None
     count = round(abs(float(turns[row])))
@@ -49,6 +52,26 @@ def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnost
         "mechanism is not back at its first row's position: it has gone on to another assembly",
         hint="mechkin ranges shows the circuit",
     )
+
+
+def _advanced(session: Session, both: Floats) -> set[tuple[int, int]]:
+    """Unknown freedoms (tree edge, number) of the blocks in which a thread stands elsewhere in the
+    second of two places, and of the blocks that depend on them."""
+    graph, layout = session.graph, session.layout
+    found: set[tuple[int, int]] = set()
+    for carrier in layout.carriers:
+        for number, freedom in enumerate(carrier.part.type.freedoms):
+            if freedom.motion == "thread":
+                place = both[carrier.state + number]
+                if abs(float(place[1] - place[0])) > tolerances.SAME_MODE:
+                    found.add((carrier.edge, carrier.first_freedom + number))
+    edges = {edge for edge, _ in found}
+    for block in graph.blocks:
+        loops = {edge for c in block.closings for edge, _ in graph.closings[c].loop}
+        if edges & loops:
+            found.update(block.unknowns)
+            edges.update(edge for edge, _ in block.unknowns)
+    return found
 
 
 def redundancy_note(graph: SolverGraph) -> Diagnostic:

@@ -17,6 +17,7 @@ from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of, forces_demand
+from mechkin_cli.solver.inputs import input_rest
 from mechkin_cli.status import Status, has_solution
 from mechkin_cli.units import DIMENSIONLESS, UnitSystem
 
@@ -63,6 +64,7 @@ class Result:
         self.residual = np.full(rows.reached.size, np.nan)
         self.shifts: tuple[int, ...] = SHIFTS if session.is_redundant else ()
         self._columns: Columns = {}
+        self._rests: Columns = {}
         self._shifted: tuple[Columns, ...] = tuple({} for _ in self.shifts)
         self._alternative: int | None = None
         self._condition: Floats | None = None
@@ -231,7 +233,7 @@ class Result:
             raise UnknownName(name, sorted(self._columns), hint_of(name))
         given = self._given(name)
         if given is not None:
-            return Quantity(given, wanted.dimension)
+            return Quantity(given, wanted.dimension, input_rest(self.session, name))
         if name not in self._columns:
             self.read([wanted])
         columns = self._columns[name]
@@ -239,7 +241,7 @@ class Result:
             columns = self._shifted[self._alternative].get(name, columns)
         if wanted.vector:
             return Quantity(Vector(columns[0], columns[1], columns[2]), wanted.dimension)
-        return Quantity(columns[0], wanted.dimension)
+        return Quantity(columns[0], wanted.dimension, self._rests.get(name))
 
     def _given(self, name: str) -> Floats | None:
         """Time, an input's value or its rates in SI; None for what is computed."""
@@ -293,7 +295,7 @@ class Result:
         if not wanted:
             return
         columns = self._split(wanted, batch, self.session)
-        make_continuous(self, wanted, columns)
+        self._rests |= make_continuous(self, wanted, columns)
         self._columns |= columns
         reactions = [quantity for quantity in wanted if quantity.kind in WRENCH_KINDS]
         for shift, others in zip(self.shifts if reactions else (), self._shifted, strict=False):
@@ -343,11 +345,13 @@ class Result:
         session = session or self.session
         inputs = inputs or self.session.inputs
         rows = self.row_states
-        values, states = inputs.values, rows.states
+        values, states = inputs.reduced, rows.states
+        turned, whole = rows.turns, self.session.inputs.whole
         if not rows.reached.all():
             first = int(np.argmax(rows.reached))
             stand_in = np.where(rows.reached, np.arange(rows.reached.size), first)
             values, states = values[:, stand_in], states[:, stand_in]
+            turned, whole = turned[:, stand_in], whole[:, stand_in]
         return session.run(
             values,
             states,
@@ -357,6 +361,8 @@ class Result:
             accelerations=inputs.accelerations if demand & Demand.ACCELERATION else None,
             jerks=inputs.jerks if demand & Demand.JERK else None,
             loads=loads,
+            turned=turned if demand & Demand.FORCES else None,
+            whole=whole if demand & Demand.FORCES else None,
             shift=shift,
             iterations=iterations,
         )

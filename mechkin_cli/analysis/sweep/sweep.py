@@ -70,7 +70,7 @@ def first_assembly(session: Session) -> tuple[Session, Start]:
     start = choose_start(session)
     if start.state is None or session.size is not None:
         return session, start
-    inputs = session.inputs.values[:, start.row]
+    inputs = session.inputs.reduced[:, start.row]
     return session.sized(assembly_size(session.plan, inputs, start.state)), start
 
 

@@ -99,6 +99,8 @@ struct Load {
   double point[3], other_point[3];
   double vector[3];   // force, torque, or the data of springs and dampers
   int varying;        // first of its values in Request::loads instead of `vector`, -1: constant
+  int turn;           // LOAD_COORDINATE_SPRING on an angle: its slot in Request::turned; of an input -2 - its number in
+                      // Request::whole; -1: turns do not matter
 };
 
 enum OutputCode : int {
@@ -246,6 +248,9 @@ struct Request {
   const double* jerks;          // inputs x rows, with DEMAND_JERK
   const double* guess;          // states x rows
   const double* loads;          // load_values x rows: values of varying loads, may be null without DEMAND_FORCES
+  const double* turned;         // turn slots x rows, may be null: closing joints' continuous angles to less than half a
+                                // turn, whole turns of the tree's angles; springs go by them
+  const double* whole;          // inputs x rows, may be null: whole turns that the inputs are without, likewise
   OutputsView wanted;           // what `outputs` receives
   double* states;               // states x rows
   double* outputs;              // slots x rows, may be null

@@ -16,6 +16,7 @@
 #include "bindings.hpp"
 #include "output_list.hpp"
 #include "plan_builder.hpp"
+#include "stepper.hpp"
 #include "threads.hpp"
 #include "units.hpp"
 
@@ -128,6 +129,9 @@ void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.accelerations = given.read("accelerations", p.inputs);
   r.jerks = given.read("jerks", p.inputs);
   r.loads = given.read("loads", p.load_values);
+  const KernelUnit& narrow = *kernel_unit(2);
+  r.turned = given.read("turned", turn_slots(p, narrow));
+  r.whole = given.read("whole", p.inputs);
   const OutputList* outputs = nullptr;
   nb::object list = given.other("outputs");
   if (!list.is_none()) {

@@ -221,7 +221,7 @@ void PlanBuilder::add_load(int type, int link, int other, int freedom, const Tri
   open();
   check_load(type, link, other, freedom, varying);
   check_finite(point), check_finite(other_point), check_finite(vector);
-  Load l = {type, link, other, freedom, {}, {}, {}, varying ? plan_.load_values : -1};
+  Load l = {type, link, other, freedom, {}, {}, {}, varying ? plan_.load_values : -1, -1};
   if (varying) plan_.load_values += type == LOAD_COORDINATE ? 1 : 3;
   copy(point, l.point);
   copy(other_point, l.other_point);

@@ -61,6 +61,7 @@ class PlanBuilder {
   void place_joints(int block, const std::vector<int>& joints);
   void check_order() const;
   void sort_drives();
+  void find_turns();
   Plan arrays() const;
 
   Plan plan_{};

@@ -138,7 +138,7 @@ inline void apply_between_points(Balance& balance, const Load& l) {
   balance.apply(l.other, Pack(-1.0) * force_at(p, pull));
 }
 
-// `row_value` gives a column of Request::loads for the pack's rows.
+// `row_value` gives a column of Request::loads for the pack's rows, and angles with their whole turns.
 template <class RowValue>
 MECHKIN_INLINE Vec3 load_vector(const Load& l, const RowValue& row_value) {
   if (l.varying < 0) return constant(l.vector);
@@ -167,6 +167,7 @@ inline void apply_load(Balance& balance, const Load& l, const RowValue& row_valu
     case LOAD_DAMPER: return apply_between_points(balance, l);
     case LOAD_COORDINATE_SPRING:
       joint_coordinate(p, w, l, balance.moving, &value, &rate);
+      value = row_value.turned(l, value);
       return apply_along_coordinate(balance, l.link,
                                     -(Pack(l.vector[0]) * (value - Pack(l.vector[1])) + Pack(l.vector[2])));
     case LOAD_COORDINATE_DAMPER:

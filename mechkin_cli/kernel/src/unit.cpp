@@ -24,6 +24,21 @@ struct Reader {
   }
 };
 
+// What loads read of a row.
+struct RowValues {
+  const Request& r;
+  const Reader& in;
+  MECHKIN_INLINE Pack operator()(int column) const { return in.get(r.loads, column); }
+  // An angle with its whole turns: of a closing joint, what is nearest to what following says.
+  MECHKIN_INLINE Pack turned(const Load& l, Pack angle) const {
+    const Pack full = 2.0 * 3.14159265358979323846;
+    if (l.turn == -1 || !(l.turn >= 0 ? r.turned : r.whole)) return angle;
+    if (l.turn < -1) return angle + full * in.get(r.whole, -2 - l.turn);
+    const Pack known = in.get(r.turned, l.turn);
+    return angle + full * (l.other < 0 ? nearest_integer((known - angle) / full) : known);
+  }
+};
+
 void write_flags(unsigned char* flags, const Reader& in, Mask converged, Mask side) {
   for (int i = 0; i < in.count; ++i) {
     unsigned f = 0;
@@ -160,8 +175,7 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int o = 0; o < r.wanted.count; ++o) write_output(p, w, balance, r.wanted.output[o], out);
   };
   if (r.demand & DEMAND_FORCES) {
-    const auto load_value = [&](int column) { return in.get(r.loads, column); };
-    const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift, load_value);
+    const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift, RowValues{r, in});
     if (r.demand & DEMAND_POWER) {
       const Mask none = balance.powers.size == Pack(0.0);
       const Pack size = select(none, Pack(1.0), balance.powers.size);
