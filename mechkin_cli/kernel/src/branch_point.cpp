@@ -22,6 +22,8 @@ constexpr double NEAR_STATE = 1e-4;
 constexpr int MOST_ORDERS = 4;
 // Singular values below this part of the largest are zero at the extrapolated place, which is known to some 1e-8.
 constexpr double SINGULAR = 1e-5;
+// A matrix of one equation vanishes as a whole; those of others are about 1, with lengths in parts of the mechanism.
+constexpr double LEAST_SIZE = 0.1;
 // Parts of the second derivatives' size up to which a condition holds, and from which a matrix of them has full rank.
 constexpr double HOLDS = 1e-3, FULL_RANK = 1e-3;
 // Way from the branch point to the nodes on both sides of it.
@@ -98,7 +100,7 @@ std::vector<Vector> null_vectors(const Matrix& a) {
   const Singular s = singular_vectors(a);
   std::vector<Vector> found;
   for (int j = 0; j < a.columns; ++j) {
-    if (s.value[j] > SINGULAR * s.value[0]) continue;
+    if (s.value[j] > SINGULAR * std::fmax(s.value[0], LEAST_SIZE)) continue;
     Vector v(a.columns);
     for (int i = 0; i < a.columns; ++i) v[i] = s.v(i, j);
     found.push_back(v);

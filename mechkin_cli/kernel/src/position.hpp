@@ -304,6 +304,9 @@ inline void take_back_factors(const Workspace& w, const BlockMatrices& at, Mask 
     at.swap[s] = (done & w.kept_swap[s]) | (~done & at.swap[s]);
 }
 
+// A Newton step (rad, length units) that no residual at rounding level gives where the condition is below 1e8.
+constexpr double LONG_STEP = 1e-6;
+
 // Closes one block from the guess in w.q.
 inline Closed close_block(const Plan& p, Workspace& w, int index, const Request& r) {
   const Block& b = p.block[index];
@@ -335,6 +338,8 @@ inline Closed close_block(const Plan& p, Workspace& w, int index, const Request&
     // where the Jacobian is singular there is no step: the lane stays where it is (NaN, infinity, or 1e100, whose
     // products would soon be infinite)
     done = done | ~(length < Pack(1e100));
+    // a closed place whose step is yet long is singular, and the step is rounding
+    done = done | ((residual.test <= Pack(r.accept)) & (length > Pack(LONG_STEP)));
     correction += select(done, Pack(0.0), length);
     advance_block(p, w, index, w.right, ~done);
   }
