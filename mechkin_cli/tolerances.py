@@ -186,6 +186,10 @@ MOST_COURSE_ORDER: Final = 8
 """Order in which inputs leave a rest: the change over a hundredth of a cell and half of it tells
 orders up to it from rounding."""
 
+COURSE_SLOW: Final = 0.5
+"""The same between two samples, above which no zero lies between them: samples are dense against
+the swing of a law."""
+
 COURSE_REST: Final = 1e-6
 """Rate, in parts of each input's fastest, up to which all of them rest: a zero of the rates is
 found to the root of a rounding where they only touch it."""

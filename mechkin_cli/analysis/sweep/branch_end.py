@@ -176,7 +176,8 @@ def _all_beyond(limit: DeadCentre, path: Floats, rows: Rows) -> bool:
     """Whether the missing rows lie where the branch does not come at all."""
     back = limit.inputs_beyond - limit.inputs
     off = path[:, ~rows.reached] - limit.inputs[:, None]
-    return bool(np.all(np.sum(off * back[:, None], axis=0) <= 0.0))
+    along = sum(one * other for one, other in zip(off, back, strict=True))
+    return bool(np.all(along <= 0.0))
 
 
 def _runaway_note(session: Session, followed: Followed, limit: Runaway, rows: Rows) -> Diagnostic:
