@@ -19,7 +19,7 @@ from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.solver.closing_turns import turn_slots
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
-from mechkin_cli.solver.inputs import input_unit
+from mechkin_cli.solver.inputs import held_values, input_unit
 from mechkin_cli.solver.stepping import step_limits
 from mechkin_cli.status import Status
 from mechkin_cli.units import Conversion
@@ -83,6 +83,7 @@ class Solver:
                 strict=True,
             )
         ]
+        self.held = held_values(problem, session.layout)
         self.problem = problem
         self.native = _native(result, session, readout.outputs, wanted, self.columns)
 
@@ -93,7 +94,7 @@ class Solver:
         values = [
             conversion.apply(places[name]) / unit
             for name, (conversion, unit) in zip(self.inputs, self.to_kernel, strict=True)
-        ]
+        ] + self.held
         found = None if self.native is None else self.native.solve(values)
         if found is None:
             nothing = {c.name: np.nan if c.width == 1 else np.full(3, np.nan) for c in self.columns}

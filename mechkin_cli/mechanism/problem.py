@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.derived_quantities import derived_catalogue
+from mechkin_cli.mechanism.held import Held
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
 from mechkin_cli.mechanism.quantities import Wanted, catalogue
@@ -31,7 +32,18 @@ class Problem:
     diagnostics: tuple[Diagnostic, ...] = ()
     load_laws: tuple[LoadLaw, ...] = ()
     hold_idle: bool = False
+    held: tuple[Held, ...] = ()
     follow: tuple[str, ...] | None = None
+
+    @property
+    def driven(self) -> list[tuple[str, str]]:
+        """The inputs (joint, coordinate), then the coordinates at which idle freedoms are held."""
+        return [*self.motion.driven, *(one.coordinate for one in self.held)]
+
+    @property
+    def held_at(self) -> list[float]:
+        """Where the held coordinates stand (rad, m): as drawn, or where `near` puts them."""
+        return [self.assembly.near.get(one.name, 0.0) for one in self.held]
 
     def quantities(self) -> Mapping[str, Wanted]:
         """The quantities that the mechanism has, by name."""
@@ -41,5 +53,5 @@ class Problem:
     def _quantities(self) -> Mapping[str, Wanted]:
         mechanism, motion = self.mechanism, self.motion
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
-        found = catalogue(mechanism, motion.driven, timed=motion.time is not None)
+        found = catalogue(mechanism, motion.driven, timed=motion.time is not None, held=self.held)
         return found | derived_catalogue(mechanism, motion.driven, leading)

@@ -71,7 +71,7 @@ class Session:
     Args:
         problem: mechanism, motion and assembly.
         graph: its solver graph; None builds the best one.
-        driven: the inputs, where they are not those of the problem's motion.
+        driven: the inputs, where they are not those of the problem's motion and what is held.
         closed_at: closing joints to use instead of the best ones.
         packing: how rows are packed.
 
@@ -89,7 +89,7 @@ class Session:
         packing: Packing = Packing(),
     ) -> None:
         self.problem = problem
-        self.driven = list(problem.motion.driven if driven is None else driven)
+        self.driven = list(problem.driven if driven is None else driven)
         self.closed_at = closed_at
         self.packing = packing
         self.size: float | None = None

@@ -80,7 +80,7 @@ def input_faults(session: Session) -> list[Diagnostic]:
     from mechkin_cli.analysis.mobility.inputs import undriven_notes
 
     found = find_mobility(session.problem, session)
-    if not session.driven:
+    if not session.problem.motion.driven:
         return undriven_notes(found.mobility or 0, len(found.idle), 0)
     codes = ("input-locked", "inputs-dependent", "undriven-freedom")
     return [diagnostic for diagnostic in found.diagnostics if diagnostic.code in codes]
