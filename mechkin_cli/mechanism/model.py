@@ -107,6 +107,27 @@ class Joint(NamedTuple):
         return tuple(screw for part in self.parts for screw in part.screws(self.pitch))
 
     @property
+    def free_slides(self) -> tuple[Attached, ...]:
+        """Directions along which it takes no force, whatever its coordinates are."""
+        return self._free("slide")
+
+    @property
+    def free_turns(self) -> tuple[Attached, ...] | None:
+        """Directions about which it takes no moment about its point; None for all of a ball."""
+        return None if self.type.is_oriented else self._free("turn")
+
+    def _free(self, motion: str) -> tuple[Attached, ...]:
+        if self.type.is_threaded:
+            return ()
+        return tuple(
+            # a part that leads from one drawing to the other stands behind slides alone
+            Attached(self.first, part.before.z) if step.along is None else self.drawn(step.along)
+            for step, part in zip(self.type.steps, self.parts, strict=True)
+            for freedom in part.type.freedoms
+            if freedom.motion == motion
+        )
+
+    @property
     def parameter(self) -> float:
         """What its closing equations have to know: the cosine of the angle between its axes, or
         between its axis and its pin, which is -y of the first frame."""

@@ -67,8 +67,10 @@ Kind = Literal[
     "transmission_angle",
     "link_direction",
     "link_point",
+    "reaction_level",
 ]
-"""The last two are of no use to users: what derived quantities are computed from."""
+"""The last three are of no use to users: what derived quantities are computed from, and what cells
+are judged by."""
 
 
 class Wanted(NamedTuple):
@@ -82,6 +84,9 @@ class Wanted(NamedTuple):
     coordinate: str = ""
     order: int = 0
 
+
+REACTION_LEVEL = Wanted("reaction level", "reaction_level", GROUND_NAME, FORCE, False)
+"""The largest component of force, or moment in length units, of all joints."""
 
 _OF_ANGLES = (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION, ANGULAR_JERK)
 _OF_LENGTHS = (LENGTH, VELOCITY, ACCELERATION, JERK)

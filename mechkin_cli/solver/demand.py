@@ -27,7 +27,9 @@ WRENCH_KINDS = {"force", "moment", "moment_about_origin"}
 _SHAKING_KINDS = {"shaking_force", "shaking_moment"}
 _INERTIA_KINDS = {"inertia_force", "inertia_moment"}
 _HOLDING_KINDS = {"holding_moment", "holding_force"}
-_FORCE_KINDS = WRENCH_KINDS | _SHAKING_KINDS | _INERTIA_KINDS | _HOLDING_KINDS | {"effort"}
+_FORCE_KINDS = (
+    WRENCH_KINDS | _SHAKING_KINDS | _INERTIA_KINDS | _HOLDING_KINDS | {"effort", "reaction_level"}
+)
 
 
 def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
@@ -175,6 +177,8 @@ class OutputPlan:
         if kind == "holding_moment":
             number = layout.leg_number[owner]
             return self._output(OutputCode.HOLDING_MOMENT, number, length * length)
+        if kind == "reaction_level":
+            return self._output(OutputCode.REACTION_LEVEL, 0, length)
         code = OutputCode[kind.upper()]
         return self._output(code, 0, length if kind.endswith("force") else length * length)
 

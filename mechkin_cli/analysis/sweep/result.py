@@ -12,13 +12,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.analysis.sweep.closing_angles import make_continuous
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
+from mechkin_cli.mechanism.quantities import REACTION_LEVEL
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of, forces_demand
 from mechkin_cli.status import Status, has_solution
-from mechkin_cli.units import DIMENSIONLESS, UnitSystem
+from mechkin_cli.units import DIMENSIONLESS, FORCE, UnitSystem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -40,6 +42,10 @@ Columns = dict[str, "Floats"]
 
 ROW_NUMBERS = {f"row.{name}": name for name in ("residual", "condition", "power_error")}
 """Verdicts that are numbers, by the names of their quantities."""
+
+DISTURBANCES = ((1.0, 0.829, -0.617), (-0.731, 1.0, 0.517))
+"""Parts of a rounding by which components of reactions are off at once: two, of which one alone may
+leave an expression unchanged by chance."""
 
 SHIFTS = (1, 2)
 """Parts of the null space by which other reactions in equilibrium differ, where constraints are
@@ -65,6 +71,7 @@ class Result:
         self._columns: Columns = {}
         self._shifted: tuple[Columns, ...] = tuple({} for _ in self.shifts)
         self._alternative: int | None = None
+        self._disturbance: tuple[float, float, float] | None = None
         self._condition: Floats | None = None
         self._power_error: Floats | None = None
 
@@ -161,6 +168,11 @@ class Result:
         unloaded = self.demand & Demand.FORCES and self.loads is not None and self.loads.lost.any()
         return bool(self.solved.all()) and not unloaded
 
+    @property
+    def sound(self) -> bool:
+        """Whether every row is `ok`."""
+        return bool((self.status == Status.ok).all())
+
     # --- quantities -----------------------------------------------------------------------
 
     @property
@@ -171,7 +183,8 @@ class Result:
 
     @property
     def power_error(self) -> Floats:
-        """|sum of powers| / sum of |powers| of every row (rows,); nan where it was not computed."""
+        """|sum of powers| / sum of |powers| of every row (rows,); nan where nothing moves, or where
+        it was not computed."""
         return self._nothing if self._power_error is None else self._power_error
 
     @cached_property
@@ -215,6 +228,24 @@ class Result:
             found.append(other)
         return tuple(found)
 
+    @cached_property
+    def disturbed(self) -> tuple[Result, ...]:
+        """The same rows with reactions that are off by their rounding, where some may not be
+        unique: what changes no more than with these does not depend on the null space."""
+        found = []
+        for parts in DISTURBANCES if self.shifts else ():
+            other = object.__new__(Result)
+            other.__dict__.update(self.__dict__, alternatives=(), disturbed=(), _disturbance=parts)
+            found.append(other)
+        return tuple(found)
+
+    @cached_property
+    def _reaction_rounding(self) -> float:
+        """Rounding of reactions in this run: of forces in N, of moments in N by the length unit."""
+        level = self.evaluated([REACTION_LEVEL])[REACTION_LEVEL.name][0]
+        largest = float(np.max(level[np.isfinite(level)], initial=0.0))
+        return tolerances.REACTION_ROUNDING * largest
+
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by name, in SI.
 
@@ -237,6 +268,10 @@ class Result:
         columns = self._columns[name]
         if self._alternative is not None:
             columns = self._shifted[self._alternative].get(name, columns)
+        if self._disturbance is not None and wanted.kind in WRENCH_KINDS:
+            off = self._reaction_rounding
+            off = off if wanted.dimension == FORCE else off * self.session.layout.length
+            columns = columns + off * np.array(self._disturbance)[:, None]
         if wanted.vector:
             return Quantity(Vector(columns[0], columns[1], columns[2]), wanted.dimension)
         return Quantity(columns[0], wanted.dimension)

@@ -10,7 +10,12 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.start import choose_start
 from mechkin_cli.analysis.sweep.following import follow_rows
-from mechkin_cli.analysis.sweep.notes import not_converged_note, open_turn_note, redundancy_note
+from mechkin_cli.analysis.sweep.notes import (
+    condition_notes,
+    not_converged_note,
+    open_turn_note,
+    redundancy_note,
+)
 from mechkin_cli.analysis.sweep.result import Result
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.mechanism.legs import find_legs
@@ -161,6 +166,7 @@ def _judge_condition(rows: Rows, batch: Batch) -> None:
     unclear = rows.reached & ~(condition <= tolerances.CONDITION_RANK_UNCLEAR)
     rows.status[singular & (rows.status == Status.ok)] = Status.near_singular
     rows.status[unclear & (rows.status == Status.near_singular)] = Status.rank_unclear
+    rows.diagnostics += condition_notes(rows, condition)
 
 
 def _read_by_loads(result: Result) -> list[Wanted]:

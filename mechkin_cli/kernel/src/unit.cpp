@@ -4,6 +4,7 @@
 
 #include "condition.hpp"
 #include "elementwise.hpp"
+#include "energy.hpp"
 #include "outputs.hpp"
 #include "search.hpp"
 #include "tape_replay.hpp"
@@ -120,11 +121,8 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
   if (r.demand & DEMAND_FORCES) {
     const auto load_value = [&](int column) { return in.get(r.loads, column); };
     const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift, load_value);
-    if (r.demand & DEMAND_POWER) {
-      const Mask none = balance.powers.size == Pack(0.0);
-      const Pack size = select(none, Pack(1.0), balance.powers.size);
-      writer(r.power_error).put(0, abs(balance.powers.sum) / size);
-    }
+    if (r.demand & DEMAND_POWER)
+      writer(r.power_error).put(0, velocities ? power_error(p, w, accelerations, load_value) : Pack(__builtin_nan("")));
     if (r.outputs) outputs(&balance);
   } else if (r.outputs) {
     outputs(nullptr);
