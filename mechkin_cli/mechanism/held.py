@@ -73,6 +73,9 @@ def held_freedoms(mechanism: Mechanism, driven: Collection[Coordinate]) -> tuple
     size = mechanism.box_diagonal()
     found: list[Held] = []
     for links, inner, border in _groups(mechanism):
+        others = {end for joint in border for end in (joint.first, joint.second)}
+        if len(others.difference(links)) < 2:
+            continue  # all on one link: what moves there is a freedom like any other
         taken = [*driven, *(one.coordinate for one in found)]
         still = [
             (joint.name, joint.type.freedom_of[coordinate])

@@ -12,15 +12,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli.analysis.sweep.admissible import (
+    DISTURBANCES,
+    SHIFTS,
+    disturbed,
+    reaction_rounding,
+    told_anew,
+)
 from mechkin_cli.analysis.sweep.closing_angles import make_continuous
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
-from mechkin_cli.mechanism.quantities import REACTION_LEVEL
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of, forces_demand
 from mechkin_cli.status import Status, has_solution
-from mechkin_cli.units import DIMENSIONLESS, FORCE, UnitSystem
+from mechkin_cli.units import DIMENSIONLESS, UnitSystem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -43,14 +48,6 @@ Columns = dict[str, "Floats"]
 ROW_NUMBERS = {f"row.{name}": name for name in ("residual", "condition", "power_error")}
 """Verdicts that are numbers, by the names of their quantities."""
 
-DISTURBANCES = ((1.0, 0.829, -0.617), (-0.731, 1.0, 0.517))
-"""Parts of a rounding by which components of reactions are off at once: two, of which one alone may
-leave an expression unchanged by chance."""
-
-SHIFTS = (1, 2)
-"""Parts of the null space by which other reactions in equilibrium differ, where constraints are
-redundant. Two: one alone may leave a cell unchanged by chance."""
-
 
 class Result:
     """The rows of a sweep with a position and a verdict each.
@@ -71,11 +68,9 @@ class Result:
         self._columns: Columns = {}
         self._shifted: tuple[Columns, ...] = tuple({} for _ in self.shifts)
         self._alternative: int | None = None
-        self._disturbance: tuple[float, float, float] | None = None
+        self._disturbance: int | None = None
         self._condition: Floats | None = None
         self._power_error: Floats | None = None
-
-    # --- what was run ---------------------------------------------------------------------
 
     @property
     def problem(self) -> Problem:
@@ -173,8 +168,6 @@ class Result:
         """Whether every row is `ok`."""
         return bool((self.status == Status.ok).all())
 
-    # --- quantities -----------------------------------------------------------------------
-
     @property
     def condition(self) -> Floats:
         """1 / smallest singular value of every row's scaled blocks (rows,); nan where it was not
@@ -219,32 +212,17 @@ class Result:
 
     @cached_property
     def alternatives(self) -> tuple[Result, ...]:
-        """The same rows with other reactions that are in equilibrium too (redundant
-        constraints)."""
-        found = []
-        for number in range(len(self.shifts)):
-            other = object.__new__(Result)
-            other.__dict__.update(self.__dict__, alternatives=(), _alternative=number)
-            found.append(other)
-        return tuple(found)
+        """The same rows with other reactions in equilibrium (redundant constraints)."""
+        return told_anew(self, "_alternative", len(self.shifts))
 
     @cached_property
     def disturbed(self) -> tuple[Result, ...]:
-        """The same rows with reactions that are off by their rounding, where some may not be
-        unique: what changes no more than with these does not depend on the null space."""
-        found = []
-        for parts in DISTURBANCES if self.shifts else ():
-            other = object.__new__(Result)
-            other.__dict__.update(self.__dict__, alternatives=(), disturbed=(), _disturbance=parts)
-            found.append(other)
-        return tuple(found)
+        """The same rows with reactions off by their rounding, where some may not be unique."""
+        return told_anew(self, "_disturbance", len(DISTURBANCES) if self.shifts else 0)
 
     @cached_property
-    def _reaction_rounding(self) -> float:
-        """Rounding of reactions in this run: of forces in N, of moments in N by the length unit."""
-        level = self.evaluated([REACTION_LEVEL])[REACTION_LEVEL.name][0]
-        largest = float(np.max(level[np.isfinite(level)], initial=0.0))
-        return tolerances.REACTION_ROUNDING * largest
+    def _rounding(self) -> float:
+        return reaction_rounding(self)
 
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by name, in SI.
@@ -269,9 +247,8 @@ class Result:
         if self._alternative is not None:
             columns = self._shifted[self._alternative].get(name, columns)
         if self._disturbance is not None and wanted.kind in WRENCH_KINDS:
-            off = self._reaction_rounding
-            off = off if wanted.dimension == FORCE else off * self.session.layout.length
-            columns = columns + off * np.array(self._disturbance)[:, None]
+            unit = self.session.layout.length
+            columns = disturbed(columns, wanted, self._rounding, unit, self._disturbance)
         if wanted.vector:
             return Quantity(Vector(columns[0], columns[1], columns[2]), wanted.dimension)
         return Quantity(columns[0], wanted.dimension)
@@ -287,8 +264,6 @@ class Result:
             if name.startswith(driven.name) and name in driven.orders:
                 return np.where(self.solved, driven.orders[name][0], np.nan)
         return None
-
-    # --- reading --------------------------------------------------------------------------
 
     def read(self, wanted: Iterable[Wanted]) -> None:
         """Evaluates the quantities that have not been read yet."""
