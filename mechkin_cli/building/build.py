@@ -159,7 +159,7 @@ def _graph(
     if fields.error_count or not check_size(fields, problem.mechanism):
         return None
     try:
-        graph = build_graph(problem.mechanism, problem.driven)
+        graph = build_graph(problem.solved_mechanism, problem.driven)
     except UnsolvableGraph as error:
         driven = problem.motion.inputs
         path = ("motion", "inputs") if driven else _place_of(file, error.joints)

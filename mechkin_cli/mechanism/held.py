@@ -23,7 +23,9 @@ from mechkin_cli.mechanism.common_motions import (
     scaled_screw,
 )
 from mechkin_cli.mechanism.elementary import Screw
+from mechkin_cli.mechanism.held_balls import HeldBall, ball_line, held_ball
 from mechkin_cli.mechanism.joint_table import is_angle
+from mechkin_cli.mechanism.legs import find_legs, frame_on
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
 from mechkin_cli.mechanism.vectors import Vector, norm, scale
 
@@ -42,7 +44,9 @@ class Held(NamedTuple):
     """An idle freedom of some links, held at a coordinate of one of the joints around them.
 
     `moves` are the coordinates that move with it; `axes` the line about which each link turns, None
-    where it does not turn about a line of its own; `slides` whether it slides without a turn.
+    where it does not turn about a line of its own; `slides` whether it slides without a turn;
+    `holding` names the effort that holds it; `ball` is the joint that has the coordinate where it
+    is a turn of a ball.
     """
 
     links: tuple[str, ...]
@@ -52,6 +56,7 @@ class Held(NamedTuple):
     axes: Mapping[str, Line | None]
     slides: bool
     holding: str
+    ball: HeldBall | None = None
 
     @property
     def name(self) -> str:
@@ -59,12 +64,24 @@ class Held(NamedTuple):
         return ".".join(self.coordinate)
 
     @property
+    def convention(self) -> str:
+        """What is told of it by convention."""
+        if self.ball is None:
+            return f"{self.name} is held as it is drawn"
+        return f"the turn of {self.coordinate[0]} about that line is held as it is drawn"
+
+    @property
+    def cure(self) -> str:
+        """How to have a pose of its own."""
+        return f"drive {self.name}" if self.ball is None else f"replace {self.coordinate[0]} by U"
+
+    @property
     def words(self) -> str:
         """The idle freedom in an engineer's words."""
-        one = len(self.links) == 1
-        kind = "slide" if self.slides else "spin" if any(self.axes.values()) else "move"
-        verb = f"{kind}s" if one else f"{kind} together"
-        where = "along" if self.slides else "about" if any(self.axes.values()) else "between"
+        spins = self.ball is not None or any(self.axes.values())
+        kind = "slide" if self.slides else "spin" if spins else "move"
+        verb = f"{kind}s" if len(self.links) == 1 else f"{kind} together"
+        where = "along" if self.slides else "about" if spins else "between"
         return f"{' and '.join(self.links)} {verb} freely {where} {'-'.join(self.joints)}"
 
 
@@ -76,17 +93,25 @@ def held_freedoms(mechanism: Mechanism, driven: Collection[Coordinate]) -> tuple
         others = {end for joint in border for end in (joint.first, joint.second)}
         if len(others.difference(links)) < 2:
             continue  # all on one link: what moves there is a freedom like any other
+        if any(one.ball is not None and {*one.links} <= {*links} for one in found):
+            continue
         taken = [*driven, *(one.coordinate for one in found)]
         still = [
             (joint.name, joint.type.freedom_of[coordinate])
             for joint in border
             for name, coordinate in taken
-            if name == joint.name
+            if name == joint.name and coordinate in joint.type.freedom_of
         ]
         places = [
             common_motions(links, inner, border, still, size, place) for place in range(PLACES)
         ]
-        found += _held_of(links, border, places, size)
+        named = _held_of(links, border, places, size)
+        found += named
+        fewest = min(len(common.rates) for common in places)
+        in_leg = any(set(leg.links) & set(links) for leg in find_legs(mechanism))
+        if fewest == 1 and not named and not in_leg:
+            free = [joint for joint in border if all(joint.name != name for name, _ in taken)]
+            found += _held_by_ball(mechanism, links, border, free, places, size)
     return tuple(found)
 
 
@@ -157,6 +182,33 @@ def _held_of(
         screws = _carried(links, twists[k], places, several)
         found.append(_held(links, border, coordinate, rates[k], screws, size, holding))
     return found
+
+
+def _held_by_ball(
+    mechanism: Mechanism,
+    links: tuple[str, ...],
+    border: Sequence[Joint],
+    free: Sequence[Joint],
+    places: Sequence[Common],
+    size: float,
+) -> list[Held]:
+    """The spin of some links about the line of two balls around them, held at one of these that is
+    `free`."""
+    balls = [joint for joint in border if joint.type.is_oriented]
+    balls.sort(key=lambda joint: (joint not in free, joint.type.has_slip))
+    if len(border) != 2 or len(balls) != 2 or balls[0] not in free:
+        return []
+    ends = [joint.first if joint.first in links else joint.second for joint in balls]
+    centres = [frame_on(joint, link).o for joint, link in zip(balls, ends, strict=True)]
+    line = ball_line(centres[0], centres[1], size)
+    if line is None:
+        return []
+    ball = held_ball(mechanism, balls[0], ends[0], line)
+    coordinate = (balls[0].name, ball.coordinate)
+    screws = _carried(links, places[0].twists[0], places, several=False)
+    holding = f"{links[0]}.holding_moment"
+    held = _held(links, border, coordinate, places[0].rates[0], screws, size, holding)
+    return [held._replace(ball=ball)]
 
 
 def _fastest(rates: Mapping[Freedom, float]) -> float:

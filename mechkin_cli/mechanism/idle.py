@@ -105,8 +105,8 @@ def _of_held(mechanism: Mechanism, held: Held) -> Idle:
         held.slides,
         held.moves,
         mechanism.box_diagonal(),
-        f"{held.name} is held as it is drawn",
-        f"drive {held.name}",
+        held.convention,
+        held.cure,
         held.holding,
     )
 

@@ -96,10 +96,17 @@ class Joint(NamedTuple):
 
     def unit_of(self, coordinate: str, length: float) -> float:
         """A coordinate (rad, m) per unit of its freedom, whose slides are told in `length` (m)."""
-        known = self.type.coordinate[coordinate]
+        known = self.type.coordinate.get(coordinate)
+        if known is None:
+            return 1.0
         if known.on_thread:
             return self.pitch
         return 1.0 if known.is_angle else length
+
+    def freedom_number(self, coordinate: str) -> int:
+        """The freedom of a coordinate; `turn 2` stands for a ball's that has no name."""
+        known = self.type.freedom_of.get(coordinate)
+        return int(coordinate.rpartition(" ")[2]) if known is None else known
 
     @property
     def screws(self) -> tuple[Screw, ...]:

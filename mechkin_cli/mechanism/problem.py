@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -39,6 +39,14 @@ class Problem:
     def driven(self) -> list[tuple[str, str]]:
         """The inputs (joint, coordinate), then the coordinates at which idle freedoms are held."""
         return [*self.motion.driven, *(one.coordinate for one in self.held)]
+
+    @cached_property
+    def solved_mechanism(self) -> Mechanism:
+        """The mechanism with the balls that hold idle freedoms told as three turns."""
+        balls = {one.ball.joint.name: one.ball.joint for one in self.held if one.ball is not None}
+        if not balls:
+            return self.mechanism
+        return replace(self.mechanism, joints={**self.mechanism.joints, **balls})
 
     @property
     def held_at(self) -> list[float]:

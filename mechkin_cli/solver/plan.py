@@ -186,8 +186,9 @@ def _inputs(layout: Layout) -> Iterator[Input]:
     for (edge, freedom), (name, coordinate) in zip(graph.inputs, graph.driven, strict=True):
         joint = graph.edges[edge].joint
         # a force along a thread is driven as the torque about it
-        known = joint.type.coordinate[coordinate]
-        force_per_torque = layout.length / joint.pitch if known.on_thread else 1.0
+        known = joint.type.coordinate.get(coordinate)
+        on_thread = known is not None and known.on_thread
+        force_per_torque = layout.length / joint.pitch if on_thread else 1.0
         axis = layout.axis_number.get((name, coordinate), NO_AXIS)
         yield Input(layout.column(edge, freedom), axis, force_per_torque)
 

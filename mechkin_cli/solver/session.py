@@ -94,7 +94,7 @@ class Session:
         self.packing = packing
         self.size: float | None = None
         self.continued: Continued | None = None
-        self.graph = graph or build_graph(problem.mechanism, self.driven, closed_at)
+        self.graph = graph or build_graph(problem.solved_mechanism, self.driven, closed_at)
         self._exchanged: dict[tuple[int, Coordinate], Session | None] = {}
         self._readouts: dict[object, Readout] = {}
         self._kept: dict[object, object] = {}
