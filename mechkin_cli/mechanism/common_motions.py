@@ -78,8 +78,7 @@ def common_motions(
     inner: Sequence[Joint],
     border: Sequence[Joint],
     still: Sequence[Freedom],
-    size: float,
-    place: int,
+    general: General,
 ) -> Common:
     """The motions of a chain of links as one body that leave all others at rest.
 
@@ -88,69 +87,79 @@ def common_motions(
         inner: the joints between them, each leads from one to the next.
         border: the joints to other links.
         still: freedoms that shall not move.
-        size: what lengths are parts of, m.
-        place: which general place.
+        general: the place.
     """
-    general = _General(place, size)
     pose = {links[0]: STILL}
     for here, there, joint in zip(links, links[1:], inner, strict=False):
-        pose[there] = pose[here].after(general.from_link(joint, here)[0])
-    columns: list[tuple[int, Freedom, Screw]] = []
+        pose[there] = pose[here].after(general.seen_from(joint, here)[0])
+    columns: list[tuple[int, Freedom, tuple[float, ...]]] = []
     for number, joint in enumerate(border):
         link = joint.first if joint.first in pose else joint.second
-        for own, screw in enumerate(general.from_link(joint, link)[1]):
-            columns.append((number, (joint.name, own), pose[link].screw(screw)))
-    # the twist itself is unknown, too: it is that of every border joint
+        at = pose[link]
+        for own, screw in enumerate(general.seen_from(joint, link)[1]):
+            seen = screw if at is STILL else at.screw(screw)
+            columns.append((number, (joint.name, own), (*seen[0], *seen[1])))
+    # the twist by the first joint is that by each other
     rows = [
-        [1.0 if c == i else 0.0 for c in range(6)]
-        + [-_parts(screw)[i] if number == k else 0.0 for number, _, screw in columns]
-        for k in range(len(border))
+        [
+            screw[i] if number == 0 else -screw[i] if number == k else 0.0
+            for number, _, screw in columns
+        ]
+        for k in range(1, len(border))
         for i in range(6)
     ]
     for freedom in still:
-        rows.append([0.0] * 6 + [1.0 if known == freedom else 0.0 for _, known, _ in columns])
-    found = _null_space(rows, 6 + len(columns))
+        rows.append([1.0 if known == freedom else 0.0 for _, known, _ in columns])
+    found = _null_space(rows, len(columns))
     rates = tuple(
-        {freedom: motion[6 + k] for k, (_, freedom, _) in enumerate(columns)} for motion in found
+        {freedom: rate for rate, (_, freedom, _) in zip(motion, columns, strict=True)}
+        for motion in found
     )
     twists = []
     for motion in found:
-        twist = ((motion[0], motion[1], motion[2]), (motion[3], motion[4], motion[5]))
+        first = [
+            (rate, screw)
+            for rate, (number, _, screw) in zip(motion, columns, strict=True)
+            if number == 0
+        ]
+        v = [sum(rate * screw[i] for rate, screw in first) for i in range(6)]
+        twist = ((v[0], v[1], v[2]), (v[3], v[4], v[5]))
         twists.append({link: pose[link].reversed().screw(twist) for link in links})
     return Common(rates, tuple(twists))
 
 
-def _parts(screw: Screw) -> tuple[float, ...]:
-    return (*screw[0], *screw[1])
-
-
-class _General:
-    """Numbers of one general place, dealt out joint by joint."""
+class General:
+    """A general place of all joints; lengths in parts of `size` (m)."""
 
     def __init__(self, place: int, size: float) -> None:
         self.size = size
-        self.next = 7 * place
+        self._next = 7 * place
+        self._seen: dict[tuple[str, str], tuple[Displacement, list[Screw]]] = {}
 
-    def from_link(self, joint: Joint, link: str) -> tuple[Displacement, list[Screw]]:
-        """The displacement from a link's drawing to that of the joint's other link, and the
-        joint's screws on the drawing of the link; lengths in sizes."""
-        passed, screws = STILL, []
-        for part in joint.parts:
-            part = _scaled(part, self.size)
-            screws += [passed.screw(screw) for screw in part.screws(joint.pitch / self.size)]
-            passed = passed.after(self._moved(part, joint.pitch / self.size))
-        if link == joint.first:
-            return passed, screws
-        back = passed.reversed()
-        return back, [back.screw(screw) for screw in screws]
+    def seen_from(self, joint: Joint, link: str) -> tuple[Displacement, list[Screw]]:
+        """The displacement from the drawing of the joint's other link to that of a link, and the
+        joint's screws on the latter."""
+        if (joint.name, link) not in self._seen:
+            passed = STILL
+            screws: list[Screw] = []
+            pitch = joint.pitch / self.size
+            for part in joint.parts:
+                part = _scaled(part, self.size)
+                own = part.screws(pitch)
+                screws += own if passed is STILL else [passed.screw(screw) for screw in own]
+                passed = passed.after(self._moved(part, pitch))
+            back = passed.reversed()
+            self._seen[joint.name, joint.first] = passed, screws
+            self._seen[joint.name, joint.second] = back, [back.screw(screw) for screw in screws]
+        return self._seen[joint.name, link]
 
     def _moved(self, part: Part, pitch: float) -> Displacement:
         """A part at general coordinates: from the drawing after it to the drawing before it."""
-        self.next += 1
-        turn, slide = _TURNS[self.next % len(_TURNS)], _SLIDES[self.next % len(_SLIDES)]
+        self._next += 1
+        turn, slide = _TURNS[self._next % len(_TURNS)], _SLIDES[self._next % len(_SLIDES)]
         own = STILL
         if part.type.is_ball:
-            own = _turned_by(_BALLS[self.next % len(_BALLS)])
+            own = _turned_by(_BALLS[self._next % len(_BALLS)])
         elif part.type.freedoms:
             motions = {freedom.motion for freedom in part.type.freedoms}
             cosine, sine = (1.0, 0.0) if motions == {"slide"} else turn
@@ -215,7 +224,7 @@ def _null_space(rows: list[list[float]], count: int) -> list[list[float]]:
 
 def same_line(one: Screw, other: Screw) -> bool:
     """Whether two screws, scaled alike, are the same or opposite."""
-    a, b = _parts(one), _parts(other)
+    a, b = (*one[0], *one[1]), (*other[0], *other[1])
     apart = max(abs(x - y) for x, y in zip(a, b, strict=True))
     mirrored = max(abs(x + y) for x, y in zip(a, b, strict=True))
     return min(apart, mirrored) <= tolerances.SAME_COMMON_MOTION

@@ -16,6 +16,7 @@ from mechkin_cli.mechanism.common_motions import (
     PLACES,
     Common,
     Freedom,
+    General,
     advance_of,
     common_motions,
     line_of,
@@ -89,11 +90,10 @@ def held_freedoms(mechanism: Mechanism, driven: Collection[Coordinate]) -> tuple
     """The idle freedoms that can be held at a coordinate, small groups of links first."""
     size = mechanism.box_diagonal()
     found: list[Held] = []
+    general = [General(place, size) for place in range(PLACES)]
+    legs = {frozenset(leg.links) for leg in find_legs(mechanism)}
     for links, inner, border in _groups(mechanism):
-        others = {end for joint in border for end in (joint.first, joint.second)}
-        if len(others.difference(links)) < 2:
-            continue  # all on one link: what moves there is a freedom like any other
-        if any(one.ball is not None and {*one.links} <= {*links} for one in found):
+        if _is_all_told(links, border, found) or frozenset(links) in legs:
             continue
         taken = [*driven, *(one.coordinate for one in found)]
         still = [
@@ -102,17 +102,27 @@ def held_freedoms(mechanism: Mechanism, driven: Collection[Coordinate]) -> tuple
             for name, coordinate in taken
             if name == joint.name and coordinate in joint.type.freedom_of
         ]
-        places = [
-            common_motions(links, inner, border, still, size, place) for place in range(PLACES)
-        ]
+        first = common_motions(links, inner, border, still, general[0])
+        if not first.rates:
+            continue
+        places = [first]
+        places += [common_motions(links, inner, border, still, one) for one in general[1:]]
         named = _held_of(links, border, places, size)
         found += named
         fewest = min(len(common.rates) for common in places)
-        in_leg = any(set(leg.links) & set(links) for leg in find_legs(mechanism))
+        in_leg = any(leg & {*links} for leg in legs)
         if fewest == 1 and not named and not in_leg:
             free = [joint for joint in border if all(joint.name != name for name, _ in taken)]
             found += _held_by_ball(mechanism, links, border, free, places, size)
     return tuple(found)
+
+
+def _is_all_told(links: Sequence[str], border: Sequence[Joint], found: Sequence[Held]) -> bool:
+    """Whether all joints lead to one link, so that what moves there is a freedom like any other, or
+    the links' spin is that of fewer links between balls."""
+    others = {end for joint in border for end in (joint.first, joint.second)}
+    told = any(one.ball is not None and {*one.links} <= {*links} for one in found)
+    return told or len(others.difference(links)) < 2
 
 
 def _groups(
