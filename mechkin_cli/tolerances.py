@@ -311,6 +311,11 @@ CONDITION_RANK_UNCLEAR: Final = 1e12
 """Above it rates and reactions of a row have no digit that means anything; its position still
 has."""
 
+REACTION_ROUNDING: Final = 1e-12
+"""Rounding of reactions in parts of the largest in the mechanism, in whatever joint it is met: a
+cell that moves no more than with this keeps its value. Measured: 1e-15 to 1e-13; what depends on
+the null space moves by about the largest reaction itself."""
+
 UNIQUE_CELL: Final = 1e-9
 """Change of a cell, in parts of its column's largest value, when a part of the null space is added
 to the reactions: above it the cell is not unique. Rounding leaves 1e-13, a cell that moves moves by
@@ -319,9 +324,28 @@ about its own size."""
 AXES_SQUARE: Final = 1e-9
 """Inertia axes must be square to this (cosine): typed numbers have nine digits and more."""
 
-ON_LINE: Final = 1e-9
+ON_LINE: Final = 2e-8
 """Parts of a leg's length (of the largest entry of a tensor) up to which a mass centre lies on the
-line of its spheres (a tensor is symmetric about it): written numbers have nine digits and more."""
+line of its spheres (a tensor is symmetric about it): nine written digits are half a unit of the
+last off, 5e-9, and up to four such numbers tell a place and the line."""
+
+LEG_SLIDE: Final = 1e-7
+"""Sine of the angle between a leg's slide and the line of its spheres up to which it is a leg: the
+distance of the spheres then is off by its square, 1e-14, and nine written digits stay below."""
+
+COMMON_MOTION: Final = 1e-7
+"""Pivot (rad, parts of the size) up to which two joints of a link have a motion in common: a line
+that is off by this, as numbers of nine digits may leave it, is off the motion held in its place by
+no more than was written."""
+
+SAME_COMMON_MOTION: Final = 1e-6
+"""Difference of a common motion at two general places (rad, parts of the size) up to which a link
+carries its line along: ten times what `COMMON_MOTION` lets pass; others differ by their own
+size."""
+
+HELD_RATE: Final = 1e-3
+"""Least rate of a coordinate in an idle motion, in parts of its fastest, to be held in its place:
+one that hardly moves would not hold it."""
 
 LOOP_RANK: Final = 1e-6
 """Pivot of a loop's screws (moments in sizes) below which they are dependent as drawn: written

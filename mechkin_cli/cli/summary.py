@@ -49,8 +49,10 @@ def _mobility(analysis: Analysis) -> str:
     inputs = [driven.name for driven in analysis.model.problem.motion.inputs]
     names = ", ".join(inputs) or "nothing"
     text = f"{len(inputs)}, driven by {names}"
-    idle = "".join(f"; {leg.words}" for leg in find_legs(mechanism)[:IDLE_SHOWN])
-    more = len(find_legs(mechanism)) - IDLE_SHOWN
+    words = [leg.words for leg in find_legs(mechanism)]
+    words += [held.words for held in analysis.model.problem.held]
+    idle = "".join(f"; {text}" for text in words[:IDLE_SHOWN])
+    more = len(words) - IDLE_SHOWN
     idle += f"; and {more} more idle" if more > 0 else ""
     return (text if count == len(inputs) else f"{text} (Kutzbach's count: {count})") + idle
 

@@ -19,7 +19,7 @@ from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.solver.closing_turns import angle_slots
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
-from mechkin_cli.solver.inputs import input_unit, turn_of
+from mechkin_cli.solver.inputs import held_values, input_unit, turn_of
 from mechkin_cli.solver.stepping import step_limits
 from mechkin_cli.solver.whole_turns import reduce_angle
 from mechkin_cli.status import Status
@@ -85,6 +85,7 @@ class Solver:
                 strict=True,
             )
         ]
+        self.held = held_values(problem, session.layout)
         self.problem = problem
         self.native = _native(result, session, readout.outputs, wanted, readout.slots)
 
@@ -97,6 +98,8 @@ class Solver:
             rest, turns = (places[name], 0.0) if turn is None else reduce_angle(places[name], turn)
             values.append(conversion.apply(rest) / unit)
             whole.append(turns)
+        values += self.held
+        whole += [0.0] * len(self.held)
         found = None if self.native is None else self.native.solve(values, whole)
         if found is None:
             nothing = {c.name: np.nan if c.width == 1 else np.full(3, np.nan) for c in self.columns}

@@ -34,6 +34,11 @@ class TreeCode(IntEnum):
     W = 5
     L = 6
 
+class FreeCode(IntEnum):
+    ALONG = ...
+    SQUARE = ...
+    ALL = ...
+
 class LoadCode(IntEnum):
     FORCE_GROUND = 0
     FORCE_LINK = 1
@@ -64,6 +69,7 @@ class OutputCode(IntEnum):
     INERTIA_FORCE = 15
     INERTIA_MOMENT = 16
     HOLDING_MOMENT = 17
+    REACTION_LEVEL = ...
     JERK = 18
 
 class Demand(IntFlag):
@@ -195,6 +201,9 @@ class PlanBuilder:
     def add_axis(
         self, place: int, slide: bool, link: int, vector: Triple, other: int, other_vector: Triple
     ) -> int: ...
+    def add_free_motion(
+        self, place: int, slide: bool, code: int, link: int, vector: Triple
+    ) -> None: ...
     def add_block(
         self, closing_joints: int, joints: Sequence[int], unknown: Sequence[int]
     ) -> None: ...

@@ -65,17 +65,30 @@ class KernelInputs(NamedTuple):
 
 
 def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
-    """The inputs of all rows."""
+    """The inputs of all rows, then the coordinates that hold idle freedoms, at rest."""
     inputs, rows = problem.motion.inputs, problem.motion.rows
     units = [input_unit(layout, item) for item in inputs]
+    held = held_values(problem, layout)
 
-    def table(name: str) -> Floats:
-        if not inputs:
-            return np.empty((0, rows))
-        return np.stack([getattr(i, name) / unit for i, unit in zip(inputs, units, strict=True)])
+    def table(name: str, at: list[float]) -> Floats:
+        moving = [getattr(i, name) / unit for i, unit in zip(inputs, units, strict=True)]
+        still = [np.full(rows, value) for value in at]
+        return np.stack([*moving, *still]) if moving or still else np.empty((0, rows))
 
-    orders = (table("values"), table("rates"), table("accelerations"), table("jerks"))
-    return KernelInputs.of(problem, *orders)
+    rest = [0.0] * len(held)
+    rates, accelerations, jerks = (
+        table(name, rest) for name in ("rates", "accelerations", "jerks")
+    )
+    return KernelInputs.of(problem, table("values", held), rates, accelerations, jerks)
+
+
+def held_values(problem: Problem, layout: Layout) -> list[float]:
+    """The held coordinates in kernel units."""
+    joints = layout.mechanism.joints
+    return [
+        value / joints[one.coordinate[0]].unit_of(one.coordinate[1], layout.length)
+        for one, value in zip(problem.held, problem.held_at, strict=True)
+    ]
 
 
 def turn_of(problem: Problem, item: DrivenInput) -> Fraction | None:
@@ -125,8 +138,10 @@ def input_number(problem: Problem, layout: Layout, number: int, value: float) ->
 
 
 def input_numbers(problem: Problem, layout: Layout, values: Floats) -> tuple[Number, ...]:
-    """Values of all inputs in kernel units, shape (inputs,), as numbers in the file's units."""
-    return tuple(input_number(problem, layout, k, float(v)) for k, v in enumerate(values))
+    """Values of all inputs in kernel units, shape (inputs,), as numbers in the file's units; what
+    is held is no input of the file."""
+    count = len(problem.motion.inputs)
+    return tuple(input_number(problem, layout, k, float(v)) for k, v in enumerate(values[:count]))
 
 
 def input_text(number: Number) -> str:

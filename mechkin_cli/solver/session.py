@@ -74,7 +74,7 @@ class Session:
     Args:
         problem: mechanism, motion and assembly.
         graph: its solver graph; None builds the best one.
-        driven: the inputs, where they are not those of the problem's motion.
+        driven: the inputs, where they are not those of the problem's motion and what is held.
         closed_at: closing joints to use instead of the best ones.
         packing: how rows are packed.
 
@@ -92,12 +92,12 @@ class Session:
         packing: Packing = Packing(),
     ) -> None:
         self.problem = problem
-        self.driven = list(problem.motion.driven if driven is None else driven)
+        self.driven = list(problem.driven if driven is None else driven)
         self.closed_at = closed_at
         self.packing = packing
         self.size: float | None = None
         self.continued: Continued | None = None
-        self.graph = graph or build_graph(problem.mechanism, self.driven, closed_at)
+        self.graph = graph or build_graph(problem.solved_mechanism, self.driven, closed_at)
         self._readouts: dict[object, Readout] = {}
         self._kept: dict[object, object] = {}
 

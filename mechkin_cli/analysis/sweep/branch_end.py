@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -83,10 +83,26 @@ def input_faults(session: Session) -> list[Diagnostic]:
     from mechkin_cli.analysis.mobility.inputs import undriven_notes
 
     found = find_mobility(session.problem, session)
-    if not session.driven:
+    if not session.problem.motion.driven:
         return undriven_notes(found.mobility or 0, len(found.idle), 0)
+    driven, useful = session.problem.motion.driven, found.useful
+    if useful and len(driven) > useful:
+        # at the first row one of them may stand still by chance; together they cannot move
+        return [_too_many(driven, useful)]
     codes = ("input-locked", "inputs-dependent", "undriven-freedom")
     return [diagnostic for diagnostic in found.diagnostics if diagnostic.code in codes]
+
+
+def _too_many(driven: Sequence[tuple[str, str]], useful: int) -> Diagnostic:
+    names = ", ".join(".".join(each) for each in driven)
+    freedoms = "one freedom" if useful == 1 else f"{useful} freedoms"
+    return Diagnostic(
+        "inputs-dependent",
+        "error",
+        f"the inputs {names} are not independent",
+        measured=f"{len(driven)} inputs drive {freedoms}",
+        hint="drive fewer coordinates",
+    )
 
 
 def locked_inputs(session: Session, moved: Floats) -> list[Diagnostic]:

@@ -89,6 +89,43 @@ def redundancy_note(graph: SolverGraph) -> Diagnostic:
     )
 
 
+def condition_notes(rows: Rows, condition: Floats) -> list[Diagnostic]:
+    """Rows next to singular positions, or whose rank is unclear; `condition` (rows,)."""
+    found = []
+    for status, limit, cost in (
+        (
+            Status.near_singular,
+            tolerances.CONDITION_NEAR_SINGULAR,
+            "rates and loads there keep fewer than nine digits",
+        ),
+        (
+            Status.rank_unclear,
+            tolerances.CONDITION_RANK_UNCLEAR,
+            "the rank of the constraints cannot be decided there; rates and reactions stay empty",
+        ),
+    ):
+        numbers = np.flatnonzero(rows.status == status)
+        if not numbers.size:
+            continue
+        worst = float(np.max(np.nan_to_num(condition[numbers], nan=np.inf)))
+        where = f"row {numbers[0] + 1}" if numbers.size == 1 else f"{numbers.size} rows"
+        first = "" if numbers.size == 1 else f", the first is row {numbers[0] + 1}"
+        verb = "is" if numbers.size == 1 else "are"
+        found.append(
+            Diagnostic(
+                status.label,
+                "warning",
+                f"{where} {verb} {status.label}{first}: {cost}",
+                measured=f"condition {worst:.2g}",
+                limit=f"{limit:g}",
+                hint="move the sweep by a fraction of its step, or keep away from the singular "
+                "position",
+                numbers=(Number("condition", worst, limit=limit),),
+            )
+        )
+    return found
+
+
 def not_converged_note(rows: Rows, residual: Floats) -> Diagnostic:
     """Rows whose loops did not close."""
     failed = np.flatnonzero(rows.status == Status.not_converged)

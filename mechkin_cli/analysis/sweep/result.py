@@ -12,6 +12,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.analysis.sweep.admissible import (
+    DISTURBANCES,
+    SHIFTS,
+    disturbed,
+    reaction_rounding,
+    told_anew,
+)
 from mechkin_cli.analysis.sweep.closing_angles import make_continuous
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
@@ -42,10 +49,6 @@ Columns = dict[str, "Floats"]
 ROW_NUMBERS = {f"row.{name}": name for name in ("residual", "condition", "power_error")}
 """Verdicts that are numbers, by the names of their quantities."""
 
-SHIFTS = (1, 2)
-"""Parts of the null space by which other reactions in equilibrium differ, where constraints are
-redundant. Two: one alone may leave a cell unchanged by chance."""
-
 
 class Result:
     """The rows of a sweep with a position and a verdict each.
@@ -67,10 +70,9 @@ class Result:
         self._rests: Columns = {}
         self._shifted: tuple[Columns, ...] = tuple({} for _ in self.shifts)
         self._alternative: int | None = None
+        self._disturbance: int | None = None
         self._condition: Floats | None = None
         self._power_error: Floats | None = None
-
-    # --- what was run ---------------------------------------------------------------------
 
     @property
     def problem(self) -> Problem:
@@ -163,7 +165,10 @@ class Result:
         unloaded = self.demand & Demand.FORCES and self.loads is not None and self.loads.lost.any()
         return bool(self.solved.all()) and not unloaded
 
-    # --- quantities -----------------------------------------------------------------------
+    @property
+    def sound(self) -> bool:
+        """Whether every row is `ok`."""
+        return bool((self.status == Status.ok).all())
 
     @property
     def condition(self) -> Floats:
@@ -173,7 +178,8 @@ class Result:
 
     @property
     def power_error(self) -> Floats:
-        """|sum of powers| / sum of |powers| of every row (rows,); nan where it was not computed."""
+        """|sum of powers| / sum of |powers| of every row (rows,); nan where nothing moves, or where
+        it was not computed."""
         return self._nothing if self._power_error is None else self._power_error
 
     @cached_property
@@ -208,14 +214,17 @@ class Result:
 
     @cached_property
     def alternatives(self) -> tuple[Result, ...]:
-        """The same rows with other reactions that are in equilibrium too (redundant
-        constraints)."""
-        found = []
-        for number in range(len(self.shifts)):
-            other = object.__new__(Result)
-            other.__dict__.update(self.__dict__, alternatives=(), _alternative=number)
-            found.append(other)
-        return tuple(found)
+        """The same rows with other reactions in equilibrium (redundant constraints)."""
+        return told_anew(self, "_alternative", len(self.shifts))
+
+    @cached_property
+    def disturbed(self) -> tuple[Result, ...]:
+        """The same rows with reactions off by their rounding, where some may not be unique."""
+        return told_anew(self, "_disturbance", len(DISTURBANCES) if self.shifts else 0)
+
+    @cached_property
+    def _rounding(self) -> float:
+        return reaction_rounding(self)
 
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by name, in SI.
@@ -239,6 +248,9 @@ class Result:
         columns = self._columns[name]
         if self._alternative is not None:
             columns = self._shifted[self._alternative].get(name, columns)
+        if self._disturbance is not None and wanted.kind in WRENCH_KINDS:
+            unit = self.session.layout.length
+            columns = disturbed(columns, wanted, self._rounding, unit, self._disturbance)
         if wanted.vector:
             return Quantity(Vector(columns[0], columns[1], columns[2]), wanted.dimension)
         return Quantity(columns[0], wanted.dimension, self._rests.get(name))
@@ -254,8 +266,6 @@ class Result:
             if name.startswith(driven.name) and name in driven.orders:
                 return np.where(self.solved, driven.orders[name][0], np.nan)
         return None
-
-    # --- reading --------------------------------------------------------------------------
 
     def read(self, wanted: Iterable[Wanted]) -> None:
         """Evaluates the quantities that have not been read yet."""

@@ -122,7 +122,8 @@ enum OutputCode : int {
   OUT_INERTIA_FORCE = 15,
   OUT_INERTIA_MOMENT = 16,
   OUT_HOLDING_MOMENT = 17,  // index: leg; about its line, on its body
-  OUT_JERK = 18             // index: column
+  OUT_JERK = 18,            // index: column
+  OUT_REACTION_LEVEL = 19   // largest component of force or moment (in length units) of all joints
 };
 
 // One quantity that a run writes; outputs are no part of the plan (OutputsView).
@@ -164,6 +165,22 @@ struct JointPlace {
   double point[3];
   double sign;          // -1: the tree or the leg passes the joint from its second link to its first
   int drive_begin, drive_end;  // into Plan::drive
+  int free_begin, free_end;    // into Plan::free
+};
+
+enum FreeCode : int {
+  FREE_ALONG = 0,   // along, or about, a direction
+  FREE_SQUARE = 1,  // in, or about, all directions square to it
+  FREE_ALL = 2,
+  FREE_CODES = 3
+};
+
+// Directions of slides, or of turns through its point, that a joint leaves free whatever its coordinates are: it
+// transmits no force along, and no moment about, them.
+struct FreeMotion {
+  int place, slide, code;
+  int link;  // that carries the direction
+  double vector[3];
 };
 
 // The unit wrench on the second link that does work on one coordinate of a joint and none on its others: a couple or,
@@ -184,7 +201,7 @@ struct Drive {
 
 struct Plan {
   int links, states, columns, closings, legs, blocks, inputs, loads, load_values;
-  int places, axes, drives, loop_entries, order_count, unknowns, size_points;
+  int places, axes, drives, frees, loop_entries, order_count, unknowns, size_points;
   int largest_block;  // rows
   const TreeJoint* joints;
   const ClosingJoint* closing;
@@ -192,6 +209,7 @@ struct Plan {
   const JointPlace* place;
   const CoordinateAxis* axis;
   const Drive* drive;
+  const FreeMotion* free;
   const LoopEntry* loop;
   const Block* block;
   const int* order;

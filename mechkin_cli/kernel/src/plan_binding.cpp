@@ -206,6 +206,7 @@ void bind_builder(nb::module_& m) {
            "sign"_a)
       .def("add_axis", &PlanBuilder::add_axis, "place"_a, "slide"_a, "link"_a, "vector"_a, "other"_a,
            "other_vector"_a)
+      .def("add_free_motion", &PlanBuilder::add_free_motion, "place"_a, "slide"_a, "code"_a, "link"_a, "vector"_a)
       .def("add_block", &PlanBuilder::add_block, "closing_joints"_a, "joints"_a, "unknown"_a)
       .def("set_rest", &PlanBuilder::set_rest, "joints"_a)
       .def("add_input", &PlanBuilder::add_input, "column"_a, "axis"_a, "scale"_a)

@@ -175,6 +175,7 @@ Plan PlanBuilder::arrays() const {
   p.loads = (int)load_.size();
   p.places = (int)place_.size();
   p.axes = (int)axis_.size();
+  p.frees = (int)free_.size();
   p.drives = (int)drive_.size();
   p.loop_entries = (int)loop_.size();
   p.order_count = (int)order_.size();
@@ -184,7 +185,7 @@ Plan PlanBuilder::arrays() const {
   p.largest_block = 0;
   for (const Block& b : block_) p.largest_block = b.rows > p.largest_block ? b.rows : p.largest_block;
   p.joints = joints_.data(), p.closing = closing_.data(), p.leg = leg_.data();
-  p.place = place_.data(), p.axis = axis_.data(), p.drive = drive_.data();
+  p.place = place_.data(), p.axis = axis_.data(), p.drive = drive_.data(), p.free = free_.data();
   p.loop = loop_.data(), p.block = block_.data();
   p.order = order_.data(), p.unknown = unknown_.data(), p.rest = rest_.data();
   p.input_column = input_column_.data();

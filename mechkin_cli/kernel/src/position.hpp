@@ -120,7 +120,8 @@ MECHKIN_INLINE Closure closure_of(const Plan& p, const Workspace& w, int c) {
 }
 
 // The largest closing equation, lengths in parts of the size; `test` the same with the lengths of a loop that reaches
-// farther than the size in parts of its reach, since coordinates round by their own size.
+// farther than the size in parts of its reach, since coordinates round by their own size. That one is held against the
+// limit and told to the user.
 struct Residual {
   Pack size, test;
 };
@@ -194,8 +195,8 @@ struct BlockMatrices {
   // The unknowns from the equations' right-hand sides, in place.
   void solve_equations(Pack* b) const { m == n ? solve(lu(), b) : solve(qr(), b); }
   // The equations' multipliers from the unknowns' generalised forces, in place.
-  void solve_multipliers(Pack* b, int shift) const {
-    m == n ? solve_transposed(lu(), b) : solve_transposed(qr(), b, shift);
+  void solve_multipliers(Pack* b, int shift, Pack level) const {
+    m == n ? solve_transposed(lu(), b) : solve_transposed(qr(), b, shift, level);
   }
 };
 inline BlockMatrices matrices_of(const Plan& p, const Workspace& w, int block) {
@@ -390,7 +391,7 @@ inline Closed close_block(const Plan& p, Workspace& w, int index, const Request&
   const Mask near = residual.test <= Pack(r.accept);
   if (!all(near) && r.accept > 0.0)
     residual.test = select(near, residual.test, residual_with_rounding(p, w, b, r.accept));
-  return {residual.size, correction, last_step, residual.test <= Pack(r.accept), block_side_conditions(p, w, b)};
+  return {residual.test, correction, last_step, residual.test <= Pack(r.accept), block_side_conditions(p, w, b)};
 }
 
 }  // namespace

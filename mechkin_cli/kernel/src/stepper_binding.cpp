@@ -220,7 +220,7 @@ nb::tuple follow_table(const FrozenPlan& store, Table inputs, std::optional<Tabl
   need((long)limit.shape(0) == rows, "limit: wrong length");
   const long slots = turn_slots(plan, narrow_unit());
   if (!turn.empty()) need_length(turn, slots, "turn");
-  if (course) need(course->rows() == rows && course->inputs() == plan.inputs, "course: of other rows or inputs");
+  if (course) need(course->rows() == rows && course->inputs() <= plan.inputs, "course: of other rows or inputs");
   const RowGuesses out = {rows, table(guess, plan.states, rows, "guess"), limit.data(),
                           turns ? table(*turns, slots, rows, "turns") : nullptr};
   const char* const shared = "guess, limit and turns share no memory with one another or with inputs";

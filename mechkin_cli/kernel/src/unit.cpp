@@ -4,6 +4,7 @@
 
 #include "condition.hpp"
 #include "elementwise.hpp"
+#include "energy.hpp"
 #include "held.hpp"
 #include "outputs.hpp"
 #include "search.hpp"
@@ -175,12 +176,10 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int o = 0; o < r.wanted.count; ++o) write_output(p, w, balance, r.wanted.output[o], out);
   };
   if (r.demand & DEMAND_FORCES) {
-    const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift, RowValues{r, in});
-    if (r.demand & DEMAND_POWER) {
-      const Mask none = balance.powers.size == Pack(0.0);
-      const Pack size = select(none, Pack(1.0), balance.powers.size);
-      writer(r.power_error).put(0, abs(balance.powers.sum) / size);
-    }
+    const RowValues row_values = {r, in};
+    const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift, row_values);
+    if (r.demand & DEMAND_POWER)
+      writer(r.power_error).put(0, velocities ? power_error(p, w, accelerations, row_values) : Pack(__builtin_nan("")));
     if (r.outputs) outputs(&balance);
   } else if (r.outputs) {
     outputs(nullptr);

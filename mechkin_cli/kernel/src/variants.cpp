@@ -283,7 +283,7 @@ Variants::Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputLi
     const std::size_t places = w.rows.size();
     require(places > 0 && w.values.size() == p.inputs * places, "ways: wrong shape");
     for (long row : w.rows) require(row < base_.rows, "ways: no such row");
-    require(!w.course || (w.course->rows() == (long)places && w.course->inputs() == p.inputs),
+    require(!w.course || (w.course->rows() == (long)places && w.course->inputs() <= p.inputs),
             "ways: a course of other rows or inputs");
     require((std::size_t)t.outputs == constants, "ways: of inputs that do not move with the parameters");
   }
