@@ -341,8 +341,15 @@ reach it."""
 MOBILITY_TIGHT: Final = 1e-14
 """Newton ends here: some roundings of the equations."""
 
+MOBILITY_NEAR: Final = 1e-12
+"""Loops open by less are closed but for rounding: they are left where a step gains no tenth."""
+
 MOBILITY_ITERATIONS: Final = 80
 """Newton halves the distance to a configuration that is singular; 80 halvings leave nothing."""
+
+MOBILITY_DAMPING: Final = 1e-10
+"""Least damping of a step, in parts of a unit rate: far below singular values that count, far above
+the roundings of those that are zero."""
 
 MOBILITY_RANK: Final = 1e-11
 """Singular values below this part of the largest are left out of a Newton step: above rounding, far
@@ -366,17 +373,54 @@ MOBILITY_STUCK: Final = 8
 MOBILITY_STARTS: Final = 40
 """Random poses tried where the drawing itself leads to no assembly."""
 
-MOBILITY_STEP: Final = 0.1
-"""Finite step along a motion (largest turn in rad or length in parts of the size): its square is
-far above rounding, and Newton still returns to the same branch."""
+MOBILITY_STEPS: Final = (0.1, 0.025)
+"""Length of a move (rad, parts of the size) from the first configuration, and the one tried where
+the answer stays unclear: its sixth power is above `MOBILITY_CLOSED`, so that what is closed to a
+high order does not pass for a motion, and it stays on its component."""
 
-MOBILITY_TRIES: Final = 8
-"""Directions tried from one configuration; one in a subspace of motions suffices if the motion is
-finite."""
+MOBILITY_CHORDS: Final = (0.3, 0.1)
+"""Chords that tell the dimension, in parts of the move that led there: 0.03 and 0.01 (rad, parts of
+the size) leave curvature small and touching of high order visible."""
 
-MOBILITY_CONFIGURATIONS: Final = 3
-"""Configurations along the motion at which the rank is taken besides the first: at a special one
-it drops, at a general one it is the least freedom seen."""
+MOBILITY_CHORD_RANK: Final = (0.3, 0.7)
+"""Singular values of chords along an orthonormal frame are 1 along the component and 0 across, but
+for its curvature; between these two they tell nothing."""
+
+MOBILITY_CHORD_DOUBT: Final = 1e-4
+"""Rates read from chords below which a coordinate stands still: closing where equations are squared
+is sure to the root of a rounding, 1e-7, over a chord of 0.01."""
+
+MOBILITY_RANK_REACHED: Final = 1e-5
+"""Singular values below this part of the largest count as zero at a configuration that was reached:
+where equations are squared its place is sure to 1e-7 only, and a regular one 0.1 from a singular
+one has 1e-3 at least."""
+
+MOBILITY_OPEN: Final = 1e-7
+"""Loops that a move leaves open by less, but do not close, are no clear answer: a motion of fourth
+order leaves 1e-4 times its curvature, written dimensions of eight digits 1e-8."""
+
+MOBILITY_SPHERE: Final = 1e-3
+"""How far (rad, parts of the size) from its sphere a move may end."""
+
+MOBILITY_DIFFERENCE: Final = 1e-4
+"""Step of the central differences of Jacobians: errors 1e-8 by its square, 1e-12 by rounding."""
+
+MOBILITY_FORM: Final = 1e-6
+"""Bifurcation equations with smaller coefficients say nothing: a hundred errors of the
+differences."""
+
+MOBILITY_DIRECTIONS: Final = 64
+"""Random starts for the directions that solve the bifurcation equations; eight lines, what three
+forms in four unknowns have, are all met but for one case in a thousand."""
+
+MOBILITY_HEADINGS: Final = 16
+"""Directions, far from each other, that are followed either way."""
+
+MOBILITY_SAME_DIRECTION: Final = 1e-4
+"""Two unit vectors whose cosine is nearer to 1 are one direction (0.8 degrees)."""
+
+MOBILITY_TRIES: Final = 6
+"""Places of falling rank that are tried one after the other for a general one."""
 
 THREAD_ROWS: Final = 512
 """Rows that make a thread worth waking: at 0.3 us a row or more, ten times the 15 us that it takes

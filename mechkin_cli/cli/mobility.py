@@ -32,6 +32,7 @@ def _record(found: Mobility) -> Record:
         "count": found.count,
         "mobility": found.mobility,
         "first_order": found.first_order,
+        "dimensions": list(found.dimensions),
         "loops": found.loops,
         "configurations": found.configurations,
         "inputs": list(found.inputs),

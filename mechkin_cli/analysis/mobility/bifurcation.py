@@ -1,0 +1,97 @@
+"""Directions in which a mechanism may leave a place: the bifurcation equations.
+
+A curve of assembled places with the tangent N a at its start (N the motions of first order) obeys
+W^T D2F[N a, N a] = 0 for all stresses W, as many quadratic forms in a as there are stresses. They
+are solved for directions from random ones; forms say nothing along their common null space, the
+radical, and are solved beside it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+
+if TYPE_CHECKING:
+    from mechkin_cli.analysis.mobility.parts import Part
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.solver.random_starts import RandomStarts
+
+
+def quadratic_forms(part: Part, state: Floats, motions: Floats, stresses: Floats) -> Floats:
+    """Independent forms (forms, k, k) on `motions` (columns, k) at a place with `stresses`
+    (rows, r): derivatives of the Jacobian by central differences."""
+    step, count = tolerances.MOBILITY_DIFFERENCE, motions.shape[1]
+    ways = step * np.concatenate([motions.T, -motions.T])
+    _, jacobians = part.closing(part.moved(np.repeat(state[None], 2 * count, axis=0), ways))
+    second = (jacobians[:count] - jacobians[count:]) / (2.0 * step) @ motions
+    forms = np.einsum("rs,irj->sij", stresses, second)
+    forms = 0.5 * (forms + np.swapaxes(forms, 1, 2))
+    _, values, right = np.linalg.svd(forms.reshape(len(forms), -1), full_matrices=False)
+    rank = int(np.count_nonzero(values > tolerances.MOBILITY_FORM))
+    return np.asarray(right[:rank].reshape(rank, count, count))
+
+
+def directions(forms: Floats, random: RandomStarts) -> Floats:
+    """Unit directions (directions, k) in which all forms (forms, k, k) vanish, either way, and
+    some in their radical; far from each other where there are many."""
+    count = forms.shape[1]
+    _, values, right = np.linalg.svd(forms.reshape(-1, count), full_matrices=True)
+    rank = int(np.count_nonzero(values > tolerances.MOBILITY_FORM))
+    beside, radical = right[:rank], right[rank:]
+    found = [_apart(_zeros(beside @ forms @ beside.T, random)) @ beside]
+    if len(radical):
+        shares = [_units(random, len(found[0]), len(radical)) @ radical]
+        found = [(found[0] + shares[0]) * np.sqrt(0.5), found[0]]
+        found.append(_units(random, tolerances.MOBILITY_HEADINGS, len(radical)) @ radical)
+    every = np.concatenate(found)
+    return np.concatenate([every, -every])
+
+
+def _zeros(forms: Floats, random: RandomStarts) -> Floats:
+    """Unit vectors (found, k) at which all forms vanish, by Gauss and Newton from random ones."""
+    count = forms.shape[1]
+    if count == 0:
+        return np.zeros((0, 0))
+    at = _units(random, tolerances.MOBILITY_DIRECTIONS, count)
+    for _ in range(tolerances.MOBILITY_ITERATIONS):
+        misses = _values(forms, at)
+        if np.abs(misses).max() < tolerances.MOBILITY_TIGHT:
+            break
+        slopes = 2.0 * np.einsum("fij,dj->dfi", forms, at)
+        damping = np.sum(misses * misses, axis=1)[:, None, None] * np.eye(count)
+        normal = np.swapaxes(slopes, 1, 2) @ slopes + damping + at[:, :, None] * at[:, None, :]
+        normal += tolerances.MOBILITY_DAMPING**2 * np.eye(count)
+        right = np.swapaxes(slopes, 1, 2) @ misses[:, :, None]
+        at = at - np.linalg.solve(normal, right)[:, :, 0]
+        at /= np.sqrt(np.sum(at * at, axis=1))[:, None]
+    solved = np.abs(_values(forms, at)).max(axis=1) < tolerances.MOBILITY_CLOSED
+    return np.asarray(at[solved])
+
+
+def _values(forms: Floats, at: Floats) -> Floats:
+    """Values (directions, forms) of the forms."""
+    return np.asarray(np.einsum("di,fij,dj->df", at, forms, at))
+
+
+def _units(random: RandomStarts, number: int, size: int) -> Floats:
+    """Random unit vectors (number, size)."""
+    found = random.between(1.0, number * size).reshape(number, size)
+    return np.asarray(found / np.sqrt(np.sum(found * found, axis=1))[:, None])
+
+
+def _apart(vectors: Floats) -> Floats:
+    """Some of many unit vectors (number, size), each as far from those before as any is; opposite
+    ones are one."""
+    if not len(vectors):
+        return vectors
+    chosen, nearest = [0], np.abs(vectors @ vectors[0])
+    while len(chosen) < tolerances.MOBILITY_HEADINGS:
+        next_one = int(np.argmin(nearest))
+        if nearest[next_one] > 1.0 - tolerances.MOBILITY_SAME_DIRECTION:
+            break
+        chosen.append(next_one)
+        nearest = np.maximum(nearest, np.abs(vectors @ vectors[next_one]))
+    return np.asarray(vectors[chosen])
