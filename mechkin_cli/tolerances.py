@@ -416,6 +416,13 @@ forms in four unknowns have, are all met but for one case in a thousand."""
 MOBILITY_HEADINGS: Final = 16
 """Directions, far from each other, that are followed either way."""
 
+MOBILITY_FREE_HEADINGS: Final = 4
+"""Headings of which the bifurcation equations say nothing that are followed either way: they lie in
+a space, so that one shows its dimension."""
+
+MOBILITY_PLACES: Final = 6
+"""Places of one rank whose dimension is told: more are of the same few components."""
+
 MOBILITY_SAME_DIRECTION: Final = 1e-4
 """Two unit vectors whose cosine is nearer to 1 are one direction (0.8 degrees)."""
 

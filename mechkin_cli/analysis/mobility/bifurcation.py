@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.analysis.mobility.closed import damped_steps
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.mobility.parts import Part
@@ -45,7 +46,7 @@ def directions(forms: Floats, random: RandomStarts) -> Floats:
     if len(radical):
         shares = [_units(random, len(found[0]), len(radical)) @ radical]
         found = [(found[0] + shares[0]) * np.sqrt(0.5), found[0]]
-        found.append(_units(random, tolerances.MOBILITY_HEADINGS, len(radical)) @ radical)
+        found.append(_units(random, tolerances.MOBILITY_FREE_HEADINGS, len(radical)) @ radical)
     every = np.concatenate(found)
     return np.concatenate([every, -every])
 
@@ -61,11 +62,10 @@ def _zeros(forms: Floats, random: RandomStarts) -> Floats:
         if np.abs(misses).max() < tolerances.MOBILITY_TIGHT:
             break
         slopes = 2.0 * np.einsum("fij,dj->dfi", forms, at)
-        damping = np.sum(misses * misses, axis=1)[:, None, None] * np.eye(count)
-        normal = np.swapaxes(slopes, 1, 2) @ slopes + damping + at[:, :, None] * at[:, None, :]
-        normal += tolerances.MOBILITY_DAMPING**2 * np.eye(count)
-        right = np.swapaxes(slopes, 1, 2) @ misses[:, :, None]
-        at = at - np.linalg.solve(normal, right)[:, :, 0]
+        along = np.zeros((len(at), 1))  # no step along the vector, whose length is one
+        at = at + damped_steps(
+            np.concatenate([slopes, at[:, None]], axis=1), np.concatenate([misses, along], axis=1)
+        )
         at /= np.sqrt(np.sum(at * at, axis=1))[:, None]
     solved = np.abs(_values(forms, at)).max(axis=1) < tolerances.MOBILITY_CLOSED
     return np.asarray(at[solved])

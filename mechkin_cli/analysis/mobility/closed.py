@@ -69,7 +69,7 @@ def closed(part: Part, starts: Floats, sphere: Sphere | None = None) -> Closed:
         active, misses, matrix = active[going], misses[going], matrix[going]
         if not active.size:
             break
-        states[active] = part.moved(states[active], _steps(matrix, misses))
+        states[active] = part.moved(states[active], damped_steps(matrix, misses))
     return best
 
 
@@ -87,7 +87,7 @@ def _on_sphere(
     )
 
 
-def _steps(jacobians: Floats, misses: Floats) -> Floats:
+def damped_steps(jacobians: Floats, misses: Floats) -> Floats:
     """Damped steps (places, columns), none longer than the stride."""
     places, _, columns = jacobians.shape
     damping = np.sqrt(np.sum(misses * misses, axis=1))

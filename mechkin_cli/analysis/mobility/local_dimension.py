@@ -8,7 +8,7 @@ along every motion of first order are closed again: the rank of the chords is th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,12 +27,13 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class Component:
     """A component of the assembled places: its dimension, a general place `state` (states,), and
-    steps (columns, dimension) along it, known to `doubt`."""
+    steps (columns, dimension) along it, known to `doubt`; `places` are more of its kind."""
 
     dimension: int
     state: Floats
     tangents: Floats
     doubt: float
+    places: tuple[Floats, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,7 @@ def _singular(part: Part, state: Floats, first: Rank, random: RandomStarts) -> F
     """The components that meet where the first order has more motions than any of them."""
     forms = quadratic_forms(part, state, first.motions, first.stresses)
     headings = directions(forms, random) @ first.motions.T
+    found: tuple[Component, ...] = ()
     doubt = ""
     for step in tolerances.MOBILITY_STEPS:
         found, doubt = _components(part, state, headings, step, random)
@@ -101,35 +103,56 @@ def _singular(part: Part, state: Floats, first: Rank, random: RandomStarts) -> F
             break
     if doubt:
         return Freedom(first, (), doubt)
-    if not found:
-        found = {0: Component(0, state, first.motions[:, :0], 0.0)}
-    return Freedom(first, tuple(found[k] for k in sorted(found, reverse=True)))
+    return Freedom(first, found or (Component(0, state, first.motions[:, :0], 0.0),))
 
 
 def _components(
     part: Part, state: Floats, headings: Floats, step: float, random: RandomStarts
-) -> tuple[dict[int, Component], str]:
-    """Components by dimension that moves of a length along `headings` (number, columns) lead to,
-    and a doubt in words."""
+) -> tuple[tuple[Component, ...], str]:
+    """Components that two moves of a length along `headings` (number, columns) lead to, one of each
+    dimension, the largest first; and a doubt in words."""
     if not len(headings):
-        return {}, ""
+        return (), ""
     starts = part.moved(np.repeat(state[None], len(headings), axis=0), step * headings)
     there = closed(part, starts, Sphere(state, step))
-    found: dict[int, Component] = {}
+    known: dict[int, list[Component]] = {}
     doubt = _nearly(there, step)
-    for place in there.states[there.good]:
-        way = part.steps(place[None], state[None])
-        on = closed(part, part.moved(place[None], way * (step / np.sqrt(np.sum(way * way)))))
-        onward = part.steps(on.states, place[None])
-        if not on.good[0] or np.sqrt(np.sum(onward * onward)) < 0.5 * step:
-            continue
+    for place in _spread(part, _onward(part, state, there, step)):
         try:
-            component = _general(part, on.states[0], random, step)
+            found = _general(part, place, random, step)
         except _Unclear as unclear:
             doubt = str(unclear)
             continue
-        found.setdefault(component.dimension, component)
-    return found, "" if found else doubt
+        known.setdefault(found.dimension, []).append(found)
+    every = tuple(
+        replace(known[k][0], places=tuple(component.state for component in known[k]))
+        for k in sorted(known, reverse=True)
+    )
+    return every, "" if every else doubt
+
+
+def _onward(part: Part, state: Floats, there: Closed, step: float) -> Closed:
+    """Another move in the headings that led from `state` to the places that closed."""
+    places = there.states[there.good]
+    ways = part.steps(places, np.repeat(state[None], len(places), axis=0))
+    ways *= step / np.sqrt(np.sum(ways * ways, axis=1, keepdims=True))
+    on = closed(part, part.moved(places, ways))
+    moved = part.steps(on.states, places)
+    kept = on.good & (np.sqrt(np.sum(moved * moved, axis=1)) > 0.5 * step)
+    return Closed(on.states[kept], on.misses[kept], on.jacobians[kept])
+
+
+def _spread(part: Part, places: Closed) -> Floats:
+    """Some of many places: as many of each rank, evenly over the headings."""
+    ranks = np.array(
+        [rank_of(j, tolerances.MOBILITY_RANK_REACHED).motions.shape[1] for j in places.jacobians]
+    )
+    chosen: list[int] = []
+    for rank in np.unique(ranks):
+        alike = np.flatnonzero(ranks == rank)
+        some = np.linspace(0, len(alike) - 1, min(len(alike), tolerances.MOBILITY_PLACES))
+        chosen += alike[np.round(some).astype(np.intp)].tolist()
+    return places.states[chosen]
 
 
 def _nearly(there: Closed, step: float) -> str:

@@ -9,6 +9,7 @@ count is the number of redundant constraints.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -83,7 +84,7 @@ def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
         return _unknown(problem, [note], first_order if clear else None)
     motion = Motions(body, start, freedoms)
     driven = problem.motion.driven
-    idle = idle_freedoms(motion.general, driven) if motion.mobility else ()
+    idle = _idle(motion, driven)
     return Mobility(
         name=mechanism.name,
         count=kutzbach(mechanism),
@@ -98,6 +99,15 @@ def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
         fixed=motion.fixed,
         diagnostics=tuple(input_notes(problem, motion, len(idle))),
     )
+
+
+def _idle(motion: Motions, driven: Sequence[tuple[str, str]]) -> tuple[IdleFreedom, ...]:
+    """Freedoms that are idle wherever the mechanism goes."""
+    found = idle_freedoms(motion.general, driven) if motion.mobility else ()
+    for other in motion.others if found else ():
+        there = {frozenset(item.links) for item in idle_freedoms(other, driven)}
+        found = tuple(item for item in found if frozenset(item.links) in there)
+    return found
 
 
 def kutzbach(mechanism: Mechanism) -> int:

@@ -49,11 +49,25 @@ class Motions:
     @cached_property
     def general(self) -> Configuration:
         """A general configuration of the largest component."""
+        return self._at([found.components[0].state for _, found in self.freedoms])
+
+    @cached_property
+    def others(self) -> tuple[Configuration, ...]:
+        """General configurations of more components as large."""
+        every = [found.components[0].places for _, found in self.freedoms]
+        most = max((len(places) for places in every), default=0)
+        first = [found.components[0].state for _, found in self.freedoms]
+        return tuple(
+            self._at([p[k] if k < len(p) else s for p, s in zip(every, first, strict=True)])
+            for k in range(1, most)
+        )
+
+    def _at(self, states: Sequence[Floats]) -> Configuration:
+        """The configuration whose parts are as in a state each."""
         loops, start = self.body.loops, self.start.state[None]
         steps = np.zeros((1, self.body.count))
-        for part, found in self.freedoms:
-            state = found.components[0].state[None]
-            steps[:, part.columns] = part.steps(state, start)
+        for (part, _), state in zip(self.freedoms, states, strict=True):
+            steps[:, part.columns] = part.steps(state[None], start)
         return Configuration(self.body, loops.moved(start, steps)[0])
 
     @cached_property
