@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from mechkin_cli import tolerances
@@ -9,6 +11,10 @@ from mechkin_cli.analysis.mobility.motions import Motions
 from mechkin_cli.analysis.mobility.words import freedoms as in_words
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.solver.graph.errors import listed
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
 
 
 def input_notes(problem: Problem, motions: Motions, idle: int) -> list[Diagnostic]:
@@ -25,26 +31,44 @@ def input_notes(problem: Problem, motions: Motions, idle: int) -> list[Diagnosti
     for name in locked:
         message = f"the input {name} is locked: no motion changes it"
         notes.append(Diagnostic("input-locked", "error", message, hint="drive another coordinate"))
-    rank = int(np.linalg.matrix_rank(rates, tol=doubt)) if rates.size else 0
+    _, values, right = np.linalg.svd(rates)
+    rank = int(np.count_nonzero(values > doubt))
     if rank < len(driven) - len(locked):
         notes.append(
             Diagnostic(
                 "inputs-dependent",
                 "error",
                 f"the inputs {', '.join(names)} are not independent",
-                measured=f"{len(driven)} inputs drive {rank} freedoms",
+                measured=f"{len(driven)} inputs drive {in_words(rank)}",
                 hint="drive fewer coordinates",
             )
         )
-    return [*notes, *undriven_notes(motions.mobility, idle, rank)]
+    left = motions.tangents @ right[rank:].T
+    return [*notes, *undriven_notes(motions.mobility, idle, rank, moving(motions, left, doubt))]
 
 
-def undriven_notes(freedoms: int, idle: int, driven: int) -> list[Diagnostic]:
-    """Freedoms that neither spin idly nor are driven."""
+def moving(motions: Motions, ways: Floats, doubt: float) -> tuple[str, ...]:
+    """Coordinates that some motions (freedoms, count) change."""
+    rates = np.abs(ways).max(axis=1, initial=0.0)
+    return tuple(
+        f"{joint.name}.{name}"
+        for joint in motions.body.mechanism.joints.values()
+        for name in joint.type.freedom_of
+        if rates[motions.body.column(joint.name, name)] > doubt
+    )
+
+
+def undriven_notes(
+    freedoms: int, idle: int, driven: int, candidates: tuple[str, ...] = ()
+) -> list[Diagnostic]:
+    """Freedoms that neither spin idly nor are driven; `candidates` are coordinates that they
+    move."""
     left = freedoms - driven - idle
     if left <= 0:
         return []
     message = f"{in_words(left)} {'is' if left == 1 else 'are'} not driven"
+    if candidates:
+        message += f"; candidates: {listed(candidates)}"
     measured = f"{in_words(freedoms)}, {idle} idle, {driven} driven"
     hint = "add inputs under motion"
     return [Diagnostic("undriven-freedom", "warning", message, measured=measured, hint=hint)]

@@ -58,18 +58,25 @@ class _Unclear(Exception):
     """Chords or ranks do not agree."""
 
 
-def freedom_of(part: Part, state: Floats, random: RandomStarts) -> Freedom:
-    """The freedoms of a part from an assembled place `state` (states,)."""
+def freedom_of(
+    part: Part, state: Floats, random: RandomStarts, *, regular: bool = False
+) -> Freedom:
+    """The freedoms of a part from an assembled place `state` (states,); if only `regular` places
+    are wanted, others are a doubt."""
     _, jacobians = part.closing(state[None])
     first = rank_of(jacobians[0], tolerances.RANK_ZERO)
     if not first.clear:
         return Freedom(first, (), first.doubt)
     if first.motions.shape[1] == 0:
         return Freedom(first, (Component(0, state, first.motions, 0.0),))
-    regular = _regular(part, state, first, random)
-    if regular is not None:
-        return Freedom(first, (regular,))
-    return _singular(part, state, first, random)
+    component = _regular(part, state, first, random)
+    if component is not None:
+        return Freedom(first, (component,))
+    return (
+        Freedom(first, (), "a special position")
+        if regular
+        else _singular(part, state, first, random)
+    )
 
 
 def _regular(part: Part, state: Floats, first: Rank, random: RandomStarts) -> Component | None:

@@ -37,6 +37,8 @@ def _moves(found: Mobility) -> str:
         text = f"motions of {meeting(found.dimensions)} freedoms meet"
     else:
         text = freedoms(found.mobility)
+    if found.first_order != found.mobility:
+        text += f" ({found.first_order} to first order)"
     return text + (f", {len(found.idle)} of them idle" if found.idle else "")
 
 
