@@ -116,7 +116,7 @@ def test_coordinates_that_never_move_are_named() -> None:
 def test_inputs_are_not_needed_but_checked() -> None:
     text = planar() + "motion: {inputs: {J1.theta: {at: 0}, J4.theta: {at: 0}}}\n"
     (error,) = mk.loads(text).mobility().diagnostics
-    assert (error.code, error.measured) == ("inputs-dependent", "2 inputs drive 1 freedoms")
+    assert (error.code, error.measured) == ("inputs-dependent", "2 inputs drive one freedom")
 
 
 def test_a_locked_input_is_named() -> None:

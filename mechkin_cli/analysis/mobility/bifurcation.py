@@ -35,20 +35,36 @@ def quadratic_forms(part: Part, state: Floats, motions: Floats, stresses: Floats
     return np.asarray(right[:rank].reshape(rank, count, count))
 
 
-def directions(forms: Floats, random: RandomStarts) -> Floats:
-    """Unit directions (directions, k) in which all forms (forms, k, k) vanish, either way, and
-    some in their radical; far from each other where there are many."""
+def directions(forms: Floats, alone: Floats, random: RandomStarts) -> Floats:
+    """Unit directions (directions, k) in which all forms (forms, k, k) vanish, either way: beside
+    their radical, far from each other where there are many, and in it.
+
+    Motions `alone` (k, count), which move single links only, are no part of them but in some: they
+    would hide the others.
+    """
     count = forms.shape[1]
     _, values, right = np.linalg.svd(forms.reshape(-1, count), full_matrices=True)
     rank = int(np.count_nonzero(values > tolerances.MOBILITY_FORM))
     beside, radical = right[:rank], right[rank:]
-    found = [_apart(_zeros(beside @ forms @ beside.T, random)) @ beside]
-    if len(radical):
-        shares = [_units(random, len(found[0]), len(radical)) @ radical]
-        found = [(found[0] + shares[0]) * np.sqrt(0.5), found[0]]
-        found.append(_units(random, tolerances.MOBILITY_FREE_HEADINGS, len(radical)) @ radical)
+    shared = _less(radical, alone)
+    solved = apart(_zeros(beside @ forms @ beside.T, random), tolerances.MOBILITY_HEADINGS)
+    found = [solved @ beside]
+    if len(shared):
+        found.append((found[0] + _units(random, len(solved), len(shared)) @ shared) * np.sqrt(0.5))
+        found.append(_units(random, tolerances.MOBILITY_FREE_HEADINGS, len(shared)) @ shared)
+    if len(shared) < len(radical):
+        found.append(_units(random, tolerances.MOBILITY_LONE_HEADINGS, len(radical)) @ radical)
     every = np.concatenate(found)
     return np.concatenate([every, -every])
+
+
+def _less(rows: Floats, columns: Floats) -> Floats:
+    """Orthonormal rows of what the span of some rows has square to some columns."""
+    if not columns.shape[1] or not len(rows):
+        return rows
+    taken = np.linalg.qr(columns)[0]
+    _, values, right = np.linalg.svd(rows - (rows @ taken) @ taken.T, full_matrices=False)
+    return np.asarray(right[values > 0.5])
 
 
 def _zeros(forms: Floats, random: RandomStarts) -> Floats:
@@ -82,16 +98,20 @@ def _units(random: RandomStarts, number: int, size: int) -> Floats:
     return np.asarray(found / np.sqrt(np.sum(found * found, axis=1))[:, None])
 
 
-def _apart(vectors: Floats) -> Floats:
-    """Some of many unit vectors (number, size), each as far from those before as any is; opposite
-    ones are one."""
+def apart(vectors: Floats, most: int) -> Floats:
+    """Some of many unit vectors (number, size), each as far from those before as any is."""
+    return np.asarray(vectors[apart_numbers(vectors, most)])
+
+
+def apart_numbers(vectors: Floats, most: int) -> list[int]:
+    """Their numbers."""
     if not len(vectors):
-        return vectors
-    chosen, nearest = [0], np.abs(vectors @ vectors[0])
-    while len(chosen) < tolerances.MOBILITY_HEADINGS:
-        next_one = int(np.argmin(nearest))
-        if nearest[next_one] > 1.0 - tolerances.MOBILITY_SAME_DIRECTION:
+        return []
+    chosen, nearest = [0], vectors @ vectors[0]
+    while len(chosen) < most:
+        further = int(np.argmin(nearest))
+        if nearest[further] > 1.0 - tolerances.MOBILITY_SAME_DIRECTION:
             break
-        chosen.append(next_one)
-        nearest = np.maximum(nearest, np.abs(vectors @ vectors[next_one]))
-    return np.asarray(vectors[chosen])
+        chosen.append(further)
+        nearest = np.maximum(nearest, vectors @ vectors[further])
+    return chosen

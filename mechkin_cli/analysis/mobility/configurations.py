@@ -56,7 +56,7 @@ class Body:
     @cached_property
     def parts(self) -> tuple[Part, ...]:
         """Loops that move on their own."""
-        return parts(self.loops)
+        return parts(self.mechanism, self.loops)
 
     @cached_property
     def free(self) -> NDArray[np.intp]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.mobility.bifurcation import directions, quadratic_forms
+from mechkin_cli.analysis.mobility.bifurcation import apart_numbers, directions, quadratic_forms
 from mechkin_cli.analysis.mobility.closed import Closed, Sphere, closed
 from mechkin_cli.analysis.mobility.rank import Rank, rank_of
 
@@ -101,7 +101,8 @@ def _regular(part: Part, state: Floats, first: Rank, random: RandomStarts) -> Co
 def _singular(part: Part, state: Floats, first: Rank, random: RandomStarts) -> Freedom:
     """The components that meet where the first order has more motions than any of them."""
     forms = quadratic_forms(part, state, first.motions, first.stresses)
-    headings = directions(forms, random) @ first.motions.T
+    alone = part.alone(state, first.motions)
+    headings = directions(forms, alone, random) @ first.motions.T
     found: tuple[Component, ...] = ()
     doubt = ""
     for step in tolerances.MOBILITY_STEPS:
@@ -124,7 +125,7 @@ def _components(
     there = closed(part, starts, Sphere(state, step))
     known: dict[int, list[Component]] = {}
     doubt = _nearly(there, step)
-    for place in _spread(part, _onward(part, state, there, step)):
+    for place in _onward(part, state, there, step):
         try:
             found = _general(part, place, random, step)
         except _Unclear as unclear:
@@ -138,28 +139,17 @@ def _components(
     return every, "" if every else doubt
 
 
-def _onward(part: Part, state: Floats, there: Closed, step: float) -> Closed:
-    """Another move in the headings that led from `state` to the places that closed."""
+def _onward(part: Part, state: Floats, there: Closed, step: float) -> Floats:
+    """Places (number, states) to which another move in the same heading leads, from some of those
+    that closed, which are far from each other."""
     places = there.states[there.good]
     ways = part.steps(places, np.repeat(state[None], len(places), axis=0))
-    ways *= step / np.sqrt(np.sum(ways * ways, axis=1, keepdims=True))
-    on = closed(part, part.moved(places, ways))
+    ways /= np.sqrt(np.sum(ways * ways, axis=1, keepdims=True))
+    some = apart_numbers(ways, tolerances.MOBILITY_PLACES)
+    places, ways = places[some], ways[some]
+    on = closed(part, part.moved(places, step * ways))
     moved = part.steps(on.states, places)
-    kept = on.good & (np.sqrt(np.sum(moved * moved, axis=1)) > 0.5 * step)
-    return Closed(on.states[kept], on.misses[kept], on.jacobians[kept])
-
-
-def _spread(part: Part, places: Closed) -> Floats:
-    """Some of many places: as many of each rank, evenly over the headings."""
-    ranks = np.array(
-        [rank_of(j, tolerances.MOBILITY_RANK_REACHED).motions.shape[1] for j in places.jacobians]
-    )
-    chosen: list[int] = []
-    for rank in np.unique(ranks):
-        alike = np.flatnonzero(ranks == rank)
-        some = np.linspace(0, len(alike) - 1, min(len(alike), tolerances.MOBILITY_PLACES))
-        chosen += alike[np.round(some).astype(np.intp)].tolist()
-    return places.states[chosen]
+    return np.asarray(on.states[on.good & (np.sqrt(np.sum(moved * moved, axis=1)) > 0.5 * step)])
 
 
 def _nearly(there: Closed, step: float) -> str:

@@ -11,17 +11,29 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
+from mechkin_cli.mechanism.model import GROUND_NAME
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.analysis.mobility.loops import Loops
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.mechanism.model import Mechanism
 
 
 class Part:
-    """Loops that share joints: numbers of their equations `rows` and freedoms `columns`."""
+    """Loops of a mechanism that share joints: numbers of their equations `rows` and freedoms
+    `columns`."""
 
-    def __init__(self, loops: Loops, cuts: NDArray[np.intp], columns: NDArray[np.intp]) -> None:
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        loops: Loops,
+        cuts: NDArray[np.intp],
+        columns: NDArray[np.intp],
+    ) -> None:
+        self.mechanism = mechanism
         self.loops = loops
         self.columns = columns
         self.rows = (6 * cuts[:, None] + np.arange(6)).ravel()
@@ -42,8 +54,31 @@ class Part:
         """The steps (places, columns) from `others` to `states`."""
         return self.loops.steps(states, others)[:, self.columns]
 
+    def alone(self, state: Floats, motions: Floats) -> Floats:
+        """An orthonormal basis (k, count) of those of some `motions` (columns, k) from a place that
+        move but one link, or two that are joined."""
+        numbers = self.loops.number
+        twists = self.loops.twists(*self.loops.poses.at(np.empty((0, 1)), state[:, None]))
+        seen = twists[0][:, :, self.columns] @ motions
+        links = [link for link in self.mechanism.links if link != GROUND_NAME]
+        groups = [{link} for link in links]
+        groups += [{j.first, j.second} for j in self.mechanism.joints.values()]
+        found = [np.zeros((motions.shape[1], 0))]
+        for group in groups:
+            rest = [numbers[link] for link in links if link not in group]
+            found.append(null_space(seen[rest].reshape(-1, motions.shape[1])))
+        left, values, _ = np.linalg.svd(np.concatenate(found, axis=1), full_matrices=False)
+        return np.asarray(left[:, values > tolerances.MOBILITY_FORM])
 
-def parts(loops: Loops) -> tuple[Part, ...]:
+
+def null_space(matrix: Floats) -> Floats:
+    """An orthonormal basis (columns, count) of what a matrix of unit twists maps to none."""
+    _, values, right = np.linalg.svd(matrix)
+    rank = int(np.count_nonzero(values > tolerances.MOBILITY_NO_WRENCH))
+    return np.asarray(right[rank:].T)
+
+
+def parts(mechanism: Mechanism, loops: Loops) -> tuple[Part, ...]:
     """The parts in the order of their first cuts."""
     passed = loops.signs != 0.0
     left = list(range(len(passed)))
@@ -59,5 +94,5 @@ def parts(loops: Loops) -> tuple[Part, ...]:
                     cuts.append(cut)
                     columns |= passed[cut]
                     grown = True
-        found.append(Part(loops, np.array(sorted(cuts)), np.flatnonzero(columns)))
+        found.append(Part(mechanism, loops, np.array(sorted(cuts)), np.flatnonzero(columns)))
     return tuple(found)

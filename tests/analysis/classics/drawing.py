@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -51,14 +52,16 @@ def numbers(vector: Iterable[float]) -> str:
     return "[" + ", ".join(repr(float(c)) for c in vector) + "]"
 
 
-def ring(letters: str, points: Sequence, axes: Sequence, leads: Mapping[int, float] = {}) -> str:  # noqa: B006
+def ring(
+    letters: str, points: Sequence, axes: Sequence, leads: Mapping[int, float] | None = None
+) -> str:
     """A single loop; joint k joins link k to link k + 1, ground being 0 and the last."""
     drawn, count = Drawn(), len(letters)
     names = [GROUND, *(f"L{k}" for k in range(1, count)), GROUND]
     for k, letter in enumerate(letters):
         vectors = {} if letter == "S" else {"axis": axes[k]}
         if letter == "H":
-            vectors["lead"] = leads[k]
+            vectors["lead"] = (leads or {})[k]
         drawn.add(letter, names[k], names[k + 1], points[k], **vectors)
     return drawn.text
 
@@ -70,7 +73,7 @@ def planar(pins: Mapping[str, Sequence[float]], bars: Iterable[str]) -> str:
     bodies = [(GROUND if k == 0 else f"L{k}", bar) for k, bar in enumerate(bars)]
     for pin, place in pins.items():
         here = [name for name, bar in bodies if pin in bar]
-        for one, two in zip(here, here[1:], strict=False):
+        for one, two in pairwise(here):
             drawn.add("R", one, two, (*place, 0.0), axis=Z)
     return drawn.text
 
@@ -81,7 +84,7 @@ def spatial(points: Mapping[str, Sequence[float]], bars: Iterable[str]) -> str:
     bodies = [(GROUND if k == 0 else f"L{k}", bar) for k, bar in enumerate(bars)]
     for point, place in points.items():
         here = [name for name, bar in bodies if point in bar]
-        for one, two in zip(here, here[1:], strict=False):
+        for one, two in pairwise(here):
             drawn.add("S", one, two, place)
     return drawn.text
 

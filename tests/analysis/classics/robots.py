@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, pi, sin
 
 import numpy as np
-from analysis.classics.drawing import GROUND, Z, Classic, Drawn, circle, planar, rotation, spatial
+from analysis.classics.drawing import GROUND, Classic, Drawn, Z, circle, planar, rotation, spatial
 from analysis.classics.platforms import ANGLES
 
 THIRDS = [0.1, 0.1 + 2 * pi / 3, 0.1 + 4 * pi / 3]
@@ -176,7 +176,7 @@ def flat_tetrahedron() -> str:
 
 
 def bipyramid() -> str:
-    """A point on three bars that lie in a plane with their feet, and another one over it, on them."""
+    """A point on three bars and another one over it, on two bars and a bar between them."""
     points = {"A": (0, 0, 0), "B": (1, 0, 0), "C": (0.2, 1, 0), "D": (0.4, 0.3, 0.9)}
     points["E"] = tuple((rotation((1, 0.3, 0), 0.4) @ np.array([0.5, 0.4, 1.4])).tolist())
     return spatial(points, ["ABC", "AD", "BD", "CD", "AE", "BE", "DE"])
