@@ -373,10 +373,14 @@ MOBILITY_STUCK: Final = 8
 MOBILITY_STARTS: Final = 40
 """Random poses tried where the drawing itself leads to no assembly."""
 
-MOBILITY_STEPS: Final = (0.1, 0.025)
-"""Length of a move (rad, parts of the size) from the first configuration, and the one tried where
-the answer stays unclear: its sixth power is above `MOBILITY_CLOSED`, so that what is closed to a
-high order does not pass for a motion, and it stays on its component."""
+MOBILITY_MOVES: Final = ((0.1, 1e-9), (0.025, 4e-12))
+"""Moves from the first configuration by their largest step (rad, parts of the size), and how far
+loops may be open after them: what touches in fourth order leaves 1e-4 and 4e-7 times its curvature,
+which must not pass for a motion. The second is tried where the first is too long to tell."""
+
+MOBILITY_FAR_MOVE: Final = (0.3, 1e-9)
+"""The move that is tried where the first leaves loops all but closed: what touches in fourth order
+is open by a hundred times more."""
 
 MOBILITY_CHORDS: Final = (0.3, 0.1)
 """Chords that tell the dimension, in parts of the move that led there: 0.03 and 0.01 (rad, parts of

@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 
 class Sphere(NamedTuple):
-    """Places whose steps from a `centre` (states,) have a length."""
+    """Places whose steps from a `centre` (states,) have lengths, `radii` (places,)."""
 
     centre: Floats
-    radius: float
+    radii: Floats
 
 
 class Closed(NamedTuple):
@@ -35,10 +35,9 @@ class Closed(NamedTuple):
     misses: Floats
     jacobians: Floats
 
-    @property
-    def good(self) -> NDArray[np.bool_]:
-        """Places that are assembled."""
-        return self.misses < tolerances.MOBILITY_CLOSED
+    def good(self, limit: float) -> NDArray[np.bool_]:
+        """Places whose loops are open by less than a limit."""
+        return self.misses < limit
 
 
 def closed(part: Part, starts: Floats, sphere: Sphere | None = None) -> Closed:
@@ -54,7 +53,9 @@ def closed(part: Part, starts: Floats, sphere: Sphere | None = None) -> Closed:
         misses, jacobians = part.closing(states[active])
         largest = np.abs(misses).max(axis=1, initial=0.0)
         if sphere is not None:
-            misses, matrix, off = _on_sphere(part, states[active], misses, jacobians, sphere)
+            misses, matrix, off = _on_sphere(
+                part, states[active], misses, jacobians, Sphere(sphere.centre, sphere.radii[active])
+            )
         else:
             matrix, off = jacobians, np.zeros(active.size)
         whole = np.maximum(largest, np.where(off > tolerances.MOBILITY_SPHERE, off, 0.0))
@@ -78,8 +79,8 @@ def _on_sphere(
 ) -> tuple[Floats, Floats, Floats]:
     """Misses and Jacobians with the sphere's equation, and how far off it the places are."""
     ways = part.steps(states, np.broadcast_to(sphere.centre, states.shape))
-    off = (np.sum(ways * ways, axis=1) / sphere.radius - sphere.radius) / 2.0
-    row = ways / sphere.radius
+    off = (np.sum(ways * ways, axis=1) / sphere.radii - sphere.radii) / 2.0
+    row = ways / sphere.radii[:, None]
     return (
         np.concatenate([misses, off[:, None]], axis=1),
         np.concatenate([jacobians, row[:, None]], axis=1),

@@ -9,7 +9,7 @@ along every motion of first order are closed again: the rank of the chords is th
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -54,8 +54,24 @@ class Freedom:
         return tuple(component.dimension for component in self.components)
 
 
+class Move(NamedTuple):
+    """A move by its largest step (rad, parts of the size), and how far loops that are closed after
+    it may be open."""
+
+    step: float
+    limit: float
+
+
+MOVES = tuple(Move(*each) for each in tolerances.MOBILITY_MOVES)
+FAR_MOVE = Move(*tolerances.MOBILITY_FAR_MOVE)
+
+
 class _Unclear(Exception):
     """Chords or ranks do not agree."""
+
+
+class _Nearly(_Unclear):
+    """Loops stay all but closed."""
 
 
 def freedom_of(
@@ -83,15 +99,16 @@ def _regular(part: Part, state: Floats, first: Rank, random: RandomStarts) -> Co
     """The component if it has as many dimensions as there are motions of first order, so that there
     is but one; None else."""
     motions = first.motions
-    heading = _units(random, 1, motions.shape[1]) @ motions.T
+    heading = _scaled(_units(random, 1, motions.shape[1]) @ motions.T)
     both = np.repeat(state[None], 2, axis=0)
-    for step in tolerances.MOBILITY_STEPS:
-        wanted = step * np.concatenate([heading, -heading])
+    for move in MOVES:
+        wanted = move.step * np.concatenate([heading, -heading])
         there = closed(part, part.moved(both, wanted))
-        strayed = np.sqrt(np.sum((part.steps(there.states, both) - wanted) ** 2, axis=1))
-        for place in there.states[there.good & (strayed < 0.5 * step)]:
+        strayed = _lengths(part.steps(there.states, both) - wanted)
+        kept = there.good(move.limit) & (strayed < 0.5 * _lengths(wanted))
+        for place in there.states[kept]:
             try:
-                found = _general(part, place, random, step)
+                found = _general(part, place, random, move)
             except _Unclear:
                 continue
             return found if found.dimension == motions.shape[1] else None
@@ -103,67 +120,73 @@ def _singular(part: Part, state: Floats, first: Rank, random: RandomStarts) -> F
     forms = quadratic_forms(part, state, first.motions, first.stresses)
     alone = part.alone(state, first.motions)
     headings = directions(forms, alone, random) @ first.motions.T
-    found: tuple[Component, ...] = ()
-    doubt = ""
-    for step in tolerances.MOBILITY_STEPS:
-        found, doubt = _components(part, state, headings, step, random)
-        if not doubt:
-            break
-    if doubt:
-        return Freedom(first, (), doubt)
+    headings = _scaled(headings)
+    try:
+        try:
+            found = _components(part, state, headings, MOVES[0], random)
+        except _Nearly:
+            found = _components(part, state, headings, FAR_MOVE, random)
+        except _Unclear:
+            found = _components(part, state, headings, MOVES[1], random)
+    except _Unclear as unclear:
+        return Freedom(first, (), str(unclear))
     return Freedom(first, found or (Component(0, state, first.motions[:, :0], 0.0),))
 
 
 def _components(
-    part: Part, state: Floats, headings: Floats, step: float, random: RandomStarts
-) -> tuple[tuple[Component, ...], str]:
-    """Components that two moves of a length along `headings` (number, columns) lead to, one of each
-    dimension, the largest first; and a doubt in words."""
+    part: Part, state: Floats, headings: Floats, move: Move, random: RandomStarts
+) -> tuple[Component, ...]:
+    """Components that two moves along `headings` (number, columns) lead to, one of each dimension,
+    the largest first.
+
+    Raises:
+        _Unclear: none has a clear dimension.
+    """
     if not len(headings):
-        return (), ""
-    starts = part.moved(np.repeat(state[None], len(headings), axis=0), step * headings)
-    there = closed(part, starts, Sphere(state, step))
+        return ()
+    ways = move.step * headings
+    starts = part.moved(np.repeat(state[None], len(ways), axis=0), ways)
+    there = closed(part, starts, Sphere(state, _lengths(ways)))
+    _is_open(there, move)
     known: dict[int, list[Component]] = {}
-    doubt = _nearly(there, step)
-    for place in _onward(part, state, there, step):
+    doubt = None
+    for place in _onward(part, state, there, move):
         try:
-            found = _general(part, place, random, step)
+            found = _general(part, place, random, move)
         except _Unclear as unclear:
-            doubt = str(unclear)
+            doubt = unclear
             continue
         known.setdefault(found.dimension, []).append(found)
-    every = tuple(
+    if doubt and not known:
+        raise doubt
+    return tuple(
         replace(known[k][0], places=tuple(component.state for component in known[k]))
         for k in sorted(known, reverse=True)
     )
-    return every, "" if every else doubt
 
 
-def _onward(part: Part, state: Floats, there: Closed, step: float) -> Floats:
+def _onward(part: Part, state: Floats, there: Closed, move: Move) -> Floats:
     """Places (number, states) to which another move in the same heading leads, from some of those
     that closed, which are far from each other."""
-    places = there.states[there.good]
+    places = there.states[there.good(move.limit)]
     ways = part.steps(places, np.repeat(state[None], len(places), axis=0))
-    ways /= np.sqrt(np.sum(ways * ways, axis=1, keepdims=True))
-    some = apart_numbers(ways, tolerances.MOBILITY_PLACES)
+    units = ways / _lengths(ways)[:, None]
+    some = apart_numbers(units, tolerances.MOBILITY_PLACES)
     places, ways = places[some], ways[some]
-    on = closed(part, part.moved(places, step * ways))
-    moved = part.steps(on.states, places)
-    return np.asarray(on.states[on.good & (np.sqrt(np.sum(moved * moved, axis=1)) > 0.5 * step)])
+    on = closed(part, part.moved(places, ways))
+    far = _lengths(part.steps(on.states, places)) > 0.5 * _lengths(ways)
+    return np.asarray(on.states[on.good(move.limit) & far])
 
 
-def _nearly(there: Closed, step: float) -> str:
-    """Doubt where loops stay all but closed on the sphere: a motion of high order, or written
-    dimensions of few digits."""
-    if there.good.any():
-        return ""
+def _is_open(there: Closed, move: Move) -> None:
+    """Loops that stay all but closed, if none closes, are no answer: a motion of high order, or
+    written dimensions of few digits."""
     least = float(there.misses.min())
-    if least > tolerances.MOBILITY_OPEN:
-        return ""
-    return f"{step:g} away the loops are open by {least:.2g} of the size"
+    if move.limit <= least < tolerances.MOBILITY_OPEN:
+        raise _Nearly(f"{move.step:g} away the loops are open by {least:.2g} of the size")
 
 
-def _general(part: Part, state: Floats, random: RandomStarts, step: float) -> Component:
+def _general(part: Part, state: Floats, random: RandomStarts, move: Move) -> Component:
     """The component at a place, or at one next to it where the rank is larger."""
     place = state
     for _ in range(tolerances.MOBILITY_TRIES):
@@ -173,41 +196,52 @@ def _general(part: Part, state: Floats, random: RandomStarts, step: float) -> Co
         count = motions.shape[1]
         if count == 0 or rank.stresses.shape[1] == 0:
             return Component(count, place, motions, tolerances.RANK_ZERO)
-        turned = motions @ _frame(random, count)
-        lengths = step * np.array(tolerances.MOBILITY_CHORDS)
-        ways = np.concatenate([length * turned.T for length in lengths])
+        units = (motions @ _frame(random, count)).T
+        ways = move.step * _scaled(units)
+        ways = np.concatenate([part_of * ways for part_of in tolerances.MOBILITY_CHORDS])
         ends = closed(part, part.moved(np.repeat(place[None], len(ways), axis=0), ways))
         ranks = [
             rank_of(jacobian, tolerances.MOBILITY_RANK_REACHED).motions.shape[1]
             for jacobian in ends.jacobians
         ]
         if min(ranks) == count:
-            return _chords(part, place, ends, count, lengths, rank)
+            return _chords(part, place, ends, ways, move, rank)
         place = ends.states[int(np.argmin(ranks))]
     raise _Unclear("the rank changes from place to place")
 
 
 def _chords(
-    part: Part, place: Floats, ends: Closed, count: int, lengths: Floats, rank: Rank
+    part: Part, place: Floats, ends: Closed, ways: Floats, move: Move, rank: Rank
 ) -> Component:
-    """The component at a place from moves of two lengths along all motions of first order."""
-    if not ends.good.all():
+    """The component at a place from the `ends` of moves along `ways` (number, columns), which are
+    all motions of first order at two lengths."""
+    if not ends.good(move.limit).all():
         raise _Unclear("moves do not close again")
-    ways = part.steps(ends.states, np.repeat(place[None], len(ends.states), axis=0))
+    chords = part.steps(ends.states, np.repeat(place[None], len(ways), axis=0))
+    chords /= _lengths(ways)[:, None]
     seen = []
-    for k, length in enumerate(lengths):
-        chords = ways[k * count : (k + 1) * count] / length
-        _, values, right = np.linalg.svd(chords, full_matrices=False)
+    for some in np.split(chords, len(tolerances.MOBILITY_CHORDS)):
+        _, values, right = np.linalg.svd(some, full_matrices=False)
         low, high = tolerances.MOBILITY_CHORD_RANK
         if np.any((values > low) & (values < high)):
-            raise _Unclear(f"chords of {length:g} have no clear rank")
+            raise _Unclear(f"chords have singular values between {low:g} and {high:g}")
         seen.append((int(np.count_nonzero(values >= high)), right))
     (dimension, _), (again, right) = seen
     if dimension != again:
         raise _Unclear(f"chords of two lengths have the ranks {dimension} and {again}")
-    if dimension == count:
-        return Component(count, place, rank.motions, tolerances.RANK_ZERO)
+    if dimension == rank.motions.shape[1]:
+        return Component(dimension, place, rank.motions, tolerances.RANK_ZERO)
     return Component(dimension, place, right[:dimension].T, tolerances.MOBILITY_CHORD_DOUBT)
+
+
+def _lengths(ways: Floats) -> Floats:
+    """Lengths (number,) of steps (number, columns)."""
+    return np.asarray(np.sqrt(np.sum(ways * ways, axis=1)))
+
+
+def _scaled(ways: Floats) -> Floats:
+    """Steps (number, columns) whose largest is one."""
+    return np.asarray(ways / np.abs(ways).max(axis=1, initial=0.0, keepdims=True))
 
 
 def _units(random: RandomStarts, number: int, size: int) -> Floats:
