@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.analysis.mobility.displacements import displacement, turn_between, turned
+from mechkin_cli.analysis.mobility.displacements import cross, displacement, turn_between, turned
 from mechkin_cli.mechanism.elementary import screws_at
 from mechkin_cli.mechanism.model import GROUND_NAME
 
@@ -98,7 +98,7 @@ class Loops:
         """Unit screws (rows, freedoms, 6) of all freedoms where the bodies are."""
         turn, place = turns[:, self._parents], places[:, self._parents]
         spins = (turn @ self._spins)[..., 0]
-        slides = (turn @ self._slides)[..., 0] + np.cross(place, spins)
+        slides = (turn @ self._slides)[..., 0] + cross(place, spins)
         return np.concatenate([spins, slides], axis=2)
 
     def twists(self, turns: Floats, places: Floats) -> Floats:
@@ -111,9 +111,9 @@ class Loops:
         found = states.copy()
         columns, slots, units = self._scalars
         found[:, slots] += steps[:, columns] * units
-        for column, slot in self._balls:
-            ball = slice(slot, slot + 4)
-            found[:, ball] = turned(found[:, ball], steps[:, column : column + 3])
+        columns, slots = self._balls
+        if slots.size:
+            found[:, slots] = turned(found[:, slots], steps[:, columns])
         return found
 
     def steps(self, states: Floats, others: Floats) -> Floats:
@@ -121,9 +121,9 @@ class Loops:
         found = np.zeros((len(states), self.count))
         columns, slots, units = self._scalars
         found[:, columns] = (states[:, slots] - others[:, slots]) / units
-        for column, slot in self._balls:
-            ball = slice(slot, slot + 4)
-            found[:, column : column + 3] = turn_between(states[:, ball], others[:, ball])
+        columns, slots = self._balls
+        if slots.size:
+            found[:, columns] = turn_between(states[:, slots], others[:, slots])
         return found
 
     @cached_property
@@ -141,7 +141,9 @@ class Loops:
         return np.array(columns, dtype=np.intp), np.array(slots, dtype=np.intp), np.array(units)
 
     @cached_property
-    def _balls(self) -> tuple[tuple[int, int], ...]:
-        """Columns and slots in the state of the balls."""
-        carriers = self.layout.carriers
-        return tuple((c.column, c.state) for c in carriers if c.part.type.is_ball)
+    def _balls(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Columns (balls, 3) and slots in the state (balls, 4) of the balls."""
+        balls = [c for c in self.layout.carriers if c.part.type.is_ball]
+        columns = np.array([c.column for c in balls], dtype=np.intp)
+        slots = np.array([c.state for c in balls], dtype=np.intp)
+        return columns[:, None] + np.arange(3), slots[:, None] + np.arange(4)
