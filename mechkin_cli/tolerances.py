@@ -347,9 +347,10 @@ MOBILITY_NEAR: Final = 1e-12
 MOBILITY_ITERATIONS: Final = 80
 """Newton halves the distance to a configuration that is singular; 80 halvings leave nothing."""
 
-MOBILITY_DAMPING: Final = 1e-10
+MOBILITY_DAMPING: Final = 1e-7
 """Least damping of a step, in parts of a unit rate: far below singular values that count, far above
-the roundings of those that are zero."""
+those of redundant constraints in a drawing with ten digits. Measured at 1e-10: steps along these
+led astray by a tenth of a move."""
 
 MOBILITY_RANK: Final = 1e-11
 """Singular values below this part of the largest are left out of a Newton step: above rounding, far
@@ -394,6 +395,10 @@ MOBILITY_CHORD_DOUBT: Final = 1e-4
 """Rates read from chords below which a coordinate stands still: closing where equations are squared
 is sure to the root of a rounding, 1e-7, over a chord of 0.01."""
 
+MOBILITY_STRAYED: Final = 0.4
+"""How far a move may be closed from where it was meant to end, in parts of its length: by its
+curvature, a tenth, and not by half a right angle as from one component to another."""
+
 MOBILITY_RANK_REACHED: Final = 1e-5
 """Singular values below this part of the largest count as zero at a configuration that was reached:
 where equations are squared its place is sure to 1e-7 only, and a regular one 0.1 from a singular
@@ -402,6 +407,11 @@ one has 1e-3 at least."""
 MOBILITY_OPEN: Final = 1e-7
 """Loops that a move leaves open by less, but do not close, are no clear answer: a motion of fourth
 order leaves 1e-4 times its curvature, written dimensions of eight digits 1e-8."""
+
+MOBILITY_GROWTH: Final = 16.0
+"""Growth of what loops are open by from the first move to the far one, three times as long, below
+which written dimensions may be the cause: what touches in third order grows 27 times, dimensions
+that are off by a little less than 9 times."""
 
 MOBILITY_SPHERE: Final = 1e-3
 """How far (rad, parts of the size) from its sphere a move may end."""

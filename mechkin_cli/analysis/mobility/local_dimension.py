@@ -71,7 +71,11 @@ class _Unclear(Exception):
 
 
 class _Nearly(_Unclear):
-    """Loops stay all but closed."""
+    """Loops stay all but closed: the `least` that they are open by is small."""
+
+    def __init__(self, least: float, move: Move) -> None:
+        super().__init__(f"{move.step:g} away the loops are open by {least:.2g} of the size")
+        self.least = least
 
 
 def freedom_of(
@@ -105,7 +109,7 @@ def _regular(part: Part, state: Floats, first: Rank, random: RandomStarts) -> Co
         wanted = move.step * np.concatenate([heading, -heading])
         there = closed(part, part.moved(both, wanted))
         strayed = _lengths(part.steps(there.states, both) - wanted)
-        kept = there.good(move.limit) & (strayed < 0.5 * _lengths(wanted))
+        kept = there.good(move.limit) & (strayed < tolerances.MOBILITY_STRAYED * _lengths(wanted))
         for place in there.states[kept]:
             try:
                 found = _general(part, place, random, move)
@@ -124,32 +128,43 @@ def _singular(part: Part, state: Floats, first: Rank, random: RandomStarts) -> F
     try:
         try:
             found = _components(part, state, headings, MOVES[0], random)
-        except _Nearly:
-            found = _components(part, state, headings, FAR_MOVE, random)
+        except _Nearly as near:
+            most = tolerances.MOBILITY_GROWTH * near.least
+            found = _components(part, state, headings, FAR_MOVE, random, most)
         except _Unclear:
             found = _components(part, state, headings, MOVES[1], random)
     except _Unclear as unclear:
         return Freedom(first, (), str(unclear))
+    if len(found) > 1 and found[0].dimension == first.motions.shape[1]:
+        found = found[1:]  # with as many as to first order the place would be regular
     return Freedom(first, found or (Component(0, state, first.motions[:, :0], 0.0),))
 
 
 def _components(
-    part: Part, state: Floats, headings: Floats, move: Move, random: RandomStarts
+    part: Part,
+    state: Floats,
+    headings: Floats,
+    move: Move,
+    random: RandomStarts,
+    nearly: float = tolerances.MOBILITY_OPEN,
 ) -> tuple[Component, ...]:
     """Components that two moves along `headings` (number, columns) lead to, one of each dimension,
     the largest first.
 
     Raises:
-        _Unclear: none has a clear dimension.
+        _Unclear: none has a clear dimension, or no loops are closed, but some open by less than
+            `nearly`.
     """
     if not len(headings):
         return ()
     ways = move.step * headings
     starts = part.moved(np.repeat(state[None], len(ways), axis=0), ways)
     there = closed(part, starts, Sphere(state, _lengths(ways)))
-    _is_open(there, move)
+    least = float(there.misses.min())
+    if move.limit <= least < nearly:
+        raise _Nearly(least, move)
     known: dict[int, list[Component]] = {}
-    doubt = None
+    doubt = _Unclear("a second move does not close") if least < move.limit else None
     for place in _onward(part, state, there, move):
         try:
             found = _general(part, place, random, move)
@@ -178,14 +193,6 @@ def _onward(part: Part, state: Floats, there: Closed, move: Move) -> Floats:
     return np.asarray(on.states[on.good(move.limit) & far])
 
 
-def _is_open(there: Closed, move: Move) -> None:
-    """Loops that stay all but closed, if none closes, are no answer: a motion of high order, or
-    written dimensions of few digits."""
-    least = float(there.misses.min())
-    if move.limit <= least < tolerances.MOBILITY_OPEN:
-        raise _Nearly(f"{move.step:g} away the loops are open by {least:.2g} of the size")
-
-
 def _general(part: Part, state: Floats, random: RandomStarts, move: Move) -> Component:
     """The component at a place, or at one next to it where the rank is larger."""
     place = state
@@ -200,23 +207,30 @@ def _general(part: Part, state: Floats, random: RandomStarts, move: Move) -> Com
         ways = move.step * _scaled(units)
         ways = np.concatenate([part_of * ways for part_of in tolerances.MOBILITY_CHORDS])
         ends = closed(part, part.moved(np.repeat(place[None], len(ways), axis=0), ways))
+        if not ends.good(move.limit).all():
+            raise _Unclear("moves do not close again")
         ranks = [
             rank_of(jacobian, tolerances.MOBILITY_RANK_REACHED).motions.shape[1]
             for jacobian in ends.jacobians
         ]
         if min(ranks) == count:
-            return _chords(part, place, ends, ways, move, rank)
+            dimension, tangents = _chords(part, place, ends, ways, move)
+            if not dimension:
+                raise _Unclear(f"{move.step:g} away nothing can move")
+            if not _is_smooth(part, place, tangents, move, _frame(random, dimension)):
+                raise _Unclear("several motions meet wherever it goes")
+            if dimension == count:
+                return Component(count, place, motions, tolerances.RANK_ZERO)
+            return Component(dimension, place, tangents, tolerances.MOBILITY_CHORD_DOUBT)
         place = ends.states[int(np.argmin(ranks))]
     raise _Unclear("the rank changes from place to place")
 
 
 def _chords(
-    part: Part, place: Floats, ends: Closed, ways: Floats, move: Move, rank: Rank
-) -> Component:
-    """The component at a place from the `ends` of moves along `ways` (number, columns), which are
-    all motions of first order at two lengths."""
-    if not ends.good(move.limit).all():
-        raise _Unclear("moves do not close again")
+    part: Part, place: Floats, ends: Closed, ways: Floats, move: Move
+) -> tuple[int, Floats]:
+    """Dimension and steps (columns, dimension) of the component at a place, from the `ends` of
+    moves along `ways` (number, columns), which are all motions of first order at two lengths."""
     chords = part.steps(ends.states, np.repeat(place[None], len(ways), axis=0))
     chords /= _lengths(ways)[:, None]
     seen = []
@@ -229,9 +243,19 @@ def _chords(
     (dimension, _), (again, right) = seen
     if dimension != again:
         raise _Unclear(f"chords of two lengths have the ranks {dimension} and {again}")
-    if dimension == rank.motions.shape[1]:
-        return Component(dimension, place, rank.motions, tolerances.RANK_ZERO)
-    return Component(dimension, place, right[:dimension].T, tolerances.MOBILITY_CHORD_DOUBT)
+    return dimension, right[:dimension].T
+
+
+def _is_smooth(part: Part, place: Floats, tangents: Floats, move: Move, frame: Floats) -> bool:
+    """Whether moves along the `tangents` (columns, dimension), mixed by a `frame`, go where they
+    are meant to: they would not where several components meet, whose chords count together."""
+    ways = move.step * tolerances.MOBILITY_CHORDS[0] * _scaled((tangents @ frame).T)
+    both = np.repeat(place[None], len(ways), axis=0)
+    ends = closed(part, part.moved(both, ways))
+    strayed = _lengths(part.steps(ends.states, both) - ways)
+    return bool(
+        np.all(ends.good(move.limit) & (strayed < tolerances.MOBILITY_STRAYED * _lengths(ways)))
+    )
 
 
 def _lengths(ways: Floats) -> Floats:
