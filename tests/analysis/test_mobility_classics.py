@@ -4,12 +4,12 @@ construction."""
 from __future__ import annotations
 
 import pytest
-from analysis.classics import planes, platforms, rings, robots
+from analysis.classics import osculating, planes, platforms, rings, robots
 from analysis.classics.drawing import Classic
 
 import mechkin_cli as mk
 
-CASES = [*rings.CASES, *planes.CASES, *platforms.CASES, *robots.CASES]
+CASES = [*rings.CASES, *planes.CASES, *platforms.CASES, *robots.CASES, *osculating.CASES]
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)

@@ -11,13 +11,13 @@ from typing import Any
 
 import pytest
 import yaml
-from analysis.classics import planes, platforms, rings, robots
+from analysis.classics import osculating, planes, platforms, rings, robots
 from analysis.classics.changes import CHANGES, braced
 from analysis.classics.drawing import Classic
 
 import mechkin_cli as mk
 
-CASES = [*rings.CASES, *planes.CASES, *platforms.CASES, *robots.CASES]
+CASES = [*rings.CASES, *planes.CASES, *platforms.CASES, *robots.CASES, *osculating.CASES]
 NUMBER = 120 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 

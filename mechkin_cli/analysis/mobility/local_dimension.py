@@ -74,7 +74,9 @@ class _Nearly(_Unclear):
     """Loops stay all but closed: the `least` that they are open by is small."""
 
     def __init__(self, least: float, move: Move) -> None:
-        super().__init__(f"{move.step:g} away the loops are open by {least:.2g} of the size")
+        super().__init__(
+            f"{move.step:g} away the loops are open by {least:.2g} of the size, limit {move.limit:g}"
+        )
         self.least = least
 
 
