@@ -438,8 +438,12 @@ leads to it, so that all miss it in one case of 800."""
 MOBILITY_LONE_HEADINGS: Final = 4
 """Headings in which single links move, too: spins as a rule, which change nothing."""
 
-MOBILITY_PLACES: Final = 16
-"""Places reached, far from each other, from which another move is made."""
+MOBILITY_PLACES: Final = (4, 16)
+"""Least and largest number of places reached, far from each other, whose dimension is told."""
+
+MOBILITY_WORK: Final = 200
+"""Motions of first order at all these places together: between least and largest, they are fewer
+where there are many motions to try at each."""
 
 MOBILITY_SAME_DIRECTION: Final = 5e-3
 """Two unit vectors whose cosine is nearer to 1 are one direction (6 degrees)."""

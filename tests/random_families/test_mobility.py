@@ -21,7 +21,7 @@ from analysis.classics.rings import great_circle
 
 import mechkin_cli as mk
 
-NUMBER = 10 * int(os.environ.get("MECHKIN_RANDOM", "1"))
+NUMBER = 6 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 SEEDS = range(NUMBER)
 Answer = tuple[tuple[int, ...], int]
 

@@ -18,7 +18,7 @@ from analysis.classics.drawing import Classic
 import mechkin_cli as mk
 
 CASES = [*rings.CASES, *planes.CASES, *platforms.CASES, *robots.CASES, *osculating.CASES]
-NUMBER = 120 * int(os.environ.get("MECHKIN_RANDOM", "1"))
+NUMBER = 60 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 
 def changed(seed: int) -> tuple[Classic, Any, str]:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.analysis.mobility.chords import Component
 from mechkin_cli.analysis.mobility.configurations import Body, Configuration
-from mechkin_cli.analysis.mobility.local_dimension import Component, Freedom
+from mechkin_cli.analysis.mobility.local_dimension import Freedom
 from mechkin_cli.analysis.mobility.parts import Part
 from mechkin_cli.analysis.mobility.rank import rank_of
 
