@@ -441,6 +441,9 @@ MOBILITY_LONE_HEADINGS: Final = 4
 MOBILITY_PLACES: Final = (4, 16)
 """Least and largest number of places reached, far from each other, whose dimension is told."""
 
+MOBILITY_OTHERS: Final = 8
+"""Configurations at which what seems idle at one must be idle, too."""
+
 MOBILITY_WORK: Final = 200
 """Motions of first order at all these places together: between least and largest, they are fewer
 where there are many motions to try at each."""

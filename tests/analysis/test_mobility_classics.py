@@ -4,12 +4,13 @@ construction."""
 from __future__ import annotations
 
 import pytest
-from analysis.classics import osculating, planes, platforms, rings, robots
+from analysis.classics import osculating, planes, platforms, rings, robots, sheets
 from analysis.classics.drawing import Classic
 
 import mechkin_cli as mk
 
-CASES = [*rings.CASES, *planes.CASES, *platforms.CASES, *robots.CASES, *osculating.CASES]
+MODULES = (rings, planes, platforms, robots, osculating, sheets)
+CASES = [case for module in MODULES for case in module.CASES]
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)

@@ -11,13 +11,14 @@ from typing import Any
 
 import pytest
 import yaml
-from analysis.classics import osculating, planes, platforms, rings, robots
+from analysis.classics import osculating, planes, platforms, rings, robots, sheets
 from analysis.classics.changes import CHANGES, braced
 from analysis.classics.drawing import Classic
 
 import mechkin_cli as mk
 
-CASES = [*rings.CASES, *planes.CASES, *platforms.CASES, *robots.CASES, *osculating.CASES]
+MODULES = (rings, planes, platforms, robots, osculating, sheets)
+CASES = [case for module in MODULES for case in module.CASES]
 NUMBER = 60 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 

@@ -54,13 +54,11 @@ class Motions:
 
     @cached_property
     def others(self) -> tuple[Configuration, ...]:
-        """General configurations of more components as large."""
-        every = [found.components[0].places for _, found in self.freedoms]
-        most = max((len(places) for places in every), default=0)
-        first = [found.components[0].state for _, found in self.freedoms]
+        """General configurations of more components, one of each dimension first."""
+        every = [_places(found) for _, found in self.freedoms]
+        most = min(max(map(len, every), default=0), tolerances.MOBILITY_OTHERS)
         return tuple(
-            self._at([p[k] if k < len(p) else s for p, s in zip(every, first, strict=True)])
-            for k in range(1, most)
+            self._at([p[k] if k < len(p) else p[0] for p in every]) for k in range(1, most)
         )
 
     def _at(self, states: Sequence[Floats]) -> Configuration:
@@ -110,3 +108,9 @@ class Motions:
             for name in joint.type.freedom_of
             if not moving[self.body.column(joint.name, name)]
         )
+
+
+def _places(freedom: Freedom) -> list[Floats]:
+    """General places of all components, one of each dimension first."""
+    first = [component.state for component in freedom.components]
+    return first + [place for component in freedom.components for place in component.places[1:]]
