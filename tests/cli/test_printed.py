@@ -30,12 +30,12 @@ def test_tables_on_stdout_summary_on_stderr(mechkin, write) -> None:
         "            0\n"
         "            0\n\n"
     )
-    assert run.err.splitlines()[:2] == ["crank (crank.yaml)", "  mobility 1, driven by O.theta"]
+    assert run.err.splitlines()[:2] == ["crank (crank.yaml)", "  driven   1 freedom by O.theta"]
 
 
 def test_summary_of_the_rcsr_mechanism(mechkin) -> None:
     err = mechkin("analyze", RCSR).err
-    assert "  mobility 1, driven by O1.theta\n" in err
+    assert "  driven   1 freedom by O1.theta\n" in err
     assert "  loops    1, closed at O3 (S); 3 unknowns\n" in err
     assert "  rows     27 of 27 solved\n" in err
     assert "  files    out/rcsr (12 csv, 11 md)\n" in err
