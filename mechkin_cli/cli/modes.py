@@ -65,6 +65,7 @@ def _record(model: Model, found: Modes) -> Record:
             "starts": found.starts,
             "closed": found.closed,
             "chance": found.chance,
+            "confidence": found.confidence,
             "stopped": found.stopped,
             "turns": found.turns,
         },

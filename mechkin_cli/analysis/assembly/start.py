@@ -4,7 +4,7 @@ nearest to it."""
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import sqrt
 from typing import TYPE_CHECKING
 
@@ -20,7 +20,7 @@ from mechkin_cli.analysis.assembly.named_modes import NamedModes, is_cyclic, nam
 from mechkin_cli.analysis.assembly.near import Near, box_about, named_by, newton_from
 from mechkin_cli.analysis.assembly.probe import Probe
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number
-from mechkin_cli.mechanism.joint_table import is_angle
+from mechkin_cli.mechanism.joint_table import dimension_of, is_angle
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import TrackEnd
@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 
 NEAR = "near"
 """Stands for the letter of an assembly that was found without all others."""
+
+HOME = "home"
+"""The same for an assembled drawing."""
 
 MAY_BE_RIGID = (
     "an overconstrained loop moves only if its dimensions are exact (write expressions); else "
@@ -84,8 +87,8 @@ def _choose_start(session: Session) -> Start:
     if wanted.near and wanted.mode is None:
         start = _from_near(session, path[:, 0])
         if start is not None:
-            return start
-    modes = name_modes(session, path[:, 0])
+            return _told_if_far(session, path[:, 0], start)
+    modes = name_modes(session, path[:, 0], thorough=wanted.mode is not None)
     if modes.number == 0:
         return Start(None, "", "", [nothing_found(session, modes.found)])
     if wanted.mode is not None:
@@ -93,18 +96,34 @@ def _choose_start(session: Session) -> Start:
     home = _distances_home(session, modes.points)
     if not wanted.near:
         return _nearest(modes, home, home, "nearest to home")
-    return _nearest(modes, _distances_near(session.problem, modes.coordinates), home, "near")
+    start = _nearest(modes, _distances_near(session.problem, modes.coordinates), home, "near")
+    return _told_if_far(session, path[:, 0], start)
 
 
 def mode_letter(session: Session, start: Start) -> str:
     """The letter of an assembly at the first row, by a search if it is not known yet; its own name
     where no letter's branch has it."""
-    if start.mode != NEAR or start.state is None:
+    if start.mode not in (NEAR, HOME) or start.state is None:
         return start.mode
-    modes = name_modes(session, session.inputs.values[:, 0])
+    first = session.inputs.values[:, 0]
+    state = state_at_first_row(session, start)
+    if state is None:
+        return start.mode
+    modes = name_modes(session, first)
     keys = pose_keys(session.layout, modes.found.states)
-    same = same_poses(keys, pose_keys(session.layout, start.state[:, None]))[:, 0]
+    same = same_poses(keys, pose_keys(session.layout, state[:, None]))[:, 0]
     return modes.letters[int(np.argmax(same))] if same.any() else start.mode
+
+
+def state_at_first_row(session: Session, start: Start) -> Floats | None:
+    """States of the first assembly's branch at the first row; an assembled drawing may be followed
+    from another."""
+    if start.state is None or start.row == 0:
+        return start.state
+    values = session.inputs.values
+    path = np.stack([values[:, start.row], values[:, 0]], axis=1)
+    followed = session.follow(path, start.state)
+    return followed.state if followed.end == TrackEnd.FINISHED else None
 
 
 def _from_near(session: Session, inputs: Floats) -> Start | None:
@@ -125,7 +144,7 @@ def _from_near(session: Session, inputs: Floats) -> Start | None:
     radius = tolerances.NEAR_RUNNER_UP * max(distance, tolerances.SAME_MODE)
     if radius > tolerances.NEAR_BALL:
         return None
-    found = session.search(inputs, box_about(session, named, radius))
+    found = session.search(inputs, box_about(session, named, radius), thorough=False)
     return _nearest_about(session, inputs, newton, found, radius)
 
 
@@ -147,6 +166,45 @@ def _nearest_about(
     if len(order) > 1 and _is_unclear(best, distances[order[1]]):
         notes.append(_unclear("two assemblies", (best, distances[order[1]])))
     return Start(found.states[:, order[0]], NEAR, how, notes)
+
+
+def _told_if_far(session: Session, inputs: Floats, start: Start) -> Start:
+    """With a warning where the assembly lies far from what `near` names."""
+    if start.state is None:
+        return start
+    coordinates, _ = Probe.of(session).read(inputs, start.state[:, None])
+    problem = session.problem
+    far = [
+        Number(name, float(coordinates[name][0]))
+        for name, target in problem.assembly.near.items()
+        if abs(_miss(problem, name, float(coordinates[name][0]), target)) > tolerances.NEAR_FAR
+    ]
+    if not far:
+        return start
+    units = problem.units
+    shown = (
+        f"{at.name} = {units.from_si(at.value, dimension_of(at.name.partition('.')[2])):.6g}"
+        for at in far
+    )
+    note = Diagnostic(
+        "nearest-far",
+        "warning",
+        "no assembly was found near what near names",
+        measured=f"the nearest has {', '.join(shown)}",
+        limit=f"{tolerances.NEAR_FAR:g} rad or sizes",
+        hint="see mechkin modes for all assemblies at the first row",
+    )
+    return replace(start, diagnostics=[*start.diagnostics, note])
+
+
+def _miss(problem: Problem, name: str, value: float, target: float) -> float:
+    """How far a coordinate is off: angles the shorter way round, slides in sizes."""
+    miss = value - target
+    if is_cyclic(problem.mechanism, name):
+        return wrapped(miss)
+    if is_angle(name.partition(".")[2]):
+        return miss
+    return miss / problem.mechanism.box_diagonal()
 
 
 def _distances(session: Session, inputs: Floats, states: Floats) -> tuple[list[float], list[float]]:
@@ -176,7 +234,7 @@ def _from_home(session: Session, path: Floats) -> Start:
     row = nearest_to_home(path)
     followed = follow_from_home(session, path[:, row])
     if followed.end == TrackEnd.FINISHED:
-        return Start(followed.state, "home", "followed from the home drawing", row=row)
+        return Start(followed.state, HOME, "followed from the home drawing", row=row)
     places = input_numbers(problem, layout, followed.inputs)
     rigid = f"; {MAY_BE_RIGID}" if session.is_redundant else ""
     diagnostic = Diagnostic(
@@ -192,7 +250,7 @@ def _from_home(session: Session, path: Floats) -> Start:
     limit = find_limit(session, followed, followed.inputs, followed.state)
     folds = isinstance(limit, DeadCentre)
     status = Status.beyond_dead_centre if folds else Status.branch_lost
-    return Start(None, "home", "", [diagnostic], status)
+    return Start(None, HOME, "", [diagnostic], status)
 
 
 def nothing_found(session: Session, found: Found, place: str = "at the first row") -> Diagnostic:
@@ -223,6 +281,8 @@ def _missed(found: Found) -> str:
             f"{found.free} of {found.starts} random starts closed the loops, all where they still "
             "move with the inputs held, or in a singular position"
         )
+    if found.bound is not None and found.complete:
+        return "the loop's equations have no real root"
     return (
         f"none of {found.starts} random starts closed the loops, "
         f"the best to {found.closest:.2g} of the size"
@@ -230,18 +290,12 @@ def _missed(found: Found) -> str:
 
 
 def _distances_near(problem: Problem, coordinates: Mapping[str, Floats]) -> list[float]:
-    """Of every assembly from what `near` names; angles the shorter way round, slides in sizes."""
-    mechanism = problem.mechanism
-    size = mechanism.box_diagonal()
+    """Of every assembly from what `near` names."""
     distances = []
     for i in range(len(next(iter(coordinates.values())))):
         total = 0.0
         for name, target in problem.assembly.near.items():
-            miss = float(coordinates[name][i]) - target
-            if is_cyclic(mechanism, name):
-                miss = wrapped(miss)
-            elif not is_angle(name.partition(".")[2]):
-                miss /= size
+            miss = _miss(problem, name, float(coordinates[name][i]), target)
             total += miss * miss
         distances.append(sqrt(total))
     return distances
@@ -278,10 +332,12 @@ def _nearest(modes: NamedModes, distances: list[float], home: list[float], how: 
     if len(order) > 1:
         second = order[1]
         if _is_unclear(distances[best], distances[second]):
-            both = f"modes {modes.letters[best]} and {modes.letters[second]}"
+            both = "two assemblies"
+            if modes.letters:
+                both = f"modes {modes.letters[best]} and {modes.letters[second]}"
             notes.append(_unclear(both, (distances[best], distances[second])))
     words = f"{how}, 1 of {modes.number} found"
-    return Start(modes.found.states[:, best], modes.letters[best], words, notes)
+    return Start(modes.found.states[:, best], modes.letters.get(best, NEAR), words, notes)
 
 
 def _unclear(both: str, distances: tuple[float, float]) -> Diagnostic:

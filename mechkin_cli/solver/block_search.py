@@ -1,0 +1,293 @@
+"""The search of one block's assemblies: Levenberg-Marquardt from random starts (fixed seed).
+
+A block is searched once for each *place* of the blocks before it, as far as its own loops depend
+on them; the starts of all places share the kernel's calls. A place's search ends when all
+assemblies are proven to be found (`loop_count`, `block_bounds`), or when the chance that one more
+start finds another is small.
+"""
+
+from __future__ import annotations
+
+from math import isfinite, pi
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.kernel.width import threads_for, width
+from mechkin_cli.solver.batch import run
+from mechkin_cli.solver.block_bounds import most_of_block
+from mechkin_cli.solver.clusters import Clusters
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.loop_count import Count, count_assemblies
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Bools, Floats
+    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.layout import Layout
+    from mechkin_cli.solver.random_starts import RandomStarts
+
+
+class Within(NamedTuple):
+    """A box of states: `radius` (states,) about `centre` (states,), infinite where any value will
+    do."""
+
+    centre: Floats
+    radius: Floats
+
+
+class Request(NamedTuple):
+    """What is searched: at `inputs` (inputs,), threads within `turns` to either side of those in
+    `middle` (states,), starts `within` a box; `thorough`: for all assemblies, else for one."""
+
+    layout: Layout
+    plan: Plan
+    inputs: Floats
+    turns: int
+    middle: Floats
+    within: Within | None
+    thorough: bool
+
+
+class PlaceSearch:
+    """The search of a block at one place (column of `bases`).
+
+    `doubt` is the chance that its bound of what is left may fail; `limits` its most starts where
+    none closes, and where some do; `goal` the chance of another assembly that ends it.
+    """
+
+    def __init__(
+        self,
+        layout: Layout,
+        doubt: float,
+        limits: tuple[int, int],
+        most: int | None,
+        goal: float,
+        thorough: bool,
+    ) -> None:
+        self.clusters = Clusters(layout)
+        self.doubt, self.limits, self.most, self.goal = doubt, limits, most, goal
+        self.thorough = thorough
+        self.real: int | None = None
+
+    def learn(self, count: Count | None) -> None:
+        """Takes the loop's own number of assemblies."""
+        if count is not None:
+            self.real = count.real
+            self.most = count.most if self.most is None else min(count.most, self.most)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all assemblies are proven to be found."""
+        found = self.clusters.number
+        if self.real is not None:
+            return found == self.real
+        # a motion that is left ends everywhere, but nowhere twice
+        return found == self.most and int(self.clusters.met.min()) > 1
+
+    @property
+    def rest(self) -> float:
+        """Bound of the chance that one more start that closes finds another assembly."""
+        return 0.0 if self.is_complete else self.clusters.rest(self.doubt)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether more starts are not worth it."""
+        if self.is_complete:
+            return True
+        if not self.clusters.closed:
+            return self.clusters.tried >= self.limits[0]
+        chance = self.clusters.rest(self.doubt) if self.thorough else self.clusters.estimate
+        return chance < self.goal
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the search ends, or gives up."""
+        crowded = self.clusters.number > tolerances.SEARCH_MOST_MODES
+        return crowded or self.clusters.tried >= self.limits[1] or self.is_settled
+
+
+def search_block(
+    request: Request, number: int, bases: Floats, generator: RandomStarts, doubts: list[float]
+) -> list[PlaceSearch]:
+    """Searches a block at all places (columns of `bases`, (states, places))."""
+    searches = _searches(request, number, doubts)
+    active = list(range(len(searches)))
+    while active:
+        tried = searches[active[0]].clusters.tried
+        share = max(tolerances.SEARCH_STARTS // len(active), tolerances.SEARCH_LEAST_STARTS)
+        share = max(share, min(tried, tolerances.SEARCH_MOST_ROUND // len(active)))
+        at_once = max(tolerances.SEARCH_MOST_COLUMNS // share, 1)
+        for first in range(0, len(active), at_once):
+            places = active[first : first + at_once]
+            states = np.repeat(bases[:, places], share, axis=1)
+            _round(request, number, states, generator, [searches[i] for i in places])
+        if not tried:
+            _count(request, number, bases, searches)
+        active = [i for i in active if not searches[i].is_over]
+    return searches
+
+
+def _searches(request: Request, number: int, doubts: list[float]) -> list[PlaceSearch]:
+    layout = request.layout
+    block, places = layout.graph.blocks[number], len(doubts)
+    work = tolerances.SEARCH_ITERATIONS * _work(block.equations, len(block.unknowns))
+    none = min(tolerances.SEARCH_HOPELESS_WORK / work, tolerances.SEARCH_HOPELESS_STARTS)
+    none = max(none * min(1.0, 4.0 / places), tolerances.SEARCH_STARTS)
+    most: float = tolerances.SEARCH_MOST_QUICK_STARTS
+    if request.thorough:
+        most = max(most, min(tolerances.SEARCH_MOST_WORK / work, tolerances.SEARCH_MOST_STARTS))
+    most = max(most / places, tolerances.SEARCH_HOPELESS_STARTS)
+    goal = min(
+        tolerances.SEARCH_NEW_MODE_CHANCE * places, tolerances.SEARCH_NEW_MODE_CHANCE_OF_MANY
+    )
+    bound = most_of_block(layout.graph, block)
+    limits = int(none), int(most)
+    return [PlaceSearch(layout, d, limits, bound, goal, request.thorough) for d in doubts]
+
+
+def _work(equations: int, unknowns: int) -> float:
+    """Multiplications of one step of a start, about: normal equations, their solution, screws."""
+    return unknowns * (unknowns * equations + unknowns * unknowns / 3.0 + 100.0)
+
+
+def _count(request: Request, number: int, bases: Floats, searches: list[PlaceSearch]) -> None:
+    error = tolerances.ROOT_STATE_ERROR if number else tolerances.ROOT_ROUNDING
+    for i, search in enumerate(searches):
+        if not search.is_complete:
+            search.learn(count_assemblies(request.layout, number, bases[:, i], error))
+
+
+def _round(
+    request: Request,
+    number: int,
+    states: Floats,
+    generator: RandomStarts,
+    searches: list[PlaceSearch],
+) -> None:
+    """The same number of starts from each place, columns of `states`, place by place."""
+    layout, middle = request.layout, request.middle
+    _randomise(request, number, states, generator)
+    if request.within is not None:
+        _bring_within(layout, number, states, generator, request.within)
+    values = np.repeat(request.inputs[:, None], states.shape[1], axis=1)
+    residual, closed = ends(request.plan, number, values, states)
+    threads = _threads(layout, number)
+    turned = np.abs(states[threads] - middle[threads, None]) <= most_turn(request.turns)
+    good = closed & turned.all(axis=0)
+    share = states.shape[1] // len(searches)
+    for i, search in enumerate(searches):
+        part = slice(i * share, (i + 1) * share)
+        clusters = search.clusters
+        clusters.closest = min(clusters.closest, float(np.min(residual[part])))
+        clusters.tried += share
+        clusters.add(states[:, part][:, good[part]], lambda ended: _isolated(request, ended))
+
+
+def _isolated(request: Request, states: Floats) -> tuple[Floats, Bools, int]:
+    """The isolated assemblies among end points of the search, and how many others there were; with
+    several blocks only the last knows."""
+    count = states.shape[1]
+    if count == 0 or len(request.layout.graph.blocks) > 1:
+        return states, np.ones(count, dtype=bool), 0
+    values = np.repeat(request.inputs[:, None], count, axis=1)
+    batch = run(request.plan, values, states, demand=Demand.CONDITION, iterations=20)
+    assert batch.condition is not None
+    regular = batch.condition < tolerances.SEARCH_CONDITION
+    free = int(np.count_nonzero(batch.good & ~regular))
+    return batch.states, batch.good & regular, free
+
+
+def _threads(layout: Layout, number: int) -> list[int]:
+    """States of a block that are turns of threads."""
+    unknowns = (layout.carrier_of(*u)[0] for u in layout.graph.blocks[number].unknowns)
+    return [layout.carriers[k].state for k in unknowns if layout.carriers[k].part.type.is_thread]
+
+
+def most_turn(turns: int) -> float:
+    """Angle of a thread within so many turns, and half a turn, to either side."""
+    return pi * (2 * turns + 1)
+
+
+def unknown_states(layout: Layout, number: int) -> list[int]:
+    """States that a block's unknowns are, each once."""
+    states: dict[int, None] = {}
+    for edge, freedom in layout.graph.blocks[number].unknowns:
+        k, local = layout.carrier_of(edge, freedom)
+        carrier = layout.carriers[k]
+        if carrier.part.type.is_ball:
+            states.update(dict.fromkeys(range(carrier.state, carrier.state + 4)))
+        else:
+            states[carrier.state + local] = None
+    return list(states)
+
+
+def upstream_states(layout: Layout, number: int) -> list[int]:
+    """States of other blocks that a block's loops depend on: of the joints on their ways."""
+    graph = layout.graph
+    loops = (graph.closings[c].loop for c in graph.blocks[number].closings)
+    edges = {edge for loop in loops for edge, _ in loop}
+    own = set(unknown_states(layout, number))
+    if any(edge >= 0 and graph.edges[edge].hung for edge in edges):
+        # the body of a leg stands where the leg's ends are
+        return [state for state in range(layout.states) if state not in own]
+    return [
+        state
+        for carrier in layout.carriers
+        if carrier.edge in edges
+        for state in range(carrier.state, carrier.state + carrier.part.type.states)
+        if state not in own
+    ]
+
+
+def _randomise(request: Request, number: int, states: Floats, generator: RandomStarts) -> None:
+    """Fills the unknown states of a block with random starts."""
+    layout, rows = request.layout, states.shape[1]
+    reach = tolerances.SEARCH_SLIDES * layout.mechanism.box_diagonal() / layout.length
+    for edge, freedom in layout.graph.blocks[number].unknowns:
+        k, local = layout.carrier_of(edge, freedom)
+        carrier = layout.carriers[k]
+        state = carrier.state + local
+        if carrier.part.type.is_ball:
+            if local == 0:
+                states[state : state + 4] = generator.quaternions(rows)
+        elif carrier.part.type.slides[local]:
+            states[state] = generator.between(reach, rows)
+        else:
+            thread = carrier.part.type.is_thread
+            half = most_turn(request.turns) if thread else pi
+            states[state] = generator.between(half, rows)
+            if thread:
+                states[state] += request.middle[state]
+
+
+def _bring_within(
+    layout: Layout, number: int, states: Floats, generator: RandomStarts, within: Within
+) -> None:
+    """Takes the starts of a block from a box, where it is bounded."""
+    for edge, freedom in layout.graph.blocks[number].unknowns:
+        k, local = layout.carrier_of(edge, freedom)
+        state = layout.carriers[k].state + local
+        radius = float(within.radius[state])
+        if isfinite(radius):
+            states[state] = within.centre[state] + generator.between(radius, states.shape[1])
+
+
+def ends(plan: Plan, number: int, values: Floats, states: Floats) -> tuple[Floats, Bools]:
+    """Takes the starts `states` (states, starts) of a block to their ends, in place; residuals and
+    which of them closed."""
+    size = states.shape[1]
+    residual, flags = np.empty(size), np.empty(size, dtype=np.uint8)
+    plan.search(
+        block=number,
+        inputs=values,
+        states=states,
+        residual=residual,
+        flags=flags,
+        iterations=tolerances.SEARCH_ITERATIONS,
+        tests=(tolerances.SEARCH_RESIDUAL,),
+        lanes=width(),
+        # an iteration of a start costs as much as a row or more
+        threads=threads_for(size * tolerances.SEARCH_ITERATIONS),
+    )
+    return residual, flags == 0
