@@ -58,14 +58,14 @@ class PlaceSearch:
 
     def __init__(
         self,
-        layout: Layout,
+        clusters: Clusters,
         doubt: float,
         limits: tuple[int, int],
         most: int | None,
         goal: float,
         thorough: bool,
     ) -> None:
-        self.clusters = Clusters(layout)
+        self.clusters = clusters
         self.doubt, self.limits, self.most, self.goal = doubt, limits, most, goal
         self.thorough = thorough
         self.real: int | None = None
@@ -125,7 +125,16 @@ def search_block(
         if not tried:
             _count(request, number, bases, searches)
         active = [i for i in active if not searches[i].is_over]
+        if _is_hopeless(searches):
+            break
     return searches
+
+
+def _is_hopeless(searches: list[PlaceSearch]) -> bool:
+    """Whether not one start of any place closed, of as many as one place alone would have."""
+    all_clusters = [search.clusters for search in searches]
+    tried = sum(clusters.tried for clusters in all_clusters)
+    return tried >= searches[0].limits[0] and not any(c.closed + c.free for c in all_clusters)
 
 
 def _searches(request: Request, number: int, doubts: list[float]) -> list[PlaceSearch]:
@@ -133,7 +142,7 @@ def _searches(request: Request, number: int, doubts: list[float]) -> list[PlaceS
     block, places = layout.graph.blocks[number], len(doubts)
     work = tolerances.SEARCH_ITERATIONS * _work(block.equations, len(block.unknowns))
     none = min(tolerances.SEARCH_HOPELESS_WORK / work, tolerances.SEARCH_HOPELESS_STARTS)
-    none = max(none * min(1.0, 4.0 / places), tolerances.SEARCH_STARTS)
+    none = max(none, tolerances.SEARCH_STARTS)
     most: float = tolerances.SEARCH_MOST_QUICK_STARTS
     if request.thorough:
         most = max(most, min(tolerances.SEARCH_MOST_WORK / work, tolerances.SEARCH_MOST_STARTS))
@@ -143,7 +152,12 @@ def _searches(request: Request, number: int, doubts: list[float]) -> list[PlaceS
     )
     bound = most_of_block(layout.graph, block)
     limits = int(none), int(most)
-    return [PlaceSearch(layout, d, limits, bound, goal, request.thorough) for d in doubts]
+    numbers = sorted({layout.carrier_of(*unknown)[0] for unknown in block.unknowns})
+    own = [layout.carriers[k] for k in numbers]
+    return [
+        PlaceSearch(Clusters(layout, own), doubt, limits, bound, goal, request.thorough)
+        for doubt in doubts
+    ]
 
 
 def _work(equations: int, unknowns: int) -> float:

@@ -8,10 +8,10 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import functions
-from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.layout import Carrier, Layout
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 
 class Clusters:
-    """Representatives (columns of `states`) of the assemblies that starts ended on, and how often
-    each was met.
+    """Representatives (columns of `states`) of the assemblies that starts ended on, told apart by
+    some of the kernel's joints (None: all), and how often each was met.
 
     Starts are independent, so while k assemblies are known a start that closes meets a new one with
     a chance u that stays the same until it happens. That the wait for it is longer than w happens
@@ -32,10 +32,10 @@ class Clusters:
     most log(k (k + 1) / d) / w, whenever one looks (`rest`).
     """
 
-    def __init__(self, layout: Layout) -> None:
-        self.layout = layout
+    def __init__(self, layout: Layout, carriers: Sequence[Carrier] | None = None) -> None:
+        self.layout, self.carriers = layout, carriers
         self.states = np.empty((layout.states, 0))
-        self.keys = pose_keys(layout, self.states)
+        self.keys: Floats | None = None
         self.met = np.empty(0, dtype=np.int64)
         self.tried = 0
         self.closed = 0
@@ -51,10 +51,8 @@ class Clusters:
     def add(self, states: Floats, isolated: Isolated) -> None:
         """Sorts end points (columns, in the order of their starts) into the clusters; those that
         are not known yet as `isolated` leaves them."""
-        keys = pose_keys(self.layout, states)
-        known = same_poses(self.keys, keys)
-        self.met += np.count_nonzero(known, axis=1)
-        unknown = np.flatnonzero(~known.any(axis=0))
+        keys = pose_keys(self.layout, states, self.carriers)
+        unknown = self._left(keys)
         states, good, free = isolated(states[:, unknown])
         closing = np.ones(keys.shape[1], dtype=bool)
         closing[unknown[~good]] = False
@@ -64,17 +62,24 @@ class Clusters:
         self._take(states[:, good], order[unknown[good]])
 
     def _take(self, states: Floats, order: NDArray[np.int64]) -> None:
-        keys = pose_keys(self.layout, states)
+        keys = pose_keys(self.layout, states, self.carriers)
         while keys.shape[1]:
-            known = same_poses(self.keys, keys)
-            self.met += np.count_nonzero(known, axis=1)
-            left = np.flatnonzero(~known.any(axis=0))
+            left = self._left(keys)
             states, keys, order = states[:, left], keys[:, left], order[left]
             # the rest may be met by one of themselves: take in the first, look again
             self.states = np.concatenate([self.states, states[:, :1]], axis=1)
-            self.keys = np.concatenate([self.keys, keys[:, :1]], axis=1)
+            known = keys[:, :0] if self.keys is None else self.keys
+            self.keys = np.concatenate([known, keys[:, :1]], axis=1)
             self.met = np.append(self.met, np.zeros(states[:, :1].shape[1], dtype=np.int64))
             self.newest = max(self.newest, *order[:1].tolist(), 0)
+
+    def _left(self, keys: Floats) -> NDArray[np.int64]:
+        """Which columns are not known; those that are, are counted."""
+        if self.keys is None:
+            return np.arange(keys.shape[1])
+        known = same_poses(self.keys, keys)
+        self.met += np.count_nonzero(known, axis=1)
+        return np.flatnonzero(~known.any(axis=0))
 
     @property
     def estimate(self) -> float:
@@ -82,18 +87,20 @@ class Clusters:
         return max(int(np.count_nonzero(self.met == 1)), 1) / self.closed if self.closed else 1.0
 
     def rest(self, doubt: float) -> float:
-        """Bound of that chance; the chance that it does not hold is `doubt`."""
-        waited = self.closed - self.newest
+        """Bound of that chance, and before the first closing of the chance that a start closes; the
+        chance that it does not hold is `doubt`."""
+        waited = self.closed - self.newest if self.closed else self.tried
         if not waited:
             return 1.0
-        ways = self.number * (self.number + 1)
+        ways = max(self.number * (self.number + 1), 1)
         return min(1.0, float(functions.log(ways / doubt)) / waited)
 
 
-def pose_keys(layout: Layout, states: Floats) -> Floats:
-    """What tells assemblies apart: cosines and sines of turns, slides, products of quaternions."""
+def pose_keys(layout: Layout, states: Floats, carriers: Sequence[Carrier] | None = None) -> Floats:
+    """What tells assemblies apart: cosines and sines of turns, slides, products of quaternions, of
+    some of the kernel's joints (None: all)."""
     keys: list[Floats] = []
-    for carrier in layout.carriers:
+    for carrier in layout.carriers if carriers is None else carriers:
         state = carrier.state
         if carrier.part.type.is_ball:
             q = states[state : state + 4]
@@ -127,7 +134,8 @@ def first_of_each(keys: Floats) -> NDArray[np.int64]:
     sums = np.zeros(keys.shape[1])
     for weight, key in zip(weights, keys, strict=True):
         sums = sums + weight * key
-    reach = tolerances.SAME_MODE * float(weights.sum())
+
+    reach = tolerances.SAME_MODE * keys.shape[0] * float(weights[-1:].max(initial=1.0))
     order = np.argsort(sums, kind="stable")
     is_first = np.ones(keys.shape[1], dtype=bool)
     for apart in range(1, keys.shape[1]):

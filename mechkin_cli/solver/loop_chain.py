@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.kernel import functions
 from mechkin_cli.mechanism.frames import GROUND, Frame
-from mechkin_cli.mechanism.vectors import Vector, add, cross, dot, scale
+from mechkin_cli.mechanism.vectors import Vector, add, cross, dot, norm, scale
 from mechkin_cli.solver.layout import Carrier, Layout
 
 if TYPE_CHECKING:
@@ -113,8 +113,7 @@ def _ends(layout: Layout, joint: Joint, leg: Leg | None, places: _Places) -> tup
 
 
 def _length(leg: Leg) -> float:
-    x, y, z = leg.span
-    return float((x * x + y * y + z * z) ** 0.5)
+    return norm(leg.span)
 
 
 class _Places:
@@ -145,9 +144,7 @@ class _Places:
 
 
 def _frame(numbers: list[float]) -> Frame:
-    x, y, z, o = (
-        (numbers[i], numbers[i + 1], numbers[i + 2]) for i in range(0, len(numbers), 3)
-    )
+    x, y, z, o = ((numbers[i], numbers[i + 1], numbers[i + 2]) for i in range(0, len(numbers), 3))
     return Frame(x, y, z, o)
 
 

@@ -188,11 +188,12 @@ def _eliminated(
         first, second = _product(f1, f1), _product(f2, f2)
         if solved.slide:
             return tuple(x - y for x, y in zip(first, (*f2, 0.0, 0.0), strict=True))
-        return (first[0] + second[0] - 1.0, *(x + y for x, y in zip(first[1:], second[1:])))
-    one, other = Trigonometric(*f1), Trigonometric(*f2)
+        one = (1.0, 0.0, 0.0, 0.0, 0.0)
+        return tuple(x + y - z for x, y, z in zip(first, second, one, strict=True))
+    cosine, sine = Trigonometric(*f1), Trigonometric(*f2)
     if solved.slide:
-        return one.times(one).plus(other, -1.0)
-    return one.times(one).plus(other.times(other)).plus(Trigonometric(1.0), -1.0)
+        return cosine.times(cosine).plus(sine, -1.0)
+    return cosine.times(cosine).plus(sine.times(sine)).plus(Trigonometric(1.0), -1.0)
 
 
 def _product(p: list[float], q: list[float]) -> tuple[float, ...]:

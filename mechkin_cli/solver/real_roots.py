@@ -48,7 +48,7 @@ class Trigonometric(NamedTuple):
         )
 
 
-def count_roots(g: Trigonometric, error: float = 1e-12) -> int | None:
+def count_roots(g: Trigonometric, error: float = tolerances.ROOT_ROUNDING) -> int | None:
     """Number of real roots in a turn, all simple; None where errors of the coefficients, in parts
     of the largest, leave that open.
 
@@ -67,7 +67,7 @@ def count_roots(g: Trigonometric, error: float = 1e-12) -> int | None:
     bend = abs(g.a1) + abs(g.b1) + 4.0 * (abs(g.a2) + abs(g.b2))
     half = pi / FIRST_INTERVALS
     # an odd shift: roots of mechanisms drawn along axes do not fall on ends of intervals
-    middles = 0.1234 + 2.0 * half * np.arange(FIRST_INTERVALS)
+    middles: Floats = 0.1234 + 2.0 * half * np.arange(float(FIRST_INTERVALS))
     count = 0
     while middles.size:
         value, slope = _at(g, middles)
@@ -85,7 +85,9 @@ def count_roots(g: Trigonometric, error: float = 1e-12) -> int | None:
     return count
 
 
-def count_polynomial_roots(coefficients: tuple[float, ...], error: float = 1e-12) -> int | None:
+def count_polynomial_roots(
+    coefficients: tuple[float, ...], error: float = tolerances.ROOT_ROUNDING
+) -> int | None:
     """Number of real roots, all simple, of a polynomial of at most fourth degree, lowest power
     first; None where errors of the coefficients, in parts of the largest, leave that open.
 
@@ -101,10 +103,8 @@ def count_polynomial_roots(coefficients: tuple[float, ...], error: float = 1e-12
     parts = Trigonometric(0.5, 0.5), Trigonometric(0.0, 0.0, 0.5), Trigonometric(0.5, -0.5)
     g = Trigonometric()
     for power, c in enumerate(coefficients[: degree + 1]):
-        if degree <= 2:
-            term = parts[power]
-        else:
-            term = parts[power // 2].times(parts[power - power // 2])
+        high = power // 2 if degree > 2 else 0
+        term = parts[high].times(parts[power - high]) if degree > 2 else parts[power]
         g = g.plus(term, c)
     found = count_roots(g, error)
     return None if found is None else found - degree % 2

@@ -39,12 +39,13 @@ class Found(NamedTuple):
     """Assemblies (columns of `states`), their condition, and how the search went.
 
     `closed` starts of `starts` ended on an assembly; `chance` bounds the chance that one more that
-    closes finds a new one (it may fail with `SEARCH_DOUBT`), `complete` says that there is none,
-    proven by `bound`, the most that such loops have, or by a count of the loops' own real roots.
-    `closest` is the least closing residual of any start of the block that closed worst; `stopped`
-    tells that the search ended at its most starts. `free` starts ended where the loops still move
-    with the inputs held, or in a singular place: these are no isolated assemblies and are left out.
-    `failed` is the first block of which no start closed.
+    closes finds a new one (it may fail with `SEARCH_DOUBT`); where none of a block's starts closed,
+    that one more does. `complete` says that there is none, proven by `bound`, the most that such
+    loops have, or by a count of the loops' own real roots. `closest` is the least closing residual
+    of any start of the last block searched; `stopped` tells that the search ended at its most
+    starts. `free` starts ended where the loops still move with the inputs held, or in a singular
+    place: these are no isolated assemblies and are left out. `failed` is the first block of which
+    none of `tried` starts closed, at none of the `places` of the blocks before.
     """
 
     states: Floats
@@ -59,6 +60,8 @@ class Found(NamedTuple):
     complete: bool
     bound: int | None
     failed: int | None
+    tried: int
+    places: int
 
     @property
     def number(self) -> int:
@@ -75,6 +78,7 @@ class _Tally:
         self.stopped, self.complete = False, True
         self.bound: int | None = 1
         self.failed: int | None = None
+        self.tried = self.places = 0
 
     def doubts(self, count: int) -> list[float]:
         """Shares of `SEARCH_DOUBT` for the next searches; those of all together are all of it."""
@@ -88,14 +92,14 @@ class _Tally:
         self.starts += sum(clusters.tried for clusters in all_clusters)
         self.closed += sum(clusters.closed for clusters in all_clusters)
         self.free += sum(clusters.free for clusters in all_clusters)
-        self.closest = max(self.closest, *(clusters.closest for clusters in all_clusters))
-        rests = (search.rest for search in searches if search.clusters.closed)
-        self.chance = max(self.chance, *rests, 0.0)
+        self.chance = max(self.chance, *(search.rest for search in searches))
         self.stopped = self.stopped or not all(search.is_settled for search in searches)
         self.complete = self.complete and all(search.is_complete for search in searches)
+        self.closest = max(clusters.closest for clusters in all_clusters)
+        self.tried = sum(clusters.tried for clusters in all_clusters)
         if not any(clusters.number for clusters in all_clusters):
-            self.failed = number
-
+            self.failed, self.places = number, len(searches)
+            self.complete = all(search.is_complete for search in searches)
 
     def multiply(self, bounds: list[int | None]) -> None:
         """Takes in bounds of blocks, None where none is known."""
@@ -155,6 +159,8 @@ def assemblies(
         complete=complete,
         bound=tally.bound if layout.graph.blocks else None,
         failed=tally.failed,
+        tried=tally.tried,
+        places=tally.places,
     )
 
 

@@ -200,7 +200,8 @@ class Session:
         def find(thorough: bool) -> Found:
             key = ("search", inputs.tobytes(), turns, about.tobytes(), thorough)
             return self.once(
-                key, lambda: assemblies(self.layout, self.plan, inputs, turns, None, about, thorough)
+                key,
+                lambda: assemblies(self.layout, self.plan, inputs, turns, None, about, thorough),
             )
 
         quick = find(thorough=False)

@@ -42,8 +42,9 @@ class Source(Protocol):
         ...
 
     @property
-    def mode(self) -> str:
-        """Name of the assembly mode that the rows follow."""
+    def short_letter(self) -> str:
+        """The letter of the assembly mode that the rows follow, where a short search tells it; else
+        `near` or `home`."""
         ...
 
     @property

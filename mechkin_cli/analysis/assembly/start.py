@@ -39,6 +39,9 @@ NEAR = "near"
 HOME = "home"
 """The same for an assembled drawing."""
 
+LOOP_SHOWN = 12
+"""Joints of a loop that are named one by one."""
+
 MAY_BE_RIGID = (
     "an overconstrained loop moves only if its dimensions are exact (write expressions); else "
     "this is a branch point or a special position"
@@ -100,16 +103,18 @@ def _choose_start(session: Session) -> Start:
     return _told_if_far(session, path[:, 0], start)
 
 
-def mode_letter(session: Session, start: Start) -> str:
+def mode_letter(session: Session, start: Start, *, thorough: bool = True) -> str:
     """The letter of an assembly at the first row, by a search if it is not known yet; its own name
-    where no letter's branch has it."""
+    where no letter's branch has it, or where only a `thorough` search tells all modes."""
     if start.mode not in (NEAR, HOME) or start.state is None:
         return start.mode
     first = session.inputs.values[:, 0]
     state = state_at_first_row(session, start)
     if state is None:
         return start.mode
-    modes = name_modes(session, first)
+    modes = name_modes(session, first, thorough=thorough)
+    if not modes.letters:
+        return start.mode
     keys = pose_keys(session.layout, modes.found.states)
     same = same_poses(keys, pose_keys(session.layout, state[:, None]))[:, 0]
     return modes.letters[int(np.argmax(same))] if same.any() else start.mode
@@ -254,7 +259,8 @@ def _from_home(session: Session, path: Floats) -> Start:
 
 
 def nothing_found(session: Session, found: Found, place: str = "at the first row") -> Diagnostic:
-    """What to say where no start closed."""
+    """What to say where no start closed: which loop it is."""
+    loop, name = _failed_loop(session, found), session.problem.mechanism.name
     hint = "check the dimensions, or start the sweep at another input"
     if any(joint.type.is_threaded for joint in session.problem.mechanism.joints.values()):
         turns = session.problem.assembly.turns
@@ -264,12 +270,12 @@ def nothing_found(session: Session, found: Found, place: str = "at the first row
     return Diagnostic(
         "not-assembled",
         "error",
-        f"{session.problem.mechanism.name} cannot be assembled {place}",
+        f"{name} cannot be assembled {place}{loop}",
         measured=_missed(found),
-        limit=f"{tolerances.RESIDUAL_ACCEPT:g}",
+        limit=None if found.complete else f"{tolerances.RESIDUAL_ACCEPT:g}",
         hint=hint,
         numbers=(
-            Number("starts", found.starts),
+            Number("starts", found.tried),
             Number("residual", found.closest, limit=tolerances.RESIDUAL_ACCEPT),
         ),
     )
@@ -281,12 +287,33 @@ def _missed(found: Found) -> str:
             f"{found.free} of {found.starts} random starts closed the loops, all where they still "
             "move with the inputs held, or in a singular position"
         )
-    if found.bound is not None and found.complete:
-        return "the loop's equations have no real root"
+    if found.complete:
+        return "its equations have no real root"
     return (
-        f"none of {found.starts} random starts closed the loops, "
+        f"none of {found.tried} random starts closed it, "
         f"the best to {found.closest:.2g} of the size"
     )
+
+
+def _failed_loop(session: Session, found: Found) -> str:
+    """The joints of the loops that did not close, and whether others were closed before."""
+    if found.failed is None or found.free:
+        return ""
+    graph = session.graph
+    names: dict[str, None] = {}
+    closings = graph.blocks[found.failed].closings
+    for closing in (graph.closings[c] for c in closings):
+        joints = (closing.joint.name,) if closing.leg is None else closing.leg.joints
+        ways = {sign: [e for e, s in closing.loop if e >= 0 and s == sign] for sign in (1, -1)}
+        # outward to the closing joint's first link, and back
+        there, back = ([graph.edges[e].joint.name for e in sorted(ways[s])] for s in (-1, 1))
+        names.update(dict.fromkeys((*there, *joints, *reversed(back))))
+    shown = [name for name in names if name in session.problem.mechanism.joints]
+    more = f" and {len(shown) - LOOP_SHOWN} more" if len(shown) > LOOP_SHOWN else ""
+    loops = "the loop" if len(closings) == 1 else f"the {len(closings)} loops"
+    close = "does not close" if len(closings) == 1 else "do not close together"
+    before = f", in none of {found.places} assemblies before it" if found.places > 1 else ""
+    return f": {loops} through {', '.join(shown[:LOOP_SHOWN])}{more} {close}{before}"
 
 
 def _distances_near(problem: Problem, coordinates: Mapping[str, Floats]) -> list[float]:

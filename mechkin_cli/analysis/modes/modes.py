@@ -78,13 +78,17 @@ class Modes:
         noun = "mode" if count == 1 else "modes"
         if not self.starts and not self.complete:
             return f"{count} {noun}: without loops there is no other"
+        if self.complete and not count:
+            return "no mode: the equations of a loop have no real root"
         if self.complete and count == self.bound:
             return f"{count} {noun}: all, no loop of these pairs has more"
         if self.complete:
             return f"{count} {noun}: all, the loops' equations have no other real root"
         known = f", no loop of these pairs has more than {self.bound}" if self.bound else ""
         if not count:
-            return f"no mode found: none of {self.starts} random starts closed the loops"
+            text = "no mode found: the random starts of a loop did not close, with "
+            text += f"{100.0 * self.confidence:g} % confidence one more does with a chance of at "
+            return text + f"most {self.chance:.1g}"
         text = f"{count} {noun} found{known}; {self.closed} of {self.starts} random starts closed, "
         text += f"with {100.0 * self.confidence:g} % confidence one more that closes finds another "
         text += f"with a chance of at most {self.chance:.1g}"
@@ -252,8 +256,8 @@ def _stopped_note(found: Found) -> Diagnostic:
         "search-stopped",
         "warning",
         "the search ended at its most starts, or modes, before it could tell that few are left",
-        measured=f"{found.starts} starts, a chance of at most {found.chance:.1g} that one more that "
-        "closes finds a new mode",
+        measured=f"{found.starts} starts, a chance of at most {found.chance:.1g} that one more "
+        "finds a new mode",
         limit=f"{tolerances.SEARCH_NEW_MODE_CHANCE:g}",
         hint="more modes may exist; fewer turns under assembly: leave fewer for threads",
     )

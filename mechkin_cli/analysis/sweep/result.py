@@ -92,6 +92,13 @@ class Result:
 
         return mode_letter(self.session, self.start)
 
+    @cached_property
+    def short_letter(self) -> str:
+        """The letter where a short search proves that it knows all modes, else `mode`."""
+        from mechkin_cli.analysis.assembly.start import mode_letter
+
+        return mode_letter(self.session, self.start, thorough=False)
+
     @property
     def how(self) -> str:
         """How the first assembly was found."""
