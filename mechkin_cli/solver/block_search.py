@@ -121,7 +121,7 @@ def search_block(
         for first in range(0, len(active), at_once):
             places = active[first : first + at_once]
             states = np.repeat(bases[:, places], share, axis=1)
-            _round(request, number, states, generator, [searches[i] for i in places])
+            search_round(request, number, states, generator, [searches[i] for i in places])
         if not tried:
             _count(request, number, bases, searches)
         active = [i for i in active if not searches[i].is_over]
@@ -172,7 +172,7 @@ def _count(request: Request, number: int, bases: Floats, searches: list[PlaceSea
             search.learn(count_assemblies(request.layout, number, bases[:, i], error))
 
 
-def _round(
+def search_round(
     request: Request,
     number: int,
     states: Floats,

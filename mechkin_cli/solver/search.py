@@ -137,11 +137,12 @@ def assemblies(
         doubts = tally.doubts(len(firsts))
         searches = search_block(request, number, partial[:, firsts], generator, doubts)
         tally.add(number, searches)
+        tally.multiply(list({search.most for search in searches}))
         if tally.failed is not None:
-            tally.multiply([most_of_block(layout.graph, b) for b in layout.graph.blocks[number:]])
+            rest = layout.graph.blocks[number + 1 :]
+            tally.multiply([most_of_block(layout.graph, block) for block in rest])
             partial = partial[:, :0]
             break
-        tally.multiply(list({search.most for search in searches}))
         partial, cut = _continued(layout, number, partial, place, searches)
         tally.stopped, tally.complete = tally.stopped or cut, tally.complete and not cut
     states, residual, condition = _closed(layout, plan, inputs, partial)
