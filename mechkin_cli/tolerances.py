@@ -66,7 +66,11 @@ general loops measured at least 1 % of the starts close, so that all miss with c
 
 SEARCH_HOPELESS_WORK: Final = 1e9
 """Multiplications, in the steps of the starts, after which a block without one closing is given up,
-though not before `SEARCH_STARTS` or after `SEARCH_HOPELESS_STARTS`; half a second."""
+though not before `SEARCH_LEAST_HOPELESS_STARTS` or after `SEARCH_HOPELESS_STARTS`; half a
+second."""
+
+SEARCH_LEAST_HOPELESS_STARTS: Final = 128
+"""Enough to find out about any block of which some percent of the starts close."""
 
 SEARCH_MOST_ROUND: Final = 8192
 """Most starts of a round; rounds grow with what has been tried."""
@@ -88,6 +92,12 @@ inputs held; platforms have 40 modes."""
 SEARCH_MOST_PRODUCTS: Final = 16_384
 """Assemblies of the whole mechanism: blocks that are independent multiply theirs, fourteen loops of
 two modes reach it."""
+
+SEARCH_MOST_PLACES: Final = 2048
+"""Assemblies of the blocks before at which a block is searched: two seconds."""
+
+SEARCH_FEW_PLACES: Final = 64
+"""Those that are gone on with where there are more, from there on."""
 
 SEARCH_NEW_MODE_CHANCE: Final = 1e-3
 """Chance that one more start that closes finds a new mode, below which the search ends."""

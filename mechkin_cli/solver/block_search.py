@@ -115,7 +115,8 @@ def search_block(
     active = list(range(len(searches)))
     while active:
         tried = searches[active[0]].clusters.tried
-        share = max(tolerances.SEARCH_STARTS // len(active), tolerances.SEARCH_LEAST_STARTS)
+        first = min(tolerances.SEARCH_STARTS, searches[0].limits[0])
+        share = max(first // len(active), tolerances.SEARCH_LEAST_STARTS)
         share = max(share, min(tried, tolerances.SEARCH_MOST_ROUND // len(active)))
         at_once = max(tolerances.SEARCH_MOST_COLUMNS // share, 1)
         for first in range(0, len(active), at_once):
@@ -142,7 +143,7 @@ def _searches(request: Request, number: int, doubts: list[float]) -> list[PlaceS
     block, places = layout.graph.blocks[number], len(doubts)
     work = tolerances.SEARCH_ITERATIONS * _work(block.equations, len(block.unknowns))
     none = min(tolerances.SEARCH_HOPELESS_WORK / work, tolerances.SEARCH_HOPELESS_STARTS)
-    none = max(none, tolerances.SEARCH_STARTS)
+    none = max(none, tolerances.SEARCH_LEAST_HOPELESS_STARTS)
     most: float = tolerances.SEARCH_MOST_QUICK_STARTS
     if request.thorough:
         most = max(most, min(tolerances.SEARCH_MOST_WORK / work, tolerances.SEARCH_MOST_STARTS))

@@ -29,6 +29,8 @@ from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.random_starts import RandomStarts
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
 
@@ -45,7 +47,8 @@ class Found(NamedTuple):
     of any start of the last block searched; `stopped` tells that the search ended at its most
     starts. `free` starts ended where the loops still move with the inputs held, or in a singular
     place: these are no isolated assemblies and are left out. `failed` is the first block of which
-    none of `tried` starts closed, at none of the `places` of the blocks before.
+    none of `tried` starts closed, at none of the `places` of the blocks before. `cut`: blocks
+    have more assemblies together than are listed; those nearest to the drawing are.
     """
 
     states: Floats
@@ -62,6 +65,7 @@ class Found(NamedTuple):
     failed: int | None
     tried: int
     places: int
+    cut: bool
 
     @property
     def number(self) -> int:
@@ -78,6 +82,7 @@ class _Tally:
         self.stopped, self.complete = False, True
         self.bound: int | None = 1
         self.failed: int | None = None
+        self.most_places = tolerances.SEARCH_MOST_PLACES
         self.tried = self.places = 0
 
     def doubts(self, count: int) -> list[float]:
@@ -85,6 +90,18 @@ class _Tally:
         first = self.searches + 1
         self.searches += count
         return [tolerances.SEARCH_DOUBT / (s * (s + 1)) for s in range(first, first + count)]
+
+    def cut(self) -> int:
+        """Notes that not all assemblies so far are continued; how many to continue instead, where
+        the next block is to be searched at each."""
+        self.stopped, self.complete = True, False
+        self.most_places = tolerances.SEARCH_FEW_PLACES
+        return self.most_places
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether not all were continued."""
+        return self.most_places == tolerances.SEARCH_FEW_PLACES
 
     def add(self, number: int, searches: list[PlaceSearch]) -> None:
         """Takes in a block's searches."""
@@ -99,7 +116,8 @@ class _Tally:
         self.tried = sum(clusters.tried for clusters in all_clusters)
         if not any(clusters.number for clusters in all_clusters):
             self.failed, self.places = number, len(searches)
-            self.complete = all(search.is_complete for search in searches)
+            proven = all(search.is_complete for search in searches)
+            self.complete = proven and not self.is_cut
 
     def multiply(self, bounds: list[int | None]) -> None:
         """Takes in bounds of blocks, None where none is known."""
@@ -134,6 +152,9 @@ def assemblies(
     for number in range(len(layout.graph.blocks)):
         upstream = upstream_states(layout, number)
         firsts, place = _different(partial[upstream])
+        if len(firsts) > tally.most_places:
+            partial = partial[:, _nearest_home(layout, partial, tally.cut())]
+            firsts, place = _different(partial[upstream])
         doubts = tally.doubts(len(firsts))
         searches = search_block(request, number, partial[:, firsts], generator, doubts)
         tally.add(number, searches)
@@ -143,8 +164,14 @@ def assemblies(
             tally.multiply([most_of_block(layout.graph, block) for block in rest])
             partial = partial[:, :0]
             break
-        partial, cut = _continued(layout, number, partial, place, searches)
-        tally.stopped, tally.complete = tally.stopped or cut, tally.complete and not cut
+        counts = np.array([searches[k].clusters.number for k in place])
+        if int(np.add.reduce(counts)) > tolerances.SEARCH_MOST_PRODUCTS:
+            tally.cut()
+            having = np.flatnonzero(counts)
+            few = max(tolerances.SEARCH_MOST_PRODUCTS // (2 * int(counts.max())), 1)
+            some = having[_nearest_home(layout, partial[:, having], few)]
+            partial, place = partial[:, some], [place[i] for i in some]
+        partial = _continued(layout, number, partial, place, searches)
     states, residual, condition = _closed(layout, plan, inputs, partial)
     complete = tally.complete and states.shape[1] == partial.shape[1]
     return Found(
@@ -162,6 +189,7 @@ def assemblies(
         failed=tally.failed,
         tried=tally.tried,
         places=tally.places,
+        cut=tally.is_cut,
     )
 
 
@@ -189,19 +217,26 @@ def _different(states: Floats) -> tuple[list[int], list[int]]:
     return firsts, place
 
 
+def _nearest_home(layout: Layout, partial: Floats, count: int) -> NDArray[np.int64]:
+    """The columns of the assemblies whose joints are nearest to the drawing, in their order."""
+    home = np.zeros((layout.states, 1))
+    home[_quaternion_scalars(layout)] = 1.0
+    away = np.zeros(partial.shape[1])
+    keys = pose_keys(layout, partial)
+    for key, drawn in zip(keys, pose_keys(layout, home), strict=True):
+        away = away + (key - drawn) * (key - drawn)
+    return np.sort(np.argsort(away, kind="stable")[:count])
+
+
 def _continued(
     layout: Layout, number: int, partial: Floats, place: list[int], searches: list[PlaceSearch]
-) -> tuple[Floats, bool]:
-    """Every assembly so far with each of the block's own there; whether some were left out."""
+) -> Floats:
+    """Every assembly so far with each of the block's own there."""
     own = unknown_states(layout, number)
-    repeats = np.array([searches[k].clusters.number for k in place])
-    cut = np.cumsum(repeats) > tolerances.SEARCH_MOST_PRODUCTS
-    kept = np.flatnonzero(~cut)
-    states = np.repeat(partial[:, kept], repeats[kept], axis=1)
-    states[own] = np.concatenate(
-        [np.empty((len(own), 0)), *(searches[place[k]].clusters.states[own] for k in kept)], axis=1
-    )
-    return states, bool(cut.any())
+    found = [searches[k].clusters for k in place]
+    states = np.repeat(partial, [clusters.number for clusters in found], axis=1)
+    states[own] = np.concatenate([clusters.states[own] for clusters in found], axis=1)
+    return states
 
 
 def single_assembly(layout: Layout, plan: Plan, inputs: Floats, state: Floats) -> Floats:

@@ -205,7 +205,8 @@ class Session:
             )
 
         quick = find(thorough=False)
-        return find(thorough=True) if thorough and not quick.complete else quick
+        final = quick.complete or quick.cut or not thorough
+        return quick if final else find(thorough=True)
 
     def _named_turns(self) -> Floats:
         """States (states,): the turns of threads that the assembly's `near` names, else zero."""

@@ -290,8 +290,7 @@ def _missed(found: Found) -> str:
     if found.complete:
         return "its equations have no real root"
     return (
-        f"none of {found.tried} random starts closed it, "
-        f"the best to {found.closest:.2g} of the size"
+        f"none of {found.tried} random starts closed, the best to {found.closest:.2g} of the size"
     )
 
 

@@ -54,8 +54,8 @@ class Modes:
     closes finds another mode has a chance of at most `chance`, with confidence `confidence`;
     `stopped` says that the search ended at its most starts before that chance was small. `complete`
     says that these are all modes, proven: as many as such loops have at most (`bound`, if one is
-    known), or as the loops' equations have real roots. `turns` are the turns of threads searched to
-    either side, None without threads.
+    known), or as the loops' equations have real roots; `is_cut` that there are more than are
+    listed. `turns` are the turns of threads searched to either side, None without threads.
     """
 
     modes: tuple[Mode, ...]
@@ -67,6 +67,7 @@ class Modes:
     confidence: float
     stopped: bool
     complete: bool
+    is_cut: bool
     bound: int | None
     turns: int | None
     diagnostics: tuple[Diagnostic, ...]
@@ -84,6 +85,8 @@ class Modes:
             return f"{count} {noun}: all, no loop of these pairs has more"
         if self.complete:
             return f"{count} {noun}: all, the loops' equations have no other real root"
+        if self.is_cut:
+            return f"{count} {noun} listed of many more"
         known = f", no loop of these pairs has more than {self.bound}" if self.bound else ""
         if not count:
             text = "no mode found: the random starts of a loop did not close, with "
@@ -220,6 +223,7 @@ def _result(
         confidence=1.0 - tolerances.SEARCH_DOUBT,
         stopped=found.stopped,
         complete=bool(session.graph.blocks) and found.complete,
+        is_cut=found.cut,
         bound=found.bound,
         turns=problem.assembly.turns if threads else None,
         diagnostics=(*problem.diagnostics, *notes),
@@ -252,6 +256,14 @@ def _free_note(found: Found) -> Diagnostic:
 
 
 def _stopped_note(found: Found) -> Diagnostic:
+    if found.cut:
+        return Diagnostic(
+            "search-stopped",
+            "warning",
+            "the loops have more modes together than are listed",
+            measured=f"{found.number} listed, nearest to the drawing",
+            hint="ask for parts of the mechanism, or choose the assembly with assembly: near",
+        )
     return Diagnostic(
         "search-stopped",
         "warning",
