@@ -67,6 +67,7 @@ def _record(model: Model, found: Modes) -> Record:
             "chance": found.chance,
             "confidence": found.confidence,
             "stopped": found.stopped,
+            "cut": found.is_cut,
             "turns": found.turns,
         },
         "bound": found.bound,

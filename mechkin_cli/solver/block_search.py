@@ -117,7 +117,8 @@ def search_block(
         tried = searches[active[0]].clusters.tried
         first = min(tolerances.SEARCH_STARTS, searches[0].limits[0])
         share = max(first // len(active), tolerances.SEARCH_LEAST_STARTS)
-        share = max(share, min(tried, tolerances.SEARCH_MOST_ROUND // len(active)))
+        if request.thorough:
+            share = max(share, min(tried, tolerances.SEARCH_MOST_ROUND // len(active)))
         at_once = max(tolerances.SEARCH_MOST_COLUMNS // share, 1)
         for first in range(0, len(active), at_once):
             places = active[first : first + at_once]
