@@ -9,10 +9,14 @@ root belongs to one assembly.
   the axis, a slide two heights: two equations affine in (cos, sin) of x1 and of x3, or in (s, s^2).
   Solved for those of x1, cos^2 + sin^2 = 1 is of fourth degree in x3.
 - A leg and one motion: the distance of two points, of second degree.
-- Two turns and a turn at the closing joint: planar (parallel axes: a sphere in a groove square to
-  the plane), spherical (axes through one point), or with slides along every axis (RCCC): the
-  direction of the closing axis, R(t1) R(t2) z2 = z1, hence z_t1 . R(t2) z2 = z_t1 . z1, of second
-  degree.
+- Two parallel turns and a slide square to them at the closing joint: the sum of the turns is given,
+  so that the offset from the slide's line is of first degree in (cos, sin) of one of them.
+- A turn through the centre of two crossed axes at the closing joint (Hooke): their angle.
+- Two motions in a plane and a turn square to it at the closing joint: the first keeps the distance
+  of that joint's point from its axis, or line; of second degree.
+- Two turns and a turn at the closing joint, axes through one point, or with slides along every axis
+  (RCCC): the direction of the closing axis, R(t1) R(t2) z2 = z1, hence z_t1 . R(t2) z2 =
+  z_t1 . z1, of second degree.
 """
 
 from __future__ import annotations
@@ -20,7 +24,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli import tolerances
-from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale, subtract, unit
+from mechkin_cli.mechanism.vectors import (
+    Vector,
+    add,
+    cross,
+    dot,
+    norm,
+    scale,
+    subtract,
+    unit,
+)
 from mechkin_cli.solver.block_bounds import WITH_SPHERE
 from mechkin_cli.solver.loop_chain import Chain, Motion, are_parallel, chain_of, square_to
 from mechkin_cli.solver.real_roots import (
@@ -31,6 +44,7 @@ from mechkin_cli.solver.real_roots import (
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.mechanism.frames import Frame
     from mechkin_cli.solver.layout import Layout
 
 MOST_OF_A_PLANE_LOOP = 2
@@ -86,13 +100,15 @@ def _reduced(chain: Chain) -> _Reduced | None:
         slides = _slides(chain, len(motions) - 3)
         return _with_sphere((*chain.motions, *slides), chain)
     if motions == ["turn"] and len(chain.motions) == 2 and _is_planar(chain):
-        out_of_plane = Motion(True, chain.first.z, chain.first.o)
-        found = _with_sphere((*chain.motions, out_of_plane), chain)
-        return found and found._replace(most=min(found.most, MOST_OF_A_PLANE_LOOP))
+        return _in_plane(chain)
     if motions == ["turn"] and len(chain.motions) == 2 and _is_spherical(chain):
         return _directed(chain)
     if motions == ["turn", "slide"] and len(chain.motions) == 4:
         return _directed(chain)
+    if motions == ["slide"]:
+        return _sliding(chain)
+    if motions == ["turn", "turn"]:
+        return _crossed(chain)
     return None
 
 
@@ -244,6 +260,27 @@ def _is_spherical(chain: Chain) -> bool:
     return abs(heights[1] - heights[2]) < limit
 
 
+def _in_plane(chain: Chain) -> _Reduced:
+    """The first motion keeps the distance from its axis, or from its line, of the closing point."""
+    x1, x2 = chain.motions
+    if x1.slide:
+        across = cross(chain.first.z, x1.axis)
+        constant, *turned = _heights(x2, chain.second.o, across)
+        constant -= dot(across, chain.first.o)
+    else:
+        constant, *turned = _squares(x2, chain.second.o, x1.point)
+        arm = subtract(chain.first.o, x1.point)
+        constant -= dot(arm, arm)
+    row = (constant, turned[0], turned[1])
+    regularity = 1.0 if x1.slide or x2.slide else min(norm(_between(x1, x2)), 1.0)
+    return _Reduced(row if x2.slide else Trigonometric(*row), regularity, MOST_OF_A_PLANE_LOOP)
+
+
+def _between(x1: Motion, x2: Motion) -> Vector:
+    """From one parallel axis to another."""
+    return square_to(x1.axis, subtract(x2.point, x1.point))
+
+
 def _directed(chain: Chain) -> _Reduced | None:
     """By the direction of the closing axis."""
     turns = [x for x in chain.motions if not x.slide]
@@ -257,4 +294,49 @@ def _directed(chain: Chain) -> _Reduced | None:
     # sines of the angles between axes: of parallel ones nothing can be told
     sines = arm, square_to(one.axis, chain.first.z), square_to(one.axis, other.axis)
     regularity = min(norm(sine) for sine in sines)
+    return _Reduced(Trigonometric(constant, *turned), regularity, MOST_BY_DIRECTION)
+
+
+def _sliding(chain: Chain) -> _Reduced | None:
+    """By the offset from the closing slide's line, in a plane."""
+    if len(chain.motions) != 2 or any(x.slide for x in chain.motions):
+        return None
+    (one, other), limit = chain.motions, tolerances.PARALLEL
+    normal, first, second = one.axis, chain.first, chain.second
+    tilt = subtract(first.components(normal), second.components(normal))
+    heights = dot(normal, first.z), dot(normal, subtract(first.o, second.o))
+    if not are_parallel(normal, other.axis, limit) or norm(tilt) > limit:
+        return None
+    if max(abs(height) for height in heights) > limit:
+        return None
+    # the second link's orientation is known: where its point is from the other turn's axis
+    arm = _frame_vector(first, second.components(subtract(second.o, other.point)))
+    between = _between(one, other)
+    across = cross(normal, first.z)
+    constant = dot(across, arm) + dot(across, subtract(one.point, first.o))
+    turned = dot(across, between), dot(across, cross(normal, between))
+    regularity = min(norm(between), 1.0)
+    return _Reduced(Trigonometric(constant, *turned), regularity, MOST_OF_A_PLANE_LOOP)
+
+
+def _frame_vector(frame: Frame, components: Vector) -> Vector:
+    x, y, z = components
+    return add(add(scale(x, frame.x), scale(y, frame.y)), scale(z, frame.z))
+
+
+def _crossed(chain: Chain) -> _Reduced | None:
+    """By the angle between the two axes of the closing joint, about its centre."""
+    if len(chain.motions) != 1 or chain.motions[0].slide:
+        return None
+    (x,), limit = chain.motions, tolerances.PARALLEL
+    for end in (chain.first, chain.second):
+        if norm(square_to(x.axis, subtract(end.o, x.point))) > limit:
+            return None
+    if abs(dot(x.axis, subtract(chain.first.o, chain.second.o))) > limit:
+        return None
+    joint, arm = chain.joint, square_to(x.axis, chain.second.z)
+    still = dot(x.axis, chain.second.z) * dot(x.axis, chain.first.z)
+    constant = still - dot(joint.on_first.z, joint.on_second.z)
+    turned = dot(chain.first.z, arm), dot(chain.first.z, cross(x.axis, arm))
+    regularity = min(norm(arm), norm(square_to(x.axis, chain.first.z)))
     return _Reduced(Trigonometric(constant, *turned), regularity, MOST_BY_DIRECTION)

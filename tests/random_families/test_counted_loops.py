@@ -1,6 +1,7 @@
 """Loops whose number of assemblies is a closed form: all are found, and said to be all.
 
-Planar four-bars and slider-cranks, spherical 4R, RSSR, RSSP and RCCC, in any position in space.
+Planar four-bars and slider-cranks, Hooke's joint, spherical 4R, RSSR, RSSP and RCCC, in any
+position in space.
 `MECHKIN_RANDOM` multiplies the number of cases.
 """
 
@@ -17,6 +18,8 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
+from mechkin_cli.solver.graph import UnsolvableGraph
+from mechkin_cli.solver.session import Session
 
 CASES = 12 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 NEAR = 1e-3
@@ -31,6 +34,7 @@ class Case(NamedTuple):
     links: list[str]
     joints: list[str]
     count: int
+    at: float = 0.0
 
 
 def rotation(rng: random.Random) -> np.ndarray:
@@ -152,9 +156,56 @@ def leg(rng: random.Random, slider: bool) -> Case | None:
     return None if count is None else Case(["L1", "L2", "L3"], joints, count)
 
 
+def inverted(rng: random.Random) -> Case | None:
+    """RRPR: a link slides on the coupler, whose line passes the rocker's pivot at an offset."""
+    turn, shift, a = rotation(rng), place(rng), rng.uniform(0.3, 1.5)
+    pivot = np.array([rng.uniform(-2, 2), rng.uniform(-2, 2)])
+    angle = rng.uniform(0, math.tau)
+    across = np.array([-math.sin(angle), math.cos(angle)])
+    points = [np.array([rng.uniform(-1.5, 1.5), rng.uniform(-1.5, 1.5)]) for _ in range(2)]
+
+    def at(xy: np.ndarray) -> str:
+        return written(turn @ [*xy, 0.0] + shift)
+
+    n, along = written(turn @ Z), written(turn @ [math.cos(angle), math.sin(angle), 0.0])
+    end = np.array([a, 0.0])
+    joints = [
+        f"{{type: R, links: [ground, L1], point: {at(np.zeros(2))}, axis: {n}}}",
+        f"{{type: R, links: [L1, L2], point: {at(end)}, axis: {n}}}",
+        f"{{type: P, links: [L2, L3], point: {{L2: {at(points[0])}, L3: {at(points[1])}}}, "
+        f"axis: {along}}}",
+        f"{{type: R, links: [ground, L3], point: {at(pivot)}, axis: {n}}}",
+    ]
+    offset = across @ (end - points[0]) - across @ (pivot - points[1])
+    count = lies_between(abs(offset), -1.0, float(np.linalg.norm(end - pivot)))
+    return None if count is None else Case(["L1", "L2", "L3"], joints, count)
+
+
+def hooke(rng: random.Random) -> Case | None:
+    """R-U-R with oblique axes: their drawn angle, at another input than drawn."""
+    shafts, cross = [direction(rng) for _ in range(2)], [direction(rng) for _ in range(2)]
+    centre, at = place(rng), rng.uniform(0, 360)
+    places = [centre + rng.uniform(-1, 1) * shaft for shaft in shafts]
+    joints = [
+        f"{{type: R, links: [ground, L1], point: {written(places[0])}, "
+        f"axis: {written(shafts[0])}}}",
+        f"{{type: U, links: [L1, L2], point: {written(centre)}, axis: {written(cross[0])}, "
+        f"axis2: {written(cross[1])}}}",
+        f"{{type: R, links: [ground, L2], point: {written(places[1])}, "
+        f"axis: {written(shafts[1])}}}",
+    ]
+    turned = about(shafts[0], math.radians(at), cross[0])
+    one, other = math.acos(turned @ shafts[1]), math.acos(cross[1] @ shafts[1])
+    drawn, whole = math.acos(cross[0] @ cross[1]), one + other
+    count = lies_between(drawn, abs(one - other), min(whole, math.tau - whole))
+    return None if count is None else Case(["L1", "L2"], joints, count, at)
+
+
 FAMILIES: dict[str, Callable[[random.Random], Case | None]] = {
     "planar 4R": lambda rng: planar(rng, slider=False),
     "planar RRRP": lambda rng: planar(rng, slider=True),
+    "planar RRPR": inverted,
+    "Hooke": hooke,
     "spherical 4R": lambda rng: spherical(rng, slides=False),
     "RCCC": lambda rng: spherical(rng, slides=True),
     "RSSR": lambda rng: leg(rng, slider=False),
@@ -183,7 +234,7 @@ def text(parts: list[Case], order: random.Random | None = None) -> str:
             for name, new in names.items():
                 joint = joint.replace(name, new)
             joints.append(f"  J{number}_{k}: {joint}")
-        inputs.append(f"J{number}_0.theta: {{at: 0}}")
+        inputs.append(f"J{number}_0.theta: {{at: {part.at}}}")
     if order is not None:
         order.shuffle(links)
         order.shuffle(joints)
@@ -205,6 +256,22 @@ def test_all_assemblies_are_found_and_said_to_be_all(family: str) -> None:
         assert found.starts <= 512
         counts[case.count] += 1
     assert set(counts) == {0, 2}
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_the_closing_joint_does_not_change_the_count(family: str) -> None:
+    told = 0
+    for case in cases(family, 6):
+        problem = mk.loads(text([case])).problem
+        for k in range(1, len(case.joints)):
+            try:
+                session = Session(problem, closed_at=[f"J0_{k}"])
+            except UnsolvableGraph:
+                continue
+            found = session.search(session.inputs.values[:, 0])
+            assert found.number == case.count, (k, text([case]))
+            told += found.complete
+    assert told >= 6
 
 
 def angles(model: mk.Model, number: int) -> set[tuple[tuple[str, float], ...]]:
