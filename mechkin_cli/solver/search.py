@@ -17,16 +17,14 @@ from mechkin_cli.solver.block_bounds import most_of_block
 from mechkin_cli.solver.block_search import (
     PlaceSearch,
     Request,
-    Within,
     ends,
     search_block,
-    unknown_states,
-    upstream_states,
 )
 from mechkin_cli.solver.clusters import first_of_each, pose_keys
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.random_starts import RandomStarts
+from mechkin_cli.solver.start_box import Within, unknown_states, upstream_states
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

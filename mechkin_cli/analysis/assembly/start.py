@@ -3,24 +3,30 @@ nearest to it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.analysis.assembly.distances import (
+    distances_home,
+    distances_near,
+    distances_of,
+    far_notes,
+    in_order,
+    is_unclear,
+    unclear,
+)
 from mechkin_cli.analysis.assembly.home import (
     follow_from_home,
     is_home_assembled,
     nearest_to_home,
 )
-from mechkin_cli.analysis.assembly.named_modes import NamedModes, is_cyclic, name_modes, wrapped
+from mechkin_cli.analysis.assembly.named_modes import NamedModes, name_modes
 from mechkin_cli.analysis.assembly.near import Near, box_about, named_by, newton_from
-from mechkin_cli.analysis.assembly.probe import Probe
-from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number
-from mechkin_cli.mechanism.joint_table import dimension_of, is_angle
+from mechkin_cli.analysis.assembly.not_assembled import nothing_found
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.dead_centre import DeadCentre
 from mechkin_cli.solver.follow import TrackEnd
@@ -30,7 +36,6 @@ from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.solver.session import Continued, Session
 
 NEAR = "near"
@@ -38,9 +43,6 @@ NEAR = "near"
 
 HOME = "home"
 """The same for an assembled drawing."""
-
-LOOP_SHOWN = 12
-"""Joints of a loop that are named one by one."""
 
 MAY_BE_RIGID = (
     "an overconstrained loop moves only if its dimensions are exact (write expressions); else "
@@ -96,10 +98,10 @@ def _choose_start(session: Session) -> Start:
         return Start(None, "", "", [nothing_found(session, modes.found)])
     if wanted.mode is not None:
         return _by_name(modes, wanted.mode)
-    home = _distances_home(session, modes.points)
+    home = distances_home(session, modes.points)
     if not wanted.near:
         return _nearest(modes, home, home, "nearest to home")
-    start = _nearest(modes, _distances_near(session.problem, modes.coordinates), home, "near")
+    start = _nearest(modes, distances_near(session.problem, modes.coordinates), home, "near")
     return _told_if_far(session, path[:, 0], start)
 
 
@@ -138,7 +140,7 @@ def _from_near(session: Session, inputs: Floats) -> Start | None:
     newton = newton_from(session, inputs, named) if named.unknowns else None
     if newton is None:
         return None
-    distance = _distances(session, inputs, newton.state[:, None])[0][0]
+    distance = distances_of(session, inputs, newton.state[:, None])[0][0]
     if newton.is_nearest(distance):
         how = (
             f"{distance:.2g} rad or sizes off what near names, found by Newton's method; no other "
@@ -153,13 +155,20 @@ def _from_near(session: Session, inputs: Floats) -> Start | None:
     return _nearest_about(session, inputs, newton, found, radius)
 
 
+def _told_if_far(session: Session, inputs: Floats, start: Start) -> Start:
+    if start.state is None:
+        return start
+    notes = far_notes(session, inputs, start.state)
+    return replace(start, diagnostics=[*start.diagnostics, *notes])
+
+
 def _nearest_about(
     session: Session, inputs: Floats, newton: Near, found: Found, radius: float
 ) -> Start | None:
     """The nearest of all assemblies about as near as the one that Newton's method found."""
     found = with_assemblies(session.layout, session.plan, inputs, found, newton.state[:, None])
-    distances, home = _distances(session, inputs, found.states)
-    order = [i for i in _in_order(distances, home) if distances[i] <= radius]
+    distances, home = distances_of(session, inputs, found.states)
+    order = [i for i in in_order(distances, home) if distances[i] <= radius]
     if not order:
         return None
     best = distances[order[0]]
@@ -168,69 +177,9 @@ def _nearest_about(
         f"{found.starts} starts found within {radius:.2g}"
     )
     notes = []
-    if len(order) > 1 and _is_unclear(best, distances[order[1]]):
-        notes.append(_unclear("two assemblies", (best, distances[order[1]])))
+    if len(order) > 1 and is_unclear(best, distances[order[1]]):
+        notes.append(unclear("two assemblies", (best, distances[order[1]])))
     return Start(found.states[:, order[0]], NEAR, how, notes)
-
-
-def _told_if_far(session: Session, inputs: Floats, start: Start) -> Start:
-    """With a warning where the assembly lies far from what `near` names."""
-    if start.state is None:
-        return start
-    coordinates, _ = Probe.of(session).read(inputs, start.state[:, None])
-    problem = session.problem
-    far = [
-        Number(name, float(coordinates[name][0]))
-        for name, target in problem.assembly.near.items()
-        if abs(_miss(problem, name, float(coordinates[name][0]), target)) > tolerances.NEAR_FAR
-    ]
-    if not far:
-        return start
-    units = problem.units
-    shown = (
-        f"{at.name} = {units.from_si(at.value, dimension_of(at.name.partition('.')[2])):.6g}"
-        for at in far
-    )
-    note = Diagnostic(
-        "nearest-far",
-        "warning",
-        "no assembly was found near what near names",
-        measured=f"the nearest has {', '.join(shown)}",
-        limit=f"{tolerances.NEAR_FAR:g} rad or sizes",
-        hint="see mechkin modes for all assemblies at the first row",
-    )
-    return replace(start, diagnostics=[*start.diagnostics, note])
-
-
-def _miss(problem: Problem, name: str, value: float, target: float) -> float:
-    """How far a coordinate is off: angles the shorter way round, slides in sizes."""
-    miss = value - target
-    if is_cyclic(problem.mechanism, name):
-        return wrapped(miss)
-    if is_angle(name.partition(".")[2]):
-        return miss
-    return miss / problem.mechanism.box_diagonal()
-
-
-def _distances(session: Session, inputs: Floats, states: Floats) -> tuple[list[float], list[float]]:
-    """Of assemblies (states, number) from what `near` names, and from the drawing."""
-    coordinates, points = Probe.of(session).read(inputs, states)
-    return _distances_near(session.problem, coordinates), _distances_home(session, points)
-
-
-def _in_order(distances: list[float], home: list[float]) -> list[int]:
-    """Numbers of assemblies, the nearest first; among those as near but for rounding, the nearest
-    to the drawing."""
-    least = min(distances, default=0.0)
-    tied = [i for i, d in enumerate(distances) if d <= least + tolerances.SAME_MODE]
-    rest = [i for i in range(len(distances)) if i not in tied]
-    rest.sort(key=lambda i: distances[i])
-    return [*sorted(tied, key=lambda i: home[i]), *rest]
-
-
-def _is_unclear(best: float, second: float) -> bool:
-    """Whether a runner-up is about as near as the nearest."""
-    return second < max(tolerances.NEAR_RUNNER_UP * best, best + tolerances.SAME_MODE)
 
 
 def _from_home(session: Session, path: Floats) -> Start:
@@ -258,85 +207,6 @@ def _from_home(session: Session, path: Floats) -> Start:
     return Start(None, HOME, "", [diagnostic], status)
 
 
-def nothing_found(session: Session, found: Found, place: str = "at the first row") -> Diagnostic:
-    """What to say where no start closed: which loop it is."""
-    loop, name = _failed_loop(session, found), session.problem.mechanism.name
-    hint = "check the dimensions, or start the sweep at another input"
-    if any(joint.type.is_threaded for joint in session.problem.mechanism.joints.values()):
-        turns = session.problem.assembly.turns
-        hint += f"; threads were searched {turns}.5 turns to either side: assembly: {{turns: N}}"
-    if session.is_redundant:
-        hint = "dimensions of an overconstrained loop must be exact (write expressions)"
-    return Diagnostic(
-        "not-assembled",
-        "error",
-        f"{name} cannot be assembled {place}{loop}",
-        measured=_missed(found),
-        limit=None if found.complete else f"{tolerances.RESIDUAL_ACCEPT:g}",
-        hint=hint,
-        numbers=(
-            Number("starts", found.tried),
-            Number("residual", found.closest, limit=tolerances.RESIDUAL_ACCEPT),
-        ),
-    )
-
-
-def _missed(found: Found) -> str:
-    if found.free:
-        return (
-            f"{found.free} of {found.starts} random starts closed the loops, all where they still "
-            "move with the inputs held, or in a singular position"
-        )
-    if found.complete:
-        return "its equations have no real root"
-    return (
-        f"none of {found.tried} random starts closed, the best to {found.closest:.2g} of the size"
-    )
-
-
-def _failed_loop(session: Session, found: Found) -> str:
-    """The joints of the loops that did not close, and whether others were closed before."""
-    if found.failed is None or found.free:
-        return ""
-    graph = session.graph
-    names: dict[str, None] = {}
-    closings = graph.blocks[found.failed].closings
-    for closing in (graph.closings[c] for c in closings):
-        joints = (closing.joint.name,) if closing.leg is None else closing.leg.joints
-        ways = {sign: [e for e, s in closing.loop if e >= 0 and s == sign] for sign in (1, -1)}
-        # outward to the closing joint's first link, and back
-        there, back = ([graph.edges[e].joint.name for e in sorted(ways[s])] for s in (-1, 1))
-        names.update(dict.fromkeys((*there, *joints, *reversed(back))))
-    shown = [name for name in names if name in session.problem.mechanism.joints]
-    more = f" and {len(shown) - LOOP_SHOWN} more" if len(shown) > LOOP_SHOWN else ""
-    loops = "the loop" if len(closings) == 1 else f"the {len(closings)} loops"
-    close = "does not close" if len(closings) == 1 else "do not close together"
-    before = f", in none of {found.places} assemblies before it" if found.places > 1 else ""
-    return f": {loops} through {', '.join(shown[:LOOP_SHOWN])}{more} {close}{before}"
-
-
-def _distances_near(problem: Problem, coordinates: Mapping[str, Floats]) -> list[float]:
-    """Of every assembly from what `near` names."""
-    distances = []
-    for i in range(len(next(iter(coordinates.values())))):
-        total = 0.0
-        for name, target in problem.assembly.near.items():
-            miss = _miss(problem, name, float(coordinates[name][i]), target)
-            total += miss * miss
-        distances.append(sqrt(total))
-    return distances
-
-
-def _distances_home(session: Session, points: Floats) -> list[float]:
-    """Root mean square over the moving links' joint points, in parts of the size."""
-    home = np.array([at.vector for at in Probe.of(session).points])[:, :, None]
-    miss = (points - home) / session.problem.mechanism.box_diagonal()
-    total = np.zeros(points.shape[2])
-    for x, y, z in miss:
-        total = total + (x * x + y * y + z * z)
-    return [sqrt(float(squares) / len(home)) for squares in total]
-
-
 def _by_name(modes: NamedModes, name: str) -> Start:
     for i, letter in modes.letters.items():
         if letter == name:
@@ -352,27 +222,15 @@ def _by_name(modes: NamedModes, name: str) -> Start:
 
 
 def _nearest(modes: NamedModes, distances: list[float], home: list[float], how: str) -> Start:
-    order = _in_order(distances, home)
+    order = in_order(distances, home)
     best = order[0]
     notes = []
     if len(order) > 1:
         second = order[1]
-        if _is_unclear(distances[best], distances[second]):
+        if is_unclear(distances[best], distances[second]):
             both = "two assemblies"
             if modes.letters:
                 both = f"modes {modes.letters[best]} and {modes.letters[second]}"
-            notes.append(_unclear(both, (distances[best], distances[second])))
+            notes.append(unclear(both, (distances[best], distances[second])))
     words = f"{how}, 1 of {modes.number} found"
     return Start(modes.found.states[:, best], modes.letters.get(best, NEAR), words, notes)
-
-
-def _unclear(both: str, distances: tuple[float, float]) -> Diagnostic:
-    return Diagnostic(
-        "nearest-unclear",
-        "warning",
-        f"{both} are about equally near",
-        measured=f"distances {distances[0]:.4g} and {distances[1]:.4g}",
-        limit=f"ratio {tolerances.NEAR_RUNNER_UP}",
-        hint="give more coordinates under assembly: near",
-        numbers=tuple(Number("distance", distance) for distance in distances),
-    )

@@ -15,8 +15,9 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.named_modes import NamedModes, is_cyclic, name_modes, wrapped
+from mechkin_cli.analysis.assembly.not_assembled import nothing_found
 from mechkin_cli.analysis.assembly.probe import Probe
-from mechkin_cli.analysis.assembly.start import choose_start, nothing_found, state_at_first_row
+from mechkin_cli.analysis.assembly.start import choose_start, state_at_first_row
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
