@@ -16,7 +16,7 @@ from analysis.random_loops import (
     same,
     search,
 )
-from references import RCSR
+from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
 
@@ -182,6 +182,21 @@ def test_more_turns_of_a_thread_are_more_modes() -> None:
     assert max(abs(mode.coordinates["J5.theta"]) for mode in more.modes) <= 540
     assert 1 <= len(few.modes) < len(more.modes)
     assert "threads within 1.5 turns" in more.sentence
+
+
+def test_rows_of_an_assembled_drawing_carry_the_letter_of_their_mode() -> None:
+    """Where a short search proves that it knows all modes `rows.csv` has it at once; else
+    `row.mode` has it when it is asked for."""
+    for name, short in (("rssr", True), ("rccc", True), ("stewart", False)):
+        model = mk.load(MECHANISMS / f"{name}.yaml")
+        picked = model.modes().picked
+        assert picked is not None
+        result = mk.load(MECHANISMS / f"{name}.yaml").analyze(["row.mode"])
+        assert set(result["row.mode"]) == {picked}
+        fresh = mk.load(MECHANISMS / f"{name}.yaml").analyze([])
+        assert "home" in fresh.result.how
+        assert fresh.result.short_letter == (picked if short else "home")
+        assert model.analyze([], mode=picked).result.how == "by name"
 
 
 def test_a_triangle_that_cannot_close() -> None:
