@@ -20,7 +20,7 @@ def rows_table(source: Source) -> Columns:
     columns = (
         Column("row", "", np.arange(1, source.rows + 1, dtype=np.float64), 0),
         *inputs,
-        Column("mode", "", Words(np.zeros(source.rows, dtype=np.int32), (source.short_letter,))),
+        Column("mode", "", Words(np.zeros(source.rows, dtype=np.int32), (source.mode,))),
         Column("status", "", status_words(source)),
         Column("residual", "", source.residual),
         Column("condition", "", source.condition),

@@ -42,9 +42,8 @@ class Source(Protocol):
         ...
 
     @property
-    def short_letter(self) -> str:
-        """The letter of the assembly mode that the rows follow, where a short search tells it; else
-        `near` or `home`."""
+    def mode(self) -> str:
+        """Name of the assembly mode that the rows follow."""
         ...
 
     @property

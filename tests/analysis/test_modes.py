@@ -195,7 +195,7 @@ def test_rows_of_an_assembled_drawing_carry_the_letter_of_their_mode() -> None:
         assert set(result["row.mode"]) == {picked}
         fresh = mk.load(MECHANISMS / f"{name}.yaml").analyze([])
         assert "home" in fresh.result.how
-        assert fresh.result.short_letter == (picked if short else "home")
+        assert fresh.result.mode == (picked if short else "home")
         assert model.analyze([], mode=picked).result.how == "by name"
 
 
