@@ -56,20 +56,75 @@ R-Sg-C: of those that close within 160 steps at least 96 % do so within 30, 99.8
 SEARCH_STARTS: Final = 512
 """Random starts of one round: fewer do not fill the packs, more are not needed by most loops."""
 
+SEARCH_LEAST_STARTS: Final = 32
+"""Starts for each of the assemblies of the blocks before, where those are many; two packs a
+thread."""
+
+SEARCH_MOST_COLUMNS: Final = 65_536
+"""Starts in one call of the kernel; bounds the memory."""
+
 SEARCH_HOPELESS_STARTS: Final = 2048
 """A block of which not one of so many starts closed counts as not to be assembled there. Of the
 general loops measured at least 1 % of the starts close, so that all miss with chance 1e-9."""
 
-SEARCH_MOST_STARTS: Final = 16384
-"""A search that still finds new modes here says so instead of going on."""
+SEARCH_HOPELESS_WORK: Final = 1e9
+"""Multiplications, in the steps of the starts, after which a block without one closing is given up,
+though not before `SEARCH_LEAST_HOPELESS_STARTS` or after `SEARCH_HOPELESS_STARTS`; half a
+second."""
+
+SEARCH_LEAST_HOPELESS_STARTS: Final = 128
+"""Enough to find out about any block of which some percent of the starts close."""
+
+SEARCH_MOST_ROUND: Final = 8192
+"""Most starts of a round; rounds grow with what has been tried."""
+
+SEARCH_MOST_WORK: Final = 2e10
+"""Multiplications, in the steps of the starts, after which a search for all modes gives up; some
+seconds. At least `SEARCH_MOST_QUICK_STARTS` are made."""
+
+SEARCH_MOST_STARTS: Final = 262_144
+"""A search for all modes that could still miss many says so here instead of going on."""
+
+SEARCH_MOST_QUICK_STARTS: Final = 16_384
+"""The same for a search that is for one assembly."""
 
 SEARCH_MOST_MODES: Final = 1024
 """More different end points than this are no list of modes but a motion that is left with the
 inputs held; platforms have 40 modes."""
 
+SEARCH_MOST_PRODUCTS: Final = 16_384
+"""Assemblies of the whole mechanism: blocks that are independent multiply theirs, fourteen loops of
+two modes reach it."""
+
+SEARCH_MOST_PLACES: Final = 2048
+"""Assemblies of the blocks before at which a block is searched: two seconds."""
+
+SEARCH_FEW_PLACES: Final = 64
+"""Those that are gone on with where there are more, from there on."""
+
 SEARCH_NEW_MODE_CHANCE: Final = 1e-3
-"""Good-Turing estimate (modes met once, at least 1 / starts that closed) below which the search
-ends: more than a thousand closings."""
+"""Chance that one more start that closes finds a new mode, below which the search ends."""
+
+SEARCH_NEW_MODE_CHANCE_OF_MANY: Final = 0.03
+"""The same for a block that is searched at many places of the blocks before, at most; the chance
+grows with their number so that the starts do not."""
+
+SEARCH_DOUBT: Final = 0.01
+"""Chance that the bound stated for that chance does not hold."""
+
+ROOT_REGULAR: Final = 1e-3
+"""A loop's equations are reduced to one polynomial by divisors above this; errors grow with the
+square of its inverse."""
+
+ROOT_STATE_ERROR: Final = 1e-9
+"""Error of the states of blocks before, from the search, in a polynomial's coefficients: ten times
+the residual at which the search hands over."""
+
+ROOT_ROUNDING: Final = 1e-13
+"""Error of a polynomial's coefficients from rounding."""
+
+ROOT_LEAST_INTERVAL: Final = 1e-8
+"""Half interval (rad) at which the count of roots is given up: a double root but for rounding."""
 
 SAME_MODE: Final = 1e-7
 """Two assemblies whose poses differ less (lengths / size, direction cosines) are one. Newton
@@ -88,6 +143,10 @@ letters, so that rounding cannot change it."""
 
 NEAR_RUNNER_UP: Final = 1.2
 """Ratio of distances below which the nearest assembly is not clearly the one that was meant."""
+
+NEAR_FAR: Final = 0.5
+"""Distance (rad, parts of the size) of a named coordinate from the assembly taken above which the
+name is said to be missed: half a radian is more than a reading of a drawing leaves open."""
 
 NEAR_BALL: Final = 1.0
 """Radius (rad, parts of the size) of the ball about what `near` names up to which it is searched

@@ -238,18 +238,27 @@ class Session:
         """Follows the branch through `start` (states,) along a way of all inputs."""
         return follow_along(self.plan, way, start, straight=self.problem.assembly.straight)
 
-    def search(self, inputs: Floats, within: Within | None = None) -> Found:
-        """All assemblies at some inputs (inputs,) that random starts find, or those `within` a
-        box."""
+    def search(
+        self, inputs: Floats, within: Within | None = None, *, thorough: bool = True
+    ) -> Found:
+        """All assemblies at some inputs (inputs,) that random starts find, or those `within` a box;
+        not `thorough`: most of them, where one is wanted."""
         from mechkin_cli.solver.search import assemblies
 
         turns, about = self.problem.assembly.turns, self._named_turns()
         if within is not None:
-            return assemblies(self.layout, self.plan, inputs, turns, within, about)
-        key = ("search", inputs.tobytes(), turns, about.tobytes())
-        return self.once(
-            key, lambda: assemblies(self.layout, self.plan, inputs, turns, None, about)
-        )
+            return assemblies(self.layout, self.plan, inputs, turns, within, about, thorough)
+
+        def find(thorough: bool) -> Found:
+            key = ("search", inputs.tobytes(), turns, about.tobytes(), thorough)
+            return self.once(
+                key,
+                lambda: assemblies(self.layout, self.plan, inputs, turns, None, about, thorough),
+            )
+
+        quick = find(thorough=False)
+        final = quick.complete or quick.cut or not thorough
+        return quick if final else find(thorough=True)
 
     def _named_turns(self) -> Floats:
         """States (states,): the turns of threads that the assembly's `near` names, else zero."""

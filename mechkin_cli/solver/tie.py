@@ -60,7 +60,10 @@ class Tie:
             ways = self.formula.ways(at, self.given)[0]
             found[:, :, k] = self.formula.jets(at, self.given, ways)[0].T
         powers = np.array([1.0, unit, unit * unit])
-        jets: Floats = found * powers[:, None, None] / self.units[None, :, None]
+        own = found * powers[:, None, None] / self.units[None, :, None]
+        held = np.zeros((3, self.held.size, values.size))
+        held[0] = self.held
+        jets: Floats = np.concatenate([own, held], axis=1)
         return jets
 
     def way(self, values: Floats) -> Way:

@@ -65,7 +65,8 @@ def test_the_dead_centre_is_named_with_its_place(mechkin, write) -> None:
 def test_an_assembly_that_does_not_exist(mechkin, write) -> None:
     run = mechkin("analyze", write("apart.yaml", files.WITHOUT_ASSEMBLY), "--quiet")
     assert re.match(
-        r"apart\.yaml: error: .* cannot be assembled at the first row: none of", run.err
+        r"apart\.yaml: error: .* cannot be assembled at the first row: the loop through O, A, B, D",
+        run.err,
     )
     assert "check the dimensions" in run.err
 

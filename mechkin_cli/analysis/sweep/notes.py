@@ -41,7 +41,7 @@ def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnost
         return None
     row = int(rows[0])
     both = np.ascontiguousarray(states[:, [0, row]])
-    keys = pose_keys(session.layout, both, _advanced(session, both))
+    keys = pose_keys(session.layout, both, left_out=_advanced(session, both))
     if same_poses(keys[:, :1], keys[:, 1:])[0, 0]:
         return None
     count = round(abs(float(turns[row])))

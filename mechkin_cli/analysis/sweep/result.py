@@ -84,10 +84,13 @@ class Result:
         """Tree, closing joints and blocks."""
         return self.session.graph
 
-    @property
+    @cached_property
     def mode(self) -> str:
-        """The assembly mode of the rows; `near` or `home` where no letter was asked for."""
-        return self.start.mode
+        """The letter of the rows' assembly mode where a short search proves that it knows all
+        modes; else `near` or `home`."""
+        from mechkin_cli.analysis.assembly.start import mode_letter
+
+        return mode_letter(self.session, self.start, thorough=False)
 
     @cached_property
     def letter(self) -> str:
