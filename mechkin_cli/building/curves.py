@@ -12,14 +12,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mechkin_cli.building.fields import Fields
+from mechkin_cli.building.fields import Fields, is_tiny_length
 from mechkin_cli.building.fields import Path as KeyPath
 from mechkin_cli.diagnostics import Diagnostic, Place
 from mechkin_cli.expressions import literal
 from mechkin_cli.expressions.limits import MAX_QUOTED
 from mechkin_cli.mechanism.curve import Curve, smooth_curve
 from mechkin_cli.reading.limits import MOST_BYTES
-from mechkin_cli.tolerances import LARGEST_NUMBER
+from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
 from mechkin_cli.units import Dimension
 
 CODE = "csv-table"
@@ -170,4 +170,7 @@ def _check_size(
     for row in rows:
         if abs(row[i + 1]) > largest:
             text = f"{row[i + 1]:.4g} is too large to compute with (limit {largest:.4g})"
+            raise _BadTable(row[0], 1, text, "check its exponent and unit")
+        if is_tiny_length(fields.units.to_si(row[i + 1], dimension), dimension):
+            text = f"{row[i + 1]:.4g} is a length below {SMALLEST_SIZE:g} m"
             raise _BadTable(row[0], 1, text, "check its exponent and unit")
