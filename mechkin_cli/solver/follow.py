@@ -76,7 +76,6 @@ def follow(
         limit,
         along,
     )
-    guess[:, reached:] = np.nan
     return Followed(
         guess, limit, reached, TrackEnd(end), steps, place, state, direction, along, last_turn
     )

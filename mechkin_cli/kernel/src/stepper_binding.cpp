@@ -7,7 +7,9 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "frozen_plan.hpp"
@@ -197,6 +199,16 @@ std::optional<Node> step_from(OwnedStepper& s, const Node& node, double h) {
   return next;
 }
 
+// Rows from `begin` on, which nothing has reached, are no numbers.
+void forget(const RowGuesses& out, long states, long slots, long begin) {
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  const long rows = out.rows - begin;
+  if (rows <= 0) return;
+  for (long s = 0; s < states; ++s) std::fill_n(out.guess + s * out.rows + begin, rows, nothing);
+  for (long s = 0; out.turn && s < slots; ++s) std::fill_n(out.turn + s * out.rows + begin, rows, nothing);
+  std::fill_n(out.limit + begin, rows, nothing);
+}
+
 nb::tuple follow_table(const FrozenPlan& store, Table inputs, const Numbers& start, const Numbers& turn, bool every_row,
                        const StepLimits& limits, Table guess, Column limit, std::optional<Table> turns) {
   const Plan& plan = store.view();
@@ -217,7 +229,9 @@ nb::tuple follow_table(const FrozenPlan& store, Table inputs, const Numbers& sta
   {
     nb::gil_scoped_release released;
     FloatingPointState state;
+    forget(out, plan.states, slots, 0);
     found = follow_rows(plan, narrow_unit(), inputs.data(), start.data(), turn, every_row, limits, out);
+    forget(out, plan.states, slots, found.reached);
   }
   return nb::make_tuple((int)found.end, found.reached, found.steps, found.rejected, copied(found.inputs),
                         copied(found.state), copied(found.turn), copied(found.direction));
