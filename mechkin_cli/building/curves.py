@@ -6,7 +6,6 @@ and in the units of the mechanism file. Errors name the line and column of the C
 
 from __future__ import annotations
 
-import stat
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,6 +18,7 @@ from mechkin_cli.expressions import literal
 from mechkin_cli.expressions.limits import MAX_QUOTED
 from mechkin_cli.mechanism.curve import Curve, smooth_curve
 from mechkin_cli.reading.limits import MOST_BYTES
+from mechkin_cli.regular_file import NotRegular, read_regular
 from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
 from mechkin_cli.units import Dimension
 
@@ -104,10 +104,9 @@ def read_rows(
 
 def _text(file: Path) -> str:
     try:
-        if not stat.S_ISREG(file.stat().st_mode):
-            raise _BadTable(0, 0, "is not a regular file", "name a CSV file")
-        with file.open("rb") as stream:
-            content = stream.read(MOST_BYTES + 1)
+        content = read_regular(file, MOST_BYTES)
+    except NotRegular:
+        raise _BadTable(0, 0, "is not a regular file", "name a CSV file") from None
     except FileNotFoundError:
         hint = "the path leads from the folder of the mechanism file"
         raise _BadTable(0, 0, "does not exist", hint) from None

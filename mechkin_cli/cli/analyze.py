@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Progress, Record, put, refusal, say, say_diagnostics
+from mechkin_cli.cli.messages import Progress, Record, put, put_json, refusal, say, say_diagnostics
 from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.tables.writers import USUAL_FORMATS, WRITERS, Results, written_files
@@ -69,9 +69,7 @@ def analyze_files(
         progress.step(number)
     progress.end()
     if json:
-        from mechkin_cli.tables.json_writer import json_text
-
-        put(json_text(records[0] if len(files) == 1 else {"files": records}))
+        put_json(records[0] if len(files) == 1 else {"files": records})
     return code
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Progress, Record, put, refusal, say, say_diagnostics
+from mechkin_cli.cli.messages import Progress, Record, put, put_json, refusal, say, say_diagnostics
 from mechkin_cli.cli.options import Json, Quiet
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
@@ -61,9 +61,7 @@ def tables(
         outcome, found["overview"] = keep_overview(path, rows, check, json, quiet)
         code = max(code, outcome)
     if json:
-        from mechkin_cli.tables.json_writer import json_text
-
-        put(json_text(found))
+        put_json(found)
     if code:
         raise typer.Exit(code)
 
