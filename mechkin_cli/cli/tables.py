@@ -87,6 +87,8 @@ def _one(
     model = load(file)
     if check:
         return _made(file, model, None, json, quiet, overview=overview)
+    if not file.stem.strip("."):
+        raise UsageError(f"{file}: a folder for its tables would be {file.stem}; rename the file")
     with OutputFolder(file.with_suffix("")) as output:
         return _made(file, model, output, json, quiet, overview=overview)
 

@@ -35,6 +35,7 @@ class Claim:
         for _ in range(MOST_TRIES):
             with contextlib.suppress(FileNotFoundError):
                 if self._try():
+                    held.add(self)
                     return
         raise OSError(errno.EBUSY, os.strerror(errno.EBUSY))
 
@@ -45,6 +46,7 @@ class Claim:
                 folder.rmdir()
         self._made = []
         self._close()
+        held.discard(self)
 
     def _try(self) -> bool:
         """Whether the folder that was locked is still the one of that name."""
@@ -71,6 +73,10 @@ class Claim:
         if self._descriptor is not None:
             os.close(self._descriptor)
         self._descriptor, self.locked = None, False
+
+
+held: set[Claim] = set()
+"""The claims of this process."""
 
 
 def _lock(descriptor: int) -> bool:

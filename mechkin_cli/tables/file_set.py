@@ -20,6 +20,9 @@ import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+replacing: set[Path] = set()
+"""The attempts of this process that are under way: an interrupt must let them be taken back."""
+
 Refuse = Callable[[Path], contextlib.AbstractContextManager[None]]
 """Words for the errors of one target."""
 
@@ -35,6 +38,7 @@ def replace_files(folder: Path, files: Mapping[str, bytes], refuse: Refuse) -> N
     """
     attempt = folder / f".mechkin-{os.urandom(8).hex()}"
     try:
+        replacing.add(attempt)
         _prepare(attempt, folder, files, refuse)
         if len(files) == 1:
             (name,) = files
@@ -50,6 +54,7 @@ def replace_files(folder: Path, files: Mapping[str, bytes], refuse: Refuse) -> N
             _replace_one_by_one(attempt, folder, list(files), refuse)
     finally:
         _without_interrupts(lambda: settle(attempt))
+        replacing.discard(attempt)
 
 
 def settle(attempt: Path) -> None:
