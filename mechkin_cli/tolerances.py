@@ -459,6 +459,10 @@ SMALLEST_SIZE: Final = 1e-100
 """Size of a drawing in m below which it is a slip of the pen: the inverse of its square is the last
 that stays a double with what it is multiplied by; atoms are drawn with 1e-10."""
 
+GRAVITY_ON_EARTH: Final = 0.025
+"""Parts of standard gravity by which a number may differ and still be meant as gravity: on Earth it
+varies by 0.004, and 10 m/s^2 is its round number."""
+
 LARGEST_FACTOR: Final = 1e30
 """Size in SI beyond which (or below whose inverse) a unit of a file is taken for a mistake."""
 

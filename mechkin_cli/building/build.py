@@ -10,13 +10,14 @@ from typing import NamedTuple
 
 from mechkin_cli.building.assembly import build_assembly, build_follow
 from mechkin_cli.building.columns import build_tables, used_quantities
-from mechkin_cli.building.fields import Fields, Path, read_parameters, read_units
+from mechkin_cli.building.fields import Fields, Path, read_parameters
 from mechkin_cli.building.linkage import build_linkage, is_link
 from mechkin_cli.building.loads import LoadBuilder
 from mechkin_cli.building.memory import row_limit
 from mechkin_cli.building.motion import build_motion
 from mechkin_cli.building.sizes import check_blocks, check_size
 from mechkin_cli.building.source import Source
+from mechkin_cli.building.unit_system import note_force_unit, read_units
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.mechanism.held import held_freedoms
@@ -25,7 +26,6 @@ from mechkin_cli.mechanism.model import Attached, Link, Mechanism
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.reading.parser import in_order
 from mechkin_cli.schema.file import MechanismFile
-from mechkin_cli.schema.units_section import UnitsSection
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
@@ -61,6 +61,8 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
         timed = problem.motion.time is not None
         names = [driven.name for driven in problem.motion.inputs]
         tables = (default_table(problem.mechanism.coordinates, names, timed=timed),)
+    if file.loads or needs_forces(problem, tables):
+        note_force_unit(fields)
     follow = build_follow(fields, file.follow, problem.mechanism.joints)
     problem = replace(problem, hold_idle=file.idle == "hold", follow=follow)
     if not fields.error_count:
@@ -81,7 +83,7 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
 
 def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fields:
     """Units and parameters of a file, `given` as in `build`; what is wrong is noted."""
-    units, wrong_units = read_units(source.document, _unit_texts(source.file.units))
+    units, wrong_units = read_units(source.document, source.file.units)
     fields = Fields(source.document, units, diagnostics=wrong_units)
     read_parameters(fields, source.file.parameters, given)
     return fields
@@ -137,11 +139,6 @@ def needs_forces(problem: Problem, tables: Sequence[TableLayout]) -> bool:
     quantities = problem.quantities()
     wanted = [quantities[name] for name in used_quantities(tables, quantities)]
     return bool(demand_of(problem.mechanism, wanted) & Demand.FORCES)
-
-
-def _unit_texts(section: UnitsSection) -> dict[str, str]:
-    names = ("length", "angle", "mass", "force", "time", "angular_rate")
-    return {name: getattr(section, name) for name in names}
 
 
 def _place_of(file: MechanismFile, joints: Sequence[str]) -> Path:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Progress, Record, put, refusal, say, say_diagnostics
+from mechkin_cli.cli.messages import Progress, Record, put, put_json, refusal, say, say_diagnostics
 from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.tables.writers import USUAL_FORMATS, WRITERS, Results, written_files
@@ -71,19 +71,20 @@ def analyze_files(
         progress.step(number)
     progress.end()
     if json:
-        from mechkin_cli.tables.json_writer import json_text
-
-        put(json_text(records[0] if len(files) == 1 else {"files": records}))
+        put_json(records[0] if len(files) == 1 else {"files": records})
     return code
 
 
 def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]:
     """Runs one file; what is wrong with it does not stop the others."""
     from mechkin_cli.interface import load
+    from mechkin_cli.tables.files import OutputFolder
 
     try:
-        analysis = load(path, request.settings).analyze(tables=request.tables, mode=request.mode)
-        written = _write(folder, analysis, request)
+        model = load(path, request.settings)
+        with OutputFolder(folder) as output:
+            analysis = model.analyze(tables=request.tables, mode=request.mode)
+            written = output.write(_files(analysis, request))
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
     say_diagnostics(analysis.diagnostics, str(path))
@@ -128,13 +129,11 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
     return folders
 
 
-def _write(folder: Path, analysis: Analysis, request: _Request) -> list[Path]:
-    """Writes the tables and rows.csv, all or none."""
-    from mechkin_cli.tables.files import write_files
-
+def _files(analysis: Analysis, request: _Request) -> dict[str, bytes]:
+    """The tables and rows.csv."""
     name, tables, result = analysis.model.name, analysis.tables, analysis.result
     results = Results(name, tables, result, analysis.diagnostics, request.threads)
-    return write_files(folder, written_files(results, request.formats))
+    return written_files(results, request.formats)
 
 
 def _record(analysis: Analysis) -> Record:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Record, put, refusal, say_diagnostics
+from mechkin_cli.cli.messages import Record, put, put_json, refusal, say_diagnostics
 from mechkin_cli.cli.options import Files, Json, Quiet, Set
 from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
@@ -27,9 +27,7 @@ def check(files: Files, set_: Set = None, json: Json = False, quiet: Quiet = Fal
         code = max(code, outcome)
         records.append(record | {"valid": outcome == ExitCode.OK})
     if json:
-        from mechkin_cli.tables.json_writer import json_text
-
-        put(json_text({"files": records}))
+        put_json({"files": records})
     if code:
         raise typer.Exit(code)
 

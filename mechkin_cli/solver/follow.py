@@ -125,9 +125,6 @@ def follow(
     )
     end, reached, steps, _, place, state, last_turn, direction = found[:8]
     limits, crossings, piece, parameter = found[8:]
-    guess[:, reached:] = np.nan
-    if along is not None:
-        along[:, reached:] = np.nan
     ending = None if limits is None else Ending(PassageEnd(limits[0]), *limits[1:])
     crossed = tuple(Crossing(*each) for each in crossings)
     return Followed(

@@ -7,7 +7,9 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "frozen_plan.hpp"
@@ -207,6 +209,16 @@ nb::object limit_of(const Followed& found) {
                         copied(at.second), at.bend, copied(beyond.inputs), copied(beyond.state));
 }
 
+// Rows from `begin` on, which nothing has reached, are no numbers.
+void forget(const RowGuesses& out, long states, long slots, long begin) {
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  const long rows = out.rows - begin;
+  if (rows <= 0) return;
+  for (long s = 0; s < states; ++s) std::fill_n(out.guess + s * out.rows + begin, rows, nothing);
+  for (long s = 0; out.turn && s < slots; ++s) std::fill_n(out.turn + s * out.rows + begin, rows, nothing);
+  std::fill_n(out.limit + begin, rows, nothing);
+}
+
 nb::tuple follow_table(const FrozenPlan& store, Table inputs, std::optional<Table> whole, const Numbers& start,
                        const Numbers& turn, bool every_row, const StepLimits& limits, Table guess, Column limit,
                        std::optional<Table> turns, const Course* course) {
@@ -232,7 +244,9 @@ nb::tuple follow_table(const FrozenPlan& store, Table inputs, std::optional<Tabl
   {
     nb::gil_scoped_release released;
     FloatingPointState state;
+    forget(out, plan.states, slots, 0);
     found = follow_rows(plan, narrow_unit(), inputs.data(), turned, start.data(), turn, every_row, limits, out, course);
+    forget(out, plan.states, slots, found.reached);
   }
   nb::list crossings;
   for (std::size_t k = 0; k < found.crossings.size(); ++k)
