@@ -9,9 +9,10 @@ r["O4.theta"]          # array over the rows, in the file's units
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
+TYPE_CHECKING = False  # what the package itself loads, every command waits for
 if TYPE_CHECKING:
+    from typing import Any
+
     from mechkin_cli.diagnostics import Diagnostic, InvalidFile, MechkinError, UsageError
     from mechkin_cli.expressions import ExpressionError
     from mechkin_cli.interface import Analysis, Model, load, loads

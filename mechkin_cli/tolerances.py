@@ -12,6 +12,9 @@ stands beside it with its reason (`kernel/src/`):
 * `search.hpp`: damping of Levenberg-Marquardt steps;
 * `position.hpp`: a Newton step beyond 1e100 is none;
 * `row_curve.cpp`: rows from which a curve's derivatives are read, in parts of step and `PATH_KNOT`;
+* `orbit.hpp`: states within 1e-12 of the start's are back, sought for 16 turns: rounding leaves
+  1e-16 times the condition, and no linkage is known that takes more turns; `tracker.hpp`: 2e7
+  steps of one path;
 * `tracker.cpp`, `dimension_path.cpp`: a rest of 1e-6 of a step is taken along, steps grow fourfold
   at most;
 * `legs.hpp`: `OPPOSITE_COSINE` again;
@@ -53,20 +56,75 @@ R-Sg-C: of those that close within 160 steps at least 96 % do so within 30, 99.8
 SEARCH_STARTS: Final = 512
 """Random starts of one round: fewer do not fill the packs, more are not needed by most loops."""
 
+SEARCH_LEAST_STARTS: Final = 32
+"""Starts for each of the assemblies of the blocks before, where those are many; two packs a
+thread."""
+
+SEARCH_MOST_COLUMNS: Final = 65_536
+"""Starts in one call of the kernel; bounds the memory."""
+
 SEARCH_HOPELESS_STARTS: Final = 2048
 """A block of which not one of so many starts closed counts as not to be assembled there. Of the
 general loops measured at least 1 % of the starts close, so that all miss with chance 1e-9."""
 
-SEARCH_MOST_STARTS: Final = 16384
-"""A search that still finds new modes here says so instead of going on."""
+SEARCH_HOPELESS_WORK: Final = 1e9
+"""Multiplications, in the steps of the starts, after which a block without one closing is given up,
+though not before `SEARCH_LEAST_HOPELESS_STARTS` or after `SEARCH_HOPELESS_STARTS`; half a
+second."""
+
+SEARCH_LEAST_HOPELESS_STARTS: Final = 128
+"""Enough to find out about any block of which some percent of the starts close."""
+
+SEARCH_MOST_ROUND: Final = 8192
+"""Most starts of a round; rounds grow with what has been tried."""
+
+SEARCH_MOST_WORK: Final = 2e10
+"""Multiplications, in the steps of the starts, after which a search for all modes gives up; some
+seconds. At least `SEARCH_MOST_QUICK_STARTS` are made."""
+
+SEARCH_MOST_STARTS: Final = 262_144
+"""A search for all modes that could still miss many says so here instead of going on."""
+
+SEARCH_MOST_QUICK_STARTS: Final = 16_384
+"""The same for a search that is for one assembly."""
 
 SEARCH_MOST_MODES: Final = 1024
 """More different end points than this are no list of modes but a motion that is left with the
 inputs held; platforms have 40 modes."""
 
+SEARCH_MOST_PRODUCTS: Final = 16_384
+"""Assemblies of the whole mechanism: blocks that are independent multiply theirs, fourteen loops of
+two modes reach it."""
+
+SEARCH_MOST_PLACES: Final = 2048
+"""Assemblies of the blocks before at which a block is searched: two seconds."""
+
+SEARCH_FEW_PLACES: Final = 64
+"""Those that are gone on with where there are more, from there on."""
+
 SEARCH_NEW_MODE_CHANCE: Final = 1e-3
-"""Good-Turing estimate (modes met once, at least 1 / starts that closed) below which the search
-ends: more than a thousand closings."""
+"""Chance that one more start that closes finds a new mode, below which the search ends."""
+
+SEARCH_NEW_MODE_CHANCE_OF_MANY: Final = 0.03
+"""The same for a block that is searched at many places of the blocks before, at most; the chance
+grows with their number so that the starts do not."""
+
+SEARCH_DOUBT: Final = 0.01
+"""Chance that the bound stated for that chance does not hold."""
+
+ROOT_REGULAR: Final = 1e-3
+"""A loop's equations are reduced to one polynomial by divisors above this; errors grow with the
+square of its inverse."""
+
+ROOT_STATE_ERROR: Final = 1e-9
+"""Error of the states of blocks before, from the search, in a polynomial's coefficients: ten times
+the residual at which the search hands over."""
+
+ROOT_ROUNDING: Final = 1e-13
+"""Error of a polynomial's coefficients from rounding."""
+
+ROOT_LEAST_INTERVAL: Final = 1e-8
+"""Half interval (rad) at which the count of roots is given up: a double root but for rounding."""
 
 SAME_MODE: Final = 1e-7
 """Two assemblies whose poses differ less (lengths / size, direction cosines) are one. Newton
@@ -85,6 +143,10 @@ letters, so that rounding cannot change it."""
 
 NEAR_RUNNER_UP: Final = 1.2
 """Ratio of distances below which the nearest assembly is not clearly the one that was meant."""
+
+NEAR_FAR: Final = 0.5
+"""Distance (rad, parts of the size) of a named coordinate from the assembly taken above which the
+name is said to be missed: half a radian is more than a reading of a drawing leaves open."""
 
 NEAR_BALL: Final = 1.0
 """Radius (rad, parts of the size) of the ball about what `near` names up to which it is searched
@@ -183,6 +245,10 @@ MOST_COURSE_ORDER: Final = 8
 """Order in which inputs leave a rest: the change over a hundredth of a cell and half of it tells
 orders up to it from rounding."""
 
+COURSE_SLOW: Final = 0.5
+"""The same between two samples, above which no zero lies between them: samples are dense against
+the swing of a law."""
+
 COURSE_REST: Final = 1e-6
 """Rate, in parts of each input's fastest, up to which all of them rest: a zero of the rates is
 found to the root of a rounding where they only touch it."""
@@ -199,14 +265,23 @@ PATH_STRAY: Final = 1e-3
 """Distance of a row's inputs from the curve between two nodes in parts of the step: a twentieth of
 what a row filled in may be off."""
 
-CLOSING_ANGLE_STEP: Final = 0.1
-"""A step (rad, length units) that is longer is halved where the angle of a closing joint is not
-where its derivatives say. Shorter ones are taken: an angle may jump by half a turn where the two
-axes of a joint come into line, though the branch is regular there."""
+HALF_TURN_SIDE: Final = 1e-9
+"""Angles (rad) of the first row that are so near to half a turn are +180 degrees: on which side
+they lie is rounding of the drawing, of nine digits and more."""
 
-CLOSING_ANGLE_MISS: Final = 1.0
-"""Change of a closing joint's angle (rad) against its prediction above which whole turns are not
-sure."""
+CLOSING_ANGLE_STEP: Final = 1e-6
+"""A step (rad, length units) that is longer is halved where the angle of a closing joint is not
+where its rate, integrated, takes it. Shorter ones are taken: an angle may jump by half a turn where
+the two axes of a joint come into line, though the branch is regular there."""
+
+CLOSING_ANGLE_MISS: Final = 0.25
+"""Difference (rad) of a closing joint's angle from the integral of its rate over a step above which
+its whole turns are not sure: a turn is 25 times as much."""
+
+CLOSING_ANGLE_BEND: Final = 0.5
+"""Part (rad) that the rate's derivatives have in its integral over a step up to which the integral
+is taken as it is, and the difference up to which both halves of the step agree with it: the
+integral's error is a small part of either."""
 
 PLAN_STEP: Final = 1e-3
 """Part of a path of changing dimensions over which its derivatives are read: differences are wrong
@@ -214,8 +289,8 @@ by its square, 1e-6, and rounding leaves 1e-10 in the second ones; both matter t
 only."""
 
 MOST_STEPS: Final = 20000
-"""Steps of one path. Measured: R-Sg-C takes 32 for 315 degrees; a path that needs thousands is no
-sweep."""
+"""Attempts that may take a path a longest step further; it may be as long as it likes. Measured:
+R-Sg-C takes 32 steps for 315 degrees, and halvings down to `LEAST_STEP` are 50."""
 
 # --- dead centres ------------------------------------------------------------------------------
 
@@ -250,7 +325,7 @@ side: short against the way between two of them, long against its own doubt of 1
 
 SAME_TURN: Final = 1e-12
 """Turns by which two rows' inputs may differ from a whole number of them and still stand for the
-same place: decimal degrees become radians by one rounding."""
+same place: written numbers round at 1e-16 of their size."""
 
 MOST_BRANCHES: Final = 64
 """Branches of one circuit that are walked through."""
@@ -295,6 +370,11 @@ CONDITION_RANK_UNCLEAR: Final = 1e12
 """Above it rates and reactions of a row have no digit that means anything; its position still
 has."""
 
+REACTION_ROUNDING: Final = 1e-12
+"""Rounding of reactions in parts of the largest in the mechanism, in whatever joint it is met: a
+cell that moves no more than with this keeps its value. Measured: 1e-15 to 1e-13; what depends on
+the null space moves by about the largest reaction itself."""
+
 UNIQUE_CELL: Final = 1e-9
 """Change of a cell, in parts of its column's largest value, when a part of the null space is added
 to the reactions: above it the cell is not unique. Rounding leaves 1e-13, a cell that moves moves by
@@ -303,9 +383,28 @@ about its own size."""
 AXES_SQUARE: Final = 1e-9
 """Inertia axes must be square to this (cosine): typed numbers have nine digits and more."""
 
-ON_LINE: Final = 1e-9
+ON_LINE: Final = 2e-8
 """Parts of a leg's length (of the largest entry of a tensor) up to which a mass centre lies on the
-line of its spheres (a tensor is symmetric about it): written numbers have nine digits and more."""
+line of its spheres (a tensor is symmetric about it): nine written digits are half a unit of the
+last off, 5e-9, and up to four such numbers tell a place and the line."""
+
+LEG_SLIDE: Final = 1e-7
+"""Sine of the angle between a leg's slide and the line of its spheres up to which it is a leg: the
+distance of the spheres then is off by its square, 1e-14, and nine written digits stay below."""
+
+COMMON_MOTION: Final = 1e-7
+"""Pivot (rad, parts of the size) up to which two joints of a link have a motion in common: a line
+that is off by this, as numbers of nine digits may leave it, is off the motion held in its place by
+no more than was written."""
+
+SAME_COMMON_MOTION: Final = 1e-6
+"""Difference of a common motion at two general places (rad, parts of the size) up to which a link
+carries its line along: ten times what `COMMON_MOTION` lets pass; others differ by their own
+size."""
+
+HELD_RATE: Final = 1e-3
+"""Least rate of a coordinate in an idle motion, in parts of its fastest, to be held in its place:
+one that hardly moves would not hold it."""
 
 LOOP_RANK: Final = 1e-6
 """Pivot of a loop's screws (moments in sizes) below which they are dependent as drawn: written
@@ -360,6 +459,10 @@ SMALLEST_SIZE: Final = 1e-100
 """Size of a drawing in m below which it is a slip of the pen: the inverse of its square is the last
 that stays a double with what it is multiplied by; atoms are drawn with 1e-10."""
 
+GRAVITY_ON_EARTH: Final = 0.025
+"""Parts of standard gravity by which a number may differ and still be meant as gravity: on Earth it
+varies by 0.004, and 10 m/s^2 is its round number."""
+
 LARGEST_FACTOR: Final = 1e30
 """Size in SI beyond which (or below whose inverse) a unit of a file is taken for a mistake."""
 
@@ -390,8 +493,16 @@ reach it."""
 MOBILITY_TIGHT: Final = 1e-14
 """Newton ends here: some roundings of the equations."""
 
+MOBILITY_NEAR: Final = 1e-12
+"""Loops open by less are closed but for rounding: they are left where a step gains no tenth."""
+
 MOBILITY_ITERATIONS: Final = 80
 """Newton halves the distance to a configuration that is singular; 80 halvings leave nothing."""
+
+MOBILITY_DAMPING: Final = 1e-7
+"""Least damping of a step, in parts of a unit rate: far below singular values that count, far above
+those of redundant constraints in a drawing with ten digits. Measured at 1e-10: steps along these
+led astray by a tenth of a move."""
 
 MOBILITY_RANK: Final = 1e-11
 """Singular values below this part of the largest are left out of a Newton step: above rounding, far
@@ -415,17 +526,85 @@ MOBILITY_STUCK: Final = 8
 MOBILITY_STARTS: Final = 40
 """Random poses tried where the drawing itself leads to no assembly."""
 
-MOBILITY_STEP: Final = 0.1
-"""Finite step along a motion (largest turn in rad or length in parts of the size): its square is
-far above rounding, and Newton still returns to the same branch."""
+MOBILITY_MOVES: Final = ((0.1, 1e-9), (0.025, 4e-12))
+"""Moves from the first configuration by their largest step (rad, parts of the size), and how far
+loops may be open after them: what touches in fourth order leaves 1e-4 and 4e-7 times its curvature,
+which must not pass for a motion. The second is tried where the first is too long to tell."""
 
-MOBILITY_TRIES: Final = 8
-"""Directions tried from one configuration; one in a subspace of motions suffices if the motion is
-finite."""
+MOBILITY_FAR_MOVE: Final = (0.3, 1e-9)
+"""The move that is tried where the first leaves loops all but closed: what touches in fourth order
+is open by a hundred times more."""
 
-MOBILITY_CONFIGURATIONS: Final = 3
-"""Configurations along the motion at which the rank is taken besides the first: at a special one
-it drops, at a general one it is the least freedom seen."""
+MOBILITY_CHORDS: Final = (0.3, 0.1)
+"""Chords that tell the dimension, in parts of the move that led there: 0.03 and 0.01 (rad, parts of
+the size) leave curvature small and touching of high order visible."""
+
+MOBILITY_CHORD_RANK: Final = (0.3, 0.7)
+"""Singular values of chords along an orthonormal frame are 1 along the component and 0 across, but
+for its curvature; between these two they tell nothing."""
+
+MOBILITY_CHORD_DOUBT: Final = 1e-4
+"""Rates read from chords below which a coordinate stands still: closing where equations are squared
+is sure to the root of a rounding, 1e-7, over a chord of 0.01."""
+
+MOBILITY_STRAYED: Final = 0.4
+"""How far a move may be closed from where it was meant to end, in parts of its length: by its
+curvature, a tenth, and not by half a right angle as from one component to another."""
+
+MOBILITY_RANK_REACHED: Final = 1e-5
+"""Singular values below this part of the largest count as zero at a configuration that was reached:
+where equations are squared its place is sure to 1e-7 only, and a regular one 0.1 from a singular
+one has 1e-3 at least."""
+
+MOBILITY_OPEN: Final = 1e-7
+"""Loops that a move leaves open by less, but do not close, are no clear answer: a motion of fourth
+order leaves 1e-4 times its curvature, written dimensions of eight digits 1e-8."""
+
+MOBILITY_GROWTH: Final = 16.0
+"""Growth of what loops are open by from the first move to the far one, three times as long, below
+which written dimensions may be the cause: what touches in third order grows 27 times, dimensions
+that are off by a little less than 9 times."""
+
+MOBILITY_SPHERE: Final = 1e-3
+"""How far (rad, parts of the size) from its sphere a move may end."""
+
+MOBILITY_DIFFERENCE: Final = 1e-4
+"""Step of the central differences of Jacobians: errors 1e-8 by its square, 1e-12 by rounding."""
+
+MOBILITY_FORM: Final = 1e-6
+"""Bifurcation equations with smaller coefficients say nothing: a hundred errors of the
+differences."""
+
+MOBILITY_DIRECTIONS: Final = 64
+"""Random starts for the directions that solve the bifurcation equations; eight lines, what three
+forms in four unknowns have, are all met but for one case in a thousand."""
+
+MOBILITY_HEADINGS: Final = 16
+"""Directions, far from each other, that are followed either way."""
+
+MOBILITY_FREE_HEADINGS: Final = 32
+"""Headings of which the bifurcation equations say nothing that are followed either way. Measured on
+platforms whose screw motion meets their translations in third order: one in ten to one in three
+leads to it, so that all miss it in one case of 800."""
+
+MOBILITY_LONE_HEADINGS: Final = 4
+"""Headings in which single links move, too: spins as a rule, which change nothing."""
+
+MOBILITY_PLACES: Final = (4, 16)
+"""Least and largest number of places reached, far from each other, whose dimension is told."""
+
+MOBILITY_OTHERS: Final = 8
+"""Configurations at which what seems idle at one must be idle, too."""
+
+MOBILITY_WORK: Final = 200
+"""Motions of first order at all these places together: between least and largest, they are fewer
+where there are many motions to try at each."""
+
+MOBILITY_SAME_DIRECTION: Final = 5e-3
+"""Two unit vectors whose cosine is nearer to 1 are one direction (6 degrees)."""
+
+MOBILITY_TRIES: Final = 6
+"""Places of falling rank that are tried one after the other for a general one."""
 
 THREAD_ROWS: Final = 512
 """Rows that make a thread worth waking: at 0.3 us a row or more, ten times the 15 us that it takes

@@ -172,6 +172,8 @@ def test_bad_unit(text: str, offset: int, words: str) -> None:
         (MILLIMETRE, DAMPING, "kN*ms/mm"),
         (MILLIMETRE, MOMENT * ANGLE, "kN*mm"),
         (MILLIMETRE, MASS, "kg"),
+        (MILLIMETRE, TORSIONAL_DAMPING, "kN*mm*s/rad"),
+        (MILLIMETRE, TORSIONAL_STIFFNESS, "kN*mm/rad"),
     ],
 )
 def test_label(units: UnitSystem, dimension: Dimension, label: str) -> None:

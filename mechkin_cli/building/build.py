@@ -10,22 +10,22 @@ from typing import NamedTuple
 
 from mechkin_cli.building.assembly import build_assembly, build_follow
 from mechkin_cli.building.columns import build_tables, used_quantities
-from mechkin_cli.building.fields import Fields, Path, read_parameters, read_units
+from mechkin_cli.building.fields import Fields, Path, read_parameters
 from mechkin_cli.building.linkage import build_linkage, is_link
 from mechkin_cli.building.loads import LoadBuilder
 from mechkin_cli.building.memory import row_limit
 from mechkin_cli.building.motion import build_motion
 from mechkin_cli.building.sizes import check_blocks, check_size
 from mechkin_cli.building.source import Source
+from mechkin_cli.building.unit_system import note_force_unit, read_units
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
+from mechkin_cli.mechanism.held import held_freedoms
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.model import Attached, Link, Mechanism
-from mechkin_cli.mechanism.motion import Motion
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.reading.parser import in_order
 from mechkin_cli.schema.file import MechanismFile
-from mechkin_cli.schema.units_section import UnitsSection
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
@@ -61,11 +61,19 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
         timed = problem.motion.time is not None
         names = [driven.name for driven in problem.motion.inputs]
         tables = (default_table(problem.mechanism.coordinates, names, timed=timed),)
+    if file.loads or needs_forces(problem, tables):
+        note_force_unit(fields)
     follow = build_follow(fields, file.follow, problem.mechanism.joints)
     problem = replace(problem, hold_idle=file.idle == "hold", follow=follow)
-    graph = _graph(fields, file, problem.mechanism, problem.motion)
+    if not fields.error_count:
+        problem = replace(problem, held=held_freedoms(problem.mechanism, problem.motion.driven))
+    graph = _graph(fields, file, problem)
     if isinstance(graph, SolverGraph):
         check_spins(fields, problem, tables)
+        if problem.held:
+            from mechkin_cli.mechanism.idle import without_spin
+
+            problem = without_spin(problem)
     errors = [d for d in fields.diagnostics if d.severity == "error"]
     if errors or graph is None:
         raise InvalidFile(in_order(fields.diagnostics))
@@ -75,7 +83,7 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
 
 def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fields:
     """Units and parameters of a file, `given` as in `build`; what is wrong is noted."""
-    units, wrong_units = read_units(source.document, _unit_texts(source.file.units))
+    units, wrong_units = read_units(source.document, source.file.units)
     fields = Fields(source.document, units, diagnostics=wrong_units)
     read_parameters(fields, source.file.parameters, given)
     return fields
@@ -116,7 +124,8 @@ def _directions(
 
 def check_spins(fields: Fields, problem: Problem, tables: Sequence[TableLayout]) -> None:
     """Where forces are wanted, what spins freely must have no cause to spin."""
-    if not (find_legs(problem.mechanism) and needs_forces(problem, tables)):
+    idle = find_legs(problem.mechanism) or problem.held
+    if not (idle and needs_forces(problem, tables)):
         return
     from mechkin_cli.mechanism.idle import spin_errors
 
@@ -132,11 +141,6 @@ def needs_forces(problem: Problem, tables: Sequence[TableLayout]) -> bool:
     return bool(demand_of(problem.mechanism, wanted) & Demand.FORCES)
 
 
-def _unit_texts(section: UnitsSection) -> dict[str, str]:
-    names = ("length", "angle", "mass", "force", "time", "angular_rate")
-    return {name: getattr(section, name) for name in names}
-
-
 def _place_of(file: MechanismFile, joints: Sequence[str]) -> Path:
     """Where the first of some joints is written."""
     for i, row in enumerate(file.chain):
@@ -146,14 +150,15 @@ def _place_of(file: MechanismFile, joints: Sequence[str]) -> Path:
 
 
 def _graph(
-    fields: Fields, file: MechanismFile, mechanism: Mechanism, motion: Motion
+    fields: Fields, file: MechanismFile, problem: Problem
 ) -> SolverGraph | Diagnostic | None:
     """The solver graph; only asked for when the parts are sound, to avoid follow-up errors."""
-    if fields.error_count or not check_size(fields, mechanism):
+    if fields.error_count or not check_size(fields, problem.mechanism):
         return None
     try:
-        graph = build_graph(mechanism, motion.driven)
+        graph = build_graph(problem.solved_mechanism, problem.driven)
     except UnsolvableGraph as error:
-        path = ("motion", "inputs") if motion.inputs else _place_of(file, error.joints)
+        driven = problem.motion.inputs
+        path = ("motion", "inputs") if driven else _place_of(file, error.joints)
         return error.diagnostic._replace(place=fields.document.place(path))
     return graph if check_blocks(fields, graph) else None

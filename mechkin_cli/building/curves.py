@@ -6,20 +6,20 @@ and in the units of the mechanism file. Errors name the line and column of the C
 
 from __future__ import annotations
 
-import stat
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from mechkin_cli.building.fields import Fields
+from mechkin_cli.building.fields import Fields, is_tiny_length
 from mechkin_cli.building.fields import Path as KeyPath
 from mechkin_cli.diagnostics import Diagnostic, Place
 from mechkin_cli.expressions import literal
 from mechkin_cli.expressions.limits import MAX_QUOTED
 from mechkin_cli.mechanism.curve import Curve, smooth_curve
 from mechkin_cli.reading.limits import MOST_BYTES
-from mechkin_cli.tolerances import LARGEST_NUMBER
+from mechkin_cli.regular_file import NotRegular, read_regular
+from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
 from mechkin_cli.units import Dimension
 
 CODE = "csv-table"
@@ -104,10 +104,9 @@ def read_rows(
 
 def _text(file: Path) -> str:
     try:
-        if not stat.S_ISREG(file.stat().st_mode):
-            raise _BadTable(0, 0, "is not a regular file", "name a CSV file")
-        with file.open("rb") as stream:
-            content = stream.read(MOST_BYTES + 1)
+        content = read_regular(file, MOST_BYTES)
+    except NotRegular:
+        raise _BadTable(0, 0, "is not a regular file", "name a CSV file") from None
     except FileNotFoundError:
         hint = "the path leads from the folder of the mechanism file"
         raise _BadTable(0, 0, "does not exist", hint) from None
@@ -170,4 +169,7 @@ def _check_size(
     for row in rows:
         if abs(row[i + 1]) > largest:
             text = f"{row[i + 1]:.4g} is too large to compute with (limit {largest:.4g})"
+            raise _BadTable(row[0], 1, text, "check its exponent and unit")
+        if is_tiny_length(fields.units.to_si(row[i + 1], dimension), dimension):
+            text = f"{row[i + 1]:.4g} is a length below {SMALLEST_SIZE:g} m"
             raise _BadTable(row[0], 1, text, "check its exponent and unit")

@@ -22,10 +22,20 @@ from mechkin_cli.reading.document import Document
 from mechkin_cli.reading.limits import MOST_DIAGNOSTICS
 from mechkin_cli.reading.parser import CORRECT_FIRST, in_order
 from mechkin_cli.tape.scalars import is_number
-from mechkin_cli.tolerances import LARGEST_NUMBER
-from mechkin_cli.units import Dimension, UnitError, UnitSystem
+from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
+from mechkin_cli.units import LENGTH, Dimension, UnitSystem
 
 Path = tuple[str | int, ...]
+
+
+def is_tiny_length(in_si: object, dimension: Dimension) -> bool:
+    """Whether a value is a length (m) that is not zero, but too small to be divided by.
+
+    Recorded numbers never are: the values that they come from have been judged.
+    """
+    if dimension != LENGTH or not isinstance(in_si, float):
+        return False
+    return 0.0 < abs(in_si) < SMALLEST_SIZE
 
 
 class AlreadyRefused(ExpressionError):
@@ -111,7 +121,8 @@ class Fields:
     def number(self, path: Path, text: str, dimension: Dimension) -> float:
         """The SI value of a scalar field; a bare number takes the field's unit."""
         try:
-            return self._bounded(path, constant(text, dimension, self.units, self.resolve))
+            value = constant(text, dimension, self.units, self.resolve)
+            return self._bounded(path, value, value, dimension)
         except ExpressionError as error:
             self.expression_error(path, error)
             return 0.0
@@ -120,24 +131,32 @@ class Fields:
         """The value of a scalar field in the file's units, a bare number exactly as written."""
         try:
             value = constant_in_file_units(text, dimension, self.units, self.resolve)
-            return self._bounded(path, value)
+            return self._bounded(path, value, self.units.to_si(value, dimension), dimension)
         except ExpressionError as error:
             self.expression_error(path, error)
             return 0.0
 
-    def _bounded(self, path: Path, value: float) -> float:
-        if abs(value) <= LARGEST_NUMBER:
+    def _bounded(self, path: Path, value: float, in_si: float, dimension: Dimension) -> float:
+        """The value, or zero and an error where it cannot be computed with."""
+        if is_tiny_length(in_si, dimension):
+            self._refuse_size(path, "too-small", "this length is too small", in_si, SMALLEST_SIZE)
+        elif abs(value) <= LARGEST_NUMBER:
             return value
-        self.error(
-            "too-large",
-            path,
-            "this number is too large to compute with",
-            "check its exponent and unit",
-            measured=f"{value:.4g}",
-            limit=f"{LARGEST_NUMBER:g}",
-            numbers=(Number("value", value, limit=LARGEST_NUMBER),),
-        )
+        else:
+            self._refuse_size(path, "too-large", "this number is too large", value, LARGEST_NUMBER)
         return 0.0
+
+    def _refuse_size(self, path: Path, code: str, what: str, value: float, limit: float) -> None:
+        unit = "m" if limit == SMALLEST_SIZE else ""
+        self.error(
+            code,
+            path,
+            f"{what} to compute with",
+            "check its exponent and unit",
+            measured=f"{value:.4g} {unit}".rstrip(),
+            limit=f"{limit:g} {unit}".rstrip(),
+            numbers=(Number("value", value, unit, limit=limit),),
+        )
 
     def vector(self, path: Path, texts: Sequence[str], dimension: Dimension) -> Vector:
         """The SI value of a field of three scalars."""
@@ -183,16 +202,6 @@ class Fields:
             self.error("expression", path, "expected one number")
             return 1.0, quantity.dimension
         return quantity.value, quantity.dimension
-
-
-def read_units(document: Document, texts: Mapping[str, str]) -> tuple[UnitSystem, list[Diagnostic]]:
-    """The file's unit system, and what is wrong with it."""
-    try:
-        return UnitSystem.from_mapping(texts), []
-    except UnitError as error:
-        path: Path = ("units", error.key) if error.key else ("units",)
-        place = document.place_in(path, error.offset)
-        return UnitSystem(), [Diagnostic("unit", "error", error.message, place, hint=error.hint)]
 
 
 def read_parameters(

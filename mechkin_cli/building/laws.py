@@ -3,7 +3,8 @@
 All is computed in the file's units, so that numbers come out as they were written. With t from the
 first moment of `time` and u = (moment - start)/duration:
 
-- constant rate, constant acceleration, polynomial: x = c0 + c1 t + c2 t^2 + ...
+- constant rate, constant acceleration, polynomial: x = c0 + c1 t + c2 t^2 + ...; bare
+  coefficients must be in the file's angle (length) and time throughout
 - harmonic: x = from + (to - from) (1 - cos(pi u))/2
 - cycloidal: x = from + (to - from) (u - sin(2 pi u)/(2 pi)); both rest before and after, and the
   first and the last moment of the rise belong to it
@@ -21,6 +22,7 @@ import numpy as np
 from mechkin_cli.arrays import Floats
 from mechkin_cli.building.coordinates import dimension_of
 from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.expressions import literal
 from mechkin_cli.schema.laws import (
     ConstantAcceleration,
     ConstantRate,
@@ -85,6 +87,7 @@ def _polynomial(
     fields: Fields, path: Path, law: Polynomial, coordinate: str, clock: Clock
 ) -> Floats:
     coefficients = _of_polynomial(fields, path, law, coordinate)
+    _check_units(fields, (*path, "coefficients"), law, coordinate)
     return _power_series(fields.units, coordinate, coefficients, clock)
 
 
@@ -93,6 +96,24 @@ def _of_polynomial(fields: Fields, path: Path, law: Polynomial, coordinate: str)
         fields.written((*path, "coefficients", k), text, dimension_of(coordinate, k))
         for k, text in enumerate(law.coefficients)
     ]
+
+
+def _check_units(fields: Fields, path: Path, law: Polynomial, coordinate: str) -> None:
+    """Refuses bare coefficients that two readings make different numbers of: in a row of
+    coefficients of an angle in deg, the next may be meant in deg/s or in the file's rad/s."""
+    for k, text in enumerate(law.coefficients):
+        if k == 0 or not literal(text):
+            continue
+        units, dimension = fields.units, dimension_of(coordinate, k)
+        own, alike = units.unit(dimension), units.unit(dimension_of(coordinate))
+        alike *= units.unit(TIME) ** -k
+        if own.factor != alike.factor:
+            fields.error(
+                "bare-coefficient",
+                (*path, k),
+                f"{text.strip()} may be meant in {alike} or in {own}",
+                f"write the unit behind the number, such as {text.strip()} {alike}",
+            )
 
 
 def _power_series(

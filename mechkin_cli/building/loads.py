@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from mechkin_cli.building.coordinates import CODE, without
 from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.building.gravity import gravity_of
 from mechkin_cli.expressions import ExpressionError, parse
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.model import (
@@ -39,7 +40,6 @@ from mechkin_cli.schema.loads import (
     TorqueOnLink,
 )
 from mechkin_cli.units import (
-    ACCELERATION,
     ANGLE,
     DAMPING,
     FORCE,
@@ -93,8 +93,7 @@ class LoadBuilder:
 
     def _add(self, path: Path, section: AnyLoad) -> None:
         if isinstance(section, Gravity):
-            g = self.fields.vector((*path, "g"), section.g, ACCELERATION)
-            self.gravity = add(self.gravity, g)
+            self.gravity = add(self.gravity, gravity_of(self.fields, path, section))
         elif isinstance(section, (ForceOnJoint, TorqueOnJoint)):
             self._add_to_joint(path, section)
         elif isinstance(section, (ForceOnLink, TorqueOnLink)):

@@ -15,6 +15,7 @@ from mechkin_cli.building.build import Built, build_problem, check_spins, read_f
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.tape.recorder import Recorder
+from mechkin_cli.tape.scalars import Recorded
 from mechkin_cli.tape.traced import Traced, TraceLost
 
 
@@ -41,9 +42,33 @@ def record(built: Built, names: Sequence[str]) -> Recording:
     fields = read_fields(built.read, given)
     problem = build_problem(fields, built.read.file)
     problem = replace(
-        problem, hold_idle=base.hold_idle, follow=base.follow, diagnostics=base.diagnostics
+        problem,
+        hold_idle=base.hold_idle,
+        held=base.held,
+        follow=base.follow,
+        diagnostics=base.diagnostics,
     )
+    _refuse_varied_lines(problem)
     check_spins(fields, problem, built.tables)
     if fields.error_count:
         raise TraceLost("the recording came to an error that the file does not have")
+    if problem.held:
+        from mechkin_cli.mechanism.idle import without_spin
+
+        problem = without_spin(problem)
     return Recording(recorder, problem)
+
+
+def _refuse_varied_lines(problem: Problem) -> None:
+    """What is held is idle as long as the joints around it lie as they are drawn.
+
+    Raises:
+        TraceLost: one of them depends on a parameter.
+    """
+    for held in problem.held:
+        for name in held.joints:
+            joint = problem.mechanism.joints[name]
+            drawn = [*joint.on_first, *joint.on_second]
+            numbers = [joint.lead, *(number for vector in drawn for number in vector)]
+            if any(isinstance(number, Recorded) for number in numbers):
+                raise TraceLost(f"whether {held.words} depends on a parameter")

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Progress, Record, put, refusal, say, say_diagnostics
+from mechkin_cli.cli.messages import Progress, Record, put, put_json, refusal, say, say_diagnostics
 from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.tables.writers import USUAL_FORMATS, WRITERS, Results, written_files
@@ -30,6 +30,7 @@ class _Request:
     explain: bool
     json: bool
     quiet: bool
+    strict: bool
 
 
 def analyze_files(
@@ -44,6 +45,7 @@ def analyze_files(
     explain: bool = False,
     json: bool = False,
     quiet: bool = False,
+    strict: bool = False,
 ) -> ExitCode:
     """Runs the sweep of each file and writes its tables.
 
@@ -57,7 +59,7 @@ def analyze_files(
     force_width(lanes)
     force_threads(threads)
     request = _Request(
-        parameters(set_), mode, table, _formats(format), threads, explain, json, quiet
+        parameters(set_), mode, table, _formats(format), threads, explain, json, quiet, strict
     )
     code = ExitCode.OK
     records: list[Record] = []
@@ -69,19 +71,20 @@ def analyze_files(
         progress.step(number)
     progress.end()
     if json:
-        from mechkin_cli.tables.json_writer import json_text
-
-        put(json_text(records[0] if len(files) == 1 else {"files": records}))
+        put_json(records[0] if len(files) == 1 else {"files": records})
     return code
 
 
 def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]:
     """Runs one file; what is wrong with it does not stop the others."""
     from mechkin_cli.interface import load
+    from mechkin_cli.tables.files import OutputFolder
 
     try:
-        analysis = load(path, request.settings).analyze(tables=request.tables, mode=request.mode)
-        written = _write(folder, analysis, request)
+        model = load(path, request.settings)
+        with OutputFolder(folder) as output:
+            analysis = model.analyze(tables=request.tables, mode=request.mode)
+            written = output.write(_files(analysis, request))
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
     say_diagnostics(analysis.diagnostics, str(path))
@@ -94,7 +97,9 @@ def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]
             record["explanation"] = explanation(analysis).split("\n")
     else:
         _report(path, analysis, folder, written, request)
-    return ExitCode.OK if analysis.result.complete else ExitCode.ROWS_MISSING, record
+    result = analysis.result
+    enough = result.complete and (result.sound or not request.strict)
+    return ExitCode.OK if enough else ExitCode.ROWS_MISSING, record
 
 
 def _formats(given: list[str] | None) -> tuple[str, ...]:
@@ -124,13 +129,11 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
     return folders
 
 
-def _write(folder: Path, analysis: Analysis, request: _Request) -> list[Path]:
-    """Writes the tables and rows.csv, all or none."""
-    from mechkin_cli.tables.files import write_files
-
+def _files(analysis: Analysis, request: _Request) -> dict[str, bytes]:
+    """The tables and rows.csv."""
     name, tables, result = analysis.model.name, analysis.tables, analysis.result
     results = Results(name, tables, result, analysis.diagnostics, request.threads)
-    return write_files(folder, written_files(results, request.formats))
+    return written_files(results, request.formats)
 
 
 def _record(analysis: Analysis) -> Record:

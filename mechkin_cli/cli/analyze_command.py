@@ -36,6 +36,10 @@ def analyze(
         int,
         typer.Option("--threads", metavar="N", help="Threads that split the rows; 0: all cores."),
     ] = 0,
+    strict: Annotated[
+        bool,
+        typer.Option("--strict", help="Exit with 4 where a row is near-singular or rank-unclear."),
+    ] = False,
     explain: Annotated[
         bool, typer.Option("--explain", help="Show the solver graph and what is skipped.")
     ] = False,
@@ -44,7 +48,7 @@ def analyze(
 ) -> None:
     """Run the sweep of each file and write its tables."""
     code = analyze_files(
-        files, out, format, set_, mode, table, lanes, threads, explain, json, quiet
+        files, out, format, set_, mode, table, lanes, threads, explain, json, quiet, strict
     )
     if code:
         raise typer.Exit(code)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 import typer
 
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Record, put, refusal, say_diagnostics
+from mechkin_cli.cli.messages import Record, put_json, refusal, say_diagnostics
 from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 
@@ -58,8 +58,6 @@ def answer(file: Path, settings: list[str] | None, json: bool, question: Questio
         else:
             question.show(model, found)
     if json:
-        from mechkin_cli.tables.json_writer import json_text
-
-        put(json_text(record))
+        put_json(record)
     if code:
         raise typer.Exit(code)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mechkin_cli.cli.messages import put_json
 from mechkin_cli.cli.options import Json
 
 if TYPE_CHECKING:
@@ -29,10 +30,8 @@ def bench(
     described = machine()
     tables = timing_tables(quick=quick)
     if json:
-        from mechkin_cli.tables.json_writer import json_text
-
         record: dict[str, object] = {"machine": described}
-        sys.stdout.write(json_text(record | {table.name: table.record() for table in tables}))
+        put_json(record | {table.name: table.record() for table in tables})
         return
     sys.stdout.write(", ".join(f"{name} {value}" for name, value in described.items()) + "\n")
     _print(tables)

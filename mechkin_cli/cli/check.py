@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import typer
 
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Record, put, refusal, say_diagnostics
+from mechkin_cli.cli.messages import Record, put, put_json, refusal, say_diagnostics
 from mechkin_cli.cli.options import Files, Json, Quiet, Set
 from mechkin_cli.cli.parameters import parameters
-from mechkin_cli.diagnostics import InvalidFile, UsageError
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 
 if TYPE_CHECKING:
     from mechkin_cli.interface import Model
@@ -27,9 +27,7 @@ def check(files: Files, set_: Set = None, json: Json = False, quiet: Quiet = Fal
         code = max(code, outcome)
         records.append(record | {"valid": outcome == ExitCode.OK})
     if json:
-        from mechkin_cli.tables.json_writer import json_text
-
-        put(json_text({"files": records}))
+        put_json({"files": records})
     if code:
         raise typer.Exit(code)
 
@@ -42,11 +40,26 @@ def _one(path: Path, settings: dict[str, str], silent: bool) -> tuple[ExitCode, 
         text = f"{path}: ok ({_sentence(model)})\n"
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
-    say_diagnostics(model.diagnostics)
+    found = (*model.diagnostics, *_input_faults(model))
+    say_diagnostics(found)
     if not silent:
         put(text)
-    diagnostics = [diagnostic.record() for diagnostic in model.diagnostics]
+    diagnostics = [diagnostic.record() for diagnostic in found]
     return ExitCode.OK, {"file": str(path), "diagnostics": diagnostics}
+
+
+def _input_faults(model: Model) -> list[Diagnostic]:
+    """What the drawing of an overconstrained mechanism tells of its inputs; by the count of their
+    equations its loops would be driven."""
+    from mechkin_cli.solver.graph import is_redundant
+
+    if not is_redundant(model.graph):
+        return []
+    from mechkin_cli.analysis.mobility.drawn import drawn_faults
+
+    path = ("motion", "inputs") if model.problem.motion.inputs else ("joints",)
+    place = model.built.read.document.place(path)
+    return [fault._replace(place=place) for fault in drawn_faults(model.problem)]
 
 
 def _sentence(model: Model) -> str:

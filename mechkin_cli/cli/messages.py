@@ -10,6 +10,7 @@ from typing import TextIO
 
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
+from mechkin_cli.legible import legible, whole
 
 Record = dict[str, object]
 """Plain data for `--json`."""
@@ -31,10 +32,23 @@ def put(text: str) -> None:
             sys.stdout.write(text)
         except UnicodeEncodeError:
             encoding = sys.stdout.encoding
-            sys.stdout.write(text.encode(encoding, "backslashreplace").decode(encoding))
+            whole_text = whole(text).encode(encoding, "backslashreplace")
+            sys.stdout.write(whole_text.decode(encoding))
         sys.stdout.flush()
     except OSError as error:
         stdout_failed(error)
+
+
+def put_json(record: object) -> None:
+    """One JSON object on stdout, in ASCII where stdout has another encoding than UTF-8.
+
+    Raises:
+        UsageError: stdout takes no more.
+    """
+    from mechkin_cli.tables.json_writer import json_text
+
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    put(json_text(record, ascii=encoding.lower().replace("_", "-") not in ("utf-8", "utf8")))
 
 
 def stdout_failed(error: OSError) -> None:
@@ -79,15 +93,8 @@ def _on_terminal() -> bool:
     return sys.stderr is not None and sys.stderr.isatty()
 
 
-def _visible(text: str) -> str:
-    """The text with control characters, which steer a terminal, as escape sequences."""
-    if text.isprintable():
-        return text
-    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
-
-
 def _fitted(text: str) -> str:
-    text = _visible(text)
+    text = legible(text)
     if not _on_terminal():
         return text
     from shutil import get_terminal_size

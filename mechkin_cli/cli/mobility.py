@@ -32,6 +32,7 @@ def _record(found: Mobility) -> Record:
         "count": found.count,
         "mobility": found.mobility,
         "first_order": found.first_order,
+        "dimensions": list(found.dimensions),
         "loops": found.loops,
         "configurations": found.configurations,
         "inputs": list(found.inputs),
@@ -51,17 +52,27 @@ def _record(found: Mobility) -> Record:
     }
 
 
+def _truth(found: Mobility) -> str:
+    """Finite and first-order freedom, inputs among them."""
+    from mechkin_cli.analysis.mobility.words import meeting
+
+    first = "" if found.first_order is None else f"; to first order {found.first_order}"
+    if found.mobility is None:
+        return f"unclear{first}"
+    text = str(found.mobility)
+    if len(found.dimensions) > 1:
+        text += f", where motions of {meeting(found.dimensions)} freedoms meet"
+    same = found.first_order == found.mobility and len(found.dimensions) == 1
+    return f"{text}, to first order, too" if same else text + first
+
+
 def _lines(found: Mobility, quiet: bool) -> list[str]:
     lines = [f"{found.name}: {found.verdict}"]
     if quiet:
         return lines
-    truth = "unclear" if found.mobility is None else str(found.mobility)
-    if found.first_order != found.mobility:
-        truth += f" ({found.first_order} to first order at the first configuration)"
-    places = f"by rank at {found.configurations} configuration{'s' * (found.configurations > 1)}"
     rows = [
         ("count", f"{found.count} (Kutzbach)"),
-        ("mobility", f"{truth}, {places}" if found.configurations else truth),
+        ("mobility", _truth(found)),
         ("loops", str(found.loops)),
         ("inputs", ", ".join(found.inputs) or "none"),
         *(("idle", item.sentence) for item in found.idle),

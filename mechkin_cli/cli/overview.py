@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import put, say
+from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.tables.overview import MARK, PAGE, OverviewRow, overview_page
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def keep_overview(
     `left`.
     """
     page, fresh = folder / PAGE, overview_page(rows).encode()
-    old = page.read_bytes() if page.is_file() else None
+    old = _content(page) if page.is_file() else None
     if old is not None and not old.startswith(MARK.encode()):
         if not quiet:
             say(f"{page}: left alone, it does not begin with {MARK}")
@@ -71,6 +72,15 @@ def keep_overview(
         write_files(folder, {PAGE: fresh})
         return ExitCode.OK, "written"
     return _compared(page, fresh, old, json)
+
+
+def _content(page: Path) -> bytes:
+    from mechkin_cli.regular_file import MOST_TABLE_BYTES, read_regular
+
+    try:
+        return read_regular(page, MOST_TABLE_BYTES)
+    except OSError as error:
+        raise UsageError(f"cannot read {page}: {error.strerror}; make it readable") from None
 
 
 def _compared(page: Path, fresh: bytes, old: bytes | None, json: bool) -> tuple[ExitCode, str]:

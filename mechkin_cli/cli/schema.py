@@ -29,11 +29,7 @@ def schema(
     text = json_schema_text()
     if check:
         path = out or COMMITTED
-        try:
-            committed = path.read_text(encoding="utf-8")
-        except OSError as error:
-            raise UsageError(f"cannot read {path}: {error.strerror}") from None
-        if committed != text:
+        if _content(path) != text.encode():
             say(f"{path} is not up to date; run: mechkin schema --out {path}")
             raise typer.Exit(ExitCode.DIFFERENCES)
         say(f"{path} is up to date")
@@ -43,3 +39,13 @@ def schema(
         write_files(out.parent, {out.name: text.encode()})
     else:
         put(text)
+
+
+def _content(path: Path) -> bytes:
+    from mechkin_cli.regular_file import MOST_TABLE_BYTES, read_regular
+
+    try:
+        return read_regular(path, MOST_TABLE_BYTES)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise UsageError(f"cannot read {path}: {reason}") from None

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mechkin_cli.legible import legible
 from mechkin_cli.tables.columns import Column, Columns, Words
 from mechkin_cli.tables.decimal_text import column_texts
 
@@ -48,7 +49,7 @@ def _grouped(table: Columns, rows: Sequence[int], width: int) -> Iterator[list[s
 
 
 def _one_line(text: str) -> str:
-    return " ".join(text.split())
+    return legible(" ".join(text.split()), also="")
 
 
 def _chosen_rows(rows: int) -> list[int]:

@@ -21,9 +21,9 @@ IDLE_SHOWN = 2
 
 
 def summary(path: Path, analysis: Analysis, folder: Path, written: list[Path]) -> list[str]:
-    """Lines: mobility, loops, branch, rows, worst residual and power error, files."""
+    """Lines: driven freedoms, loops, branch, rows, worst residual and power error, files."""
     result = analysis.result
-    rows = [("mobility", _mobility(analysis)), ("loops", _loops(analysis))]
+    rows = [("driven", _driven(analysis)), ("loops", _loops(analysis))]
     if result.mode:
         rows.append(("branch", _branch(analysis)))
     rows += [("rows", _rows(analysis)), ("worst", _worst(analysis))]
@@ -41,16 +41,19 @@ def _branch(analysis: Analysis) -> str:
     return f"mode {result.mode} ({result.how})" if result.how else result.mode
 
 
-def _mobility(analysis: Analysis) -> str:
-    """Every input is a freedom; a count by Kutzbach's formula that differs is told too."""
+def _driven(analysis: Analysis) -> str:
+    """How many freedoms are driven, by which inputs; a count by Kutzbach's formula that differs is
+    told too."""
     mechanism = analysis.model.problem.mechanism
     freedoms = sum(joint.type.freedoms for joint in mechanism.joints.values())
     count = freedoms - 6 * mechanism.loops
     inputs = [driven.name for driven in analysis.model.problem.motion.inputs]
-    names = ", ".join(inputs) or "nothing"
-    text = f"{len(inputs)}, driven by {names}"
-    idle = "".join(f"; {leg.words}" for leg in find_legs(mechanism)[:IDLE_SHOWN])
-    more = len(find_legs(mechanism)) - IDLE_SHOWN
+    plural = "freedom" if len(inputs) == 1 else "freedoms"
+    text = f"{len(inputs)} {plural} by {', '.join(inputs)}" if inputs else "nothing"
+    words = [leg.words for leg in find_legs(mechanism)]
+    words += [held.words for held in analysis.model.problem.held]
+    idle = "".join(f"; {text}" for text in words[:IDLE_SHOWN])
+    more = len(words) - IDLE_SHOWN
     idle += f"; and {more} more idle" if more > 0 else ""
     return (text if count == len(inputs) else f"{text} (Kutzbach's count: {count})") + idle
 

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Progress, Record, put, refusal, say, say_diagnostics
+from mechkin_cli.cli.messages import Progress, Record, put, put_json, refusal, say, say_diagnostics
 from mechkin_cli.cli.options import Json, Quiet
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
-    from mechkin_cli.interface import Analysis
+    from mechkin_cli.interface import Analysis, Model
     from mechkin_cli.tables.errata import PrintedTable
+    from mechkin_cli.tables.files import OutputFolder
     from mechkin_cli.tables.overview import OverviewRow
 
 MECHANISMS = Path("mechanisms")
@@ -60,9 +61,7 @@ def tables(
         outcome, found["overview"] = keep_overview(path, rows, check, json, quiet)
         code = max(code, outcome)
     if json:
-        from mechkin_cli.tables.json_writer import json_text
-
-        put(json_text(found))
+        put_json(found)
     if code:
         raise typer.Exit(code)
 
@@ -81,29 +80,47 @@ def _mechanism_files(path: Path) -> list[Path]:
 def _one(
     file: Path, check: bool, json: bool, quiet: bool, *, overview: bool
 ) -> tuple[ExitCode, Record, OverviewRow | None]:
-    from mechkin_cli.cli.overview import overview_row
+    """Computes one file's tables, and compares or writes them; alone in their folder if it does."""
     from mechkin_cli.interface import load
+    from mechkin_cli.tables.files import OutputFolder
+
+    model = load(file)
+    if check:
+        return _made(file, model, None, json, quiet, overview=overview)
+    if not file.stem.strip("."):
+        raise UsageError(f"{file}: a folder for its tables would be {file.stem}; rename the file")
+    with OutputFolder(file.with_suffix("")) as output:
+        return _made(file, model, output, json, quiet, overview=overview)
+
+
+def _made(
+    file: Path,
+    model: Model,
+    output: OutputFolder | None,
+    json: bool,
+    quiet: bool,
+    *,
+    overview: bool,
+) -> tuple[ExitCode, Record, OverviewRow | None]:
+    from mechkin_cli.cli.overview import overview_row
     from mechkin_cli.tables.against_print import against_print
 
-    analysis = load(file).analyze()
+    analysis = model.analyze()
     say_diagnostics(analysis.diagnostics, str(file))
     printed = against_print(file, analysis.layouts, analysis.tables)
     row = overview_row(file, analysis, printed) if overview else None
     fresh = _fresh_files(analysis, printed)
     code = ExitCode.OK if analysis.result.complete else ExitCode.ROWS_MISSING
-    folder = file.with_suffix("")
     record: Record = {
         "file": str(file),
         "diagnostics": [diagnostic.record() for diagnostic in analysis.diagnostics],
     }
-    if check:
-        outcome, compared = _compare(folder, fresh, json, quiet)
+    if output is None:
+        outcome, compared = _compare(file.with_suffix(""), fresh, json, quiet)
         return max(code, outcome), record | {"tables": compared}, row
-    from mechkin_cli.tables.files import write_files
-
-    written = write_files(folder, fresh)
+    written = output.write(fresh)
     if not quiet:
-        say(f"{folder}: {len(written)} files written")
+        say(f"{output.folder}: {len(written)} files written")
     return code, record | {"written": [str(path) for path in written]}, row
 
 

@@ -13,6 +13,7 @@ from mechkin_cli.expressions.expression import Expression, parse
 from mechkin_cli.expressions.nodes import Number
 from mechkin_cli.expressions.operand import Operand, Resolve, Site
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Vector
+from mechkin_cli.expressions.tokens import vanishes
 from mechkin_cli.tape.scalars import is_number
 from mechkin_cli.units import Dimension, UnitError, UnitSystem, conversion
 
@@ -38,7 +39,7 @@ def literal(text: str) -> float | None:
     if match is None:
         return None
     value = float(match[1] + match[2])
-    return value if math.isfinite(value) else None
+    return value if math.isfinite(value) and not vanishes(match[2], value) else None
 
 
 def constant(

@@ -57,7 +57,7 @@ def _elementary(
     operation: str, takes: Dimension, gives: Dimension
 ) -> Callable[[Site, Operand], Quantity]:
     def apply(site: Site, operand: Operand) -> Quantity:
-        value = site.scalar(operand)
+        value = site.periodic(operand) if takes == ANGLE else site.scalar(operand)
         site.require(operand, takes)
         return Quantity(of_one(operation, value), gives)
 
@@ -104,7 +104,7 @@ def _extreme(
 
 
 def _wrap(site: Site, operand: Operand) -> Quantity:
-    value = site.scalar(operand)
+    value = site.periodic(operand)
     site.require(operand, ANGLE)
     return Quantity(scalar_functions.wrap(value), ANGLE)
 

@@ -67,6 +67,15 @@ class Site(NamedTuple):
             )
         return operand.value
 
+    def periodic(self, operand: Operand) -> Scalar:
+        """The value of an operand of which whole turns do not matter.
+
+        Raises:
+            ExpressionError: it is a vector.
+        """
+        value = self.scalar(operand)
+        return value if operand.quantity.rest is None else operand.quantity.rest
+
     def vector(self, operand: Operand) -> Vector:
         """The value of an operand that must be a vector.
 

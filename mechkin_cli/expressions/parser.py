@@ -13,7 +13,7 @@ from mechkin_cli.expressions.functions import FUNCTIONS
 from mechkin_cli.expressions.limits import MAX_DEPTH, MAX_NODES, MAX_QUOTED
 from mechkin_cli.expressions.nodes import Name, Node, Number, Operation
 from mechkin_cli.expressions.number_unit import UnitReader
-from mechkin_cli.expressions.tokens import Token, tokenize
+from mechkin_cli.expressions.tokens import Token, tokenize, vanishes
 from mechkin_cli.nearest import nearest_hint
 
 _BINDING = {"+": 10, "-": 10, "*": 20, "/": 20, "^": 40, "**": 40}
@@ -103,6 +103,12 @@ class _Parser:
                 f"the number {token.text[:MAX_QUOTED]} is too large",
                 token.start,
                 "the largest is about 1.8e308",
+            )
+        if vanishes(token.text, value):
+            raise ExpressionError(
+                f"the number {token.text[:MAX_QUOTED]} is too small",
+                token.start,
+                "it would be read as zero; the smallest is about 1e-308",
             )
         if self.token.kind == "name":
             reader = UnitReader(self.tokens, self.position)

@@ -36,10 +36,12 @@ Value = Scalar | Vector
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Quantity:
-    """A value in SI and its dimension."""
+    """A value in SI and its dimension; of an angle that has turned, `rest` is the same without
+    whole turns, known more closely."""
 
     value: Value
     dimension: Dimension = DIMENSIONLESS
+    rest: Scalar | None = None
 
     @property
     def phrase(self) -> str:

@@ -44,6 +44,11 @@ _INSTEAD = {
 }
 
 
+def vanishes(text: str, value: float) -> bool:
+    """Whether a number was written that is not zero, and none of its digits are left."""
+    return value == 0.0 and any(digit in "123456789" for digit in text.lower().partition("e")[0])
+
+
 class Token(NamedTuple):
     """A piece of text from `start` to `end` (exclusive), both counted from the text's start."""
 

@@ -74,8 +74,10 @@ class Analysis:
         result = self._readable(expression.names)
         columns = self._columns(expression, result)
         others = [self._columns(expression, other) for other in result.alternatives]
+        disturbed = [self._columns(expression, other) for other in result.disturbed]
         settled = [
-            unique_cells(column, [other[i] for other in others]) for i, column in enumerate(columns)
+            unique_cells(column, [o[i] for o in others], [d[i] for d in disturbed])
+            for i, column in enumerate(columns)
         ]
         return np.stack(settled, axis=1) if len(settled) > 1 else settled[0]
 

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli.building.fields import is_tiny_length
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.expressions import ExpressionError, Quantity, constant
 from mechkin_cli.interface.arguments import Setting, a_setting, a_text, settings, shown
 from mechkin_cli.nearest import nearest_hint
-from mechkin_cli.tolerances import LARGEST_NUMBER
+from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
+from mechkin_cli.units import LENGTH
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -73,9 +75,9 @@ def _known(problem: Problem, given: Mapping[str, Any]) -> list[tuple[str, Quanti
 
 def _one(name: str, value: Setting, dimension: Dimension, units: UnitSystem) -> float:
     if not isinstance(value, str):
-        return _bounded(name, units.to_si(float(value), dimension), value)
+        return _bounded(name, units.to_si(float(value), dimension), value, dimension)
     try:
-        return _bounded(name, constant(value, dimension, units), value)
+        return _bounded(name, constant(value, dimension, units), value, dimension)
     except ExpressionError as error:
         unit = units.label(dimension)
         hint = error.hint or f"write a number with its unit, such as 1 {unit}".rstrip()
@@ -98,13 +100,20 @@ def _column(name: str, value: Any, dimension: Dimension, units: UnitSystem) -> F
         items = [a_setting(f"{name}[{k}]", item) for k, item in enumerate(value)]
         return np.array([_one(name, item, dimension, units) for item in items], dtype=np.float64)
     in_si = units.to_si(array.astype(np.float64), dimension)
-    wrong = np.flatnonzero(~(np.abs(in_si) <= LARGEST_NUMBER))
+    sizes = np.abs(in_si)
+    least = SMALLEST_SIZE if dimension == LENGTH else 0.0
+    wrong = np.flatnonzero(~((sizes <= LARGEST_NUMBER) & ((sizes >= least) | (sizes == 0.0))))
     if wrong.size:
-        _bounded(f"{name}[{wrong[0]}]", float(in_si[wrong[0]]), array[wrong[0]])
+        _bounded(f"{name}[{wrong[0]}]", float(in_si[wrong[0]]), array[wrong[0]], dimension)
     return in_si
 
 
-def _bounded(name: str, in_si: float, value: object) -> float:
+def _bounded(name: str, in_si: float, value: object, dimension: Dimension) -> float:
+    if is_tiny_length(in_si, dimension):
+        raise UsageError(
+            f"{name} = {str(value)[:LONGEST_NAME]} is a length below {SMALLEST_SIZE:g} m; write "
+            "another value or unit"
+        )
     if not abs(in_si) <= LARGEST_NUMBER:
         raise UsageError(
             f"{name} = {str(value)[:LONGEST_NAME]} is no finite number below {LARGEST_NUMBER:g} in "

@@ -177,7 +177,7 @@ class Model:
     def _refuse_loaded_spin(self, problem: Problem, names: Iterable[str]) -> None:
         """Forces need what spins freely to have no cause to spin."""
         known = problem.quantities()
-        if not find_legs(problem.mechanism):
+        if not (find_legs(problem.mechanism) or problem.held):
             return
         if demand_of(problem.mechanism, [known[name] for name in names]) & Demand.FORCES:
             from mechkin_cli.mechanism.idle import spin_errors

@@ -16,11 +16,12 @@ from mechkin_cli.interface.settings import input_values
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
 from mechkin_cli.nearest import nearest_hint
-from mechkin_cli.solver.closing_turns import turn_slots
+from mechkin_cli.solver.closing_turns import angle_slots
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
-from mechkin_cli.solver.inputs import input_unit
+from mechkin_cli.solver.inputs import held_values, input_unit, turn_of
 from mechkin_cli.solver.stepping import step_limits
+from mechkin_cli.solver.whole_turns import reduce_angle
 from mechkin_cli.status import Status
 from mechkin_cli.units import Conversion
 
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.interface.model import Model
     from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.solver.demand import Slot
     from mechkin_cli.solver.session import Session
 
 Cell = "float | NDArray[np.float64]"
@@ -76,25 +78,29 @@ class Solver:
         self.inputs = [item.name for item in problem.motion.inputs]
         self.first = [float(item.written[0]) for item in problem.motion.inputs]
         self.to_kernel = [
-            (units.conversion(known[item.name].dimension), unit)
+            (units.conversion(known[item.name].dimension), unit, turn_of(problem, item))
             for item, unit in zip(
                 problem.motion.inputs,
                 [input_unit(session.layout, item) for item in problem.motion.inputs],
                 strict=True,
             )
         ]
+        self.held = held_values(problem, session.layout)
         self.problem = problem
-        self.native = _native(result, session, readout.outputs, wanted, self.columns)
+        self.native = _native(result, session, readout.outputs, wanted, readout.slots)
 
     def solve(self, inputs: Setting | Mapping[str, Setting]) -> Position:
         """The position at some inputs."""
         places = dict(zip(self.inputs, self.first, strict=True))
         places.update(_plain(inputs, places) or input_values(self.problem, inputs))
-        values = [
-            conversion.apply(places[name]) / unit
-            for name, (conversion, unit) in zip(self.inputs, self.to_kernel, strict=True)
-        ]
-        found = None if self.native is None else self.native.solve(values)
+        values, whole = [], []
+        for name, (conversion, unit, turn) in zip(self.inputs, self.to_kernel, strict=True):
+            rest, turns = (places[name], 0.0) if turn is None else reduce_angle(places[name], turn)
+            values.append(conversion.apply(rest) / unit)
+            whole.append(turns)
+        values += self.held
+        whole += [0.0] * len(self.held)
+        found = None if self.native is None else self.native.solve(values, whole)
         if found is None:
             nothing = {c.name: np.nan if c.width == 1 else np.full(3, np.nan) for c in self.columns}
             return Position(nothing, Status.branch_lost.label)
@@ -142,27 +148,15 @@ def _native(
     session: Session,
     outputs: _kernel.Outputs,
     wanted: list[Wanted],
-    columns: list[_Column],
+    readout_slots: Mapping[str, Slot],
 ) -> _kernel.Positions | None:
     """The kernel's rows to start from; None where no row has a solution."""
     solved = np.flatnonzero(result.solved)
     if not solved.size:
         return None
     plan, inputs = session.plan, session.inputs
-    slots = turn_slots(plan)
-    widths = _kernel.closing_turns(plan)
-    turns = np.zeros((sum(width for *_, width in widths), solved.size))
-    angles = []
-    layout = session.layout
-    for quantity, column in zip(wanted, columns, strict=True):
-        place = layout.joint_reference.get(quantity.owner, 0)
-        if quantity.kind != "coordinate" or quantity.order or place >= 0:
-            continue
-        joint = layout.mechanism.joints[quantity.owner]
-        slot = slots.get((-1 - place, joint.type.freedom_of[quantity.coordinate]))
-        if slot is not None:
-            angles.append((column.first, slot))
-            turns[slot] = np.asarray(result.quantity(quantity.name).value)[solved]
+    angles = angle_slots(session, readout_slots)
+    turns = np.ascontiguousarray(result.row_states.turns[:, solved])
 
     def rows(table: Floats) -> Floats:
         return np.ascontiguousarray(table[:, solved])
@@ -170,7 +164,8 @@ def _native(
     return _kernel.Positions(
         plan=plan,
         outputs=outputs,
-        inputs=rows(inputs.values),
+        inputs=rows(inputs.reduced),
+        whole=rows(inputs.whole),
         rates=rows(inputs.rates),
         accelerations=rows(inputs.accelerations),
         jerks=rows(inputs.jerks),

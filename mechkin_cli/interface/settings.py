@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from mechkin_cli.building.fields import is_tiny_length
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
 from mechkin_cli.interface.arguments import Setting, a_setting, settings, shown
@@ -52,7 +53,10 @@ def _input_value(problem: Problem, name: str, value: Setting) -> float:
     dimension = dimension_of(name.partition(".")[2])
     resolve = lookup(problem.parameters)
     try:
-        return constant_in_file_units(text, dimension, problem.units, resolve)
+        found = constant_in_file_units(text, dimension, problem.units, resolve)
+        if is_tiny_length(problem.units.to_si(found, dimension), dimension):
+            raise ExpressionError("this length is too small", 0, "check its exponent and unit")
+        return found
     except ExpressionError as error:
         hint = f"; {error.hint}" if error.hint else ""
         raise UsageError(f"{name} at {text[:LONGEST_NAME]}: {error.message}{hint}") from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.reductions import Reduction
+from mechkin_cli.analysis.sweep.closing_angles import has_turns
 from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
 from mechkin_cli.expressions import Expression, Quantity, UnknownName, Vector
 from mechkin_cli.interface.varied import Base, VariedModel
@@ -17,6 +19,7 @@ from mechkin_cli.kernel.width import threads_for
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
+from mechkin_cli.solver.inputs import input_rest
 from mechkin_cli.solver.variation import Reading, Runs, Variation, run_variants
 from mechkin_cli.status import Status
 
@@ -47,6 +50,13 @@ def sample_of(problem: Problem) -> Any:
         return Quantity(Vector(one, one, one) if wanted.vector else one, wanted.dimension)
 
     return resolve
+
+
+REST = " within a turn"
+"""What the names of angles without whole turns end in."""
+
+PERIODIC = re.compile(r"\b(?:wrap|sin|cos|tan)\s*\(")
+"""Functions to which whole turns of an angle do not matter."""
 
 
 class Study:
@@ -133,7 +143,11 @@ class Study:
     def _computed(self) -> list[Wanted]:
         """What the kernel computes: no verdicts, and nothing that is given."""
         given = self._given()
-        return [q for q in self.wanted if q.owner != "row" and q.name not in given]
+        found = [q for q in self.wanted if q.owner != "row" and q.name not in given]
+        if any(map(PERIODIC.search, self.asked)):
+            # angles within a turn, which the kernel gives before it adds whole turns
+            found += [q._replace(name=q.name + REST) for q in found if has_turns(q)]
+        return found
 
     def _given(self) -> dict[str, Floats]:
         """Time, inputs and their rates over the rows, in SI."""
@@ -304,10 +318,17 @@ class _Resolve:
             array = self.runs.residual if wanted.kind == "residual" else self.runs.condition
             return Quantity(array.reshape(-1), wanted.dimension)
         if name in self.given:
-            return Quantity(self._over_rows(name), wanted.dimension)
+            rest = input_rest(self.reading.variation.base, name)
+            if rest is not None:
+                rest = np.broadcast_to(rest, (self.count, self.rows)).reshape(-1)
+            return Quantity(self._over_rows(name), wanted.dimension, rest)
         slot = self.reading.slots[name]
         columns = [self._column(wanted, slot.first + k) for k in range(slot.width)]
-        return Quantity(Vector(*columns) if wanted.vector else columns[0], wanted.dimension)
+        if wanted.vector:
+            return Quantity(Vector(*columns), wanted.dimension)
+        place = self.reading.slots.get(name + REST)
+        within = None if place is None else self._column(wanted, place.first)
+        return Quantity(columns[0], wanted.dimension, within)
 
     def _over_rows(self, name: str) -> Floats:
         rows = np.broadcast_to(self.given[name], (self.count, self.rows))

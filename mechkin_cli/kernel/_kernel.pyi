@@ -34,6 +34,11 @@ class TreeCode(IntEnum):
     W = 5
     L = 6
 
+class FreeCode(IntEnum):
+    ALONG = ...
+    SQUARE = ...
+    ALL = ...
+
 class LoadCode(IntEnum):
     FORCE_GROUND = 0
     FORCE_LINK = 1
@@ -64,6 +69,7 @@ class OutputCode(IntEnum):
     INERTIA_FORCE = 15
     INERTIA_MOMENT = 16
     HOLDING_MOMENT = 17
+    REACTION_LEVEL = ...
     JERK = 18
 
 class Demand(IntFlag):
@@ -195,6 +201,9 @@ class PlanBuilder:
     def add_axis(
         self, place: int, slide: bool, link: int, vector: Triple, other: int, other_vector: Triple
     ) -> int: ...
+    def add_free_motion(
+        self, place: int, slide: bool, code: int, link: int, vector: Triple
+    ) -> None: ...
     def add_block(
         self, closing_joints: int, joints: Sequence[int], unknown: Sequence[int]
     ) -> None: ...
@@ -264,6 +273,8 @@ class Plan:
         accelerations: Floats | None = None,
         jerks: Floats | None = None,
         loads: Floats | None = None,
+        turned: Floats | None = None,
+        whole: Floats | None = None,
         outputs: Outputs | None = None,
         states: Floats,
         values: Floats | None = None,
@@ -313,6 +324,7 @@ class Variants:
         outputs: Outputs,
         parameters: Floats,
         inputs: Floats,
+        whole: Floats,
         rates: Floats,
         accelerations: Floats,
         jerks: Floats,
@@ -323,7 +335,8 @@ class Variants:
         iterations: int,
         continuation: StepLimits,
         following: StepLimits,
-        angles: Sequence[tuple[int, int]],
+        angles: Sequence[tuple[int, int, bool]],
+        half_turn_side: float,
         ways: Sequence[tuple[int, Sequence[int], Floats, Course | None]] = ...,
     ) -> None: ...
     def run(
@@ -345,6 +358,7 @@ class Positions:
         plan: Plan,
         outputs: Outputs,
         inputs: Floats,
+        whole: Floats,
         rates: Floats,
         accelerations: Floats,
         jerks: Floats,
@@ -353,9 +367,9 @@ class Positions:
         demand: int,
         iterations: int,
         limits: StepLimits,
-        angles: Sequence[tuple[int, int]],
+        angles: Sequence[tuple[int, int, bool]],
     ) -> None: ...
-    def solve(self, inputs: Sequence[float]) -> list[float] | None:
+    def solve(self, inputs: Sequence[float], whole: Sequence[float]) -> list[float] | None:
         """The outputs' slots in SI; None where the branch does not lead there."""
 
 class StepLimits:
@@ -386,6 +400,7 @@ class StepLimits:
         stray: float,
         angle_step: float,
         angle_miss: float,
+        angle_bend: float,
         plan_step: float,
         arc_pivot: float,
         radius: float,
@@ -448,15 +463,22 @@ class Stepper:
     def step(self, node: Node, h: float) -> Node | None: ...
     def wanted_step(self, node: Node) -> float: ...
 
+MOST_PATH_STEPS: int
+"""Steps of one path at most."""
+
 def closing_turns(plan: Plan) -> list[tuple[int, int, int, int]]:
     """(closing joint, freedom, first slot, slots) of the turns that following carries along.
 
     Freedom -1 is an orientation, four slots.
     """
 
+def tree_turns(plan: Plan) -> list[tuple[int, int]]:
+    """(state, slot) of the tree's angles whose whole turns following counts; after the former."""
+
 def follow_rows(
     plan: Plan,
     inputs: Floats,
+    whole: Floats | None,
     start: Sequence[float],
     turn: Sequence[float],
     every_row: bool,
@@ -480,6 +502,8 @@ def follow_rows(
     float,
 ]:
     """Fills guess, limit and turns, which share no memory with one another or with inputs.
+
+    `inputs` are without the `whole` turns of angles, integers, where these are given.
 
     Returns how it ended (`TrackEnd`), rows reached, steps taken and rejected, and inputs, state,
     turn and direction at the last place; what ended the branch if it is known (`PassageEnd`, block,

@@ -1,14 +1,20 @@
-"""Idle freedoms: legs spin freely about the line of their spheres.
+"""Idle freedoms: what moves freely while all else stands still, and by what convention it is told.
 
-Nothing else moves with that spin, so its pose is a convention (the shortest turn from the drawing)
-and its rate is taken as zero. Forces are exact as long as nothing turns the leg about its line;
-otherwise the spin is a dynamic freedom that a kinematic analysis cannot know.
+A leg spins about the line of its spheres (legs.py): its pose is the shortest turn from the drawing,
+and its rate is zero. Other idle freedoms are held at a coordinate (held.py). Nothing else moves
+with them. Forces are exact as long as nothing drives such a motion; otherwise it is a dynamic
+freedom that a kinematic analysis cannot know.
+
+A body that nothing turns about a line of its own, about which it is symmetric, has no spin: what it
+needs does not know its moment of inertia about that line, which is left out where a held link turns
+with the link beside it (`without_spin`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -19,8 +25,19 @@ from mechkin_cli.mechanism.derived_quantities import (
     INSTANT_KINDS,
     ORIENTATION_KINDS,
 )
+from mechkin_cli.mechanism.held import Coordinate, Held, Line
 from mechkin_cli.mechanism.legs import Leg, find_legs, frame_on
-from mechkin_cli.mechanism.model import Attached, Damper, Link, LinkLoad, Mechanism, Spring
+from mechkin_cli.mechanism.model import (
+    Attached,
+    Damper,
+    JointLoad,
+    Link,
+    LinkLoad,
+    Load,
+    Mechanism,
+    Spring,
+    varying,
+)
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale, subtract
@@ -31,115 +48,241 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
 
 
+class Idle(NamedTuple):
+    """An idle freedom of some links.
+
+    `lines`: about what each turns, on its own drawing, None where that is no line of the link;
+    `slides`: it does not turn; `moves`: coordinates that move with it; `length`: what distances
+    from a line are compared with, m; `convention`, `cure` and `holding`: in words, what is told of
+    it, how to have a pose of its own, and the quantity that holds it.
+    """
+
+    words: str
+    links: tuple[str, ...]
+    lines: Mapping[str, Line | None]
+    slides: bool
+    moves: frozenset[Coordinate]
+    length: float
+    convention: str
+    cure: str
+    holding: str
+
+
+def idle_freedoms(problem: Problem) -> Iterator[Idle]:
+    """Legs, then what is held."""
+    for leg in find_legs(problem.mechanism):
+        yield _of_leg(leg)
+    for held in problem.held:
+        yield _of_held(problem.mechanism, held)
+
+
+def _of_leg(leg: Leg) -> Idle:
+    lines: dict[str, Line | None] = {}
+    for link in leg.links:
+        if link == leg.body:
+            lines[link] = Line(leg.line, frame_on(leg.start, link).o)
+        else:
+            assert leg.slide is not None
+            lines[link] = Line(frame_on(leg.slide, link).z, frame_on(leg.end, link).o)
+    return Idle(
+        leg.words,
+        leg.links,
+        lines,
+        False,
+        frozenset(),
+        norm(leg.span),
+        "its pose is the shortest turn from the drawing and it does not spin",
+        "replace one S by U",
+        f"{leg.body}.holding_moment",
+    )
+
+
+def _of_held(mechanism: Mechanism, held: Held) -> Idle:
+    return Idle(
+        held.words,
+        held.links,
+        held.axes,
+        held.slides,
+        held.moves,
+        mechanism.box_diagonal(),
+        held.convention,
+        held.cure,
+        held.holding,
+    )
+
+
+def without_spin(problem: Problem) -> Problem:
+    """The problem whose held links have no moment of inertia about the lines that they turn about;
+    those that a moment holds (`idle: hold`) keep it."""
+    if problem.hold_idle or not problem.held:
+        return problem
+    links = dict(problem.mechanism.links)
+    for held in problem.held:
+        for name, line in held.axes.items():
+            if line is not None and links[name].has_mass:
+                links[name] = _without_moment_about(links[name], line.along)
+    return replace(problem, mechanism=replace(problem.mechanism, links=links))
+
+
+def _without_moment_about(body: Link, line: Vector) -> Link:
+    xx, yy, zz, xy, xz, yz = body.inertia
+    x, y, z = line
+    along = dot(line, _times(body, line))
+    return body._replace(
+        inertia=(
+            xx - along * x * x,
+            yy - along * y * y,
+            zz - along * z * z,
+            xy - along * x * y,
+            xz - along * x * z,
+            yz - along * y * z,
+        )
+    )
+
+
+def _times(body: Link, a: Vector) -> Vector:
+    xx, yy, zz, xy, xz, yz = body.inertia
+    return (dot((xx, xy, xz), a), dot((xy, yy, yz), a), dot((xz, yz, zz), a))
+
+
 def spin_errors(problem: Problem) -> list[tuple[str, Diagnostic]]:
-    """For every leg that something turns about its line: the link, and what to say.
+    """For every idle freedom that something drives: the link, and what to say.
 
     None if the file holds idle freedoms.
     """
     if problem.hold_idle:
         return []
     found = []
-    for leg in find_legs(problem.mechanism):
-        for link in leg.links:
-            cause = _spin_cause(problem, leg, link)
+    for idle in idle_freedoms(problem):
+        for link in idle.links:
+            cause = _spin_cause(problem, idle, link)
             if cause is not None:
-                found.append((link, _dynamic_freedom(leg, *cause)))
+                found.append((link, _dynamic_freedom(idle, *cause)))
                 break
     return found
 
 
 def holding_notes(problem: Problem, moments: Mapping[str, Floats]) -> list[Diagnostic]:
-    """The largest moment that holds each leg from spinning; `moments` (N m) by name, (rows,)."""
+    """The largest moment (force) that holds each idle freedom; `moments` (N m, N) by name,
+    (rows,)."""
     notes = []
-    for leg in find_legs(problem.mechanism):
-        moment = moments.get(f"{leg.body}.holding_moment")
+    for idle in idle_freedoms(problem):
+        moment = moments.get(idle.holding)
         if moment is None:
             continue
         row = np.abs(moment)
-        largest = float(np.max(row[np.isfinite(row)], initial=0.0))
-        text = f"{float(problem.units.from_si(largest, MOMENT)):.6g}"
+        most = float(np.max(row[np.isfinite(row)], initial=0.0))
+        dimension = problem.quantities()[idle.holding].dimension
+        text = f"{float(problem.units.from_si(most, dimension)):.6g}"
+        by = "moment about" if dimension == MOMENT else "force along"
+        motion = "sliding" if idle.slides else "spinning"
         notes.append(
             Diagnostic(
                 "held-spin",
                 "note",
-                f"{leg.words}; idle: hold keeps it from spinning by a moment about that line",
-                measured=f"at most {text} {problem.units.label(MOMENT)}",
-                hint=f"{leg.body}.holding_moment is its value in each row",
+                f"{idle.words}; idle: hold keeps it from {motion} by a {by} that line",
+                measured=f"at most {text} {problem.units.label(dimension)}",
+                hint=f"{idle.holding} is its value in each row",
             )
         )
     return notes
 
 
-def _dynamic_freedom(leg: Leg, cause: str, measured: str) -> Diagnostic:
+def _dynamic_freedom(idle: Idle, cause: str, measured: str) -> Diagnostic:
+    motion, what = ("slide", "a force") if idle.slides else ("spin", "a moment")
     return Diagnostic(
         "loaded-spin",
         "error",
-        f"{leg.words}, and {cause}: the spin is a dynamic freedom, forces depend on it",
+        f"{idle.words}, and {cause}: the {motion} is a dynamic freedom, forces depend on it",
         measured=measured,
-        hint="replace one S by U, or accept a moment that holds it with idle: hold",
+        hint=f"{idle.cure}, or accept {what} that holds it with idle: hold",
     )
 
 
 def conventional_notes(problem: Problem, wanted: Iterable[Wanted]) -> list[Diagnostic]:
-    """Notes on quantities that depend on the convention about a leg's spin."""
+    """Notes on quantities that depend on the convention about an idle freedom."""
     wanted = list(wanted)
     notes = []
-    for leg in find_legs(problem.mechanism):
-        names = [q.name for q in wanted if _is_conventional(problem.mechanism, leg, q)]
+    for idle in idle_freedoms(problem):
+        names = [q.name for q in wanted if _is_conventional(problem.mechanism, idle, q)]
         if names:
             notes.append(
                 Diagnostic(
                     "conventional",
                     "note",
-                    f"{leg.words}; by convention its pose is the shortest turn from the drawing "
-                    f"and it does not spin: {', '.join(names)}",
-                    hint="replace one S by U for a pose of its own",
+                    f"{idle.words}; by convention {idle.convention}: {', '.join(names)}",
+                    hint=f"{idle.cure} for a pose of its own",
                 )
             )
     return notes
 
 
-def _spin_cause(problem: Problem, leg: Leg, link: str) -> tuple[str, str] | None:
-    """What turns a link of a leg about the leg's line: words, and a measure."""
+def _spin_cause(problem: Problem, idle: Idle, link: str) -> tuple[str, str] | None:
+    """What drives an idle freedom at one of its links: words, and a measure."""
     mechanism = problem.mechanism
-    line, start = _line_on(leg, link)
-    body = mechanism.links[link]
-
-    def off_line(point: Vector) -> str | None:
-        off = _distance(point, start, line)
-        if off <= tolerances.ON_LINE * norm(leg.span):
-            return None
-        return f"{float(problem.units.from_si(off, LENGTH)):.4g} {problem.units.label(LENGTH)}"
-
-    if body.mass != 0.0 and (off := off_line(body.center_of_mass)):
+    body, line = mechanism.links[link], idle.lines[link]
+    for load in mechanism.loads:
+        if (cause := _load_cause(problem, idle, link, load)) is not None:
+            return cause
+    if line is None:
+        if body.has_mass:
+            return f"{link} has mass", f"{body.mass:.4g} kg"
+        return None
+    if body.mass != 0.0 and (off := _off_line(problem, idle, line, body.center_of_mass)):
         return f"the mass centre of {link} lies off that line", off
-    asymmetry = _asymmetry(body, line)
+    asymmetry = _asymmetry(body, line.along)
     if asymmetry > tolerances.ON_LINE:
         words = f"the inertia of {link} is not symmetric about that line"
         return words, f"{asymmetry:.2g} of its largest entry"
-    for load in mechanism.loads:
-        if isinstance(load, LinkLoad) and load.link == link:
-            if load.kind == "torque":
-                return f"a torque acts on {link}", "its part along the line"
-            if off := off_line(load.point):
-                return f"a force acts on {link} off that line", off
-        if isinstance(load, Spring | Damper) and load.between:
-            for end in load.between:
-                if end.link == link and (off := off_line(end.vector)):
-                    return f"a spring or damper pulls at {link} off that line", off
     return None
 
 
-def _line_on(leg: Leg, link: str) -> tuple[Vector, Vector]:
-    """The leg's line and a point of it, as drawn on one of its links."""
-    if link == leg.body:
-        return leg.line, frame_on(leg.start, link).o
-    assert leg.slide is not None
-    return frame_on(leg.slide, link).z, frame_on(leg.end, link).o
+def _off_line(problem: Problem, idle: Idle, line: Line, point: Vector) -> str | None:
+    """How far a point lies off a line, in the file's units; None if it lies on it."""
+    off = _distance(point, line)
+    if off <= tolerances.ON_LINE * idle.length:
+        return None
+    return f"{float(problem.units.from_si(off, LENGTH)):.4g} {problem.units.label(LENGTH)}"
 
 
-def _distance(point: Vector, start: Vector, line: Vector) -> float:
-    return norm(cross(subtract(point, start), line))
+def _load_cause(problem: Problem, idle: Idle, link: str, load: Load) -> tuple[str, str] | None:
+    line = idle.lines[link]
+    if isinstance(load, LinkLoad) and load.link == link:
+        if load.kind == "torque" and not idle.slides:
+            return f"a torque acts on {link}", "its part along the line"
+        if load.kind == "force":
+            if line is None:
+                return f"a force acts on {link}", "its part along the motion"
+            if off := _off_line(problem, idle, line, load.point):
+                return f"a force acts on {link} off that line", off
+            if load.axes == "link" and not _runs_along(load, line):
+                return f"a force across that line turns with {link}", "its axes are the link's"
+    if (
+        isinstance(load, JointLoad | Spring | Damper)
+        and (load.joint, load.coordinate) in idle.moves
+    ):
+        return f"a load acts on {load.joint}.{load.coordinate}", "which moves with it"
+    if isinstance(load, Spring | Damper) and load.between:
+        for end in load.between:
+            if end.link != link:
+                continue
+            if line is None:
+                return f"a spring or damper pulls at {link}", "which moves with it"
+            if off := _off_line(problem, idle, line, end.vector):
+                return f"a spring or damper pulls at {link} off that line", off
+    return None
+
+
+def _runs_along(load: LinkLoad, line: Line) -> bool:
+    """Whether a constant force runs along a line."""
+    if varying(load):
+        return False
+    across = cross(load.value, line.along)  # type: ignore[arg-type]
+    return norm(across) <= tolerances.ON_LINE * norm(load.value)  # type: ignore[arg-type]
+
+
+def _distance(point: Vector, line: Line) -> float:
+    return norm(cross(subtract(point, line.start), line.along))
 
 
 def _asymmetry(body: Link, line: Vector) -> float:
@@ -149,7 +292,7 @@ def _asymmetry(body: Link, line: Vector) -> float:
     greatest = largest(*(abs(entry) for row in rows for entry in row))
     if greatest == 0.0:
         return 0.0
-    along = dot(line, (dot(rows[0], line), dot(rows[1], line), dot(rows[2], line)))
+    along = dot(line, _times(body, line))
     across = (xx + yy + zz - along) / 2.0
     worst = 0.0
     for i, row in enumerate(rows):
@@ -159,27 +302,45 @@ def _asymmetry(body: Link, line: Vector) -> float:
     return worst / greatest
 
 
-def _is_conventional(mechanism: Mechanism, leg: Leg, quantity: Wanted) -> bool:
-    if quantity.kind in ("omega", "alpha") or quantity.kind in INSTANT_KINDS | FINITE_KINDS:
-        return quantity.owner in leg.links
-    if quantity.kind in ORIENTATION_KINDS:
-        joint = mechanism.joints[quantity.owner]
-        return joint.first in leg.links or joint.second in leg.links
-    if quantity.kind == "point":
-        at = mechanism.points[quantity.owner]
-        return at.link in leg.links and not _on_line(leg, at)
-    if quantity.kind == "direction":
-        at = mechanism.directions[quantity.owner]
-        return at.link in leg.links and not _along_line(leg, at)
+def _is_conventional(mechanism: Mechanism, idle: Idle, quantity: Wanted) -> bool:
+    kind, owner = quantity.kind, quantity.owner
+    if kind == "coordinate":
+        return (owner, quantity.coordinate) in idle.moves
+    if kind in ("omega", "alpha"):
+        return owner in idle.links and not idle.slides
+    if kind in INSTANT_KINDS | FINITE_KINDS:
+        return owner in idle.links
+    if kind in ORIENTATION_KINDS:
+        joint = mechanism.joints[owner]
+        held = joint.first in idle.links, joint.second in idle.links
+        return held[0] != held[1] and not idle.slides
+    if kind == "point":
+        return _point_moves(idle, mechanism.points[owner])
+    if kind == "direction":
+        return _direction_moves(idle, mechanism.directions[owner])
+    if kind == "axis":
+        return _direction_moves(idle, mechanism.joints[owner].axis)
+    if kind in ("joint_point", "moment"):
+        return _point_moves(idle, mechanism.joints[owner].point)
+    if kind == "slip":
+        joint = mechanism.joints[owner]
+        contact = Attached(joint.second, joint.on_second.o)
+        return _point_moves(idle, joint.point) or _point_moves(idle, contact)
     return False
 
 
-def _on_line(leg: Leg, at: Attached) -> bool:
-    line, start = _line_on(leg, at.link)
-    return _distance(at.vector, start, line) <= tolerances.ON_LINE * norm(leg.span)
+def _point_moves(idle: Idle, at: Attached) -> bool:
+    if at.link not in idle.links:
+        return False
+    line = idle.lines[at.link]
+    return line is None or _distance(at.vector, line) > tolerances.ON_LINE * idle.length
 
 
-def _along_line(leg: Leg, at: Attached) -> bool:
-    line, _ = _line_on(leg, at.link)
-    off = cross(scale(1.0 / (norm(at.vector) or 1.0), at.vector), line)
-    return norm(off) <= tolerances.ON_LINE
+def _direction_moves(idle: Idle, at: Attached) -> bool:
+    if at.link not in idle.links or idle.slides:
+        return False
+    line = idle.lines[at.link]
+    if line is None:
+        return True
+    off = cross(scale(1.0 / (norm(at.vector) or 1.0), at.vector), line.along)
+    return norm(off) > tolerances.ON_LINE

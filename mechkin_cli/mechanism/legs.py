@@ -152,4 +152,4 @@ def _is_straight(leg: Leg) -> bool:
     """Whether the slide runs along the line of the spheres."""
     assert leg.slide is not None
     off_line = cross(leg.span, frame_on(leg.slide, leg.body).z)
-    return norm(off_line) <= tolerances.PARALLEL * norm(leg.span)
+    return norm(off_line) <= tolerances.LEG_SLIDE * norm(leg.span)

@@ -96,15 +96,43 @@ class Joint(NamedTuple):
 
     def unit_of(self, coordinate: str, length: float) -> float:
         """A coordinate (rad, m) per unit of its freedom, whose slides are told in `length` (m)."""
-        known = self.type.coordinate[coordinate]
+        known = self.type.coordinate.get(coordinate)
+        if known is None:
+            return 1.0
         if known.on_thread:
             return self.pitch
         return 1.0 if known.is_angle else length
+
+    def freedom_number(self, coordinate: str) -> int:
+        """The freedom of a coordinate; `turn 2` stands for a ball's that has no name."""
+        known = self.type.freedom_of.get(coordinate)
+        return int(coordinate.rpartition(" ")[2]) if known is None else known
 
     @property
     def screws(self) -> tuple[Screw, ...]:
         """The unit screws of its freedoms as drawn (about the ground origin, m)."""
         return tuple(screw for part in self.parts for screw in part.screws(self.pitch))
+
+    @property
+    def free_slides(self) -> tuple[Attached, ...]:
+        """Directions along which it takes no force, whatever its coordinates are."""
+        return self._free("slide")
+
+    @property
+    def free_turns(self) -> tuple[Attached, ...] | None:
+        """Directions about which it takes no moment about its point; None for all of a ball."""
+        return None if self.type.is_oriented else self._free("turn")
+
+    def _free(self, motion: str) -> tuple[Attached, ...]:
+        if self.type.is_threaded:
+            return ()
+        return tuple(
+            # a part that leads from one drawing to the other stands behind slides alone
+            Attached(self.first, part.before.z) if step.along is None else self.drawn(step.along)
+            for step, part in zip(self.type.steps, self.parts, strict=True)
+            for freedom in part.type.freedoms
+            if freedom.motion == motion
+        )
 
     @property
     def parameter(self) -> float:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.derived_quantities import derived_catalogue
+from mechkin_cli.mechanism.held import Held
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
 from mechkin_cli.mechanism.quantities import Wanted, catalogue
@@ -31,7 +32,26 @@ class Problem:
     diagnostics: tuple[Diagnostic, ...] = ()
     load_laws: tuple[LoadLaw, ...] = ()
     hold_idle: bool = False
+    held: tuple[Held, ...] = ()
     follow: tuple[str, ...] | None = None
+
+    @property
+    def driven(self) -> list[tuple[str, str]]:
+        """The inputs (joint, coordinate), then the coordinates at which idle freedoms are held."""
+        return [*self.motion.driven, *(one.coordinate for one in self.held)]
+
+    @cached_property
+    def solved_mechanism(self) -> Mechanism:
+        """The mechanism with the balls that hold idle freedoms told as three turns."""
+        balls = {one.ball.joint.name: one.ball.joint for one in self.held if one.ball is not None}
+        if not balls:
+            return self.mechanism
+        return replace(self.mechanism, joints={**self.mechanism.joints, **balls})
+
+    @property
+    def held_at(self) -> list[float]:
+        """Where the held coordinates stand (rad, m): as drawn, or where `near` puts them."""
+        return [self.assembly.near.get(one.name, 0.0) for one in self.held]
 
     def quantities(self) -> Mapping[str, Wanted]:
         """The quantities that the mechanism has, by name."""
@@ -41,5 +61,5 @@ class Problem:
     def _quantities(self) -> Mapping[str, Wanted]:
         mechanism, motion = self.mechanism, self.motion
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
-        found = catalogue(mechanism, motion.driven, timed=motion.time is not None)
+        found = catalogue(mechanism, motion.driven, timed=motion.time is not None, held=self.held)
         return found | derived_catalogue(mechanism, motion.driven, leading)

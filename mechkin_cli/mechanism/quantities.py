@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
+from mechkin_cli.mechanism.held import Held
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism
@@ -48,6 +49,7 @@ Kind = Literal[
     "inertia_force",
     "inertia_moment",
     "holding_moment",
+    "holding_force",
     "residual",
     "condition",
     "power_error",
@@ -65,8 +67,10 @@ Kind = Literal[
     "transmission_angle",
     "link_direction",
     "link_point",
+    "reaction_level",
 ]
-"""The last two are of no use to users: what derived quantities are computed from."""
+"""The last three are of no use to users: what derived quantities are computed from, and what cells
+are judged by."""
 
 
 class Wanted(NamedTuple):
@@ -80,6 +84,9 @@ class Wanted(NamedTuple):
     coordinate: str = ""
     order: int = 0
 
+
+REACTION_LEVEL = Wanted("reaction level", "reaction_level", GROUND_NAME, FORCE, False)
+"""The largest component of force, or moment in length units, of all joints."""
 
 _OF_ANGLES = (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION, ANGULAR_JERK)
 _OF_LENGTHS = (LENGTH, VELOCITY, ACCELERATION, JERK)
@@ -98,15 +105,21 @@ _JOINT_WRENCH: dict[str, tuple[Kind, Dimension]] = {
 
 
 def catalogue(
-    mechanism: Mechanism, inputs: Sequence[tuple[str, str]], *, timed: bool = False
+    mechanism: Mechanism,
+    inputs: Sequence[tuple[str, str]],
+    *,
+    timed: bool = False,
+    held: Sequence[Held] = (),
 ) -> dict[str, Wanted]:
-    """Every quantity by name; `inputs` (joint, coordinate) have efforts, `timed` rows a time."""
+    """Every quantity by name; `inputs` (joint, coordinate) have efforts, `timed` rows a time, and
+    what is `held` that which holds it."""
     found = {}
     for wanted in (
         *_of_joints(mechanism),
         *_of_efforts(inputs),
         *_of_points(mechanism),
         *_of_links(mechanism),
+        *_of_held(held),
         *_of_ground(),
     ):
         found[wanted.name] = wanted
@@ -164,6 +177,13 @@ def _of_links(mechanism: Mechanism) -> Iterator[Wanted]:
     for leg in find_legs(mechanism):
         name = f"{leg.body}.holding_moment"
         yield Wanted(name, "holding_moment", leg.body, MOMENT, False)
+
+
+def _of_held(held: Sequence[Held]) -> Iterator[Wanted]:
+    for one in held:
+        kind: Kind = "holding_moment" if is_angle(one.coordinate[1]) else "holding_force"
+        dimension = MOMENT if kind == "holding_moment" else FORCE
+        yield Wanted(one.holding, kind, one.links[0], dimension, False, one.name)
 
 
 def _of_ground() -> Iterator[Wanted]:

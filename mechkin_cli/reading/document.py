@@ -25,7 +25,7 @@ from mechkin_cli.reading.nodes import (
     plain_data,
 )
 from mechkin_cli.reading.parser import parse
-from mechkin_cli.reading.text import lines_of, read_text
+from mechkin_cli.reading.text import check_size, lines_of, read_text
 
 KeyPath: TypeAlias = tuple[str | int, ...]
 
@@ -134,6 +134,7 @@ def read_document(path: str | Path) -> Document:
 
 def document_from_text(text: str, name: str) -> Document:
     """The document in a text; `name` stands for the file in messages. Raises `InvalidFile`."""
+    check_size(len(text.encode("utf-8", "surrogatepass")), name)
     text = text.removeprefix("\ufeff")
     return Document(name, text, parse(text, name))
 

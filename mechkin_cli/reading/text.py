@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import codecs
 import re
-import stat
 from pathlib import Path
 
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, Place, UsageError
 from mechkin_cli.nearest import nearest
 from mechkin_cli.reading.limits import MOST_BYTES
+from mechkin_cli.regular_file import NotRegular, read_regular
 
 _LINE_BREAK = re.compile(r"\r\n|\r|\n")
 _TAB_IN_INDENTATION = re.compile(r"^ *(\t)[ \t]*[^ \t\r\n#]", re.MULTILINE)
@@ -33,8 +33,7 @@ def read_text(path: str | Path) -> str:
 
 def decoded(content: bytes, file: str) -> str:
     """The text of a file's bytes; `file` is its name in messages. Raises `InvalidFile`."""
-    if len(content) > MOST_BYTES:
-        raise _too_large(len(content), file)
+    check_size(len(content), file)
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError as error:
@@ -42,6 +41,12 @@ def decoded(content: bytes, file: str) -> str:
     text = text.removeprefix("\ufeff")
     check_characters(text, file)
     return text
+
+
+def check_size(size: int, file: str) -> None:
+    """Raise `InvalidFile` where a text has more bytes than a mechanism file may have."""
+    if size > MOST_BYTES:
+        raise _too_large(size, file)
 
 
 def check_characters(text: str, file: str) -> None:
@@ -84,16 +89,15 @@ def lines_of(text: str) -> list[str]:
 
 def _read_bytes(path: Path) -> bytes:
     try:
-        mode = path.stat().st_mode
-        if stat.S_ISDIR(mode):
-            raise UsageError(f"{path} is a directory; name a mechanism file in it{_example(path)}")
-        if not stat.S_ISREG(mode):
-            raise UsageError(f"{path} is not a regular file; save the mechanism in a file")
-        with path.open("rb") as stream:
-            content = stream.read(MOST_BYTES + 1)
-            if len(content) > MOST_BYTES:
-                raise _too_large(max(len(content), path.stat().st_size), str(path))
-            return content
+        content = read_regular(path, MOST_BYTES)
+        if len(content) > MOST_BYTES:
+            raise _too_large(max(len(content), path.stat().st_size), str(path))
+        return content
+    except NotRegular as found:
+        if found.is_folder:
+            cure = f"is a directory; name a mechanism file in it{_example(path)}"
+            raise UsageError(f"{path} {cure}") from None
+        raise UsageError(f"{path} is not a regular file; save the mechanism in a file") from None
     except FileNotFoundError:
         raise UsageError(f"there is no file {path}{_similar(path)}") from None
     except (OSError, ValueError) as error:

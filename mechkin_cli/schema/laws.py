@@ -41,7 +41,8 @@ class Polynomial(Section):
 
     law: Literal["polynomial"]
     coefficients: Annotated[tuple[AnyDimension, ...], Limits(min_length=1, max_length=20)]
-    """c0, c1, c2, ...; the k-th has the coordinate's dimension per time^k."""
+    """c0, c1, c2, ...; the k-th has the coordinate's dimension per time^k. Those of an angle carry
+    units from c1 on, unless the file's angular rates are in its angle per its time."""
 
 
 class _Rise(Section):

@@ -6,13 +6,14 @@ A value may be an expression of coordinates, their rates and `time`, or `{table:
 from typing import Annotated, Any, Literal
 
 from mechkin_cli.schema.alternatives import Choice, Tag, by_word
-from mechkin_cli.schema.base import Section
+from mechkin_cli.schema.base import Section, refuse
 from mechkin_cli.schema.rules import Limits, Named
 from mechkin_cli.schema.scalars import (
     AccelerationVector,
     AngleOrLength,
     CsvPath,
     Damping,
+    DirectionVector,
     Force,
     ForceOrTorque,
     Length,
@@ -48,12 +49,33 @@ Axes = Literal["ground", "link"]
 Between = Annotated[tuple[Name, ...], Limits(min_length=2, max_length=2)]
 
 
+def _standard_or_vector(value: Any) -> str:
+    is_word = isinstance(value, str) and value.strip()[:1].isalpha()
+    return "(standard)" if is_word else "(vector)"
+
+
+FreeFall = Annotated[
+    Annotated[AccelerationVector, Tag("(vector)")]
+    | Annotated[Literal["standard"], Tag("(standard)")],
+    Choice(_standard_or_vector),
+    Named("FreeFall"),
+]
+
+
 class Gravity(Section):
     """Acts at the mass centre of every link with mass."""
 
     type: Literal["gravity"]
-    g: AccelerationVector
-    """Acceleration of free fall in ground axes, [x, y, z]."""
+    g: FreeFall
+    """Acceleration of free fall in ground axes, [x, y, z]; or standard, 9.80665 m/s^2."""
+    direction: DirectionVector | None = None
+    """With g: standard, where things fall, in ground axes; left out, [0, 0, -1]."""
+
+    def check(self) -> None:
+        """A direction of its own goes with the standard size alone."""
+        if self.direction is not None and self.g != "standard":
+            text = "g as a vector has a direction already"
+            raise refuse("two-choices", text, "write g: standard, or no direction", "direction")
 
 
 class ForceOnLink(Section):

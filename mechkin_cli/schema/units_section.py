@@ -18,7 +18,8 @@ class UnitsSection(Section):
     """The units of bare numbers and of the tables; what is left out is in m, deg, kg, N, s.
 
     The unit of moments is force times length. Rates of lengths are per `time`; angular rates are in
-    rad/s unless `angular_rate` says otherwise.
+    rad/s unless `angular_rate` says otherwise. Torsional stiffness is per rad, torsional damping
+    per rad/s, whatever `angle` and `angular_rate` are.
     """
 
     length: UnitText = "m"
@@ -28,7 +29,7 @@ class UnitsSection(Section):
     mass: UnitText = "kg"
     """Unit of masses, for example kg, lbm."""
     force: UnitText = "N"
-    """Unit of forces, for example N, lbf, lbm*in/s^2."""
+    """Unit of forces, for example N, lbf, lbm*in/s^2; left out, N whatever the other units are."""
     time: UnitText = "s"
     """Unit of time, for example s, min."""
     angular_rate: UnitText = "rad/s"

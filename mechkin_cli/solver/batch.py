@@ -58,6 +58,8 @@ def run(
     accelerations: Floats | None = None,
     loads: Floats | None = None,
     jerks: Floats | None = None,
+    turned: Floats | None = None,
+    whole: Floats | None = None,
     demand: Demand = Demand.POSITION,
     outputs: Outputs | None = None,
     derivatives: bool = False,
@@ -78,6 +80,8 @@ def run(
         jerks: needed for third derivatives.
         loads: values of varying loads (columns, rows) as `varying_loads.kernel_loads` gives them,
             needed for forces where there are any.
+        turned: (turn slots, rows) as `solver.closing_turns` has them; springs on angles go by them.
+        whole: (inputs, rows) whole turns that the inputs are without, likewise.
         demand: what to compute beyond positions.
         outputs: quantities to write, of a plan of the same structure.
         derivatives: return the columns' first and second derivatives, as far as they are demanded.
@@ -107,6 +111,8 @@ def run(
         accelerations=_contiguous(accelerations),
         jerks=_contiguous(jerks),
         loads=_contiguous(loads),
+        turned=_contiguous(turned),
+        whole=_contiguous(whole),
         outputs=outputs,
         states=states,
         values=values,

@@ -28,6 +28,7 @@ from mechkin_cli.tolerances import (
     COURSE_REST,
     COURSE_SAME,
     COURSE_SAMPLES,
+    COURSE_SLOW,
     MOST_COURSE_CELLS,
     MOST_COURSE_ORDER,
     MOST_COURSE_SAMPLES,
@@ -278,7 +279,9 @@ class _Speed:
     def rests(self, at: Floats) -> list[float]:
         """Where all stand still at once."""
         speed = self.of(at)
-        inner = np.flatnonzero((speed[1:-1] <= speed[:-2]) & (speed[1:-1] <= speed[2:])) + 1
+        least = (speed[1:-1] <= speed[:-2]) & (speed[1:-1] <= speed[2:])
+        # next to a zero; where the rates are even nothing rests
+        inner = np.flatnonzero(least & (speed[1:-1] < COURSE_SLOW)) + 1
         found = []
         for k in inner:
             low, high = float(at[k - 1]), float(at[k + 1])

@@ -1,9 +1,10 @@
-"""Continuous angles and orientations of closing joints.
+"""Turns: continuous angles and orientations of closing joints, whole turns of the tree's angles.
 
 The kernel has the angle of a closing joint from an arctangent and its orientation from a rotation
 matrix: whole turns and the quaternion's sign are lost. Following carries both along from node to
-node by their derivatives (`follow(..., turns=True)`), so each row only has to take the value that
-is nearest to what following says.
+node by the integral of their rates (`follow(..., turns=True)`), so each row only has to take the
+value that is nearest to what following says. The states of the tree's angles are kept within half a
+turn, where their rounding stays that of a turn, and their whole turns are counted.
 """
 
 from __future__ import annotations
@@ -16,10 +17,14 @@ import numpy as np
 from mechkin_cli.kernel import _kernel
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.mechanism.frames import Frame
     from mechkin_cli.mechanism.model import Joint
+    from mechkin_cli.solver.demand import Slot
+    from mechkin_cli.solver.session import Session
 
 ORIENTATION = -1
 """Stands for the freedom of an orientation, which has four slots."""
@@ -33,26 +38,48 @@ def turn_slots(plan: Plan) -> dict[tuple[int, int], int]:
     return {(joint, freedom): slot for joint, freedom, slot, _ in _kernel.closing_turns(plan)}
 
 
+def tree_slots(plan: Plan) -> dict[int, int]:
+    """Row of `Followed.turns` with the whole turns of each state that is an angle of the tree."""
+    return dict(_kernel.tree_turns(plan))
+
+
+def angle_slots(session: Session, names: Mapping[str, Slot]) -> list[tuple[int, int, bool]]:
+    """Outputs that are angles, as native runs take them: (output slot, row of `Followed.turns`,
+    whether of a closing joint); of an input -2 - its number."""
+    known, layout = session.problem.quantities(), session.layout
+    closing, tree = turn_slots(session.plan), tree_slots(session.plan)
+    inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
+    found = []
+    for name, slot in names.items():
+        quantity = known.get(name)
+        if quantity is None or quantity.kind != "coordinate" or quantity.order:
+            continue
+        freedom = layout.mechanism.joints[quantity.owner].type.freedom_of[quantity.coordinate]
+        place = layout.joint_reference[quantity.owner]
+        if place < 0:
+            turn = closing.get((-1 - place, freedom))
+        elif name in inputs:
+            turn = -2 - inputs[name]
+        else:
+            turn = tree.get(layout.state(layout.edge_number[quantity.owner], freedom))
+        if turn is not None:
+            found.append((slot.first, turn, place < 0))
+    return found
+
+
 def turn_count(plan: Plan) -> int:
     """Number of rows of `Followed.turns`."""
-    return sum(width for _, _, _, width in _kernel.closing_turns(plan))
+    return sum(width for *_, width in _kernel.closing_turns(plan)) + len(_kernel.tree_turns(plan))
 
 
-def continuous_angle(values: Floats, followed: Floats, first: int) -> Floats:
-    """An angle without jumps by whole turns; as given at row `first`.
+def continuous_angle(values: Floats, followed: Floats) -> Floats:
+    """An angle with the whole turns that following says.
 
     Args:
         values: (rows,) from an arctangent, rad.
-        followed: (rows,) the same angle out of `Followed.turns`; nan where a row was not filled in
-            between two nodes: it takes the turn of the nearest row before it that was, or the first
-            after it.
-        first: a row that keeps its value.
+        followed: (rows,) the same angle out of `Followed.turns`.
     """
-    turns = np.rint((values - followed) / (2.0 * pi))
-    for row in _unfollowed(followed):
-        beside = row - 1 if row and not np.isnan(turns[row - 1]) else _next_known(turns, row)
-        turns[row] = turns[beside] + np.rint((values[row] - values[beside]) / (2.0 * pi))
-    continuous: Floats = values - (turns - turns[first]) * (2.0 * pi)
+    continuous: Floats = values - np.rint((values - followed) / (2.0 * pi)) * (2.0 * pi)
     return continuous
 
 
@@ -61,17 +88,10 @@ def continuous_signs(q: Four, followed: Four, first: int) -> Floats:
 
     Args:
         q: four arrays (rows,), scalar first, of either sign.
-        followed: as `drawn_quaternion` gives them; nan as in `continuous_angle`.
+        followed: as `drawn_quaternion` gives them.
         first: a row that keeps its sign.
     """
-    product = _inner(q, followed)
-    signs = np.where(product < 0.0, -1.0, 1.0)
-    known = ~np.isnan(product)
-    signs[~known] = np.nan
-    for row in _unfollowed(product):
-        beside = row - 1 if row and not np.isnan(signs[row - 1]) else _next_known(signs, row)
-        between = sum(float(part[row]) * float(part[beside]) for part in q)
-        signs[row] = signs[beside] * (-1.0 if between < 0.0 else 1.0)
+    signs = np.where(_inner(q, followed) < 0.0, -1.0, 1.0)
     alike: Floats = signs * signs[first]
     return alike
 
@@ -85,16 +105,6 @@ def drawn_quaternion(joint: Joint, turns: Floats) -> Four:
     a, b = _frame_quaternion(joint.on_first), _frame_quaternion(joint.on_second)
     r = (turns[0], turns[1], turns[2], turns[3])
     return _product(_product(a, r), (b[0], -b[1], -b[2], -b[3]))
-
-
-def _unfollowed(followed: Floats) -> list[int]:
-    rows: list[int] = np.flatnonzero(np.isnan(followed)).tolist()
-    return rows
-
-
-def _next_known(values: Floats, row: int) -> int:
-    known = ~np.isnan(values[row:])
-    return row + int(np.argmax(known)) if known.any() else row
 
 
 def _inner(p: Four, q: Four) -> Floats:

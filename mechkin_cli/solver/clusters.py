@@ -8,66 +8,110 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import functions
-from mechkin_cli.solver.layout import Layout
+from mechkin_cli.solver.layout import Carrier, Layout
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Sequence
+
     from numpy.typing import NDArray
 
-    from mechkin_cli.arrays import Floats
+    from mechkin_cli.arrays import Bools, Floats
+
+    Isolated = Callable[[Floats], tuple[Floats, Bools, int]]
+    """From end points (columns) to the points closed as well as possible, which of them are
+    isolated assemblies, and how many are assemblies but not isolated."""
 
 
 class Clusters:
-    """Representatives (columns of `states`) of the assemblies that the starts of a block ended on,
-    and how often each was met."""
+    """Representatives (columns of `states`) of the assemblies that starts ended on, told apart by
+    some of the kernel's joints (None: all), and how often each was met.
 
-    def __init__(self, layout: Layout) -> None:
-        self.layout = layout
+    Starts are independent, so while k assemblies are known a start that closes meets a new one with
+    a chance u that stays the same until it happens. That the wait for it is longer than w happens
+    with chance (1 - u)^w; so with a doubt d / (k (k + 1)) for each k, d for all of them, u is at
+    most log(k (k + 1) / d) / w, whenever one looks (`rest`).
+    """
+
+    def __init__(self, layout: Layout, carriers: Sequence[Carrier] | None = None) -> None:
+        self.layout, self.carriers = layout, carriers
         self.states = np.empty((layout.states, 0))
-        self.keys = pose_keys(layout, self.states)
+        self.keys: Floats | None = None
         self.met = np.empty(0, dtype=np.int64)
         self.tried = 0
         self.closed = 0
+        self.newest = 0
         self.free = 0
         self.closest = float("inf")
 
-    def add(self, states: Floats) -> None:
-        """Sorts assemblies (columns) into the clusters."""
-        self.closed += states.shape[1]
-        keys = pose_keys(self.layout, states)
+    @property
+    def number(self) -> int:
+        """Number of assemblies."""
+        return int(self.met.size)
+
+    def add(self, states: Floats, isolated: Isolated) -> None:
+        """Sorts end points (columns, in the order of their starts) into the clusters; those that
+        are not known yet as `isolated` leaves them."""
+        keys = pose_keys(self.layout, states, self.carriers)
+        unknown = self._left(keys)
+        states, good, free = isolated(states[:, unknown])
+        closing = np.ones(keys.shape[1], dtype=bool)
+        closing[unknown[~good]] = False
+        order = self.closed + np.cumsum(closing)
+        self.closed += int(np.count_nonzero(closing))
+        self.free += free
+        self._take(states[:, good], order[unknown[good]])
+
+    def _take(self, states: Floats, order: NDArray[np.int64]) -> None:
+        keys = pose_keys(self.layout, states, self.carriers)
         while keys.shape[1]:
-            known = same_poses(self.keys, keys)
-            self.met += np.count_nonzero(known, axis=1)
-            left = np.flatnonzero(~known.any(axis=0))
-            states, keys = states[:, left], keys[:, left]
+            left = self._left(keys)
+            states, keys, order = states[:, left], keys[:, left], order[left]
             # the rest may be met by one of themselves: take in the first, look again
             self.states = np.concatenate([self.states, states[:, :1]], axis=1)
-            self.keys = np.concatenate([self.keys, keys[:, :1]], axis=1)
+            known = keys[:, :0] if self.keys is None else self.keys
+            self.keys = np.concatenate([known, keys[:, :1]], axis=1)
             self.met = np.append(self.met, np.zeros(states[:, :1].shape[1], dtype=np.int64))
+            self.newest = max(self.newest, *order[:1].tolist(), 0)
+
+    def _left(self, keys: Floats) -> NDArray[np.int64]:
+        """Which columns are not known; those that are, are counted."""
+        if self.keys is None:
+            return np.arange(keys.shape[1])
+        known = same_poses(self.keys, keys)
+        self.met += np.count_nonzero(known, axis=1)
+        return np.flatnonzero(~known.any(axis=0))
 
     @property
-    def chance(self) -> float:
-        """Estimated chance that one more closing start finds a new assembly."""
+    def estimate(self) -> float:
+        """Estimated chance that one more closing start finds a new assembly (Good 1953)."""
         return max(int(np.count_nonzero(self.met == 1)), 1) / self.closed if self.closed else 1.0
 
-    @property
-    def settled(self) -> bool:
-        """Whether more starts are not worth it."""
-        if not self.closed:
-            return self.tried >= tolerances.SEARCH_HOPELESS_STARTS
-        return self.chance < tolerances.SEARCH_NEW_MODE_CHANCE
-
-    @property
-    def exhausted(self) -> bool:
-        """Whether the search gives up."""
-        crowded = self.met.size > tolerances.SEARCH_MOST_MODES
-        return crowded or self.tried >= tolerances.SEARCH_MOST_STARTS
+    def rest(self, doubt: float) -> float:
+        """Bound of that chance, and before the first closing of the chance that a start closes; the
+        chance that it does not hold is `doubt`."""
+        waited = self.closed - self.newest if self.closed else self.tried
+        if not waited:
+            return 1.0
+        ways = max(self.number * (self.number + 1), 1)
+        return min(1.0, float(functions.log(ways / doubt)) / waited)
 
 
-def pose_keys(layout: Layout, states: Floats) -> Floats:
-    """What tells assemblies apart: cosines and sines of turns, slides, products of quaternions."""
+def pose_keys(
+    layout: Layout,
+    states: Floats,
+    carriers: Sequence[Carrier] | None = None,
+    left_out: Collection[tuple[int, int]] = (),
+) -> Floats:
+    """What tells assemblies apart: cosines and sines of turns, slides, products of quaternions, of
+    some of the kernel's joints (None: all).
+
+    `left_out` are freedoms (tree edge, number) that do not matter.
+    """
     keys: list[Floats] = []
-    for carrier in layout.carriers:
+    for carrier in layout.carriers if carriers is None else carriers:
         state = carrier.state
+        if (carrier.edge, carrier.first_freedom) in left_out:
+            continue
         if carrier.part.type.is_ball:
             q = states[state : state + 4]
             keys.extend(q[i] * q[j] for i in range(4) for j in range(i, 4))
@@ -89,3 +133,26 @@ def same_poses(
     for one, other in zip(known, keys, strict=True):
         found &= np.abs(one[:, None] - other[None, :]) < limit
     return found
+
+
+def first_of_each(keys: Floats) -> NDArray[np.int64]:
+    """Which columns are poses that no column before them is.
+
+    Columns are sorted by one sum over their keys; the same poses are neighbours there.
+    """
+    weights = 1.0 + 0.6180339887498949 * np.arange(keys.shape[0])
+    sums = np.zeros(keys.shape[1])
+    for weight, key in zip(weights, keys, strict=True):
+        sums = sums + weight * key
+
+    reach = tolerances.SAME_MODE * keys.shape[0] * float(weights[-1:].max(initial=1.0))
+    order = np.argsort(sums, kind="stable")
+    is_first = np.ones(keys.shape[1], dtype=bool)
+    for apart in range(1, keys.shape[1]):
+        near = np.flatnonzero(sums[order[apart:]] - sums[order[:-apart]] <= reach)
+        if not near.size:
+            break
+        one, other = order[near], order[near + apart]
+        same = (np.abs(keys[:, one] - keys[:, other]) < tolerances.SAME_MODE).all(axis=0)
+        is_first[np.maximum(one, other)[same]] = False
+    return np.flatnonzero(is_first)

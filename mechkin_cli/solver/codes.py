@@ -9,6 +9,9 @@ if TYPE_CHECKING:
         Demand as Demand,
     )
     from mechkin_cli.kernel._kernel import (
+        FreeCode as FreeCode,
+    )
+    from mechkin_cli.kernel._kernel import (
         LoadCode as LoadCode,
     )
     from mechkin_cli.kernel._kernel import (
@@ -30,6 +33,7 @@ else:
     from mechkin_cli.kernel import _kernel
 
     Demand = _kernel.Demand
+    FreeCode = _kernel.FreeCode
     LoadCode = _kernel.LoadCode
     OutputCode = _kernel.OutputCode
     PassageEnd = _kernel.PassageEnd

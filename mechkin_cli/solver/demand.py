@@ -26,7 +26,10 @@ if TYPE_CHECKING:
 WRENCH_KINDS = {"force", "moment", "moment_about_origin"}
 _SHAKING_KINDS = {"shaking_force", "shaking_moment"}
 _INERTIA_KINDS = {"inertia_force", "inertia_moment"}
-_FORCE_KINDS = WRENCH_KINDS | _SHAKING_KINDS | _INERTIA_KINDS | {"effort", "holding_moment"}
+_HOLDING_KINDS = {"holding_moment", "holding_force"}
+_FORCE_KINDS = (
+    WRENCH_KINDS | _SHAKING_KINDS | _INERTIA_KINDS | _HOLDING_KINDS | {"effort", "reaction_level"}
+)
 
 
 def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
@@ -167,15 +170,25 @@ class OutputPlan:
             factor = length if kind == "force" else length * length
             return self._output(code, layout.place_number[owner], factor)
         if kind == "effort":
-            number = self.inputs.index((owner, wanted.coordinate))
-            # a force along a thread does the work of the torque force * slide per radian
-            factor = length * length / mechanism.joints[owner].unit_of(wanted.coordinate, length)
-            return self._output(OutputCode.EFFORT, number, factor)
+            return self._effort(owner, wanted.coordinate)
+        if kind in _HOLDING_KINDS and wanted.coordinate:
+            joint_name, _, coordinate = wanted.coordinate.partition(".")
+            return self._effort(joint_name, coordinate)
         if kind == "holding_moment":
             number = layout.leg_number[owner]
             return self._output(OutputCode.HOLDING_MOMENT, number, length * length)
+        if kind == "reaction_level":
+            return self._output(OutputCode.REACTION_LEVEL, 0, length)
         code = OutputCode[kind.upper()]
         return self._output(code, 0, length if kind.endswith("force") else length * length)
+
+    def _effort(self, joint: str, coordinate: str) -> int:
+        """The effort at a driven or held coordinate."""
+        length = self.layout.length
+        number = self.inputs.index((joint, coordinate))
+        # a force along a thread does the work of the torque force * slide per radian
+        unit = self.layout.mechanism.joints[joint].unit_of(coordinate, length)
+        return self._output(OutputCode.EFFORT, number, length * length / unit)
 
     def add_point(self, at: Attached, order: int) -> int:
         """Plans a position (order 0) or a derivative of it; returns its first slot."""

@@ -52,12 +52,12 @@ class Followed(NamedTuple):
     """Guesses for the rows that were reached.
 
     `guess` (states, rows) and `limit` (rows: largest correction that a fill-in row may still need)
-    hold for the first `reached` rows, and so do `turns` (turn slots, rows), the angles and
-    quaternions of closing joints, continuous from the first row, where they were asked for
-    (`solver.closing_turns`). If the branch could not be followed further, `inputs` and `state` are
-    the last place on it, `turn` the closing joints' turns there, and `direction` the way the inputs
-    were going; where that lies on a piece of their course, `parameter` is the course's, at the
-    ending where it is known.
+    hold for the first `reached` rows, and so do `turns` (turn slots, rows) where they were asked
+    for (`solver.closing_turns`): the angles and quaternions of closing joints, continuous from the
+    first row, and the whole turns of the tree's angles, whose states are then within half a turn.
+    If the branch could not be followed further, `inputs` and `state` are the last place on it,
+    `turn` the turns there, and `direction` the way the inputs were going; where that lies on a
+    piece of their course, `parameter` is the course's, at the ending where it is known.
     """
 
     guess: Floats
@@ -74,6 +74,11 @@ class Followed(NamedTuple):
     crossings: tuple[Crossing, ...] = ()
     parameter: float | None = None
 
+    @property
+    def turn_is_known(self) -> bool:
+        """Whether turns were asked for, and the first row closed."""
+        return self.turn is not None and self.turn.size > 0
+
 
 def follow(
     plan: Plan,
@@ -85,18 +90,21 @@ def follow(
     turn: Floats | None = None,
     straight: bool = False,
     course: _kernel.Course | None = None,
+    whole: Floats | None = None,
 ) -> Followed:
     """Follows the branch through `start` (states at the first row) along all rows.
 
     Args:
         plan: the kernel's plan.
-        inputs: (inputs, rows) in kernel units.
+        inputs: (inputs, rows) in kernel units; angles without their `whole` turns, if these are
+            given.
         start: (states,) closed at the first row.
         every_row: make each row a node of the skeleton instead of filling in.
-        turns: carry the turns of closing joints along.
+        turns: carry turns along.
         turn: (turn slots,) turns at the first row, where they are known from a way before it.
         straight: pass branch points along the smooth continuation.
         course: of the inputs between the rows, where they do not go straight.
+        whole: (inputs, rows) whole turns.
     """
     rows = inputs.shape[1]
     guess, limit = np.empty((start.size, rows)), np.empty(rows)
@@ -105,6 +113,7 @@ def follow(
     found = _kernel.follow_rows(
         plan,
         np.ascontiguousarray(inputs),
+        None if whole is None else np.ascontiguousarray(whole),
         start.tolist(),
         given,
         every_row,
@@ -116,7 +125,6 @@ def follow(
     )
     end, reached, steps, _, place, state, last_turn, direction = found[:8]
     limits, crossings, piece, parameter = found[8:]
-    guess[:, reached:] = np.nan
     ending = None if limits is None else Ending(PassageEnd(limits[0]), *limits[1:])
     crossed = tuple(Crossing(*each) for each in crossings)
     return Followed(

@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING
 from mechkin_cli.mechanism.frames import turned_tensor
 from mechkin_cli.mechanism.legs import frame_on
 from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint
-from mechkin_cli.mechanism.vectors import norm, scale
+from mechkin_cli.mechanism.vectors import ZERO, cross, norm, scale
 from mechkin_cli.solver.axes import coordinate_axis
+from mechkin_cli.solver.codes import FreeCode
 from mechkin_cli.solver.graph import Closing
 from mechkin_cli.solver.plan_loads import load_record
 from mechkin_cli.solver.records import (
     Axis,
     Block,
     ClosingJoint,
+    FreeMotion,
     Gravity,
     Inertia,
     Input,
@@ -58,6 +60,7 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
         *(_closing(layout, closing) for closing in layout.graph.closings),
         *_places(layout),
         *_axes(layout),
+        *_free_motions(layout),
         *_blocks(layout),
         *_inputs(layout),
         Gravity(scale(1.0 / layout.length, layout.mechanism.gravity)),
@@ -133,6 +136,26 @@ def _axes(layout: Layout) -> Iterator[Axis]:
         )
 
 
+def _free_motions(layout: Layout) -> Iterator[FreeMotion]:
+    """Of every joint: a slide or a turn along one direction, or square to one, or every one."""
+    for name, joint in layout.mechanism.joints.items():
+        place = layout.place_number[name]
+        for slide, free in ((True, joint.free_slides), (False, joint.free_turns)):
+            if free is None or len(free) > 2:
+                yield FreeMotion(place, slide, FreeCode.ALL, -1, ZERO)
+            elif slide and len(free) == 2:
+                one, two = free
+                normal = Attached(one.link, cross(one.vector, two.vector))
+                yield _free(layout, place, slide, FreeCode.SQUARE, normal)
+            else:
+                for at in free:
+                    yield _free(layout, place, slide, FreeCode.ALONG, at)
+
+
+def _free(layout: Layout, place: int, slide: bool, code: FreeCode, at: Attached) -> FreeMotion:
+    return FreeMotion(place, slide, code, layout.link_number[at.link], layout.vector(at))
+
+
 def _blocks(layout: Layout) -> Iterator[Block | Rest]:
     placed: set[int] = set()
     for block in layout.graph.blocks:
@@ -163,8 +186,9 @@ def _inputs(layout: Layout) -> Iterator[Input]:
     for (edge, freedom), (name, coordinate) in zip(graph.inputs, graph.driven, strict=True):
         joint = graph.edges[edge].joint
         # a force along a thread is driven as the torque about it
-        known = joint.type.coordinate[coordinate]
-        force_per_torque = layout.length / joint.pitch if known.on_thread else 1.0
+        known = joint.type.coordinate.get(coordinate)
+        on_thread = known is not None and known.on_thread
+        force_per_torque = layout.length / joint.pitch if on_thread else 1.0
         axis = layout.axis_number.get((name, coordinate), NO_AXIS)
         yield Input(layout.column(edge, freedom), axis, force_per_torque)
 

@@ -94,6 +94,16 @@ class Axis(NamedTuple):
     other_vector: Triple
 
 
+class FreeMotion(NamedTuple):
+    """Directions that a joint leaves free, by the kernel's `FreeCode`: slides or turns."""
+
+    place: int
+    slide: bool
+    code: int
+    link: int
+    vector: Triple
+
+
 class Block(NamedTuple):
     """The next closing joints, the tree joints that they place and the columns that they solve
     for."""
@@ -171,6 +181,7 @@ PlanRecord = (
     | Leg
     | Place
     | Axis
+    | FreeMotion
     | Block
     | Rest
     | Input
@@ -187,6 +198,7 @@ _VERBS: dict[type, str] = {
     Leg: "add_leg",
     Place: "add_place",
     Axis: "add_axis",
+    FreeMotion: "add_free_motion",
     Block: "add_block",
     Rest: "set_rest",
     Input: "add_input",
@@ -204,6 +216,7 @@ _CONSTANTS: dict[type, tuple[str, ...]] = {
     Leg: ("on_first", "on_second", "length", "line"),
     Place: ("point",),
     Axis: ("vector", "other_vector"),
+    FreeMotion: ("vector",),
     Input: ("scale",),
     Inertia: ("mass", "centre", "tensor"),
     Gravity: ("g",),

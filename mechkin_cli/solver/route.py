@@ -57,7 +57,9 @@ class Way(NamedTuple):
         low, high = float(self.at[place]), float(self.at[place + 1])
         for _ in range(16):
             at = low + (high - low) * np.linspace(0.0, 1.0, 33)
-            miss = np.max(np.abs(self.route.jets(cell, at)[:, :, 0] - inputs), axis=1)
+            miss = np.max(
+                np.abs(self.route.jets(cell, at)[:, :, 0] - inputs[: self.route.units.size]), axis=1
+            )
             best = int(np.argmin(miss))
             low, high = float(at[max(best - 1, 0)]), float(at[min(best + 1, 32)])
         return 0.5 * (low + high)
@@ -68,13 +70,14 @@ class Route:
 
     Args:
         course: of the inputs.
-        values: (inputs, rows) in kernel units.
-        units: (inputs,) SI values of the kernel's units.
+        values: (inputs, rows) in kernel units; inputs beyond those of the course are held.
+        units: (inputs of the course,) SI values of the kernel's units.
     """
 
     def __init__(self, course: Course, values: Floats, units: Floats) -> None:
         self.course, self.units = course, units
-        self.values = course.values / units[:, None]
+        held = np.repeat(values[units.size :, :1], course.rows.size, axis=1)
+        self.values = np.concatenate([course.values / units[:, None], held])
         real = course.rows >= 0
         self.values[:, real] = values[:, course.rows[real]]
 

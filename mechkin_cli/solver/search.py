@@ -1,25 +1,30 @@
 """All ways of assembling a mechanism at given inputs that random starts find.
 
-Block by block: Levenberg-Marquardt from random starts (fixed seed), side conditions, clustering by
-the poses. Starts go on until one more is unlikely to find a new mode: of C starts that closed, M
-met a mode that no other met, so the next meets a new one with chance max(M, 1) / C (Good 1953;
-with M = 0 the chance is known only to be of order 1 / C).
+Block by block (`block_search`): a block is searched once for each place of the blocks that its
+loops hang from, and blocks that do not depend on each other multiply their assemblies.
 """
 
 from __future__ import annotations
 
-from math import isfinite, pi
+from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.kernel.width import threads_for, width
 from mechkin_cli.solver.batch import run
-from mechkin_cli.solver.clusters import Clusters, pose_keys, same_poses
+from mechkin_cli.solver.block_bounds import most_of_block
+from mechkin_cli.solver.block_search import (
+    PlaceSearch,
+    Request,
+    ends,
+    search_block,
+)
+from mechkin_cli.solver.clusters import first_of_each, pose_keys
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.random_starts import RandomStarts
+from mechkin_cli.solver.start_box import Within, unknown_states, upstream_states
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,23 +32,21 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
 
-
-class Within(NamedTuple):
-    """A box of states: `radius` (states,) about `centre` (states,), infinite where any value will
-    do."""
-
-    centre: Floats
-    radius: Floats
+__all__ = ["Found", "Within", "assemblies", "single_assembly", "with_assemblies", "wrap_angles"]
 
 
 class Found(NamedTuple):
     """Assemblies (columns of `states`), their condition, and how the search went.
 
-    `closed` starts of `starts` ended on an assembly; `chance` estimates that one more start finds
-    a new one; `closest` is the least closing residual of any start; `stopped` tells that the search
-    ended at its most starts while that chance was still high. `free` starts ended where the loops
-    still move with the inputs held, or in a singular place: these are no isolated assemblies and
-    are left out.
+    `closed` starts of `starts` ended on an assembly; `chance` bounds the chance that one more that
+    closes finds a new one (it may fail with `SEARCH_DOUBT`); where none of a block's starts closed,
+    that one more does. `complete` says that there is none, proven by `bound`, the most that such
+    loops have, or by a count of the loops' own real roots. `closest` is the least closing residual
+    of any start of the last block searched; `stopped` tells that the search ended at its most
+    starts. `free` starts ended where the loops still move with the inputs held, or in a singular
+    place: these are no isolated assemblies and are left out. `failed` is the first block of which
+    none of `tried` starts closed, at none of the `places` of the blocks before. `cut`: blocks
+    have more assemblies together than are listed; those nearest to the drawing are.
     """
 
     states: Floats
@@ -55,11 +58,69 @@ class Found(NamedTuple):
     closest: float
     stopped: bool
     free: int
+    complete: bool
+    bound: int | None
+    failed: int | None
+    tried: int
+    places: int
+    cut: bool
 
     @property
     def number(self) -> int:
         """Number of assemblies."""
         return int(self.states.shape[1])
+
+
+class _Tally:
+    """What the searches of all blocks amount to."""
+
+    def __init__(self) -> None:
+        self.searches = self.starts = self.closed = self.free = 0
+        self.chance = self.closest = 0.0
+        self.stopped, self.complete = False, True
+        self.bound: int | None = 1
+        self.failed: int | None = None
+        self.most_places = tolerances.SEARCH_MOST_PLACES
+        self.tried = self.places = 0
+
+    def doubts(self, count: int) -> list[float]:
+        """Shares of `SEARCH_DOUBT` for the next searches; those of all together are all of it."""
+        first = self.searches + 1
+        self.searches += count
+        return [tolerances.SEARCH_DOUBT / (s * (s + 1)) for s in range(first, first + count)]
+
+    def cut(self) -> int:
+        """Notes that not all assemblies so far are continued; how many to continue instead, where
+        the next block is to be searched at each."""
+        self.stopped, self.complete = True, False
+        self.most_places = tolerances.SEARCH_FEW_PLACES
+        return self.most_places
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether not all were continued."""
+        return self.most_places == tolerances.SEARCH_FEW_PLACES
+
+    def add(self, number: int, searches: list[PlaceSearch]) -> None:
+        """Takes in a block's searches."""
+        all_clusters = [search.clusters for search in searches]
+        self.starts += sum(clusters.tried for clusters in all_clusters)
+        self.closed += sum(clusters.closed for clusters in all_clusters)
+        self.free += sum(clusters.free for clusters in all_clusters)
+        self.chance = max(self.chance, *(search.rest for search in searches))
+        self.stopped = self.stopped or not all(search.is_settled for search in searches)
+        self.complete = self.complete and all(search.is_complete for search in searches)
+        self.closest = max(clusters.closest for clusters in all_clusters)
+        self.tried = sum(clusters.tried for clusters in all_clusters)
+        if not any(clusters.number for clusters in all_clusters):
+            self.failed, self.places = number, len(searches)
+            proven = all(search.is_complete for search in searches)
+            self.complete = proven and not self.is_cut
+
+    def multiply(self, bounds: list[int | None]) -> None:
+        """Takes in bounds of blocks, None where none is known."""
+        for bound in bounds:
+            self.bound = None if self.bound is None or bound is None else self.bound * bound
 
 
 def assemblies(
@@ -69,6 +130,7 @@ def assemblies(
     turns: int = 1,
     within: Within | None = None,
     about: Floats | None = None,
+    thorough: bool = True,
 ) -> Found:
     """The assemblies at one set of inputs.
 
@@ -79,153 +141,109 @@ def assemblies(
         turns: turns of helical joints to either side.
         within: where random starts are taken; None: everywhere.
         about: (states,) whose turns of threads are the middle of those searched; None: as drawn.
+        thorough: whether all are wanted, or one among the most of them.
     """
-    generator = RandomStarts()
+    generator, tally = RandomStarts(), _Tally()
     middle = np.zeros(plan.states) if about is None else about
-    partial: list[Floats] = [np.zeros((plan.states, 1))]
-    partial[0][_quaternion_scalars(layout), 0] = 1.0
-    starts = closed = free = 0
-    chance = closest = 0.0
-    stopped = False
+    request = Request(layout, plan, inputs, turns, middle, within, thorough)
+    partial = _unknown_zero(layout, inputs)
     for number in range(len(layout.graph.blocks)):
-        continued: list[Floats] = []
-        for base in partial:
-            clusters = _search_block(
-                layout, plan, number, inputs, base, generator, turns, within, middle
-            )
-            continued.extend(state[:, None] for state in clusters.states.T)
-            starts, closed = starts + clusters.tried, closed + clusters.closed
-            chance = max(chance, clusters.chance if clusters.closed else 0.0)
-            closest, free = max(closest, clusters.closest), free + clusters.free
-            stopped = stopped or not clusters.settled
-        partial = continued
-    every = np.concatenate([np.empty((plan.states, 0)), *partial], axis=1)
-    states, residual, condition = _closed(layout, plan, inputs, every)
-    return Found(states, residual, condition, starts, closed, chance, closest, stopped, free)
+        upstream = upstream_states(layout, number)
+        firsts, place = _different(partial[upstream])
+        if len(firsts) > tally.most_places:
+            partial = partial[:, _nearest_home(layout, partial, tally.cut())]
+            firsts, place = _different(partial[upstream])
+        doubts = tally.doubts(len(firsts))
+        searches = search_block(request, number, partial[:, firsts], generator, doubts)
+        tally.add(number, searches)
+        tally.multiply(list({search.most for search in searches}))
+        if tally.failed is not None:
+            rest = layout.graph.blocks[number + 1 :]
+            tally.multiply([most_of_block(layout.graph, block) for block in rest])
+            partial = partial[:, :0]
+            break
+        counts = np.array([searches[k].clusters.number for k in place])
+        if int(np.add.reduce(counts)) > tolerances.SEARCH_MOST_PRODUCTS:
+            tally.cut()
+            having = np.flatnonzero(counts)
+            few = max(tolerances.SEARCH_MOST_PRODUCTS // (2 * int(counts.max())), 1)
+            some = having[_nearest_home(layout, partial[:, having], few)]
+            partial, place = partial[:, some], [place[i] for i in some]
+        partial = _continued(layout, number, partial, place, searches)
+    states, residual, condition = _closed(layout, plan, inputs, partial)
+    complete = tally.complete and states.shape[1] == partial.shape[1]
+    return Found(
+        states,
+        residual,
+        condition,
+        starts=tally.starts,
+        closed=tally.closed,
+        chance=tally.chance,
+        closest=tally.closest,
+        stopped=tally.stopped,
+        free=tally.free,
+        complete=complete,
+        bound=tally.bound if layout.graph.blocks else None,
+        failed=tally.failed,
+        tried=tally.tried,
+        places=tally.places,
+        cut=tally.is_cut,
+    )
+
+
+def _unknown_zero(layout: Layout, inputs: Floats) -> Floats:
+    """The one place before the first block: inputs as given, unknowns zero, (states, 1)."""
+    state = np.zeros((layout.states, 1))
+    state[_quaternion_scalars(layout), 0] = 1.0
+    for (edge, freedom), value in zip(layout.graph.inputs, inputs, strict=True):
+        if edge >= 0:
+            state[layout.state(edge, freedom), 0] = value
+    return state
+
+
+def _different(states: Floats) -> tuple[list[int], list[int]]:
+    """The first column of each kind, and for each column which of these it is equal to."""
+    firsts: list[int] = []
+    kinds: dict[bytes, int] = {}
+    place = []
+    for number, column in enumerate(np.ascontiguousarray(states.T)):
+        key = column.tobytes()
+        if key not in kinds:
+            kinds[key] = len(firsts)
+            firsts.append(number)
+        place.append(kinds[key])
+    return firsts, place
+
+
+def _nearest_home(layout: Layout, partial: Floats, count: int) -> NDArray[np.int64]:
+    """The columns of the assemblies whose joints are nearest to the drawing, in their order."""
+    home = np.zeros((layout.states, 1))
+    home[_quaternion_scalars(layout)] = 1.0
+    away = np.zeros(partial.shape[1])
+    keys = pose_keys(layout, partial)
+    for key, drawn in zip(keys, pose_keys(layout, home), strict=True):
+        away = away + (key - drawn) * (key - drawn)
+    return np.sort(np.argsort(away, kind="stable")[:count])
+
+
+def _continued(
+    layout: Layout, number: int, partial: Floats, place: list[int], searches: list[PlaceSearch]
+) -> Floats:
+    """Every assembly so far with each of the block's own there."""
+    own = unknown_states(layout, number)
+    found = [searches[k].clusters for k in place]
+    states = np.repeat(partial, [clusters.number for clusters in found], axis=1)
+    states[own] = np.concatenate([clusters.states[own] for clusters in found], axis=1)
+    return states
 
 
 def single_assembly(layout: Layout, plan: Plan, inputs: Floats, state: Floats) -> Floats:
     """Where one start (states,) ends, block by block; closed or not."""
     values, states = np.ascontiguousarray(inputs[:, None]), state[:, None].copy()
     for number in range(len(layout.graph.blocks)):
-        _ends(plan, number, values, states)
+        ends(plan, number, values, states)
     found: Floats = states[:, 0].copy()
     return found
-
-
-def _ends(
-    plan: Plan, number: int, values: Floats, states: Floats
-) -> tuple[Floats, NDArray[np.uint8]]:
-    """Takes the starts `states` (states, starts) of a block to their ends, in place; residuals and
-    flags."""
-    size = states.shape[1]
-    residual, flags = np.empty(size), np.empty(size, dtype=np.uint8)
-    plan.search(
-        block=number,
-        inputs=values,
-        states=states,
-        residual=residual,
-        flags=flags,
-        iterations=tolerances.SEARCH_ITERATIONS,
-        tests=(tolerances.SEARCH_RESIDUAL,),
-        lanes=width(),
-        # an iteration of a start costs as much as a row or more
-        threads=threads_for(size * tolerances.SEARCH_ITERATIONS),
-    )
-    return residual, flags
-
-
-def _search_block(
-    layout: Layout,
-    plan: Plan,
-    number: int,
-    inputs: Floats,
-    base: Floats,
-    generator: RandomStarts,
-    turns: int,
-    within: Within | None,
-    middle: Floats,
-) -> Clusters:
-    clusters = Clusters(layout)
-    size = tolerances.SEARCH_STARTS
-    values = np.repeat(inputs[:, None], size, axis=1)
-    threads = _threads(layout, number)
-    while not (clusters.settled or clusters.exhausted):
-        states = np.repeat(base, size, axis=1)
-        _randomise(layout, number, states, generator, turns, middle)
-        if within is not None:
-            _bring_within(layout, number, states, generator, within)
-        residual, flags = _ends(plan, number, values, states)
-        clusters.closest = min(clusters.closest, float(np.min(residual)))
-        turned = np.abs(states[threads] - middle[threads, None]) <= _most_turn(turns)
-        states, free = _isolated(layout, plan, values, states[:, (flags == 0) & turned.all(axis=0)])
-        clusters.add(states)
-        clusters.free += free
-        clusters.tried += size
-    return clusters
-
-
-def _isolated(layout: Layout, plan: Plan, values: Floats, states: Floats) -> tuple[Floats, int]:
-    """The isolated assemblies among end points of the search, and how many others there were; with
-    several blocks only the last knows."""
-    count = states.shape[1]
-    if count == 0 or len(layout.graph.blocks) > 1:
-        return states, 0
-    batch = run(plan, values[:, :count], states, demand=Demand.CONDITION, iterations=20)
-    assert batch.condition is not None
-    regular = batch.condition < tolerances.SEARCH_CONDITION
-    free = int(np.count_nonzero(batch.good & ~regular))
-    return batch.states[:, batch.good & regular], free
-
-
-def _threads(layout: Layout, number: int) -> list[int]:
-    """States of a block that are turns of threads."""
-    unknowns = (layout.carrier_of(*u)[0] for u in layout.graph.blocks[number].unknowns)
-    return [layout.carriers[k].state for k in unknowns if layout.carriers[k].part.type.is_thread]
-
-
-def _most_turn(turns: int) -> float:
-    return pi * (2 * turns + 1)
-
-
-def _randomise(
-    layout: Layout,
-    number: int,
-    states: Floats,
-    generator: RandomStarts,
-    turns: int,
-    middle: Floats,
-) -> None:
-    """Fills the unknown states of a block with random starts."""
-    rows = states.shape[1]
-    reach = tolerances.SEARCH_SLIDES * layout.mechanism.box_diagonal() / layout.length
-    for edge, freedom in layout.graph.blocks[number].unknowns:
-        k, local = layout.carrier_of(edge, freedom)
-        carrier = layout.carriers[k]
-        state = carrier.state + local
-        if carrier.part.type.is_ball:
-            if local == 0:
-                states[state : state + 4] = generator.quaternions(rows)
-        elif carrier.part.type.slides[local]:
-            states[state] = generator.between(reach, rows)
-        else:
-            thread = carrier.part.type.is_thread
-            half = _most_turn(turns) if thread else pi
-            states[state] = generator.between(half, rows)
-            if thread:
-                states[state] += middle[state]
-
-
-def _bring_within(
-    layout: Layout, number: int, states: Floats, generator: RandomStarts, within: Within
-) -> None:
-    """Takes the starts of a block from a box, where it is bounded."""
-    for edge, freedom in layout.graph.blocks[number].unknowns:
-        k, local = layout.carrier_of(edge, freedom)
-        state = layout.carriers[k].state + local
-        radius = float(within.radius[state])
-        if isfinite(radius):
-            states[state] = within.centre[state] + generator.between(radius, states.shape[1])
 
 
 def _quaternion_scalars(layout: Layout) -> list[int]:
@@ -258,8 +276,7 @@ def _closed(
         batch.condition[keep],
     )
     wrap_angles(layout, states)
-    keys = pose_keys(layout, states)
-    chosen = np.flatnonzero(~np.triu(same_poses(keys, keys), 1).any(axis=0))
+    chosen = first_of_each(pose_keys(layout, states))
     return states[:, chosen], residual[chosen], condition[chosen]
 
 

@@ -74,7 +74,7 @@ class Session:
     Args:
         problem: mechanism, motion and assembly.
         graph: its solver graph; None builds the best one.
-        driven: the inputs, where they are not those of the problem's motion.
+        driven: the inputs, where they are not those of the problem's motion and what is held.
         closed_at: closing joints to use instead of the best ones.
         packing: how rows are packed.
 
@@ -92,12 +92,12 @@ class Session:
         packing: Packing = Packing(),
     ) -> None:
         self.problem = problem
-        self.driven = list(problem.motion.driven if driven is None else driven)
+        self.driven = list(problem.driven if driven is None else driven)
         self.closed_at = closed_at
         self.packing = packing
         self.size: float | None = None
         self.continued: Continued | None = None
-        self.graph = graph or build_graph(problem.mechanism, self.driven, closed_at)
+        self.graph = graph or build_graph(problem.solved_mechanism, self.driven, closed_at)
         self._readouts: dict[object, Readout] = {}
         self._kept: dict[object, object] = {}
 
@@ -205,6 +205,7 @@ class Session:
         every_row: bool = False,
         turns: bool = False,
         turn: Floats | None = None,
+        whole: Floats | None = None,
     ) -> Followed:
         """Follows the branch through `start` (states,) along a path (inputs, rows); arguments as
         those of `solver.follow.follow`."""
@@ -216,17 +217,19 @@ class Session:
             turns=turns,
             turn=turn,
             straight=self.problem.assembly.straight,
+            whole=whole,
         )
 
     def follow_rows(
         self, start: Floats, row: int = 0, step: int = 1, *, every_row: bool = False
     ) -> Followed:
         """Follows the branch through `start` (states,) at a row along the rows from there on, or
-        with step -1 back from there, with the turns of closing joints; between the rows the inputs
-        follow their laws and ties."""
+        with step -1 back from there, with the turns of angles; between the rows the inputs follow
+        their laws and ties."""
         if self.route is None:
-            path = np.ascontiguousarray(self.inputs.values[:, row::step])
-            return self.follow(path, start, every_row=every_row, turns=True)
+            inputs, rows = self.inputs, slice(row, None, step)
+            path, whole = inputs.reduced[:, rows], inputs.whole[:, rows]
+            return self.follow(path, start, every_row=every_row, turns=True, whole=whole)
         straight = self.problem.assembly.straight
         way = self.route.way(row, step)
         return follow_along(self.plan, way, start, every_row=every_row, straight=straight)
@@ -235,18 +238,27 @@ class Session:
         """Follows the branch through `start` (states,) along a way of all inputs."""
         return follow_along(self.plan, way, start, straight=self.problem.assembly.straight)
 
-    def search(self, inputs: Floats, within: Within | None = None) -> Found:
-        """All assemblies at some inputs (inputs,) that random starts find, or those `within` a
-        box."""
+    def search(
+        self, inputs: Floats, within: Within | None = None, *, thorough: bool = True
+    ) -> Found:
+        """All assemblies at some inputs (inputs,) that random starts find, or those `within` a box;
+        not `thorough`: most of them, where one is wanted."""
         from mechkin_cli.solver.search import assemblies
 
         turns, about = self.problem.assembly.turns, self._named_turns()
         if within is not None:
-            return assemblies(self.layout, self.plan, inputs, turns, within, about)
-        key = ("search", inputs.tobytes(), turns, about.tobytes())
-        return self.once(
-            key, lambda: assemblies(self.layout, self.plan, inputs, turns, None, about)
-        )
+            return assemblies(self.layout, self.plan, inputs, turns, within, about, thorough)
+
+        def find(thorough: bool) -> Found:
+            key = ("search", inputs.tobytes(), turns, about.tobytes(), thorough)
+            return self.once(
+                key,
+                lambda: assemblies(self.layout, self.plan, inputs, turns, None, about, thorough),
+            )
+
+        quick = find(thorough=False)
+        final = quick.complete or quick.cut or not thorough
+        return quick if final else find(thorough=True)
 
     def _named_turns(self) -> Floats:
         """States (states,): the turns of threads that the assembly's `near` names, else zero."""
@@ -270,6 +282,8 @@ class Session:
         accelerations: Floats | None = None,
         jerks: Floats | None = None,
         loads: Floats | None = None,
+        turned: Floats | None = None,
+        whole: Floats | None = None,
         derivatives: bool = False,
         shift: int = 0,
         iterations: int = tolerances.NEWTON_ITERATIONS,
@@ -285,6 +299,8 @@ class Session:
             accelerations=accelerations,
             jerks=jerks,
             loads=loads,
+            turned=turned,
+            whole=whole,
             demand=demand,
             outputs=None if readout is None else readout.outputs,
             derivatives=derivatives,

@@ -36,6 +36,7 @@ def step_limits(
         stray=tolerances.PATH_STRAY,
         angle_step=tolerances.CLOSING_ANGLE_STEP,
         angle_miss=tolerances.CLOSING_ANGLE_MISS,
+        angle_bend=tolerances.CLOSING_ANGLE_BEND,
         plan_step=tolerances.PLAN_STEP,
         arc_pivot=tolerances.ARC_PIVOT,
         radius=tolerances.SPECTRAL_RADIUS,

@@ -42,10 +42,12 @@ class Tie:
         given += [] if motion.time is None else [float(motion.time.values[row])]
         self.formula = Formula(tape, [], lambda _: given)
         self.given = given
+        self.held = session.inputs.values[len(motion.inputs) :, row : row + 1]
 
     def at(self, values: Floats) -> Floats:
         """All inputs (inputs, places) at values of the one that moves; in kernel units."""
-        inputs: Floats = self._in_si(values * self.units[self.number]) / self.units[:, None]
+        own = self._in_si(values * self.units[self.number]) / self.units[:, None]
+        inputs: Floats = np.concatenate([own, np.repeat(self.held, own.shape[1], axis=1)])
         return inputs
 
     def derivatives(self, values: Floats) -> Floats:
@@ -58,7 +60,10 @@ class Tie:
             ways = self.formula.ways(at, self.given)[0]
             found[:, :, k] = self.formula.jets(at, self.given, ways)[0].T
         powers = np.array([1.0, unit, unit * unit])
-        jets: Floats = found * powers[:, None, None] / self.units[None, :, None]
+        own = found * powers[:, None, None] / self.units[None, :, None]
+        held = np.zeros((3, self.held.size, values.size))
+        held[0] = self.held
+        jets: Floats = np.concatenate([own, held], axis=1)
         return jets
 
     def way(self, values: Floats) -> Way:
@@ -66,9 +71,9 @@ class Tie:
         places = values * self.units[self.number]
         cells = cells_of(self.formula, places)
         course = places_of(self.formula, cells, Parameter(self.name), places, self._in_si(places))
-        return Route(
-            course, course.values[:, course.rows >= 0] / self.units[:, None], self.units
-        ).way(0)
+        own = course.values[:, course.rows >= 0] / self.units[:, None]
+        inputs = np.concatenate([own, np.repeat(self.held, own.shape[1], axis=1)])
+        return Route(course, inputs, self.units).way(0)
 
     def _in_si(self, places: Floats) -> Floats:
         given = np.empty((1 + len(self.given), places.size))

@@ -19,6 +19,7 @@ from mechkin_cli.expressions import Quantity
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel.width import width
 from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.solver.closing_turns import angle_slots
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import OutputPlan, Slot
 from mechkin_cli.solver.inputs import KernelInputs, kernel_inputs
@@ -90,13 +91,13 @@ class Reading:
         """The kernel's variants of this reading."""
         variation = self.variation
         base = variation.base
-        turns = {(c, f): slot for c, f, slot, _ in _kernel.closing_turns(base.plan)}
         return _kernel.Variants(
             tape=self.tape,
             plan=base.plan,
             outputs=self.readout.outputs,
             parameters=variation.values,
-            inputs=base.inputs.values,
+            inputs=base.inputs.reduced,
+            whole=base.inputs.whole,
             rates=base.inputs.rates,
             accelerations=base.inputs.accelerations,
             jerks=base.inputs.jerks,
@@ -109,7 +110,8 @@ class Reading:
                 tolerances.LONGEST_DIMENSION_STEP, tolerances.LEAST_DIMENSION_STEP
             ),
             following=step_limits(straight=base.problem.assembly.straight),
-            angles=variation.closing_angles(self.slots, turns),
+            angles=angle_slots(base, self.slots),
+            half_turn_side=tolerances.HALF_TURN_SIDE,
             ways=_ways(base, start.row),
         )
 
@@ -140,11 +142,11 @@ class Variation:
         self.recorded = problem
         self.values = np.array(recorder.values[: len(recorder.inputs)])
         self.layout = Layout(
-            problem.mechanism, graph_of(problem.mechanism, base.graph), base.layout.length
+            problem.mechanism, graph_of(problem.solved_mechanism, base.graph), base.layout.length
         )
         self._refuse_other_scale(problem)
         self.constants = flatten(plan_records(self.layout))
-        inputs = kernel_inputs(problem, self.layout)
+        inputs = kernel_inputs(problem, self.layout).orders
         self.moving_inputs = _flat(inputs) if any(map(is_traced, inputs)) else []
         self._readings: dict[tuple[str, ...], Reading] = {}
 
@@ -226,24 +228,8 @@ class Variation:
         if not self.moving_inputs:
             return base
         numbers = replay(self._plan_tape, values[:, None])[0][0][len(self.constants) :]
-        return KernelInputs(*numbers.reshape((4, *base.values.shape)))
-
-    def closing_angles(
-        self, slots: Mapping[str, Slot], turns: Mapping[tuple[int, int], int]
-    ) -> list[tuple[int, int]]:
-        """(slot, turn) of the outputs that are angles of closing joints."""
-        found = []
-        known = self.base.problem.quantities()
-        for name, slot in slots.items():
-            quantity = known[name]
-            if quantity.kind != "coordinate" or quantity.order:
-                continue
-            joint = self.layout.mechanism.joints[quantity.owner]
-            place = self.layout.joint_reference[quantity.owner]
-            freedom = joint.type.freedom_of[quantity.coordinate]
-            if place < 0 and (-1 - place, freedom) in turns:
-                found.append((slot.first, turns[-1 - place, freedom]))
-        return found
+        orders = numbers.reshape((4, *base.values.shape))
+        return KernelInputs.of(self.problem(values), *orders)
 
 
 def run_variants(

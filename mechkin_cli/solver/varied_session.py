@@ -39,7 +39,7 @@ class VariedSession(Session):
         self.variation = variation
         self.values = values
         self.problem = problem
-        self.graph = graph_of(problem.mechanism, base.graph)
+        self.graph = graph_of(problem.solved_mechanism, base.graph)
         for found in ("plan", "layout", "inputs", "route"):
             self.__dict__.pop(found, None)
         self._readouts, self._kept = {}, {}

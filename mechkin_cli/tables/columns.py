@@ -103,7 +103,8 @@ def _column(layout: ColumnLayout, source: Source) -> Column:
         return Column(layout.label, unit, given, layout.decimals)
     column = _evaluated(layout, source)
     others = [_evaluated(layout, other).values for other in source.alternatives]
-    values = unique_cells(column.values, others)  # type: ignore[arg-type]
+    disturbed = [_evaluated(layout, other).values for other in source.disturbed]
+    values = unique_cells(column.values, others, disturbed)  # type: ignore[arg-type]
     return Column(column.label, column.unit, values, column.decimals)
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Literal
 
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.regular_file import MOST_TABLE_BYTES, read_regular
 from mechkin_cli.tables.table_text import TableText, read_table_text
 
 SHOWN_CELLS = 3
@@ -76,12 +77,19 @@ def read_committed(folder: Path, suffixes: tuple[str, ...] = (".csv", ".md")) ->
         if not folder.is_dir():
             return {}
         paths = sorted(path for path in folder.iterdir() if path.suffix in suffixes)
-        return {path.name: path.read_bytes() for path in paths if path.is_file()}
+        return {path.name: _content(path) for path in paths if path.is_file()}
     except OSError as error:
         place = error.filename or folder
         raise UsageError(
             f"cannot read {place}: {error.strerror}; make it readable to compare with it"
         ) from error
+
+
+def _content(path: Path) -> bytes:
+    content = read_regular(path, MOST_TABLE_BYTES)
+    if len(content) > MOST_TABLE_BYTES:
+        raise UsageError(f"{path} is too large to compare with (limit {MOST_TABLE_BYTES} bytes)")
+    return content
 
 
 def _compare(name: str, fresh: bytes, committed: bytes) -> FileComparison:

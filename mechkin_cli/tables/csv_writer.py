@@ -3,12 +3,14 @@
 Numbers have the shortest digits that read back as the same double, or, for tables kept under
 version control, the shortest of the value rounded to a number of significant digits; an empty cell
 is a missing value, in quotes where it is alone in its line, as many readers skip blank lines.
+Labels that a spreadsheet would take for formulas begin with an apostrophe (`tables/neutral.py`).
 """
 
 from __future__ import annotations
 
 from mechkin_cli.tables.columns import Columns, Words
 from mechkin_cli.tables.native_columns import number_column, threads_for, word_column
+from mechkin_cli.tables.neutral import csv_text
 
 COMMITTED_DIGITS = 12
 """Significant digits of committed tables: above any rounding, below what a last bit can change."""
@@ -21,9 +23,9 @@ def csv_bytes(columns: Columns, significant_digits: int = SHORTEST, threads: int
     table is worth."""
     from mechkin_cli.kernel import _kernel
 
-    labels = [column.label for column in columns.columns]
+    labels = [csv_text(column.label) for column in columns.columns]
     cells = [
-        word_column(column.values)
+        word_column(column.values, csv_text)
         if isinstance(column.values, Words)
         else number_column(column.values)
         for column in columns.columns

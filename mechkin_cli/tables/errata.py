@@ -11,9 +11,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
+from mechkin_cli.legible import whole
 from mechkin_cli.tables.agreement import PrintedCell, TableAgreement
 from mechkin_cli.tables.columns import Columns
 from mechkin_cli.tables.layout import PublishedValues
+from mechkin_cli.tables.neutral import link_target, markdown_line, markdown_text
 
 PAGE = "errata.md"
 _THOUSAND, _MILLION = Decimal(1000), Decimal(1_000_000)
@@ -41,9 +43,9 @@ class PrintedTable:
 
 def errata_page(name: str, source: str, tables: Sequence[PrintedTable]) -> str:
     """The whole page of a mechanism, with a newline at its end."""
-    parts = [f"# {_line(name)}: printed and computed values"]
+    parts = [f"# {markdown_text(whole(name))}: printed and computed values"]
     if source:
-        parts.append(f"Source: {_line(source)}.")
+        parts.append(f"Source: {markdown_text(source)}.")
     parts += [_HEAD, _overview(tables)]
     for table in tables:
         parts += _table_parts(table)
@@ -83,8 +85,8 @@ def _table_row(name: str, agreement: TableAgreement) -> list[str]:
 def _table_parts(one: PrintedTable) -> list[str]:
     """Heading, counts, columns, worst cells, reasons."""
     table, found = one.table, one.agreement
-    parts = [f"## {table.name}: {_line(table.title)}"]
-    links = f"[computed]({table.name}.csv), [printed]({one.link})"
+    parts = [f"## {table.name}: {markdown_text(table.title)}"]
+    links = f"[computed]({table.name}.csv), [printed]({link_target(one.link)})"
     parts.append(f"{counts([found])} ({links}).{_left_out(found)}")
     columns = _column_rows(one)
     if columns:
@@ -101,7 +103,8 @@ def _left_out(found: TableAgreement) -> str:
     if found.without_value:
         texts.append(f"{_counted(found.without_value, 'printed cell')} with an empty computed one.")
     if found.other_labels:
-        texts.append(f"Printed columns not computed here: {', '.join(found.other_labels)}.")
+        others = ", ".join(map(markdown_text, found.other_labels))
+        texts.append(f"Printed columns not computed here: {others}.")
     return "".join(f" {text}" for text in texts)
 
 
@@ -114,16 +117,23 @@ def _column_rows(one: PrintedTable) -> list[list[str]]:
         worst = _worst(cells)
         if worst is not None and not all(cell.agrees for cell in cells):
             value = f"{_value(worst.difference)} {unit}".strip()
-            rows.append([*_table_row(label, TableAgreement(cells)), value])
+            rows.append([*_table_row(markdown_text(label), TableAgreement(cells)), value])
     return rows
 
 
 def _worst_cells(one: PrintedTable) -> list[str]:
     off = [cell for cell in one.agreement.cells if not cell.agrees]
     shown = sorted(off, key=lambda cell: -abs(cell.units))[:WORST_CELLS]
-    first = one.table.columns[0].label
+    first = markdown_text(one.table.columns[0].label)
     rows = [
-        [str(c.key), c.label, str(c.printed), _two_digits_more(c), _units(c.units)] for c in shown
+        [
+            str(c.key),
+            markdown_text(c.label),
+            str(c.printed),
+            _two_digits_more(c),
+            _units(c.units),
+        ]
+        for c in shown
     ]
     parts = [_markdown([first, "column", "printed", "computed", "units"], rows)]
     rest = len(off) - len(shown)
@@ -135,7 +145,7 @@ def _reasons(one: PrintedTable) -> list[str]:
     lines = []
     for remark in remarks:
         where = f"{', '.join(remark.labels)}: " if remark.labels else ""
-        lines.append(f"- {where}{_line(remark.text)}")
+        lines.append(f"- {markdown_line(where + remark.text)}")
     if not remarks and one.agreement.differing:
         lines.append("- The reason is not known.")
     return ["\n".join(lines)] if lines else []
@@ -169,13 +179,9 @@ def _counted(count: int, noun: str) -> str:
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
-def _line(text: str) -> str:
-    return " ".join(text.split())
-
-
 def _markdown(labels: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """A table padded to read as one in a terminal; the first column to the left."""
-    cells = [[text.replace("|", "\\|") for text in row] for row in [labels, *rows]]
+    cells = [labels, *rows]
     widths = [max(3, *map(len, column)) for column in zip(*cells, strict=True)]
     rule = [":" + "-" * (widths[0] - 1), *("-" * (width - 1) + ":" for width in widths[1:])]
     lines = [

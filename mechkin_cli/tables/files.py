@@ -1,21 +1,18 @@
-"""Writing the files of a run: all of them whole, or none.
-
-Every file is first written under a temporary name in the folder where it will stand; only when all
-are complete are they renamed, so no reader ever meets half a file. Files that are to be replaced
-keep a second name until the last rename has succeeded. Whatever fails, a keyboard interrupt
-included, the old files come back, and the temporary files and the folders made for them go again.
-"""
+"""Writing the files of a run: all of them whole, or none, and no two runs into one folder."""
 
 from __future__ import annotations
 
 import contextlib
 import errno
 import os
+import stat
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
+from types import TracebackType
 
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.tables.claim import Claim
+from mechkin_cli.tables.file_set import replace_files, settle_all
 
 _CURES = {
     errno.ENOSPC: "the disk is full; free some space or choose another folder with --out",
@@ -32,128 +29,84 @@ _CURES = {
 }
 
 
-def write_files(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
-    """Write `files` (path below `folder` -> content); folders are made as needed.
+class OutputFolder:
+    """A folder that this run alone writes to, inside `with`.
 
-    Returns the paths written, in the order given.
-
-    Raises:
-        UsageError: a file cannot be written; the message says where, why and what to do.
+    Entering it clears what a killed run left there; a folder that cannot be made is refused only
+    when something is written.
     """
-    attempt = _Attempt()
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._claim: Claim | None = None
+
+    def __enter__(self) -> OutputFolder:
+        """Claims the folder.
+
+        Raises:
+            UsageError: another run writes to it.
+        """
+        with contextlib.suppress(OSError):
+            self._enter()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._claim is not None:
+            self._claim.release()
+            self._claim = None
+
+    def write(self, files: Mapping[str, bytes]) -> list[Path]:
+        """Write `files` (name -> content) at one moment; returns their paths in the order given.
+
+        Raises:
+            UsageError: a file cannot be written, and none was; the message says where, why and what
+                to do.
+        """
+        targets = [self.folder / name for name in files]
+        if self._claim is None and targets:
+            with _refusal(targets[0]):
+                self._enter()
+        for target in targets:
+            with _refusal(target):
+                _refuse_special(target)
+        replace_files(self.folder, files, _refusal)
+        return targets
+
+    def _enter(self) -> None:
+        claim = self._claim = Claim(self.folder)
+        if claim.locked:
+            with contextlib.suppress(OSError):
+                settle_all(self.folder)
+
+
+def write_files(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
+    """Write `files` into a folder, as `OutputFolder.write`."""
+    with OutputFolder(folder) as output:
+        return output.write(files)
+
+
+def _refuse_special(target: Path) -> None:
+    """Only files and what leads nowhere are replaced: never a device, a pipe or a folder."""
     try:
-        for name, content in files.items():
-            target = folder / name
-            with _refusal(target):
-                attempt.prepare(target, content)
-        for target in attempt.pending:
-            with _refusal(target):
-                attempt.keep_old(target)
-        attempt.renaming = True
-        for target, temporary in attempt.pending.items():
-            with _refusal(target):
-                temporary.replace(target)
-        attempt.complete = True
-    finally:
-        _clean_up(attempt)
-    return list(attempt.pending)
-
-
-@dataclass
-class _Attempt:
-    """What has been done so far, in a form that can be undone, also twice."""
-
-    pending: dict[Path, Path] = field(default_factory=dict)
-    """Target -> temporary file; whose temporary file is gone stands in its place."""
-    old: dict[Path, Path] = field(default_factory=dict)
-    """Target -> second name of the file that it replaces."""
-    made: list[Path] = field(default_factory=list)
-    """Folders made, outermost first."""
-    renaming: bool = False
-    """Whether targets may have been replaced."""
-    complete: bool = False
-    """Whether all of them have been."""
-
-    def prepare(self, target: Path, content: bytes) -> None:
-        """Write the content beside its target."""
-        _make_folder(target.parent, self.made)
-        if target.is_dir():
-            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        temporary = _beside(target)
-        self.pending[target] = temporary
-        _write(temporary, content)
-
-    def keep_old(self, target: Path) -> None:
-        """Give the file that the target replaces a second name."""
-        if not os.path.lexists(target):
-            return
-        second = _beside(target)
-        self.old[target] = second
-        try:
-            os.link(target, second, follow_symlinks=False)
-        except OSError:
-            # a file system without hard links: for a moment the target has no file
-            target.replace(second)
-
-    def drop_old(self) -> None:
-        """Remove the second names."""
-        for second in self.old.values():
-            with contextlib.suppress(OSError):
-                second.unlink(missing_ok=True)
-
-    def undo(self) -> None:
-        """Bring the old files back and remove everything new."""
-        for target, temporary in self.pending.items():
-            with contextlib.suppress(OSError):
-                second = self.old.get(target)
-                if second is not None and os.path.lexists(second):
-                    _restore(second, target)
-                elif self.renaming and second is None and not temporary.exists():
-                    target.unlink(missing_ok=True)
-                temporary.unlink(missing_ok=True)
-        for folder in reversed(self.made):
-            with contextlib.suppress(OSError):
-                folder.rmdir()
-
-
-def _clean_up(attempt: _Attempt) -> None:
-    """Undo what is not complete; an interrupt meanwhile counts only after that."""
-    interrupts = 0
-    while True:
-        try:
-            attempt.drop_old() if attempt.complete else attempt.undo()
-            break
-        except KeyboardInterrupt:
-            interrupts += 1
-    if interrupts:
-        raise KeyboardInterrupt
-
-
-def _beside(target: Path) -> Path:
-    return target.with_name(f".mechkin-{os.urandom(8).hex()}.tmp")
-
-
-def _restore(second: Path, target: Path) -> None:
-    second.replace(target)
-    # where both are names of one file, a rename leaves both
-    second.unlink(missing_ok=True)
-
-
-def _make_folder(folder: Path, made: list[Path]) -> None:
-    """Make the folder and those above it; `made` gets the new ones, outermost first."""
-    if folder.is_dir():
+        mode = target.stat().st_mode
+    except FileNotFoundError:
         return
-    if folder.is_symlink():
-        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))
-    if folder.parent != folder:
-        _make_folder(folder.parent, made)
-    made.append(folder)
-    folder.mkdir(exist_ok=True)
-
-
-def _write(path: Path, content: bytes) -> None:
-    with path.open("xb") as stream:
-        stream.write(content)
+    except OSError as error:
+        if error.errno == errno.ELOOP and target.is_symlink():
+            return
+        raise
+    if stat.S_ISDIR(mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+    if not stat.S_ISREG(mode):
+        raise UsageError(
+            f"cannot write {target}: a device or a pipe stands there; choose another place with "
+            "--out"
+        )
 
 
 @contextlib.contextmanager

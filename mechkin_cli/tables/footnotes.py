@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,8 +14,11 @@ from mechkin_cli.tables.source import FloatArray, Source
 LISTED_RANGES = 6
 
 
-def footnotes(columns: Columns, source: Source) -> list[str]:
-    """One sentence per verdict other than ok, then one per column with unexplained empty cells."""
+def footnotes(columns: Columns, source: Source, written: Callable[[str], str] = str) -> list[str]:
+    """One sentence per verdict other than ok, then one per column with unexplained empty cells.
+
+    `written` makes of a label what is to stand in the file.
+    """
     notes = [
         f"{_where(source.status == status, source)}: {status.label}: {status.sentence}"
         for status in Status
@@ -26,7 +31,7 @@ def footnotes(columns: Columns, source: Source) -> list[str]:
         empty = ~np.isfinite(column.values) & ~explained
         if bool(empty.any()):
             reason = "the value is not finite or not unique there."
-            notes.append(f"{_where(empty, source)}: no {column.label}: {reason}")
+            notes.append(f"{_where(empty, source)}: no {written(column.label)}: {reason}")
     return notes
 
 

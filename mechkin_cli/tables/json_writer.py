@@ -7,16 +7,20 @@ each list stands on a line of its own.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.legible import SURROGATES, escape
 from mechkin_cli.tables.columns import Columns, Words
 from mechkin_cli.tables.native_columns import number_column, threads_for, word_column
 from mechkin_cli.tables.rows_table import rows_table
 from mechkin_cli.tables.source import FloatArray, Source
 
 Plain = dict[str, object]
+
+_NOT_ASCII = re.compile(r"[^\x00-\x7f]")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,9 +80,10 @@ def json_bytes(record: object) -> bytes:
     return b"".join((*_parts(record, ""), b"\n"))
 
 
-def json_text(record: object) -> str:
-    """As `json_bytes`, decoded."""
-    return json_bytes(record).decode()
+def json_text(record: object, *, ascii: bool = False) -> str:
+    """As `json_bytes`, decoded; in ASCII all other characters are escapes of JSON."""
+    text = json_bytes(record).decode()
+    return _NOT_ASCII.sub(lambda found: json.dumps(found[0])[1:-1], text) if ascii else text
 
 
 def _column_records(columns: Columns, threads: int) -> list[Plain]:
@@ -93,7 +98,9 @@ def _column_records(columns: Columns, threads: int) -> list[Plain]:
 
 
 def _one_line_json(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+    text = json.dumps(value, ensure_ascii=False, allow_nan=False)
+    # a reader of JSON need not take half characters, which file names may hold
+    return SURROGATES.sub(lambda found: escape(found[0]).replace("\\", "\\\\"), text)
 
 
 def _parts(value: object, indent: str) -> Iterator[bytes]:
@@ -102,7 +109,7 @@ def _parts(value: object, indent: str) -> Iterator[bytes]:
         yield value.json_bytes()
     elif isinstance(value, dict) and value:
         for number, (key, item) in enumerate(value.items()):
-            yield f"{',' if number else '{'}\n{inner}{json.dumps(key)}: ".encode()
+            yield f"{',' if number else '{'}\n{inner}{_one_line_json(key)}: ".encode()
             yield from _parts(item, inner)
         yield f"\n{indent}}}".encode()
     elif isinstance(value, list) and any(isinstance(item, dict | list | Cells) for item in value):

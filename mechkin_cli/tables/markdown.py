@@ -10,6 +10,7 @@ from mechkin_cli.tables.columns import Column, Columns, Words
 from mechkin_cli.tables.decimal_text import decimal_column
 from mechkin_cli.tables.footnotes import footnotes
 from mechkin_cli.tables.native_columns import threads_for, word_column
+from mechkin_cli.tables.neutral import markdown_text
 from mechkin_cli.tables.source import Source
 
 
@@ -20,25 +21,17 @@ def markdown_bytes(columns: Columns, source: Source, threads: int = 0) -> bytes:
 
     headers = [_header(column) for column in columns.columns]
     cells = [
-        word_column(column.values, _escaped)
+        word_column(column.values, markdown_text)
         if isinstance(column.values, Words)
         else decimal_column(column.values, column.decimals)
         for column in columns.columns
     ]
-    title = f"# {_one_line(columns.title or columns.name)}\n\n"
+    title = f"# {markdown_text(columns.title or columns.name)}\n\n"
     table: bytes = _kernel.markdown_text(headers, cells, threads_for(columns, threads))
-    notes = "".join(f"- {_one_line(note)}\n" for note in footnotes(columns, source))
+    notes = "".join(f"- {note}\n" for note in footnotes(columns, source, markdown_text))
     return b"".join((title.encode(), table, f"\n{notes}".encode() if notes else b""))
 
 
 def _header(column: Column) -> str:
-    return _escaped(f"{column.label} [{column.unit}]" if column.unit else column.label)
-
-
-def _one_line(text: str) -> str:
-    return " ".join(text.split())
-
-
-def _escaped(text: str) -> str:
-    """One line of text that cannot end a cell."""
-    return _one_line(text).replace("\\", "\\\\").replace("|", "\\|")
+    label = markdown_text(column.label)
+    return f"{label} [{column.unit}]" if column.unit else label

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from mechkin_cli.legible import whole
+from mechkin_cli.tables.neutral import link_target, markdown_text
+
 PAGE = "README.md"
 MARK = "<!-- written by `mechkin tables` -->"
 """First line of the page; a page without it is somebody else's."""
@@ -38,8 +41,9 @@ were found at the first row. Rows are those solved, of all where they differ."""
 
 
 def _cells(row: OverviewRow) -> list[str]:
-    link = f"[{_text(row.name)}]({row.stem}.yaml)"
-    verdict = f"[{row.verdict}]({row.stem}/errata.md)" if row.verdict else ""
+    stem = link_target(row.stem)
+    link = f"[{_text(row.name)}]({stem}.yaml)"
+    verdict = f"[{row.verdict}]({stem}/errata.md)" if row.verdict else ""
     return [
         link,
         *map(_text, (row.joints, row.mobility, row.modes, row.rows)),
@@ -53,4 +57,4 @@ def _line(cells: Sequence[str]) -> str:
 
 
 def _text(text: str) -> str:
-    return " ".join(text.split()).replace("|", "\\|")
+    return markdown_text(whole(text))

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place, UsageError
+from mechkin_cli.regular_file import read_regular
 from mechkin_cli.tables.table_text import read_table_text
 
 MOST_BYTES = 1 << 20
@@ -40,13 +41,13 @@ def read_printed(path: Path) -> PrintedValues:
         InvalidFile: it is no table of numbers; with the place of each error.
     """
     try:
-        content = path.read_bytes() if path.stat().st_size <= MOST_BYTES else None
+        content = read_regular(path, MOST_BYTES)
     except OSError as error:
         raise UsageError(
             f"cannot read the printed values {path}: {error.strerror}; "
             "put the file there or correct `published:`"
         ) from error
-    if content is None:
+    if len(content) > MOST_BYTES:
         raise _invalid(path, 1, 1, f"the file is larger than {MOST_BYTES} bytes", "shorten it")
     try:
         labels, rows, _ = read_table_text("printed.csv", content)

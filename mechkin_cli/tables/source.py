@@ -81,6 +81,12 @@ class Source(Protocol):
         """The same rows with other reactions in equilibrium, where constraints are redundant."""
         ...
 
+    @property
+    def disturbed(self) -> Sequence[Source]:
+        """The same rows with reactions that are off by their rounding, where constraints are
+        redundant."""
+        ...
+
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by its dotted name, in SI.
 

@@ -15,12 +15,20 @@ from mechkin_cli.tables.source import FloatArray
 from mechkin_cli.tolerances import UNIQUE_CELL
 
 
-def unique_cells(values: FloatArray, others: Sequence[FloatArray]) -> FloatArray:
-    """The values with nan where another admissible value differs; all of shape (rows,)."""
+def unique_cells(
+    values: FloatArray, others: Sequence[FloatArray], disturbed: Sequence[FloatArray] = ()
+) -> FloatArray:
+    """The values with nan where another admissible value differs; all of shape (rows,).
+
+    `disturbed` are the values for reactions that are off by their rounding: what they change is
+    the rounding of the cell, whatever the size of its column is.
+    """
     if not others:
         return values
     sizes = [np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in (values, *others)]
-    limit = UNIQUE_CELL * max(sizes)
+    limit = np.full(values.shape, UNIQUE_CELL * max(sizes))
+    for other in disturbed:
+        limit = np.fmax(limit, np.abs(other - values))
     settled = values.copy()
     for other in others:
         settled[~(np.abs(other - values) <= limit)] = np.nan

@@ -5,7 +5,8 @@ The unit of a dimension is composed by these rules:
 - mass and time together make force: `mass^m` becomes `force^m`, so moments and energies are
   force*length, power is force*length/time, damping force*time/length; without time it stays mass;
 - an angle with time is an angular rate, always per second: `rad/s`, `rad/s^2`;
-- an angle with mass or length but no time is in rad: torsional stiffness is moment per rad;
+- an angle beside mass or length is in rad, its time in s: torsional stiffness is moment per rad,
+  torsional damping moment per rad/s, whatever the file's unit of angular rates;
 - an angle alone is in the file's unit; what is left is in the file's units of length and time.
 """
 
@@ -87,8 +88,10 @@ class UnitSystem:
         return product * self.length**length * self._time_and_angle(time, reduced.angle, bare)
 
     def _time_and_angle(self, time: Exponent, angle: Exponent, bare: bool) -> CompoundUnit:
+        """`bare`: there is neither mass nor length."""
         if angle and time:
-            return self.angular_rate**angle * _SECOND ** (time + angle)
+            rate = self.angular_rate if bare else _RADIAN_PER_SECOND
+            return rate**angle * _SECOND ** (time + angle)
         angle_unit = self.angle if bare else _RADIAN
         return self.time**time * angle_unit**angle
 

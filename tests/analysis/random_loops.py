@@ -114,7 +114,7 @@ def search(text: str, closed_at: list[str] | None = None) -> tuple[Found, np.nda
     layout = Layout(problem.mechanism, graph)
     plan = layout.build()
     inputs = kernel_inputs(problem, layout).values[:, 0]
-    found = assemblies(layout, plan, inputs)
+    found = assemblies(layout, plan, inputs, thorough=False)
     plan = layout.build()
     outputs = OutputPlan(layout, plan, problem.motion.driven)
     slots = [outputs.add_point(at, 0) for at in problem.mechanism.points.values()]

@@ -3,7 +3,12 @@ freedoms."""
 
 from __future__ import annotations
 
+import re
+
 import pytest
+from analysis.classics import platforms, rings
+from analysis.classics.drawing import Classic
+from analysis.classics.platforms import wren
 from analysis.overconstrained import (
     Z,
     bricard,
@@ -116,7 +121,7 @@ def test_coordinates_that_never_move_are_named() -> None:
 def test_inputs_are_not_needed_but_checked() -> None:
     text = planar() + "motion: {inputs: {J1.theta: {at: 0}, J4.theta: {at: 0}}}\n"
     (error,) = mk.loads(text).mobility().diagnostics
-    assert (error.code, error.measured) == ("inputs-dependent", "2 inputs drive 1 freedoms")
+    assert (error.code, error.measured) == ("inputs-dependent", "2 inputs drive one freedom")
 
 
 def test_a_locked_input_is_named() -> None:
@@ -132,3 +137,34 @@ def test_what_cannot_be_assembled_has_a_count_only() -> None:
     assert (found.mobility, found.count) == (None, -3)
     (error,) = found.diagnostics
     assert error.code == "not-assembled"
+
+
+def test_motions_of_several_dimensions_are_named() -> None:
+    found = mk.loads(wren(5)).mobility()
+    assert (found.mobility, found.dimensions, found.first_order) == (2, (2, 1), 3)
+    assert found.verdict.startswith("motions of 1 and 2 freedoms meet (3 to first order); ")
+
+
+def test_dimensions_that_nearly_fit_are_no_motion_of_their_own() -> None:
+    """Bricard's loop with seven digits is open by more than a motion, by less than what is surely
+    rigid."""
+    bricard = next(case.text for case in rings.CASES if case.name == "Bricard trihedral")
+    found = mk.loads(rounded(bricard, 7)).mobility()
+    (error,) = found.diagnostics
+    assert (found.mobility, found.first_order) == (None, 1)
+    assert error.code == "mobility-unclear"
+    assert "the loops are open by" in (error.measured or "")
+
+
+@pytest.mark.parametrize(
+    "case", [case for case in platforms.CASES if "6" in case.name], ids=lambda case: case.name
+)
+def test_nine_digits_are_enough(case: Classic) -> None:
+    found = mk.loads(rounded(case.text, 9)).mobility()
+    assert (found.dimensions, found.first_order) == (case.dimensions, case.first_order)
+
+
+def rounded(text: str, digits: int) -> str:
+    """A file whose numbers have some digits behind the point."""
+    number = re.compile(r"-?\d+\.\d+(e-?\d+)?")
+    return number.sub(lambda found: f"{float(found.group()):.{digits}f}", text)

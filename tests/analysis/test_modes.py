@@ -16,7 +16,7 @@ from analysis.random_loops import (
     same,
     search,
 )
-from references import RCSR
+from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
 
@@ -54,7 +54,8 @@ def test_rcsr_has_the_real_roots_of_its_quartic() -> None:
         found = mk.loads(file).modes()
         theta = sorted(mode.coordinates["D.theta"] for mode in found.modes)
         assert len(theta) == len(expected), seed
-        assert found.complete == (len(expected) == found.bound == 4)
+        assert found.complete
+        assert found.bound == 4
         for value, exact in zip(theta, expected, strict=True):
             assert value == pytest.approx(float(mp.degrees(exact)), abs=1e-9)
         counts.add(len(expected))
@@ -77,7 +78,7 @@ def test_a_sphere_on_a_plane_has_the_two_roots_of_a_quadratic() -> None:
         found = mk.loads(file).modes()
         theta = sorted(mode.coordinates["D.theta"] for mode in found.modes)
         assert theta == pytest.approx([float(mp.degrees(x)) for x in expected], abs=1e-9)
-        assert found.complete == (len(theta) == 2)
+        assert found.complete
         counts.add(len(theta))
     assert counts == {0, 2}
 
@@ -181,6 +182,21 @@ def test_more_turns_of_a_thread_are_more_modes() -> None:
     assert max(abs(mode.coordinates["J5.theta"]) for mode in more.modes) <= 540
     assert 1 <= len(few.modes) < len(more.modes)
     assert "threads within 1.5 turns" in more.sentence
+
+
+def test_rows_of_an_assembled_drawing_carry_the_letter_of_their_mode() -> None:
+    """Where a short search proves that it knows all modes `rows.csv` has it at once; else
+    `row.mode` has it when it is asked for."""
+    for name, short in (("rssr", True), ("rccc", True), ("stewart", False)):
+        model = mk.load(MECHANISMS / f"{name}.yaml")
+        picked = model.modes().picked
+        assert picked is not None
+        result = mk.load(MECHANISMS / f"{name}.yaml").analyze(["row.mode"])
+        assert set(result["row.mode"]) == {picked}
+        fresh = mk.load(MECHANISMS / f"{name}.yaml").analyze([])
+        assert "home" in fresh.result.how
+        assert fresh.result.mode == (picked if short else "home")
+        assert model.analyze([], mode=picked).result.how == "by name"
 
 
 def test_a_triangle_that_cannot_close() -> None:

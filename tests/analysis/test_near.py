@@ -27,10 +27,10 @@ assembly: {{near: {{{near}}}}}
 
 def test_two_assemblies_at_the_same_distance_are_told_and_the_drawn_one_is_taken() -> None:
     """The rod from (1, 0) to the line y = 1: mirrored about the vertical through the crank's end,
-    so the place between them is as far from both."""
+    so the place between them is as far from both, and far."""
     middle = np.degrees(np.arctan2(1, 0) - np.arctan2(1, 2))
     result = mk.loads(SLIDER.format(near=f"B.theta: {float(middle)!r}")).analyze(["B.theta"])
-    assert [d.code for d in result.diagnostics] == ["nearest-unclear"]
+    assert [d.code for d in result.diagnostics] == ["nearest-unclear", "nearest-far"]
     assert abs(result["B.theta"][0]) < 1e-9
     other = mk.loads(SLIDER.format(near="B.theta: 120")).analyze(["B.theta"])
     assert other["B.theta"][0] == pytest.approx(2 * middle, abs=1e-9)
@@ -38,6 +38,8 @@ def test_two_assemblies_at_the_same_distance_are_told_and_the_drawn_one_is_taken
 
 RADIUS, REACH, LEAD = 0.1, 0.1, 0.02
 PHASE = 0.7
+OWN_AXIS = f"axis: [0, {REACH * np.sin(PHASE)}, {RADIUS - REACH * np.cos(PHASE)}]"
+"""Of the universal joint in the rod: square to the rod, so that this points everywhere."""
 SCREW = f"""
 format: 1
 units: {{length: m, angle: rad}}
@@ -50,7 +52,7 @@ joints:
     type: U
     links: [rod, ground]
     point: [0, {REACH * np.cos(PHASE)}, {REACH * np.sin(PHASE)}]
-    axis: [0, 0, 1]
+    {OWN_AXIS}
     axis2: [1, 0, 0]
 motion: {{inputs: {{A.theta: {{at: 0}}}}}}
 """
@@ -64,20 +66,42 @@ def screw_angles() -> list[float]:
         slide = LEAD * turn / (2 * np.pi)
         return float(slide**2 - 2 * RADIUS * REACH * (np.cos(turn - PHASE) - np.cos(PHASE)))
 
-    grid = np.linspace(-80.0, 80.0, 16_001)
+    grid = np.linspace(-80.0, 80.0, 16_000)
     signs = np.sign([off(turn) for turn in grid])
     return [float(brentq(off, grid[i], grid[i + 1])) for i in np.flatnonzero(np.diff(signs))]
 
 
-FAR = pytest.mark.xfail(reason="few starts end on far turns of a long thread", strict=True)
-TURNS = [pytest.param(t, marks=[FAR] if abs(t) > 7.0 else []) for t in screw_angles()[::3]]
-
-
-@pytest.mark.parametrize("turn", TURNS)
+@pytest.mark.parametrize("turn", screw_angles())
 def test_near_names_the_turns_of_a_thread(turn: float) -> None:
-    """The nut meets the rod on many turns; the one that is named is taken."""
+    """The nut meets the rod on many turns; the one that is named is taken. The universal joint has
+    two places for each, as near."""
     text = SCREW + f"assembly: {{near: {{B.theta: {turn + 0.01!r}}}}}\n"
-    assert mk.loads(text).analyze(["B.theta"])["B.theta"][0] == pytest.approx(turn, abs=1e-9)
+    result = mk.loads(text).analyze(["B.theta"])
+    assert result["B.theta"][0] == pytest.approx(turn, abs=1e-9)
+    assert [d.code for d in result.diagnostics] == ["nearest-unclear"]
+
+
+@pytest.mark.parametrize("named", [-40.0, -15.0, 10.0, 30.0])
+def test_a_turn_that_no_assembly_has_is_told(named: float) -> None:
+    """The nearest of the closed form is taken where the search reaches it, and never silently."""
+    result = mk.loads(SCREW + f"assembly: {{near: {{B.theta: {named!r}}}}}\n").analyze(["B.theta"])
+    codes = [d.code for d in result.diagnostics]
+    assert "nearest-far" in codes
+    best = min(screw_angles(), key=lambda turn: abs(turn - named))
+    if abs(best - named) < 3 * np.pi:
+        assert result["B.theta"][0] == pytest.approx(best, abs=1e-9)
+
+
+def test_a_turn_that_the_universal_joint_does_not_let_through_is_no_assembly() -> None:
+    """With the joint's own axis along z, v of the rod keeps its z in the joint's frame and reaches
+    no more than |v_xy| along x: the nut goes so far and no farther."""
+    text = SCREW.replace(OWN_AXIS, "axis: [0, 0, 1]")
+    reach = abs(RADIUS - REACH * np.cos(PHASE))
+    kept = [turn for turn in screw_angles() if abs(LEAD * turn / (2 * np.pi)) <= reach]
+    assert 0 < len(kept) < len(screw_angles())
+    found = mk.loads(text + "assembly: {turns: 4}\n").modes()
+    turns = sorted({round(mode.coordinates["B.theta"], 9) for mode in found.modes})
+    assert turns == pytest.approx(sorted({round(turn, 9) for turn in kept}), abs=1e-8)
 
 
 def test_what_a_run_left_out_is_not_read_from_another_assembly() -> None:

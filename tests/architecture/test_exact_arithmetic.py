@@ -69,6 +69,8 @@ ACCEPTED = {
     ): "whole numbers",
     ("building/coordinates.py", "TIME ** order"): FRACTIONS,
     ("building/laws.py", "TIME ** (have - want)"): FRACTIONS,
+    ("building/laws.py", "units.unit(TIME) ** (-k)"): FRACTIONS,
+    ("building/unit_system.py", "units.time ** (-2)"): FRACTIONS,
     ("expressions/arithmetic.py", "base.dimension ** count"): FRACTIONS,
     ("expressions/functions.py", "operand.dimension ** Fraction(1, 2)"): FRACTIONS,
     ("units/compound.py", "UNITS[symbol].factor ** int(exponent)"): FRACTIONS,
@@ -78,7 +80,7 @@ ACCEPTED = {
     ("units/system.py", "angle_unit ** angle"): FRACTIONS,
     ("units/system.py", "self.mass ** reduced.mass"): FRACTIONS,
     ("units/system.py", "self.length ** length"): FRACTIONS,
-    ("units/system.py", "self.angular_rate ** angle"): FRACTIONS,
+    ("units/system.py", "rate ** angle"): FRACTIONS,
     ("units/system.py", "_SECOND ** (time + angle)"): FRACTIONS,
 }
 """(file, expression) -> why it is exact or reaches no cell."""

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from architecture.package import FILES, NAMES, ROOT, imports, room
 
-BASE = {"arrays", "diagnostics", "nearest", "status", "tolerances"}
+BASE = {"arrays", "diagnostics", "legible", "nearest", "regular_file", "status", "tolerances"}
 KERNEL = BASE | {"kernel"}
 UNITS = BASE | {"units"}
 TAPE = KERNEL | {"tape"}

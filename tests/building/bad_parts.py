@@ -3,8 +3,8 @@
 from building.sound import added, between, changed, joint
 
 UNITS_AND_PARAMETERS = [
-    changed("{length: mm}", "{length: »parsec}", "unit", "parsec"),
-    changed("{length: mm}", "{length: mm, force: »kg}", "unit", "force", "mass"),
+    changed("{length: mm, force: N}", "{length: »parsec}", "unit", "parsec"),
+    changed("{length: mm, force: N}", "{length: mm, force: »kg}", "unit", "force", "mass"),
     changed("r: 40 mm", "r: 40 »mmm", "expression", "mmm", "mm"),
     changed("k: 2", "k: 2*»kk", "expression", "kk", "did you mean k"),
     changed("k: 2", "k: r + »2", "expression", "length", "dimensionless"),

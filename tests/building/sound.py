@@ -9,7 +9,7 @@ MARK = "»"
 
 SOUND = """\
 format: 1
-units: {length: mm}
+units: {length: mm, force: N}
 parameters: {r: 40 mm, k: 2}
 links:
   crank: {mass: 1, center_of_mass: [0, 20, 0], inertia: {xx: 1, yy: 1, zz: 1}}

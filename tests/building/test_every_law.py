@@ -19,7 +19,7 @@ motion:
 LAWS = {
     "constant-rate": {"at": 0, "rate": 1},
     "constant-acceleration": {"at": 0, "acceleration": 1},
-    "polynomial": {"coefficients": [0, 1]},
+    "polynomial": {"coefficients": [0, "1 rad/s"]},
     "harmonic": {"from": 0, "to": 1},
     "cycloidal": {"from": 0, "to": 1},
     "table": {"file": "law.csv"},

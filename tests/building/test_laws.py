@@ -45,7 +45,7 @@ LAWS = [
         lambda t: 30 * DEG + 2 * mp.pi * (t - 0.1) - 1.5 * (t - 0.1) ** 2,
     ),
     (
-        "{law: polynomial, coefficients: [10, 0.5, -3 deg/s^2, 4 rad/s^3, 2]}",
+        "{law: polynomial, coefficients: [10, 0.5 rad/s, -3 deg/s^2, 4 rad/s^3, 2 rad/s^4]}",
         lambda t: (
             10 * DEG
             + (t - 0.1) / 2
@@ -146,7 +146,7 @@ BAD = [
     ),
     (
         "O.theta: LAW",
-        "O.theta: {law: polynomial, coefficients: [0, 1, »2 deg/s, 3]}",
+        "O.theta: {law: polynomial, coefficients: [0, 1 deg/s, »2 deg/s, 0]}",
         "expression",
         "expected an angular acceleration, found an angular rate",
     ),
@@ -158,7 +158,7 @@ BAD = [
     ),
     (
         "O.theta: LAW",
-        "O.theta: »{law: polynomial, coefficients: [0, 0, 0, 1e100, 1e100]}",
+        "O.theta: »{law: polynomial, coefficients: [0, 0, 0, 1e100 rad/s^3, 1e100 rad/s^4]}",
         "too-large",
     ),
     ("{at: 7}", "{at: 7, »rate: 1}", "held-rate", "write law: constant-rate"),

@@ -9,7 +9,7 @@ from mechkin_cli.status import Status
 
 FOUR_BAR = """\
 format: 1
-units: {length: mm}
+units: {length: mm, force: N}
 links: {crank: {}, coupler: {}, rocker: {}}
 joints:
   A: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}

@@ -197,5 +197,5 @@ def test_a_mechanism_too_small_to_compute_with_is_refused(size: str) -> None:
     path = MECHANISMS / "rcsr.yaml"
     with pytest.raises(mk.InvalidFile, match=r"too small to compute with.*limit 1e-100 m"):
         mk.load(path, dict.fromkeys(parameters, f"{size} m")).analyze()
-    small = mk.load(path).vary({name: [float(size)] for name in parameters}, ["O4.theta"])
-    assert not small.complete.any()
+    with pytest.raises(mk.UsageError, match="is a length below 1e-100 m; write another value"):
+        mk.load(path).vary({name: [0.5, float(size)] for name in parameters}, ["O4.theta"])

@@ -149,7 +149,7 @@ def test_a_reader_that_stops_early(folder: Path, line: str) -> None:
         ("round", "cannot be read: Too many levels of symbolic links"),
         ("crank.yaml/x", "cannot be read: Not a directory"),
         ("\"$(printf 'a\\033[31m')\"", "there is no file a\\x1b[31m"),
-        ("\"$(printf '\\377')\"", "there is no file \\udcff"),
+        ("\"$(printf '\\377')\"", "there is no file \\xff"),
     ],
 )
 def test_what_is_no_file(folder: Path, file: str, words: str) -> None:

@@ -72,7 +72,9 @@ def test_tables_keeps_an_overview(mechkin, committed, folder) -> None:
     assert not page.exists()
     mechkin("tables")
     (row,) = (line for line in page.read_text(encoding="utf-8").splitlines() if "rcsr" in line)
-    assert row.startswith("| [RCSR](rcsr.yaml) | R C S R | 1 | 2 | 27 | [1479 of 2106 cells agree,")
+    assert row.startswith(
+        "| [RCSR](rcsr.yaml) | R C S R | 1 | 2 (all) | 27 | [1479 of 2106 cells agree,"
+    )
     assert mechkin("tables", "--check").code == 0
     page.write_text(page.read_text(encoding="utf-8").replace("| 27 |", "| 26 |"), encoding="utf-8")
     run = mechkin("tables", "--check")
@@ -236,20 +238,20 @@ def test_modes_json(mechkin) -> None:
     assert run.json["modes"][1]["coordinates"]["O1.theta"] == 170
     assert run.json["assembly"] == "B"
     assert run.json["bound"] == 4
-    assert not run.json["complete"]
+    assert run.json["complete"]
 
 
 def test_modes_shown(mechkin) -> None:
     run = mechkin("modes", RCSR)
     assert run.out.splitlines()[0].split()[:3] == ["mode", "O1.theta", "O2.theta"]
-    assert "2 modes found, no loop of these pairs has more than 4" in run.err
+    assert "2 modes: all, the loops' equations have no other real root" in run.err
     assert "mode B is the one that the file takes" in run.err
 
 
 def test_no_mode_is_exit_code_4(mechkin) -> None:
     run = mechkin("modes", RCSR, "--at", "O1.theta=0")
     assert (run.code, run.out) == (4, "")
-    assert "cannot be assembled there: none of 2048 random starts closed the loops" in run.err
+    assert "cannot be assembled there: the loop through O1, O2, O3, O4 does not close" in run.err
 
 
 def test_a_place_that_is_no_input_is_a_usage_error(mechkin) -> None:

@@ -30,12 +30,12 @@ def test_tables_on_stdout_summary_on_stderr(mechkin, write) -> None:
         "            0\n"
         "            0\n\n"
     )
-    assert run.err.splitlines()[:2] == ["crank (crank.yaml)", "  mobility 1, driven by O.theta"]
+    assert run.err.splitlines()[:2] == ["crank (crank.yaml)", "  driven   1 freedom by O.theta"]
 
 
 def test_summary_of_the_rcsr_mechanism(mechkin) -> None:
     err = mechkin("analyze", RCSR).err
-    assert "  mobility 1, driven by O1.theta\n" in err
+    assert "  driven   1 freedom by O1.theta\n" in err
     assert "  loops    1, closed at O3 (S); 3 unknowns\n" in err
     assert "  rows     27 of 27 solved\n" in err
     assert "  files    out/rcsr (12 csv, 11 md)\n" in err
@@ -65,7 +65,8 @@ def test_the_dead_centre_is_named_with_its_place(mechkin, write) -> None:
 def test_an_assembly_that_does_not_exist(mechkin, write) -> None:
     run = mechkin("analyze", write("apart.yaml", files.WITHOUT_ASSEMBLY), "--quiet")
     assert re.match(
-        r"apart\.yaml: error: .* cannot be assembled at the first row: none of", run.err
+        r"apart\.yaml: error: .* cannot be assembled at the first row: the loop through O, A, B, D",
+        run.err,
     )
     assert "check the dimensions" in run.err
 

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.solver.closing_turns import turn_count
 from mechkin_cli.solver.stepping import step_limits
 
 REFUSALS = (TypeError, ValueError, OverflowError, MemoryError)
@@ -207,6 +208,8 @@ class Hostile:
         }
         named |= {name: self.array(plan.states, rows) for name in ("guess", "states")}
         named["loads"] = self.array(plan.load_values, rows)
+        named["turned"] = self.random.choice([None, self.array(turn_count(plan), rows)])
+        named["whole"] = self.random.choice([None, self.array(plan.inputs, rows)])
         named["outputs"] = outputs
         named["values"] = None if outputs is None else self.array(outputs.slots, rows)
         named["first"] = self.array(plan.columns, rows) if demand & 1 else None
@@ -244,7 +247,8 @@ class Hostile:
         start = [self.number() for _ in range(plan.states + self.bad())]
         limits = step_limits()
         every_row = self.random.choice([True, False])
-        arguments = [plan, path, start, [], every_row, limits, guess, limit, None]
+        whole = self.random.choice([None, np.zeros((plan.inputs, count))])
+        arguments = [plan, path, whole, start, [], every_row, limits, guess, limit, None]
         if self.bad():
             arguments[self.random.randrange(len(arguments))] = self.random.choice(WRONG)
         self.attempt(_kernel.follow_rows, *arguments)

@@ -24,6 +24,7 @@ from references import MECHANISMS
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.solver.cells import SWITCHES
+from mechkin_cli.solver.closing_turns import turn_count
 from mechkin_cli.solver.stepping import step_limits
 from mechkin_cli.tape.operations import CONDITIONS, Operation
 
@@ -49,6 +50,7 @@ USUAL: dict[str, Any] = {
     "stray": 1e-3,
     "angle_step": 0.1,
     "angle_miss": 1.0,
+    "angle_bend": 0.5,
     "plan_step": 1e-3,
     "arc_pivot": 1e-8,
     "radius": 0.5,
@@ -219,19 +221,25 @@ class HostileRuns(Hostile):
         return _kernel.Tape(int(given.size), *arguments), constants[given]
 
     def angles(self, slots: Any, plan: Any) -> Any:
-        turns = sum(width for *_, width in _kernel.closing_turns(plan))
+        turns = turn_count(plan)
         if self.bad():
             return self.random.choice([[(self.index(0, 9), self.index(0, 9))], [(0,)], *WRONG])
         if not turns or not slots or self.random.random() < 0.5:
             return []
-        return [(self.random.randrange(slots), self.random.randrange(turns))]
+        turn = self.random.choice([self.random.randrange(turns), -2])
+        return [(self.random.randrange(slots), turn, self.random.random() < 0.5)]
 
     def known_rows(self, plan: Any, inputs: Any) -> dict[str, Any]:
         rows = inputs.shape[1]
         named = {"inputs": self.either(inputs, inputs.T, self.table(plan.inputs, rows))}
         for name in ("rates", "accelerations", "jerks"):
             named[name] = self.table(plan.inputs, rows)
+        named["whole"] = self.whole_turns(plan.inputs, rows)
         return named
+
+    def whole_turns(self, inputs: int, rows: int) -> Any:
+        few = self.noise.integers(-2, 3, (inputs, rows)).astype(np.float64)
+        return self.either(np.zeros((inputs, rows)), few, self.table(inputs, rows))
 
     def variants(self) -> None:
         plan, inputs, state = self.some_plan()
@@ -252,6 +260,7 @@ class HostileRuns(Hostile):
             "iterations": self.either(6, *INDICES),
             "continuation": self.kept("limits", self.limits()),
             "following": self.kept("limits", self.limits()),
+            "half_turn_side": self.either(1e-9, *NUMBERS),
             "angles": self.angles(getattr(outputs, "slots", 0), plan),
         }
         variants = self.attempt(_kernel.Variants, **named)
@@ -278,7 +287,7 @@ class HostileRuns(Hostile):
         plan, inputs, state = self.some_plan()
         outputs, demand, _ = self.reading(plan)
         rows = inputs.shape[1]
-        turns = sum(width for *_, width in _kernel.closing_turns(plan))
+        turns = turn_count(plan)
         named = self.known_rows(plan, inputs) | {
             "plan": self.kept("plan", plan),
             "outputs": outputs,
@@ -301,7 +310,9 @@ class HostileRuns(Hostile):
         def call() -> None:
             for _ in range(3):
                 here = self.around(inputs[:, 0], 1e-2).tolist()
-                found = self.attempt(positions.solve, self.either(here, here[:-1], [*here, 0.0]))
+                turns = self.either([0.0] * len(here), [3.0], [float("nan")] * len(here))
+                here = self.either(here, here[:-1], [*here, 0.0])
+                found = self.attempt(positions.solve, here, turns)
                 self.counts["positions found"] += found is not None
 
         self.at_once(call, inputs)
@@ -416,14 +427,15 @@ class HostileRuns(Hostile):
             inputs = self.noise.choice([0.0, 1e-200, 1e200, -1e300, 1.0], (plan.inputs, 6))
             limits = _kernel.StepLimits(**(USUAL | {"corner_cosine": -1.0}))
         rows = inputs.shape[1]
-        turns = sum(width for *_, width in _kernel.closing_turns(plan))
+        turns = turn_count(plan)
         guess, limit = self.array(plan.states, rows), self.per_row(rows)
         carried = self.either(np.zeros((turns, rows)), None, guess, self.table(turns, rows))
         if self.bad():
             guess = inputs if self.random.random() < 0.5 else carried
         begin = self.either([0.0] * turns, [], [0.0] * (turns + 1))
         start = self.either(state.tolist(), state[:-1].tolist())
-        arguments = [plan, inputs, start, begin, self.either(False, True), limits]
+        whole = self.either(None, None, np.zeros(inputs.shape), self.whole_turns(plan.inputs, rows))
+        arguments = [plan, inputs, whole, start, begin, self.either(False, True), limits]
 
         course = self.either(None, self.course(plan, rows))
 

@@ -331,7 +331,7 @@ def test_the_plans_of_a_path_have_one_structure() -> None:
 def test_rows_that_are_followed_share_no_memory() -> None:
     plan, start = four_turns(False)
     inputs, guess, limit = np.zeros((4, 3)), np.zeros((4, 3)), np.zeros(3)
-    arguments = plan, inputs, start, [], False, step_limits()
+    arguments = plan, inputs, None, start, [], False, step_limits()
     _kernel.follow_rows(*arguments, guess, limit, None)
     for both in ((inputs, limit), (guess, guess[0]), (guess, inputs[1])):
         with pytest.raises(ValueError, match="share no memory"):
@@ -359,7 +359,7 @@ def test_rows_without_columns_are_counted() -> None:
     plan = builder.finish()
     outputs = hand_over_outputs(plan, [])
     nothing = np.zeros((0, 2**59))
-    names = ("inputs", "rates", "accelerations", "jerks", "states", "turns")
+    names = ("inputs", "whole", "rates", "accelerations", "jerks", "states", "turns")
     with pytest.raises(ValueError, match="rows: more than"):
         _kernel.Positions(
             plan=plan,

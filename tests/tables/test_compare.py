@@ -1,5 +1,7 @@
 """Committed tables against fresh ones."""
 
+import os
+
 import pytest
 
 from mechkin_cli.diagnostics import UsageError
@@ -142,9 +144,9 @@ def test_the_committed_files_of_a_folder(tmp_path):
 def test_a_committed_file_that_cannot_be_read(tmp_path, monkeypatch):
     (tmp_path / "b.csv").write_bytes(b"b")
 
-    def refuse(path):
+    def refuse(path, flags):
         raise PermissionError(13, "Permission denied", str(path))
 
-    monkeypatch.setattr(type(tmp_path), "read_bytes", refuse)
+    monkeypatch.setattr(os, "open", refuse)
     with pytest.raises(UsageError, match=r"cannot read .*b\.csv: Permission denied"):
         read_committed(tmp_path)

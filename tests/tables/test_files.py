@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables import files
+from mechkin_cli.tables import file_set
 from mechkin_cli.tables.files import write_files
 
 CONTENT = {"a.csv": b"x\n1\n", "b.md": b"# b\n"}
@@ -27,11 +27,6 @@ def test_files_are_written_and_folders_made(tmp_path):
     assert written == [tmp_path / "out/rcsr/a.csv", tmp_path / "out/rcsr/b.md"]
 
 
-def test_names_may_hold_folders(tmp_path):
-    write_files(tmp_path, {"one/a.csv": b"1", "two/a.csv": b"2"})
-    assert everything(tmp_path) == {"one/a.csv": b"1", "two/a.csv": b"2"}
-
-
 def test_existing_files_are_replaced(tmp_path):
     write_files(tmp_path, {"a.csv": b"a much longer old content"})
     write_files(tmp_path, CONTENT)
@@ -46,7 +41,7 @@ def test_new_files_have_the_usual_permissions(tmp_path):
 
 def fail_after(monkeypatch, calls: int, error: BaseException):
     """Let the writing of the file after `calls` others fail when half of it is written."""
-    whole, seen = files._write, []
+    whole, seen = file_set._write, []
 
     def write(path, content):
         seen.append(path)
@@ -55,7 +50,7 @@ def fail_after(monkeypatch, calls: int, error: BaseException):
             raise error
         whole(path, content)
 
-    monkeypatch.setattr(files, "_write", write)
+    monkeypatch.setattr(file_set, "_write", write)
 
 
 @pytest.mark.parametrize("calls", [0, 1])
@@ -83,84 +78,7 @@ def test_a_failure_leaves_old_files_as_they_were(tmp_path, monkeypatch):
     assert everything(tmp_path) == old
 
 
-def fail_at_rename(monkeypatch, calls: int, error: BaseException, *, done: bool = False):
-    """Let the rename of the file after `calls` others fail, before or after it is `done`."""
-    whole, seen = Path.replace, []
-
-    def replace(self, target):
-        if self.suffix == ".tmp":
-            seen.append(target)
-        if len(seen) == calls + 1 and self.suffix == ".tmp":
-            if done:
-                whole(self, target)
-            raise error
-        return whole(self, target)
-
-    monkeypatch.setattr(Path, "replace", replace)
-
-
 OLD = {"a.csv": b"old", "c.csv": b"not of this run"}
-
-
-@pytest.mark.parametrize("calls", [0, 1])
-@pytest.mark.parametrize("done", [False, True], ids=["before", "after"])
-@pytest.mark.parametrize(
-    ("error", "raised"),
-    [(KeyboardInterrupt(), KeyboardInterrupt), (OSError(errno.EIO, "broken"), UsageError)],
-)
-def test_a_failure_among_the_renames_brings_the_old_files_back(
-    tmp_path, monkeypatch, calls, done, error, raised
-):
-    write_files(tmp_path, OLD)
-    fail_at_rename(monkeypatch, calls, error, done=done)
-    with pytest.raises(raised):
-        write_files(tmp_path, CONTENT)
-    assert everything(tmp_path) == OLD
-
-
-def test_old_files_come_back_without_hard_links(tmp_path, monkeypatch):
-    def no_links(*_, **__):
-        raise OSError(errno.EPERM, os.strerror(errno.EPERM))
-
-    monkeypatch.setattr(os, "link", no_links)
-    write_files(tmp_path, OLD)
-    write_files(tmp_path, {"a.csv": b"newer"})
-    assert everything(tmp_path) == OLD | {"a.csv": b"newer"}
-    fail_at_rename(monkeypatch, 1, OSError(errno.EIO, "broken"))
-    with pytest.raises(UsageError):
-        write_files(tmp_path, CONTENT)
-    assert everything(tmp_path) == OLD | {"a.csv": b"newer"}
-
-
-def test_interrupts_while_cleaning_up_do_not_stop_it(tmp_path, monkeypatch):
-    write_files(tmp_path, OLD)
-    fail_at_rename(monkeypatch, 1, KeyboardInterrupt())
-    whole, impatient = Path.unlink, iter(range(5))
-
-    def unlink(self, missing_ok=False):
-        for _ in impatient:
-            raise KeyboardInterrupt
-        whole(self, missing_ok)
-
-    monkeypatch.setattr(Path, "unlink", unlink)
-    with pytest.raises(KeyboardInterrupt):
-        write_files(tmp_path, CONTENT)
-    assert everything(tmp_path) == OLD
-
-
-def test_an_interrupt_after_the_last_rename_leaves_the_new_files(tmp_path, monkeypatch):
-    write_files(tmp_path, OLD)
-    whole, impatient = Path.unlink, iter([None])
-
-    def unlink(self, missing_ok=False):
-        for _ in impatient:
-            raise KeyboardInterrupt
-        whole(self, missing_ok)
-
-    monkeypatch.setattr(Path, "unlink", unlink)
-    with pytest.raises(KeyboardInterrupt):
-        write_files(tmp_path, CONTENT)
-    assert everything(tmp_path) == OLD | CONTENT
 
 
 def test_a_file_that_cannot_even_be_begun_leaves_the_old_one(tmp_path, monkeypatch):
@@ -169,23 +87,64 @@ def test_a_file_that_cannot_even_be_begun_leaves_the_old_one(tmp_path, monkeypat
     def write(path, content):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(files, "_write", write)
+    monkeypatch.setattr(file_set, "_write", write)
     with pytest.raises(UsageError):
         write_files(tmp_path, CONTENT)
     assert everything(tmp_path) == OLD
 
 
-def test_a_symbolic_link_is_replaced_and_comes_back(tmp_path, monkeypatch):
-    (tmp_path / "elsewhere").write_bytes(b"kept")
-    (tmp_path / "a.csv").symlink_to("elsewhere")
-    fail_at_rename(monkeypatch, 1, OSError(errno.EIO, "broken"))
+def without(monkeypatch, name: str) -> None:
+    def refused(*_, **__):
+        raise OSError(errno.EPERM, os.strerror(errno.EPERM))
+
+    monkeypatch.setattr(os, name, refused)
+
+
+@pytest.mark.parametrize("missing", [["link"], ["symlink"], ["link", "symlink"]])
+def test_file_systems_without_links(tmp_path, monkeypatch, missing):
+    for name in missing:
+        without(monkeypatch, name)
+    write_files(tmp_path, OLD)
+    write_files(tmp_path, {"a.csv": b"newer"})
+    assert everything(tmp_path) == OLD | {"a.csv": b"newer"}
+    write_files(tmp_path, CONTENT)
+    assert everything(tmp_path) == OLD | CONTENT
+
+
+@pytest.mark.parametrize("missing", [["symlink"], ["link", "symlink"]])
+def test_without_symbolic_links_a_failure_is_taken_back(tmp_path, monkeypatch, missing):
+    write_files(tmp_path, OLD)
+    for name in missing:
+        without(monkeypatch, name)
+    whole = Path.replace
+
+    def replace(self, target):
+        if target == tmp_path / "b.md":
+            raise OSError(errno.EIO, "broken")
+        return whole(self, target)
+
+    monkeypatch.setattr(Path, "replace", replace)
     with pytest.raises(UsageError):
         write_files(tmp_path, CONTENT)
-    assert (tmp_path / "a.csv").is_symlink()
-    monkeypatch.undo()
+    assert everything(tmp_path) == OLD
+
+
+@pytest.mark.parametrize("to", ["elsewhere", "nowhere"])
+def test_a_symbolic_link_is_replaced(tmp_path, to):
+    (tmp_path / "elsewhere").write_bytes(b"kept")
+    (tmp_path / "a.csv").symlink_to(to)
     write_files(tmp_path, CONTENT)
     assert not (tmp_path / "a.csv").is_symlink()
     assert everything(tmp_path) == CONTENT | {"elsewhere": b"kept"}
+
+
+def test_special_files_are_never_replaced(tmp_path):
+    os.mkfifo(tmp_path / "a.csv")
+    (tmp_path / "b.md").symlink_to("/dev/null")
+    for name in CONTENT:
+        message = refusal(tmp_path, {"c": b"", name: b""})
+        assert "a device or a pipe stands there" in message
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "b.md"]
 
 
 def refusal(folder: Path, content=CONTENT) -> str:

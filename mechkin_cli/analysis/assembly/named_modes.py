@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class NamedModes:
     """Assemblies as `found`, their coordinates (SI), joint points and letters (by number, in the
-    order of the letters)."""
+    order of the letters), where these are known."""
 
     found: Found
     coordinates: dict[str, Floats]
@@ -39,14 +39,15 @@ class NamedModes:
         return self.found.number
 
 
-def name_modes(session: Session, inputs: Floats) -> NamedModes:
-    """The modes at the first row, `inputs` (inputs,) in kernel units."""
-    key = ("modes", inputs.tobytes(), str(session.problem.assembly.near))
-    return session.once(key, lambda: _name_modes(session, inputs))
+def name_modes(session: Session, inputs: Floats, *, thorough: bool = True) -> NamedModes:
+    """The modes at the first row, `inputs` (inputs,) in kernel units; not `thorough`: most of them,
+    and letters only if these are all for certain."""
+    key = ("modes", inputs.tobytes(), str(session.problem.assembly.near), thorough)
+    return session.once(key, lambda: _name_modes(session, inputs, thorough))
 
 
-def _name_modes(session: Session, inputs: Floats) -> NamedModes:
-    found = session.search(inputs)
+def _name_modes(session: Session, inputs: Floats, thorough: bool) -> NamedModes:
+    found = session.search(inputs, thorough=thorough)
     if is_home_assembled(session):
         home = follow_from_home(session, inputs)
         if home.end == TrackEnd.FINISHED:
@@ -54,7 +55,8 @@ def _name_modes(session: Session, inputs: Floats) -> NamedModes:
                 session.layout, session.plan, inputs, found, home.state[:, None]
             )
     coordinates, points = Probe.of(session).read(inputs, found.states)
-    names = letters(session.problem.mechanism, coordinates, points)
+    known = thorough or found.complete
+    names = letters(session.problem.mechanism, coordinates, points) if known else {}
     return NamedModes(found, coordinates, points, names)
 
 

@@ -3,24 +3,30 @@ nearest to it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from math import sqrt
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.analysis.assembly.distances import (
+    distances_home,
+    distances_near,
+    distances_of,
+    far_notes,
+    in_order,
+    is_unclear,
+    unclear,
+)
 from mechkin_cli.analysis.assembly.home import (
     follow_from_home,
     is_home_assembled,
     nearest_to_home,
 )
-from mechkin_cli.analysis.assembly.named_modes import NamedModes, is_cyclic, name_modes, wrapped
+from mechkin_cli.analysis.assembly.named_modes import NamedModes, is_cyclic, name_modes
 from mechkin_cli.analysis.assembly.near import Near, box_about, named_by, newton_from
-from mechkin_cli.analysis.assembly.probe import Probe
-from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number
-from mechkin_cli.mechanism.joint_table import is_angle
+from mechkin_cli.analysis.assembly.not_assembled import nothing_found
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.inputs import input_numbers, input_text
@@ -29,11 +35,13 @@ from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.solver.session import Continued, Session
 
 NEAR = "near"
 """Stands for the letter of an assembly that was found without all others."""
+
+HOME = "home"
+"""The same for an assembled drawing."""
 
 MAY_BE_RIGID = (
     "an overconstrained loop moves only if its dimensions are exact (write expressions); else "
@@ -79,33 +87,52 @@ def _continued(continued: Continued) -> Start:
 
 
 def _choose_start(session: Session) -> Start:
-    path, wanted = session.inputs.values, session.problem.assembly
+    # an assembly is the same whole turns of an input away
+    path, wanted = session.inputs.reduced, session.problem.assembly
     if not wanted.near and wanted.mode is None and is_home_assembled(session):
-        return _from_home(session, path)
+        return _from_home(session)
     if wanted.near and wanted.mode is None:
         start = _from_near(session, path[:, 0])
         if start is not None:
-            return start
-    modes = name_modes(session, path[:, 0])
+            return _told_if_far(session, path[:, 0], start)
+    modes = name_modes(session, path[:, 0], thorough=wanted.mode is not None)
     if modes.number == 0:
         return Start(None, "", "", [nothing_found(session, modes.found)])
     if wanted.mode is not None:
         return _by_name(modes, wanted.mode)
-    home = _distances_home(session, modes.points)
+    home = distances_home(session, modes.points)
     if not wanted.near:
         return _nearest(modes, home, home, "nearest to home")
-    return _nearest(modes, _distances_near(session.problem, modes.coordinates), home, "near")
+    start = _nearest(modes, distances_near(session.problem, modes.coordinates), home, "near")
+    return _told_if_far(session, path[:, 0], start)
 
 
-def mode_letter(session: Session, start: Start) -> str:
+def mode_letter(session: Session, start: Start, *, thorough: bool = True) -> str:
     """The letter of an assembly at the first row, by a search if it is not known yet; its own name
-    where no letter's branch has it."""
-    if start.mode != NEAR or start.state is None:
+    where no letter's branch has it, or where only a `thorough` search tells all modes."""
+    if start.mode not in (NEAR, HOME) or start.state is None:
         return start.mode
-    modes = name_modes(session, session.inputs.values[:, 0])
+    first = session.inputs.reduced[:, 0]
+    state = state_at_first_row(session, start)
+    if state is None:
+        return start.mode
+    modes = name_modes(session, first, thorough=thorough)
+    if not modes.letters:
+        return start.mode
     keys = pose_keys(session.layout, modes.found.states)
-    same = same_poses(keys, pose_keys(session.layout, start.state[:, None]))[:, 0]
+    same = same_poses(keys, pose_keys(session.layout, state[:, None]))[:, 0]
     return modes.letters[int(np.argmax(same))] if same.any() else start.mode
+
+
+def state_at_first_row(session: Session, start: Start) -> Floats | None:
+    """States of the first assembly's branch at the first row; an assembled drawing may be followed
+    from another."""
+    if start.state is None or start.row == 0:
+        return start.state
+    values = session.inputs.values
+    path = np.stack([values[:, start.row], values[:, 0]], axis=1)
+    followed = session.follow(path, start.state)
+    return followed.state if followed.end == TrackEnd.FINISHED else None
 
 
 def _from_near(session: Session, inputs: Floats) -> Start | None:
@@ -115,7 +142,7 @@ def _from_near(session: Session, inputs: Floats) -> Start | None:
     newton = newton_from(session, inputs, named) if named.unknowns else None
     if newton is None:
         return None
-    distance = _distances(session, inputs, newton.state[:, None])[0][0]
+    distance = distances_of(session, inputs, newton.state[:, None])[0][0]
     if newton.is_nearest(distance):
         how = (
             f"{distance:.2g} rad or sizes off what near names, found by Newton's method; no other "
@@ -126,8 +153,15 @@ def _from_near(session: Session, inputs: Floats) -> Start | None:
     radius = tolerances.NEAR_RUNNER_UP * max(distance, tolerances.SAME_MODE)
     if radius > tolerances.NEAR_BALL:
         return None
-    found = session.search(inputs, box_about(session, named, radius))
+    found = session.search(inputs, box_about(session, named, radius), thorough=False)
     return _nearest_about(session, inputs, newton, found, radius)
+
+
+def _told_if_far(session: Session, inputs: Floats, start: Start) -> Start:
+    if start.state is None:
+        return start
+    notes = far_notes(session, inputs, start.state)
+    return replace(start, diagnostics=[*start.diagnostics, *notes])
 
 
 def _nearest_about(
@@ -135,8 +169,8 @@ def _nearest_about(
 ) -> Start | None:
     """The nearest of all assemblies about as near as the one that Newton's method found."""
     found = with_assemblies(session.layout, session.plan, inputs, found, newton.state[:, None])
-    distances, home = _distances(session, inputs, found.states)
-    order = [i for i in _in_order(distances, home) if distances[i] <= radius]
+    distances, home = distances_of(session, inputs, found.states)
+    order = [i for i in in_order(distances, home) if distances[i] <= radius]
     if not order:
         return None
     best = distances[order[0]]
@@ -145,39 +179,19 @@ def _nearest_about(
         f"{found.starts} starts found within {radius:.2g}"
     )
     notes = []
-    if len(order) > 1 and _is_unclear(best, distances[order[1]]):
-        notes.append(_unclear("two assemblies", (best, distances[order[1]])))
+    if len(order) > 1 and is_unclear(best, distances[order[1]]):
+        notes.append(unclear("two assemblies", (best, distances[order[1]])))
     return Start(found.states[:, order[0]], NEAR, how, notes)
 
 
-def _distances(session: Session, inputs: Floats, states: Floats) -> tuple[list[float], list[float]]:
-    """Of assemblies (states, number) from what `near` names, and from the drawing."""
-    coordinates, points = Probe.of(session).read(inputs, states)
-    return _distances_near(session.problem, coordinates), _distances_home(session, points)
-
-
-def _in_order(distances: list[float], home: list[float]) -> list[int]:
-    """Numbers of assemblies, the nearest first; among those as near but for rounding, the nearest
-    to the drawing."""
-    least = min(distances, default=0.0)
-    tied = [i for i, d in enumerate(distances) if d <= least + tolerances.SAME_MODE]
-    rest = [i for i in range(len(distances)) if i not in tied]
-    rest.sort(key=lambda i: distances[i])
-    return [*sorted(tied, key=lambda i: home[i]), *rest]
-
-
-def _is_unclear(best: float, second: float) -> bool:
-    """Whether a runner-up is about as near as the nearest."""
-    return second < max(tolerances.NEAR_RUNNER_UP * best, best + tolerances.SAME_MODE)
-
-
-def _from_home(session: Session, path: Floats) -> Start:
-    """Followed from the drawing to the row whose inputs are nearest to it."""
-    problem, layout = session.problem, session.layout
+def _from_home(session: Session) -> Start:
+    """Followed from the drawing to the row whose inputs are nearest to it; whole turns of the
+    drawing are the same place."""
+    problem, layout, path = session.problem, session.layout, session.inputs.reduced
     row = nearest_to_home(path)
     followed = follow_from_home(session, path[:, row])
     if followed.end == TrackEnd.FINISHED:
-        return Start(followed.state, "home", "followed from the home drawing", row=row)
+        return Start(followed.state, HOME, "followed from the home drawing", row=row)
     turned = _without_turns(session, path)
     if (turned != path).any():
         # the drawing serves whole turns away from it as well
@@ -185,7 +199,7 @@ def _from_home(session: Session, path: Floats) -> Start:
         again = follow_from_home(session, np.ascontiguousarray(turned[:, there]))
         if again.end == TrackEnd.FINISHED:
             words = "followed from the home drawing, whole turns away"
-            return Start(again.state, "home", words, row=there)
+            return Start(again.state, HOME, words, row=there)
     places = input_numbers(problem, layout, followed.inputs)
     rigid = f"; {MAY_BE_RIGID}" if session.is_redundant else ""
     diagnostic = Diagnostic(
@@ -202,7 +216,7 @@ def _from_home(session: Session, path: Floats) -> Start:
     folds = isinstance(limit, DeadCentre)
     status = Status.beyond_dead_centre if folds else Status.branch_lost
     stuck = float(np.max(np.abs(followed.inputs), initial=0.0)) <= tolerances.PASSED
-    return Start(None, "home", "", [diagnostic], status, stuck=stuck)
+    return Start(None, HOME, "", [diagnostic], status, stuck=stuck)
 
 
 def _without_turns(session: Session, path: Floats) -> Floats:
@@ -214,68 +228,6 @@ def _without_turns(session: Session, path: Floats) -> Floats:
     cyclic = np.array([is_cyclic(session.problem.mechanism, f"{j}.{c}") for j, c in session.driven])
     turns = np.rint(path / (2.0 * np.pi))
     return np.where(cyclic[:, None], path - turns * (2.0 * np.pi), path)
-
-
-def nothing_found(session: Session, found: Found, place: str = "at the first row") -> Diagnostic:
-    """What to say where no start closed."""
-    hint = "check the dimensions, or start the sweep at another input"
-    if any(joint.type.is_threaded for joint in session.problem.mechanism.joints.values()):
-        turns = session.problem.assembly.turns
-        hint += f"; threads were searched {turns}.5 turns to either side: assembly: {{turns: N}}"
-    if session.is_redundant:
-        hint = "dimensions of an overconstrained loop must be exact (write expressions)"
-    return Diagnostic(
-        "not-assembled",
-        "error",
-        f"{session.problem.mechanism.name} cannot be assembled {place}",
-        measured=_missed(found),
-        limit=f"{tolerances.RESIDUAL_ACCEPT:g}",
-        hint=hint,
-        numbers=(
-            Number("starts", found.starts),
-            Number("residual", found.closest, limit=tolerances.RESIDUAL_ACCEPT),
-        ),
-    )
-
-
-def _missed(found: Found) -> str:
-    if found.free:
-        return (
-            f"{found.free} of {found.starts} random starts closed the loops, all where they still "
-            "move with the inputs held, or in a singular position"
-        )
-    return (
-        f"none of {found.starts} random starts closed the loops, "
-        f"the best to {found.closest:.2g} of the size"
-    )
-
-
-def _distances_near(problem: Problem, coordinates: Mapping[str, Floats]) -> list[float]:
-    """Of every assembly from what `near` names; angles the shorter way round, slides in sizes."""
-    mechanism = problem.mechanism
-    size = mechanism.box_diagonal()
-    distances = []
-    for i in range(len(next(iter(coordinates.values())))):
-        total = 0.0
-        for name, target in problem.assembly.near.items():
-            miss = float(coordinates[name][i]) - target
-            if is_cyclic(mechanism, name):
-                miss = wrapped(miss)
-            elif not is_angle(name.partition(".")[2]):
-                miss /= size
-            total += miss * miss
-        distances.append(sqrt(total))
-    return distances
-
-
-def _distances_home(session: Session, points: Floats) -> list[float]:
-    """Root mean square over the moving links' joint points, in parts of the size."""
-    home = np.array([at.vector for at in Probe.of(session).points])[:, :, None]
-    miss = (points - home) / session.problem.mechanism.box_diagonal()
-    total = np.zeros(points.shape[2])
-    for x, y, z in miss:
-        total = total + (x * x + y * y + z * z)
-    return [sqrt(float(squares) / len(home)) for squares in total]
 
 
 def _by_name(modes: NamedModes, name: str) -> Start:
@@ -293,25 +245,15 @@ def _by_name(modes: NamedModes, name: str) -> Start:
 
 
 def _nearest(modes: NamedModes, distances: list[float], home: list[float], how: str) -> Start:
-    order = _in_order(distances, home)
+    order = in_order(distances, home)
     best = order[0]
     notes = []
     if len(order) > 1:
         second = order[1]
-        if _is_unclear(distances[best], distances[second]):
-            both = f"modes {modes.letters[best]} and {modes.letters[second]}"
-            notes.append(_unclear(both, (distances[best], distances[second])))
+        if is_unclear(distances[best], distances[second]):
+            both = "two assemblies"
+            if modes.letters:
+                both = f"modes {modes.letters[best]} and {modes.letters[second]}"
+            notes.append(unclear(both, (distances[best], distances[second])))
     words = f"{how}, 1 of {modes.number} found"
-    return Start(modes.found.states[:, best], modes.letters[best], words, notes)
-
-
-def _unclear(both: str, distances: tuple[float, float]) -> Diagnostic:
-    return Diagnostic(
-        "nearest-unclear",
-        "warning",
-        f"{both} are about equally near",
-        measured=f"distances {distances[0]:.4g} and {distances[1]:.4g}",
-        limit=f"ratio {tolerances.NEAR_RUNNER_UP}",
-        hint="give more coordinates under assembly: near",
-        numbers=tuple(Number("distance", distance) for distance in distances),
-    )
+    return Start(modes.found.states[:, best], modes.letters.get(best, NEAR), words, notes)

@@ -16,8 +16,11 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.home import home_state
-from mechkin_cli.analysis.mobility.displacements import between, turned
+from mechkin_cli.analysis.mobility.closed import closed
+from mechkin_cli.analysis.mobility.displacements import displacement
+from mechkin_cli.analysis.mobility.loops import Closing, Loops
 from mechkin_cli.analysis.mobility.opened import Pose, Poses, opened
+from mechkin_cli.analysis.mobility.parts import Part, parts
 from mechkin_cli.mechanism.elementary import screws_at
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
@@ -27,6 +30,8 @@ from mechkin_cli.solver.session import Session
 from mechkin_cli.units import UnitSystem
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.arrays import Floats
 
 
@@ -45,7 +50,18 @@ class Body:
         self.session = Session(tree, self.opened.graph)
         self.layout = self.session.layout
         bodies = self.opened.mechanism.links
-        self.poses = Poses(self.session, bodies, self.centre, self.size)
+        poses = Poses(self.session, bodies, self.centre, self.size)
+        self.loops = Loops(self.opened, self.layout, poses)
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """Loops that move on their own."""
+        return parts(self.mechanism, self.loops)
+
+    @cached_property
+    def free(self) -> NDArray[np.intp]:
+        """Columns that no loop passes."""
+        return np.flatnonzero(~np.any(self.loops.signs != 0.0, axis=0))
 
     @cached_property
     def columns(self) -> dict[str, list[int]]:
@@ -57,22 +73,16 @@ class Body:
             for name, edges in self.opened.elements.items()
         }
 
-    @cached_property
+    @property
     def count(self) -> int:
         """Number of all joints' freedoms."""
-        return sum(len(carrier.part.type.freedoms) for carrier in self.layout.carriers)
+        return self.loops.count
 
     @cached_property
     def signs(self) -> dict[str, Floats]:
         """How the loop of each cut (cuts,) passes each joint: outward +1, back to ground -1."""
-        edges, opened = self.opened.graph.edges, self.opened
-        passed = {GROUND_NAME: np.zeros(len(edges))}
-        for k, edge in enumerate(edges):
-            passed[edge.child] = passed[edge.parent].copy()
-            passed[edge.child][k] = 1.0
-        loops = [passed[cut.copy] - passed[cut.link] for cut in opened.cuts]
-        table = np.array(loops).reshape(len(loops), len(edges))
-        return {name: table[:, elements[0]] for name, elements in opened.elements.items()}
+        table, elements = self.loops.edge_signs, self.opened.elements
+        return {name: table[:, numbers[0]] for name, numbers in elements.items()}
 
     def column(self, joint: str, coordinate: str) -> int:
         """Column of a coordinate."""
@@ -88,36 +98,36 @@ class Configuration:
         self.state = state
 
     @cached_property
+    def _arrays(self) -> tuple[Floats, Floats]:
+        return self.body.loops.poses.at(np.empty((0, 1)), self.state[:, None])
+
+    @cached_property
     def poses(self) -> dict[str, Pose]:
         """Poses of all bodies, copies of links at cuts among them."""
-        return self.body.poses.at(np.empty(0), self.state)
+        turns, places = self._arrays
+        return self.body.loops.poses.named(turns[0], places[0])
 
     @cached_property
     def twists(self) -> dict[str, Floats]:
         """Twists (6, freedoms) of all bodies for unit rates of the joints' freedoms."""
-        found = {GROUND_NAME: np.zeros((6, self.body.count))}
-        for edge, carrier in zip(
-            self.body.opened.graph.edges, self.body.layout.carriers, strict=True
-        ):
-            own = self._screws(carrier.edge, carrier.part.letter)
-            twists = found[edge.parent].copy()
-            twists[:, carrier.column : carrier.column + len(own)] += own.T
-            found[edge.child] = twists
-        return found
+        loops = self.body.loops
+        twists = loops.twists(*self._arrays)[0]
+        return {name: twists[k] for name, k in loops.number.items()}
 
     @cached_property
+    def closing(self) -> Closing:
+        """Misses and Jacobian of all loops, in arrays of one row."""
+        return self.body.loops.closing_of(*self._arrays)
+
+    @property
     def jacobian(self) -> Floats:
         """Twists of the copies against their links: (6 cuts, freedoms)."""
-        cuts = self.body.opened.cuts
-        rows = [self.twists[cut.copy] - self.twists[cut.link] for cut in cuts]
-        return np.concatenate([np.zeros((0, self.body.count)), *rows])
+        return np.asarray(self.closing.jacobian[0])
 
-    @cached_property
+    @property
     def misses(self) -> Floats:
         """Displacements of the copies against their links (6 cuts,): rad, parts of the size."""
-        cuts = self.body.opened.cuts
-        rows = [between(self.poses[cut.copy], self.poses[cut.link]) for cut in cuts]
-        return np.concatenate([np.zeros(0), *rows])
+        return np.asarray(self.closing.misses[0])
 
     @property
     def miss(self) -> float:
@@ -157,46 +167,16 @@ class Configuration:
             found.append(np.array([[*spin, *(pose.turn @ linear + np.cross(pose.place, spin))]]))
         return np.concatenate(found)
 
-    def distance(self, other: Configuration) -> float:
-        """Root of the sum of squares of all differences of the links' poses."""
-        total = 0.0
-        for link in self.body.links:
-            here, there = self.poses[link], other.poses[link]
-            for one, two in zip(here, there, strict=True):
-                total += float(np.sum((one - two) ** 2))
-        return float(np.sqrt(total))
-
     def moved(self, steps: Floats) -> Configuration:
         """Displaced by steps (freedoms,) of the joints' freedoms."""
-        state = self.state.copy()
-        for carrier in self.body.layout.carriers:
-            freedoms = carrier.part.type.freedoms
-            own = steps[carrier.column : carrier.column + len(freedoms)]
-            if carrier.part.type.is_ball:
-                place = slice(carrier.state, carrier.state + 4)
-                state[place] = turned(state[place], own)
-                continue
-            for k, freedom in enumerate(freedoms):
-                unit = self.body.size / self.body.layout.length if freedom.is_slide else 1.0
-                state[carrier.state + k] += own[k] * unit
-        return Configuration(self.body, state)
+        return Configuration(self.body, self.body.loops.moved(self.state[None], steps[None])[0])
 
     def closed(self) -> Configuration:
-        """The configuration that Newton's method reaches from here."""
-        here, least, stuck = self, np.inf, 0
-        for _ in range(tolerances.MOBILITY_ITERATIONS):
-            stuck = 0 if here.miss < 0.9 * least else stuck + 1
-            least = min(least, here.miss)
-            if here.miss < tolerances.MOBILITY_TIGHT or stuck > tolerances.MOBILITY_STUCK:
-                break
-            step = -least_squares(here.jacobian, here.misses)
-            largest = float(np.abs(step).max(initial=0.0))
-            if not largest < np.inf:
-                break
-            if largest > tolerances.MOBILITY_STRIDE:
-                step = step * (tolerances.MOBILITY_STRIDE / largest)
-            here = here.moved(step)
-        return here
+        """The configuration that steps of Levenberg and Marquardt reach from here."""
+        state = self.state
+        for part in self.body.parts:
+            state = closed(part, state[None]).states[0]
+        return Configuration(self.body, state)
 
 
 def least_squares(matrix: Floats, right: Floats) -> Floats:
@@ -216,8 +196,8 @@ def with_links_at(start: Configuration, target: Mapping[str, Pose]) -> Configura
     bodies = {link: link for link in body.links} | {c.copy: c.link for c in body.opened.cuts}
     here = start
     for _ in range(tolerances.MOBILITY_STUCK):
-        misses = [between(here.poses[name], target[link]) for name, link in bodies.items()]
-        miss = np.concatenate(misses)
+        pairs = [(here.poses[name], target[link]) for name, link in bodies.items()]
+        miss = np.concatenate([displacement(*one, *two) for one, two in pairs])
         if np.abs(miss).max() < tolerances.MOBILITY_TIGHT:
             break
         matrix = np.concatenate([here.twists[name] for name in bodies])
@@ -247,22 +227,3 @@ def _scattered(body: Body, random: RandomStarts) -> Configuration:
             half = body.size / body.layout.length if freedom.is_slide else np.pi
             state[carrier.state + k] = random.between(half, 1)[0]
     return Configuration(body, state)
-
-
-def along_motion(
-    start: Configuration, motions: Floats, random: RandomStarts
-) -> Configuration | None:
-    """A configuration a finite step away along one of the first-order `motions` (freedoms, count).
-
-    None where every step closes back to the start: the motion exists to first order only.
-    """
-    if motions.shape[1] == 0:
-        return None
-    step = tolerances.MOBILITY_STEP
-    for _ in range(tolerances.MOBILITY_TRIES):
-        direction = motions @ random.between(1.0, motions.shape[1])
-        direction *= step / np.max(np.abs(direction))
-        there = start.moved(direction).closed()
-        if there.assembled and there.distance(start) > step / 4:
-            return there
-    return None

@@ -32,7 +32,9 @@ def first_row(session: Session, body: Body) -> Configuration | None:
     if start.state is None:
         return None
     inputs = session.inputs.values[:, start.row]
-    links = Poses(session, body.links, body.centre, body.size).at(inputs, start.state)
+    poses = Poses(session, body.links, body.centre, body.size)
+    turns, places = poses.at(inputs[:, None], start.state[:, None])
+    links = poses.named(turns[0], places[0])
     coordinates, _ = Probe.of(session).read(inputs, start.state[:, None])
     seed = _seed(body, {name: float(value[0]) for name, value in coordinates.items()}, links)
     found = with_links_at(seed, links)

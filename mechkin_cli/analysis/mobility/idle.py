@@ -50,7 +50,7 @@ def idle_freedoms(
 
 
 def _groups(configuration: Configuration) -> Iterator[tuple[set[str], list[Joint]]]:
-    """Groups of links with the joints to the rest, small groups first."""
+    """Groups of links between two others or more, with the joints to these; small groups first."""
     joints = configuration.body.mechanism.joints.values()
     links = configuration.body.links
     for count in range(1, min(tolerances.MOST_IDLE_LINKS, len(links) - 1) + 1):
@@ -58,7 +58,8 @@ def _groups(configuration: Configuration) -> Iterator[tuple[set[str], list[Joint
             group = set(chosen)
             border = [j for j in joints if (j.first in group) != (j.second in group)]
             inner = [j for j in joints if j.first in group and j.second in group]
-            if len(border) >= 2 and len(inner) >= count - 1:
+            others = {end for j in border for end in (j.first, j.second)} - group
+            if len(others) >= 2 and len(inner) >= count - 1:
                 yield group, border
 
 

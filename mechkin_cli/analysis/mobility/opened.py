@@ -112,15 +112,25 @@ class Poses:
         marks = [centre, *(centre + size * axis for axis in np.eye(3))]
         points = [Attached(body, tuple(mark.tolist())) for body in self.bodies for mark in marks]
         self.readout = session.readout((), points)
+        slots = np.array(self.readout.points, dtype=np.intp)
+        self._slots = (slots[:, None] + np.arange(3)).ravel()
 
-    def at(self, inputs: Floats, state: Floats) -> dict[str, Pose]:
-        """Poses of the bodies and of ground at inputs (inputs,) and a state (states,)."""
-        batch = self.session.run(inputs[:, None], state[:, None], readout=self.readout)
+    def at(self, inputs: Floats, states: Floats) -> tuple[Floats, Floats]:
+        """Turns (rows, bodies, 3, 3) and places (rows, bodies, 3) of ground and the bodies, in this
+        order, at inputs (inputs, rows) and states (states, rows)."""
+        batch = self.session.run(inputs, states, readout=self.readout)
         assert batch.outputs is not None
-        found = {GROUND_NAME: Pose(np.eye(3), np.zeros(3))}
-        for number, body in enumerate(self.bodies):
-            slots = self.readout.points[4 * number : 4 * number + 4]
-            seen = (batch.outputs[slot : slot + 3, 0] for slot in slots)
-            origin, *tips = ((place - self.centre) / self.size for place in seen)
-            found[body] = Pose(np.stack([tip - origin for tip in tips], axis=1), origin)
-        return found
+        rows = states.shape[1]
+        marks = batch.outputs[self._slots].reshape(len(self.bodies), 4, 3, rows)
+        marks = (marks.transpose(3, 0, 1, 2) - self.centre) / self.size
+        turns = np.empty((rows, len(self.bodies) + 1, 3, 3))
+        places = np.zeros((rows, len(self.bodies) + 1, 3))
+        turns[:, 0] = np.eye(3)
+        places[:, 1:] = marks[:, :, 0]
+        turns[:, 1:] = np.swapaxes(marks[:, :, 1:] - marks[:, :, :1], -1, -2)
+        return turns, places
+
+    def named(self, turns: Floats, places: Floats) -> dict[str, Pose]:
+        """The poses of one row by the names of the bodies."""
+        names = (GROUND_NAME, *self.bodies)
+        return {name: Pose(turns[k], places[k]) for k, name in enumerate(names)}

@@ -15,9 +15,9 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.named_modes import NamedModes, is_cyclic, name_modes, wrapped
+from mechkin_cli.analysis.assembly.not_assembled import nothing_found
 from mechkin_cli.analysis.assembly.probe import Probe
-from mechkin_cli.analysis.assembly.start import Start, choose_start, nothing_found
-from mechkin_cli.analysis.modes.bounds import most_assemblies
+from mechkin_cli.analysis.assembly.start import choose_start, state_at_first_row
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
@@ -51,10 +51,12 @@ class Modes:
     """The assembly modes at `inputs` (file's units) and how the search went.
 
     `picked` is the name of the mode that the file's `assembly:` takes, None where it takes none or
-    its branch does not come here. `closed` of `starts` random starts closed; `chance` estimates
-    that one more that closes finds another mode; `stopped` says that the search ended at its most
-    starts before that chance was small. `bound` is a proven largest number of modes, if one is
-    known; `turns` are the turns of threads searched to either side, None without threads.
+    its branch does not come here. `closed` of `starts` random starts closed; that one more that
+    closes finds another mode has a chance of at most `chance`, with confidence `confidence`;
+    `stopped` says that the search ended at its most starts before that chance was small. `complete`
+    says that these are all modes, proven: as many as such loops have at most (`bound`, if one is
+    known), or as the loops' equations have real roots; `is_cut` that there are more than are
+    listed. `turns` are the turns of threads searched to either side, None without threads.
     """
 
     modes: tuple[Mode, ...]
@@ -63,30 +65,37 @@ class Modes:
     starts: int
     closed: int
     chance: float
+    confidence: float
     stopped: bool
+    complete: bool
+    is_cut: bool
     bound: int | None
     turns: int | None
     diagnostics: tuple[Diagnostic, ...]
-
-    @property
-    def complete(self) -> bool:
-        """Whether these are all modes for certain: as many as are proven to be possible."""
-        return len(self.modes) == self.bound
 
     @property
     def sentence(self) -> str:
         """What is known of completeness."""
         count = len(self.modes)
         noun = "mode" if count == 1 else "modes"
-        if self.complete:
-            return f"{count} {noun}: all, no loop of these pairs has more"
-        known = f", no loop of these pairs has more than {self.bound}" if self.bound else ""
-        if not self.starts:
+        if not self.starts and not self.complete:
             return f"{count} {noun}: without loops there is no other"
+        if self.complete and not count:
+            return "no mode: the equations of a loop have no real root"
+        if self.complete and count == self.bound:
+            return f"{count} {noun}: all, no loop of these pairs has more"
+        if self.complete:
+            return f"{count} {noun}: all, the loops' equations have no other real root"
+        if self.is_cut:
+            return f"{count} {noun} listed of many more"
+        known = f", no loop of these pairs has more than {self.bound}" if self.bound else ""
         if not count:
-            return f"no mode found: none of {self.starts} random starts closed the loops"
+            text = "no mode found: the random starts of a loop did not close, with "
+            text += f"{100.0 * self.confidence:g} % confidence one more does with a chance of at "
+            return text + f"most {self.chance:.1g}"
         text = f"{count} {noun} found{known}; {self.closed} of {self.starts} random starts closed, "
-        text += f"one more finds another with an estimated chance of {self.chance:.1g}"
+        text += f"with {100.0 * self.confidence:g} % confidence one more that closes finds another "
+        text += f"with a chance of at most {self.chance:.1g}"
         if self.turns is not None:
             text += f"; threads within {self.turns}.5 turns to either side"
         return text
@@ -99,8 +108,7 @@ def find_modes(session: Session, at: Mapping[str, float] | None = None) -> Modes
     first = session.inputs.values[:, 0]
     named = name_modes(session, first)
     start = choose_start(session)
-    # an assembled drawing may be followed from another row
-    state = start.state if start.row == 0 else _state_at(session, start, first)
+    state = state_at_first_row(session, start)
     chosen = _number_of(layout, named.found, state)
     letter = UNNAMED if chosen is None else named.letters[chosen]
     if at is None:
@@ -117,15 +125,6 @@ def find_modes(session: Session, at: Mapping[str, float] | None = None) -> Modes
         notes = [nothing_found(session, found, "there")]
     names = _names_at(layout, found, ends)
     return _result(session, place, at, found, names, letter, notes)
-
-
-def _state_at(session: Session, start: Start, first: Floats) -> Floats | None:
-    """States of the first assembly's branch at the first row."""
-    if start.state is None:
-        return None
-    path = np.stack([session.inputs.values[:, start.row], first], axis=1)
-    followed = session.follow(path, start.state)
-    return followed.state if followed.end == TrackEnd.FINISHED else None
 
 
 def _inputs_at(session: Session, at: Mapping[str, float]) -> Floats:
@@ -222,8 +221,11 @@ def _result(
         starts=found.starts,
         closed=found.closed,
         chance=found.chance,
+        confidence=1.0 - tolerances.SEARCH_DOUBT,
         stopped=found.stopped,
-        bound=most_assemblies(session.graph),
+        complete=bool(session.graph.blocks) and found.complete,
+        is_cut=found.cut,
+        bound=found.bound,
         turns=problem.assembly.turns if threads else None,
         diagnostics=(*problem.diagnostics, *notes),
     )
@@ -255,11 +257,19 @@ def _free_note(found: Found) -> Diagnostic:
 
 
 def _stopped_note(found: Found) -> Diagnostic:
+    if found.cut:
+        return Diagnostic(
+            "search-stopped",
+            "warning",
+            "the loops have more modes together than are listed",
+            measured=f"{found.number} listed, nearest to the drawing",
+            hint="ask for parts of the mechanism, or choose the assembly with assembly: near",
+        )
     return Diagnostic(
         "search-stopped",
         "warning",
-        "the search ended at its most starts while it still found new modes",
-        measured=f"{found.starts} starts, a chance of {found.chance:.1g} that one more that closes "
+        "the search ended at its most starts, or modes, before it could tell that few are left",
+        measured=f"{found.starts} starts, a chance of at most {found.chance:.1g} that one more "
         "finds a new mode",
         limit=f"{tolerances.SEARCH_NEW_MODE_CHANCE:g}",
         hint="more modes may exist; fewer turns under assembly: leave fewer for threads",

@@ -12,7 +12,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.home import is_home_assembled, nearest_to_home
 from mechkin_cli.analysis.assembly.named_modes import NamedModes, name_modes
-from mechkin_cli.analysis.assembly.start import nothing_found
+from mechkin_cli.analysis.assembly.not_assembled import nothing_found
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem

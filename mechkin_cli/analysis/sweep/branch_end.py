@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,9 +11,10 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.start import MAY_BE_RIGID
 from mechkin_cli.analysis.sweep.rows import Rows
 from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.kernel._kernel import MOST_PATH_STEPS
 from mechkin_cli.solver.branch_limit import BranchPoint, DeadCentre, find_limit
 from mechkin_cli.solver.circuit import Passage, Walker
-from mechkin_cli.solver.follow import Followed
+from mechkin_cli.solver.follow import Followed, TrackEnd
 from mechkin_cli.solver.inputs import input_number, input_numbers, input_text
 from mechkin_cli.solver.runaway import Runaway
 from mechkin_cli.status import Status
@@ -39,6 +40,9 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) 
     locked = locked_inputs(session, followed.inputs - path[:, 0])
     if locked:
         rows.diagnostics.extend(fault for fault in locked if fault not in rows.diagnostics)
+        return
+    if followed.end == TrackEnd.EXHAUSTED:
+        rows.diagnostics.append(_exhausted_note(session, followed, rows))
         return
     limit = find_limit(session, followed) if len(path) else None
     if isinstance(limit, DeadCentre):
@@ -79,10 +83,26 @@ def input_faults(session: Session) -> list[Diagnostic]:
     from mechkin_cli.analysis.mobility.inputs import undriven_notes
 
     found = find_mobility(session.problem, session)
-    if not session.driven:
+    if not session.problem.motion.driven:
         return undriven_notes(found.mobility or 0, len(found.idle), 0)
+    driven, useful = session.problem.motion.driven, found.useful
+    if useful and len(driven) > useful:
+        # at the first row one of them may stand still by chance; together they cannot move
+        return [_too_many(driven, useful)]
     codes = ("input-locked", "inputs-dependent", "undriven-freedom")
     return [diagnostic for diagnostic in found.diagnostics if diagnostic.code in codes]
+
+
+def _too_many(driven: Sequence[tuple[str, str]], useful: int) -> Diagnostic:
+    names = ", ".join(".".join(each) for each in driven)
+    freedoms = "one freedom" if useful == 1 else f"{useful} freedoms"
+    return Diagnostic(
+        "inputs-dependent",
+        "error",
+        f"the inputs {names} are not independent",
+        measured=f"{len(driven)} inputs drive {freedoms}",
+        hint="drive fewer coordinates",
+    )
 
 
 def locked_inputs(session: Session, moved: Floats) -> list[Diagnostic]:
@@ -172,7 +192,8 @@ def _all_beyond(limit: DeadCentre, path: Floats, rows: Rows) -> bool:
     """Whether the missing rows lie where the branch does not come at all."""
     back = limit.inputs_beyond - limit.inputs
     off = path[:, ~rows.reached] - limit.inputs[:, None]
-    return bool(np.all(np.sum(off * back[:, None], axis=0) <= 0.0))
+    along = sum(one * other for one, other in zip(off, back, strict=True))
+    return bool(np.all(along <= 0.0))
 
 
 def _runaway_note(session: Session, followed: Followed, limit: Runaway, rows: Rows) -> Diagnostic:
@@ -203,6 +224,20 @@ def _branch_point_note(
         measured=", ".join(map(input_text, places)),
         hint="assembly: {at_branch_points: straight} goes on along the smooth continuation; or "
         "begin another sweep beyond it with assembly: {near: ...}",
+        numbers=places,
+    )
+
+
+def _exhausted_note(session: Session, followed: Followed, rows: Rows) -> Diagnostic:
+    places = _place(session, followed, followed.inputs)
+    return Diagnostic(
+        "steps-exhausted",
+        "error",
+        "following the branch takes too many steps: the way to the next row is too long, or the "
+        f"mechanism turns too fast on it; {_stay_empty(rows)}",
+        measured=f"{followed.steps} steps, last place {', '.join(map(input_text, places))}",
+        limit=f"{MOST_PATH_STEPS} steps, {tolerances.MOST_STEPS} for half a radian or length unit",
+        hint="check the range of the input and its unit",
         numbers=places,
     )
 

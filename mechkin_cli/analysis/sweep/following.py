@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.analysis.sweep.rows import Rows
-from mechkin_cli.solver.closing_turns import turn_count
+from mechkin_cli.solver.closing_turns import (
+    ORIENTATION,
+    tree_slots,
+    turn_count,
+    turn_slots,
+)
 from mechkin_cli.solver.follow import TrackEnd
-from mechkin_cli.solver.search import wrap_angles
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.assembly.start import Start
     from mechkin_cli.arrays import Floats
     from mechkin_cli.solver.follow import Followed
-    from mechkin_cli.solver.layout import Layout
     from mechkin_cli.solver.session import Session
 
 
@@ -30,25 +35,34 @@ def follow_rows(session: Session, start: Start, *, every_row: bool = False) -> R
         rows = Rows.without_guesses(session.layout.states, turn_count(session.plan), count)
         rows.status[:] = start.status
         return rows
-    if start.row == 0:
-        followed = session.follow_rows(start.state, every_row=every_row)
+    first = _first_row(session, start, every_row)
+    if first is not None:
+        followed = session.follow_rows(first, every_row=every_row)
         rows = Rows.followed(followed)
         _explain(session, values, followed, rows)
     else:
         rows = Rows.without_guesses(session.layout.states, turn_count(session.plan), count)
-        for way in (slice(start.row, None, -1), slice(start.row, None)):
-            path = np.ascontiguousarray(values[:, way])
-            followed = session.follow_rows(
-                start.state, start.row, way.step or 1, every_row=every_row
-            )
+        for step in (-1, 1):
+            way = slice(start.row, None, step)
+            followed = session.follow_rows(start.state, start.row, step, every_row=every_row)
             part = rows.part(way)
             part.take(followed, 0)
-            if way.step == -1:
-                part.section *= -1
+            part.section *= step
             rows.nodes += followed.steps
-            _explain(session, path, followed, part)
-    _wrap_from_first(session.layout, rows)
+            _explain(session, np.ascontiguousarray(values[:, way]), followed, part)
+    _count_from_first(session, rows)
     return rows
+
+
+def _first_row(session: Session, start: Start, every_row: bool) -> Floats | None:
+    """The states of the first row where all rows are followed from it: where it is the start, and
+    where a way of whole turns leads back to it, so that one turn serves them all."""
+    if start.row == 0 or start.state is None:
+        return start.state
+    if session.route is not None or not np.ptp(session.inputs.whole, axis=1).any():
+        return None
+    back = session.follow_rows(start.state, start.row, -1, every_row=every_row)
+    return back.guess[:, -1] if back.end == TrackEnd.FINISHED else None
 
 
 def _explain(session: Session, path: Floats, followed: Followed, rows: Rows) -> None:
@@ -63,14 +77,17 @@ def _explain(session: Session, path: Floats, followed: Followed, rows: Rows) -> 
         explain_end(session, path, followed, rows)
 
 
-def _wrap_from_first(layout: Layout, rows: Rows) -> None:
-    """Angles are continuous from the first row, which lies in (-180, 180] degrees."""
+def _count_from_first(session: Session, rows: Rows) -> None:
+    """Turns count from the first row, whose angles lie in (-180, 180] degrees."""
     if not rows.reached.any():
         return
     first = int(np.argmax(rows.reached))
-    before = rows.states[:, first].copy()
-    wrapped = before[:, None].copy()
-    wrap_angles(layout, wrapped)
-    turns = wrapped - before[:, None]
-    if turns.any():
-        rows.states += turns
+    # half a turn is +180, whichever side of it rounding has
+    for state, slot in tree_slots(session.plan).items():
+        below = rows.states[state, first] <= tolerances.HALF_TURN_SIDE - pi
+        rows.turns[slot] -= rows.turns[slot, first] - (1.0 if below else 0.0)
+    for (_, freedom), slot in turn_slots(session.plan).items():
+        if freedom != ORIENTATION:
+            beyond = rows.turns[slot, first] - pi - tolerances.HALF_TURN_SIDE
+            turns = np.ceil(beyond / (2.0 * pi))
+            rows.turns[slot] -= turns * (2.0 * pi)

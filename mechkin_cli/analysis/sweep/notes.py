@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnostic | None:
     """Rows a full turn of the one moving input apart at which the mechanism is not the same.
 
-    `states` (states, rows) in kernel units.
+    A thread that advances with the turn, and what moves with it, is not meant to be. `states`
+    (states, rows) in kernel units.
     """
     inputs = session.inputs.values
     moving = np.flatnonzero(np.ptp(inputs, axis=1) > 0.0)
@@ -32,13 +33,15 @@ def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnost
     item = session.problem.motion.inputs[number]
     if not is_cyclic(session.problem.mechanism, item.name):
         return None
-    turns = (inputs[number] - inputs[number, 0]) / (2.0 * np.pi)
-    whole = (np.rint(turns) != 0.0) & (np.abs(turns - np.rint(turns)) <= tolerances.SAME_TURN)
+    turns = session.inputs.whole[number] - session.inputs.whole[number, 0]
+    rest = (session.inputs.reduced[number] - session.inputs.reduced[number, 0]) / (2.0 * np.pi)
+    whole = (turns != 0.0) & (np.abs(rest) <= tolerances.SAME_TURN)
     rows = np.flatnonzero(whole & reached)
     if not rows.size or not reached[0]:
         return None
     row = int(rows[0])
-    keys = pose_keys(session.layout, np.ascontiguousarray(states[:, [0, row]]))
+    both = np.ascontiguousarray(states[:, [0, row]])
+    keys = pose_keys(session.layout, both, left_out=_advanced(session, both))
     if same_poses(keys[:, :1], keys[:, 1:])[0, 0]:
         return None
     count = round(abs(float(turns[row])))
@@ -49,6 +52,26 @@ def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnost
         "mechanism is not back at its first row's position: it has gone on to another assembly",
         hint="mechkin ranges shows the circuit",
     )
+
+
+def _advanced(session: Session, both: Floats) -> set[tuple[int, int]]:
+    """Unknown freedoms (tree edge, number) of the blocks in which a thread stands elsewhere in the
+    second of two places, and of the blocks that depend on them."""
+    graph, layout = session.graph, session.layout
+    found: set[tuple[int, int]] = set()
+    for carrier in layout.carriers:
+        for number, freedom in enumerate(carrier.part.type.freedoms):
+            if freedom.motion == "thread":
+                place = both[carrier.state + number]
+                if abs(float(place[1] - place[0])) > tolerances.SAME_MODE:
+                    found.add((carrier.edge, carrier.first_freedom + number))
+    edges = {edge for edge, _ in found}
+    for block in graph.blocks:
+        loops = {edge for c in block.closings for edge, _ in graph.closings[c].loop}
+        if edges & loops:
+            found.update(block.unknowns)
+            edges.update(edge for edge, _ in block.unknowns)
+    return found
 
 
 def redundancy_note(graph: SolverGraph) -> Diagnostic:
@@ -64,6 +87,43 @@ def redundancy_note(graph: SolverGraph) -> Diagnostic:
         "on them are not unique and stay empty",
         hint="free a joint to make them unique (a sphere for a pin, a cylinder for a slide)",
     )
+
+
+def condition_notes(rows: Rows, condition: Floats) -> list[Diagnostic]:
+    """Rows next to singular positions, or whose rank is unclear; `condition` (rows,)."""
+    found = []
+    for status, limit, cost in (
+        (
+            Status.near_singular,
+            tolerances.CONDITION_NEAR_SINGULAR,
+            "rates and loads there keep fewer than nine digits",
+        ),
+        (
+            Status.rank_unclear,
+            tolerances.CONDITION_RANK_UNCLEAR,
+            "the rank of the constraints cannot be decided there; rates and reactions stay empty",
+        ),
+    ):
+        numbers = np.flatnonzero(rows.status == status)
+        if not numbers.size:
+            continue
+        worst = float(np.max(np.nan_to_num(condition[numbers], nan=np.inf)))
+        where = f"row {numbers[0] + 1}" if numbers.size == 1 else f"{numbers.size} rows"
+        first = "" if numbers.size == 1 else f", the first is row {numbers[0] + 1}"
+        verb = "is" if numbers.size == 1 else "are"
+        found.append(
+            Diagnostic(
+                status.label,
+                "warning",
+                f"{where} {verb} {status.label}{first}: {cost}",
+                measured=f"condition {worst:.2g}",
+                limit=f"{limit:g}",
+                hint="move the sweep by a fraction of its step, or keep away from the singular "
+                "position",
+                numbers=(Number("condition", worst, limit=limit),),
+            )
+        )
+    return found
 
 
 def not_converged_note(rows: Rows, residual: Floats) -> Diagnostic:

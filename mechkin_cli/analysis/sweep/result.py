@@ -12,11 +12,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.analysis.sweep.admissible import (
+    DISTURBANCES,
+    SHIFTS,
+    disturbed,
+    reaction_rounding,
+    told_anew,
+)
 from mechkin_cli.analysis.sweep.closing_angles import make_continuous
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of, forces_demand
+from mechkin_cli.solver.inputs import input_rest
 from mechkin_cli.status import Status, has_solution
 from mechkin_cli.units import DIMENSIONLESS, UnitSystem
 
@@ -41,10 +49,6 @@ Columns = dict[str, "Floats"]
 ROW_NUMBERS = {f"row.{name}": name for name in ("residual", "condition", "power_error")}
 """Verdicts that are numbers, by the names of their quantities."""
 
-SHIFTS = (1, 2)
-"""Parts of the null space by which other reactions in equilibrium differ, where constraints are
-redundant. Two: one alone may leave a cell unchanged by chance."""
-
 
 class Result:
     """The rows of a sweep with a position and a verdict each.
@@ -63,12 +67,12 @@ class Result:
         self.residual = np.full(rows.reached.size, np.nan)
         self.shifts: tuple[int, ...] = SHIFTS if session.is_redundant else ()
         self._columns: Columns = {}
+        self._rests: Columns = {}
         self._shifted: tuple[Columns, ...] = tuple({} for _ in self.shifts)
         self._alternative: int | None = None
+        self._disturbance: int | None = None
         self._condition: Floats | None = None
         self._power_error: Floats | None = None
-
-    # --- what was run ---------------------------------------------------------------------
 
     @property
     def problem(self) -> Problem:
@@ -80,10 +84,13 @@ class Result:
         """Tree, closing joints and blocks."""
         return self.session.graph
 
-    @property
+    @cached_property
     def mode(self) -> str:
-        """The assembly mode of the rows; `near` or `home` where no letter was asked for."""
-        return self.start.mode
+        """The letter of the rows' assembly mode where a short search proves that it knows all
+        modes; else `near` or `home`."""
+        from mechkin_cli.analysis.assembly.start import mode_letter
+
+        return mode_letter(self.session, self.start, thorough=False)
 
     @cached_property
     def letter(self) -> str:
@@ -161,7 +168,10 @@ class Result:
         unloaded = self.demand & Demand.FORCES and self.loads is not None and self.loads.lost.any()
         return bool(self.solved.all()) and not unloaded
 
-    # --- quantities -----------------------------------------------------------------------
+    @property
+    def sound(self) -> bool:
+        """Whether every row is `ok`."""
+        return bool((self.status == Status.ok).all())
 
     @property
     def condition(self) -> Floats:
@@ -171,7 +181,8 @@ class Result:
 
     @property
     def power_error(self) -> Floats:
-        """|sum of powers| / sum of |powers| of every row (rows,); nan where it was not computed."""
+        """|sum of powers| / sum of |powers| of every row (rows,); nan where nothing moves, or where
+        it was not computed."""
         return self._nothing if self._power_error is None else self._power_error
 
     @cached_property
@@ -206,14 +217,17 @@ class Result:
 
     @cached_property
     def alternatives(self) -> tuple[Result, ...]:
-        """The same rows with other reactions that are in equilibrium too (redundant
-        constraints)."""
-        found = []
-        for number in range(len(self.shifts)):
-            other = object.__new__(Result)
-            other.__dict__.update(self.__dict__, alternatives=(), _alternative=number)
-            found.append(other)
-        return tuple(found)
+        """The same rows with other reactions in equilibrium (redundant constraints)."""
+        return told_anew(self, "_alternative", len(self.shifts))
+
+    @cached_property
+    def disturbed(self) -> tuple[Result, ...]:
+        """The same rows with reactions off by their rounding, where some may not be unique."""
+        return told_anew(self, "_disturbance", len(DISTURBANCES) if self.shifts else 0)
+
+    @cached_property
+    def _rounding(self) -> float:
+        return reaction_rounding(self)
 
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by name, in SI.
@@ -231,15 +245,18 @@ class Result:
             raise UnknownName(name, sorted(self._columns), hint_of(name))
         given = self._given(name)
         if given is not None:
-            return Quantity(given, wanted.dimension)
+            return Quantity(given, wanted.dimension, input_rest(self.session, name))
         if name not in self._columns:
             self.read([wanted])
         columns = self._columns[name]
         if self._alternative is not None:
             columns = self._shifted[self._alternative].get(name, columns)
+        if self._disturbance is not None and wanted.kind in WRENCH_KINDS:
+            unit = self.session.layout.length
+            columns = disturbed(columns, wanted, self._rounding, unit, self._disturbance)
         if wanted.vector:
             return Quantity(Vector(columns[0], columns[1], columns[2]), wanted.dimension)
-        return Quantity(columns[0], wanted.dimension)
+        return Quantity(columns[0], wanted.dimension, self._rests.get(name))
 
     def _given(self, name: str) -> Floats | None:
         """Time, an input's value or its rates in SI; None for what is computed."""
@@ -252,8 +269,6 @@ class Result:
             if name.startswith(driven.name) and name in driven.orders:
                 return np.where(self.solved, driven.orders[name][0], np.nan)
         return None
-
-    # --- reading --------------------------------------------------------------------------
 
     def read(self, wanted: Iterable[Wanted]) -> None:
         """Evaluates the quantities that have not been read yet."""
@@ -293,7 +308,7 @@ class Result:
         if not wanted:
             return
         columns = self._split(wanted, batch, self.session)
-        make_continuous(self, wanted, columns)
+        self._rests |= make_continuous(self, wanted, columns)
         self._columns |= columns
         reactions = [quantity for quantity in wanted if quantity.kind in WRENCH_KINDS]
         for shift, others in zip(self.shifts if reactions else (), self._shifted, strict=False):
@@ -343,11 +358,13 @@ class Result:
         session = session or self.session
         inputs = inputs or self.session.inputs
         rows = self.row_states
-        values, states = inputs.values, rows.states
+        values, states = inputs.reduced, rows.states
+        turned, whole = rows.turns, self.session.inputs.whole
         if not rows.reached.all():
             first = int(np.argmax(rows.reached))
             stand_in = np.where(rows.reached, np.arange(rows.reached.size), first)
             values, states = values[:, stand_in], states[:, stand_in]
+            turned, whole = turned[:, stand_in], whole[:, stand_in]
         return session.run(
             values,
             states,
@@ -357,6 +374,8 @@ class Result:
             accelerations=inputs.accelerations if demand & Demand.ACCELERATION else None,
             jerks=inputs.jerks if demand & Demand.JERK else None,
             loads=loads,
+            turned=turned if demand & Demand.FORCES else None,
+            whole=whole if demand & Demand.FORCES else None,
             shift=shift,
             iterations=iterations,
         )

@@ -11,7 +11,12 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.start import choose_start
 from mechkin_cli.analysis.sweep.following import follow_rows
-from mechkin_cli.analysis.sweep.notes import not_converged_note, open_turn_note, redundancy_note
+from mechkin_cli.analysis.sweep.notes import (
+    condition_notes,
+    not_converged_note,
+    open_turn_note,
+    redundancy_note,
+)
 from mechkin_cli.analysis.sweep.result import Result
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.mechanism.legs import find_legs
@@ -33,7 +38,7 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.session import Session
 
 
-HOLDING = "holding_moment"
+HOLDING = {"holding_moment", "holding_force"}
 
 
 def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool = True) -> Result:
@@ -70,7 +75,7 @@ def first_assembly(session: Session) -> tuple[Session, Start]:
     start = choose_start(session)
     if start.state is None or session.size is not None:
         return session, start
-    inputs = session.inputs.values[:, start.row]
+    inputs = session.inputs.reduced[:, start.row]
     return session.sized(assembly_size(session.plan, inputs, start.state)), start
 
 
@@ -87,8 +92,10 @@ def _held(problem: Problem, asked: list[Wanted]) -> list[Wanted]:
     """The moments that hold idle legs, where forces are computed and they are not asked for."""
     if not (problem.hold_idle and demand_of(problem.mechanism, asked) & Demand.FORCES):
         return []
+    from mechkin_cli.mechanism.idle import idle_freedoms
+
     known = problem.quantities()
-    moments = {known[f"{leg.body}.holding_moment"] for leg in find_legs(problem.mechanism)}
+    moments = {known[idle.holding] for idle in idle_freedoms(problem)}
     return sorted(moments.difference(asked))
 
 
@@ -169,6 +176,7 @@ def _judge_condition(rows: Rows, batch: Batch) -> None:
     unclear = rows.reached & ~(condition <= tolerances.CONDITION_RANK_UNCLEAR)
     rows.status[singular & (rows.status == Status.ok)] = Status.near_singular
     rows.status[unclear & (rows.status == Status.near_singular)] = Status.rank_unclear
+    rows.diagnostics += condition_notes(rows, condition)
 
 
 def _judge_inputs(session: Session, rows: Rows) -> None:
@@ -199,12 +207,12 @@ def _notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
     """What is conventional, left open by a full turn, held, or not unique."""
     problem, session, rows = result.problem, result.session, result.row_states
     notes: list[Diagnostic] = []
-    if find_legs(problem.mechanism):
+    if find_legs(problem.mechanism) or problem.held:
         from mechkin_cli.mechanism.idle import conventional_notes, holding_notes
 
         notes += conventional_notes(problem, [*asked, *_read_by_loads(result)])
         if problem.hold_idle:
-            moments = {q.name: result.columns[q.name][0] for q in asked if q.kind == HOLDING}
+            moments = {q.name: result.columns[q.name][0] for q in asked if q.kind in HOLDING}
             notes += holding_notes(problem, moments)
     if (rows.status == Status.rank_unclear).any():
         from mechkin_cli.analysis.sweep.branch_end import input_faults

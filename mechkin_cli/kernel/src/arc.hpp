@@ -25,6 +25,9 @@ class Arc : public Stepper {
   bool step(const Node& a, double h, Node* b, int* blame);
   // Closes at a step h from a node without judging.
   bool close_from(const Node& a, double h, Node* b);
+  bool close_middle(const Node& a, const Node& b, Node* node) override {
+    return close_from(a, 0.5 * (b.place - a.place), node);
+  }
   // The step that its own blocks alone would want.
   double own_step(const Node& node) const;
 

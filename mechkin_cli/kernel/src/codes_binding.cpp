@@ -48,7 +48,12 @@ void bind_plan_codes(nb::module_& m) {
       .value("INERTIA_FORCE", OUT_INERTIA_FORCE)
       .value("INERTIA_MOMENT", OUT_INERTIA_MOMENT)
       .value("HOLDING_MOMENT", OUT_HOLDING_MOMENT)
-      .value("JERK", OUT_JERK);
+      .value("JERK", OUT_JERK)
+      .value("REACTION_LEVEL", OUT_REACTION_LEVEL);
+  nb::enum_<FreeCode>(m, "FreeCode", nb::is_arithmetic(), "Kinds of free motions.")
+      .value("ALONG", FREE_ALONG)
+      .value("SQUARE", FREE_SQUARE)
+      .value("ALL", FREE_ALL);
 }
 
 void bind_run_codes(nb::module_& m) {

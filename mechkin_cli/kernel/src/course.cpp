@@ -106,6 +106,11 @@ void Course::at(long piece, double sigma, PathPoint* point, std::vector<char>* m
 
 void CoursePath::at(double sigma, PathPoint* point) const {
   course_.at(piece_, sigma, point, &memory_);
+  // inputs beyond those of the course are held
+  for (int i = course_.inputs(); i < plan_.inputs; ++i) {
+    point->inputs.push_back(rows_.inputs[i * rows_.stride]);
+    point->first.push_back(0.0), point->second.push_back(0.0);
+  }
   const double* const end = rows_.sigma + rows_.count;
   const double* const row = std::lower_bound(rows_.sigma, end, sigma);
   if (row == end || *row != sigma) return;

@@ -63,9 +63,10 @@ MECHKIN_INLINE Pack shift_part(int shift, int index) {
   return shift == 0 ? Pack(0.0) : Pack(parts[shift - 1][index % 3] * (1.0 + index / 3));
 }
 
-// The least-norm solution of the transposed system, plus the shift; b has n entries in, m out.
-inline void solve_transposed(Reflectors f, Pack* b, int shift) {
-  Pack largest = 0.0;
+// The least-norm solution of the transposed system, plus the shift, which is as large as the solution and as `level`;
+// b has n entries in, m out.
+inline void solve_transposed(Reflectors f, Pack* b, int shift, Pack level = 0.0) {
+  Pack largest = level;
   for (int k = 0; k < f.n; ++k) {
     for (int j = 0; j < k; ++j) b[k] -= f.a[j * f.n + k] * b[j];
     b[k] = b[k] / f.pivot[k];

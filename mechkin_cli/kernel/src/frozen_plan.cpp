@@ -25,6 +25,7 @@ void each_array(Plan& p, const Visit& visit) {
   visit(ARRAY_PLACE, p.place, p.places);
   visit(ARRAY_AXIS, p.axis, p.axes);
   visit(ARRAY_DRIVE, p.drive, p.drives);
+  visit(ARRAY_FREE, p.free, p.frees);
   visit(ARRAY_LOOP, p.loop, p.loop_entries);
   visit(ARRAY_BLOCK, p.block, p.blocks);
   visit(ARRAY_ORDER, p.order, p.order_count);

@@ -34,6 +34,7 @@ enum PlanArray : int {
   ARRAY_PLACE,
   ARRAY_AXIS,
   ARRAY_DRIVE,
+  ARRAY_FREE,
   ARRAY_LOOP,
   ARRAY_BLOCK,
   ARRAY_ORDER,

@@ -1,7 +1,8 @@
 // What the rows between two nodes get: quintic Hermite interpolation of values, first and second derivatives.
 #include <cmath>
 
-#include "tracker.hpp"
+#include "orbit.hpp"
+#include "row_curve.hpp"
 
 namespace {
 
@@ -36,8 +37,6 @@ std::vector<Hermite> weights_of(const Node& a, const Node& b, const double* plac
   return weights;
 }
 
-constexpr double HALF_TURN = 3.14159265358979323846;
-
 // The same orientation by the opposite quaternion.
 void negate(Node* node, int slot) {
   for (std::vector<double>* values : {&node->turn, &node->turn_first, &node->turn_second})
@@ -47,7 +46,7 @@ void negate(Node* node, int slot) {
 }  // namespace
 
 void infill(const Stepper& stepper, const Node& a, const Node& b, const double* place, long begin, long end,
-            const RowGuesses& out) {
+            const RowGuesses& out, const Chosen* chosen) {
   const int states = stepper.plan().states;
   const double h = b.place - a.place;
   double distance = h;
@@ -55,15 +54,27 @@ void infill(const Stepper& stepper, const Node& a, const Node& b, const double* 
   for (long row = begin; row < end; ++row) out.limit[row] = stepper.limits().infill * distance;
   const std::vector<Hermite> weights = weights_of(a, b, place, end - begin);
   for (int s = 0; s < states; ++s)
-    interpolate(weights, h, {{a.state[s], a.state_first[s], a.state_second[s]},
-                             {b.state[s], b.state_first[s], b.state_second[s]}},
-                out.guess + s * out.rows + begin);
+    if (!chosen || chosen->state[s])
+      interpolate(weights, h, {{a.state[s], a.state_first[s], a.state_second[s]},
+                               {b.state[s], b.state_first[s], b.state_second[s]}},
+                  out.guess + s * out.rows + begin);
   for (long row = begin; row < end; ++row) stepper.normalise_quaternions(out.guess + row, out.rows);
   if (!out.turn) return;
-  for (int s = 0; s < stepper.turn_slots(); ++s)
-    interpolate(weights, h, {{a.turn[s], a.turn_first[s], a.turn_second[s]},
-                             {b.turn[s], b.turn_first[s], b.turn_second[s]}},
-                out.turn + s * out.rows + begin);
+  for (const ClosingTurn& t : stepper.turns())
+    for (int s = t.slot; s < t.slot + t.width; ++s)
+      if (!chosen || chosen->slot[s])
+        interpolate(weights, h, {{a.turn[s], a.turn_first[s], a.turn_second[s]},
+                                 {b.turn[s], b.turn_first[s], b.turn_second[s]}},
+                    out.turn + s * out.rows + begin);
+  for (const TreeTurn& t : stepper.tree_turns()) {
+    if (chosen && !chosen->slot[t.slot]) continue;
+    for (long row = begin; row < end; ++row) {
+      double& state = out.guess[t.state * out.rows + row];
+      const double whole = std::rint(state / FULL_TURN);
+      state -= FULL_TURN * whole;
+      out.turn[t.slot * out.rows + row] = a.turn[t.slot] + whole;
+    }
+  }
 }
 
 double stray(const Stepper& stepper, const Node& a, const Node& b, const double* place, long count,
@@ -89,10 +100,11 @@ void put_row(const Node& node, double limit, long row, const RowGuesses& out) {
 }
 
 void adopt_turns(const Stepper& stepper, const std::vector<double>& turn, Node* node) {
+  for (const TreeTurn& t : stepper.tree_turns()) node->turn[t.slot] = turn[t.slot];
   for (const ClosingTurn& t : stepper.turns()) {
     const int s = t.slot;
     if (t.width == 1) {
-      node->turn[s] += 2.0 * HALF_TURN * std::rint((turn[s] - node->turn[s]) / (2.0 * HALF_TURN));
+      node->turn[s] += FULL_TURN * std::rint((turn[s] - node->turn[s]) / FULL_TURN);
       continue;
     }
     double product = 0.0;
@@ -101,18 +113,46 @@ void adopt_turns(const Stepper& stepper, const std::vector<double>& turn, Node* 
   }
 }
 
-// An angle's change over a step follows from its first and second derivatives at both ends (the integral of their
-// Hermite polynomial, wrong by h^5 / 720 of the fifth derivative); a quaternion's sign from its prediction.
-bool continue_turns(const Stepper& stepper, const Node& a, Node* b) {
-  const double h = b->place - a.place, most = stepper.limits().angle_miss;
-  bool sure = true;
+namespace {
+
+// The change of an angle over a step, from its first and second derivatives at both ends: the integral of the rate's
+// cubic, wrong by h^5 / 720 of the fifth derivative. `bend`: the part that the second derivatives have in it.
+struct Change {
+  double whole, bend;
+};
+Change change_of(const Node& a, const Node& b, int slot) {
+  const double h = b.place - a.place;
+  const double bend = h * h / 12.0 * (a.turn_second[slot] - b.turn_second[slot]);
+  return {0.5 * h * (a.turn_first[slot] + b.turn_first[slot]) + bend, bend};
+}
+
+}  // namespace
+
+// An angle goes on where the integral of its rate says. Whole turns are sure where that integral misses the angle by
+// little and hardly depends on the rate's derivatives; else the integrals over both halves of the step have to agree
+// with it. A quaternion's sign is that of its prediction.
+bool continue_turns(Stepper& stepper, const Node& a, Node* b) {
+  const StepLimits& limits = stepper.limits();
+  const double h = b->place - a.place;
+  Node middle;
+  bool sure = true, halved = false;
+  for (const TreeTurn& t : stepper.tree_turns()) b->turn[t.slot] = a.turn[t.slot];
   for (const ClosingTurn& t : stepper.turns()) {
     const int s = t.slot;
     if (t.width == 1) {
-      const double ahead = a.turn[s] + 0.5 * h * (a.turn_first[s] + b->turn_first[s]) +
-                           h * h / 12.0 * (a.turn_second[s] - b->turn_second[s]);
-      b->turn[s] += 2.0 * HALF_TURN * std::rint((ahead - b->turn[s]) / (2.0 * HALF_TURN));
-      sure = sure && std::fabs(b->turn[s] - ahead) <= most;
+      Change change = change_of(a, *b, s);
+      if (std::fabs(change.bend) > limits.angle_bend) {
+        halved = halved || stepper.close_middle(a, *b, &middle);
+        sure = sure && halved;
+        if (halved) {
+          const double halves = change_of(a, middle, s).whole + change_of(middle, *b, s).whole;
+          sure = sure && std::fabs(halves - change.whole) <= limits.angle_bend;
+          change.whole = halves;
+        }
+      }
+      const double ahead = a.turn[s] + change.whole;
+      b->turn[s] += FULL_TURN * std::rint((ahead - b->turn[s]) / FULL_TURN);
+      sure = sure && std::fabs(b->turn[s] - ahead) <= limits.angle_miss;
       continue;
     }
     double product = 0.0, square = 0.0;
@@ -121,8 +161,8 @@ bool continue_turns(const Stepper& stepper, const Node& a, Node* b) {
       product += ahead * b->turn[s + i], square += ahead * ahead;
     }
     if (product < 0.0) negate(b, s);
-    // the cosine of half the angle by which the prediction missed
-    sure = sure && std::fabs(product) >= (1.0 - 0.125 * most * most) * std::sqrt(square);
+    // the cosine of half the angle by which the prediction missed; a sign needs no more than a quarter of a turn
+    sure = sure && std::fabs(product) >= 0.875 * std::sqrt(square);
   }
   return sure;
 }

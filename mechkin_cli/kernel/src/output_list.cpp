@@ -45,7 +45,7 @@ void check(const Plan& p, const OutputRecord& r) {
 
 }  // namespace
 
-bool is_output(int type) { return type >= 0 && type <= OUT_JERK; }
+bool is_output(int type) { return type >= 0 && type <= OUT_REACTION_LEVEL; }
 
 int output_width(int type) {
   switch (type) {
@@ -55,6 +55,7 @@ int output_width(int type) {
     case OUT_JERK:
     case OUT_CLOSING:
     case OUT_HOLDING_MOMENT:
+    case OUT_REACTION_LEVEL:
     case OUT_EFFORT: return 1;
     default: return 3;
   }
@@ -77,6 +78,7 @@ unsigned output_demand(int type, int order) {
     case OUT_SHAKING_MOMENT:
     case OUT_INERTIA_FORCE:
     case OUT_INERTIA_MOMENT:
+    case OUT_REACTION_LEVEL:
     case OUT_HOLDING_MOMENT: return DEMAND_FORCES;
     default: return to_order[order];
   }

@@ -39,8 +39,9 @@ inline Vec3 ground_moment(const Plan& p, Wrench r) {
 inline Vec3 output_joint(const Plan& p, const Workspace& w, const Output& o) {
   const JointPlace& j = p.place[o.index];
   const Wrench r = joint_wrench(p, w, j);
-  if (o.type == OUT_JOINT_FORCE) return r.force;
-  if (o.type == OUT_JOINT_MOMENT) return r.moment - cross(carried_point(w, j.point_on, j.point), r.force);
+  if (o.type == OUT_JOINT_FORCE) return without_free(p, w, j, true, r.force);
+  if (o.type == OUT_JOINT_MOMENT)
+    return without_free(p, w, j, false, r.moment - cross(carried_point(w, j.point_on, j.point), r.force));
   return ground_moment(p, r);
 }
 
@@ -73,6 +74,7 @@ inline void write_output(const Plan& p, const Workspace& w, const Balance* balan
     case OUT_JOINT_MOMENT:
     case OUT_JOINT_MOMENT_ORIGIN: return out.put(o.slot, factor * output_joint(p, w, o));
     case OUT_HOLDING_MOMENT: return out.put(o.slot, factor * w.holding[o.index]);
+    case OUT_REACTION_LEVEL: return out.put(o.slot, factor * balance->level);
     case OUT_EFFORT: return out.put(o.slot, factor * w.effort[o.index]);
     case OUT_SHAKING_FORCE: return out.put(o.slot, factor * (balance->outside - balance->inertia).force);
     case OUT_SHAKING_MOMENT:

@@ -99,6 +99,8 @@ struct Load {
   double point[3], other_point[3];
   double vector[3];   // force, torque, or the data of springs and dampers
   int varying;        // first of its values in Request::loads instead of `vector`, -1: constant
+  int turn;           // LOAD_COORDINATE_SPRING on an angle: its slot in Request::turned; of an input -2 - its number in
+                      // Request::whole; -1: turns do not matter
 };
 
 enum OutputCode : int {
@@ -120,7 +122,8 @@ enum OutputCode : int {
   OUT_INERTIA_FORCE = 15,
   OUT_INERTIA_MOMENT = 16,
   OUT_HOLDING_MOMENT = 17,  // index: leg; about its line, on its body
-  OUT_JERK = 18             // index: column
+  OUT_JERK = 18,            // index: column
+  OUT_REACTION_LEVEL = 19   // largest component of force or moment (in length units) of all joints
 };
 
 // One quantity that a run writes; outputs are no part of the plan (OutputsView).
@@ -162,6 +165,22 @@ struct JointPlace {
   double point[3];
   double sign;          // -1: the tree or the leg passes the joint from its second link to its first
   int drive_begin, drive_end;  // into Plan::drive
+  int free_begin, free_end;    // into Plan::free
+};
+
+enum FreeCode : int {
+  FREE_ALONG = 0,   // along, or about, a direction
+  FREE_SQUARE = 1,  // in, or about, all directions square to it
+  FREE_ALL = 2,
+  FREE_CODES = 3
+};
+
+// Directions of slides, or of turns through its point, that a joint leaves free whatever its coordinates are: it
+// transmits no force along, and no moment about, them.
+struct FreeMotion {
+  int place, slide, code;
+  int link;  // that carries the direction
+  double vector[3];
 };
 
 // The unit wrench on the second link that does work on one coordinate of a joint and none on its others: a couple or,
@@ -182,7 +201,7 @@ struct Drive {
 
 struct Plan {
   int links, states, columns, closings, legs, blocks, inputs, loads, load_values;
-  int places, axes, drives, loop_entries, order_count, unknowns, size_points;
+  int places, axes, drives, frees, loop_entries, order_count, unknowns, size_points;
   int largest_block;  // rows
   const TreeJoint* joints;
   const ClosingJoint* closing;
@@ -190,6 +209,7 @@ struct Plan {
   const JointPlace* place;
   const CoordinateAxis* axis;
   const Drive* drive;
+  const FreeMotion* free;
   const LoopEntry* loop;
   const Block* block;
   const int* order;
@@ -246,6 +266,9 @@ struct Request {
   const double* jerks;          // inputs x rows, with DEMAND_JERK
   const double* guess;          // states x rows
   const double* loads;          // load_values x rows: values of varying loads, may be null without DEMAND_FORCES
+  const double* turned;         // turn slots x rows, may be null: closing joints' continuous angles to less than half a
+                                // turn, whole turns of the tree's angles; springs go by them
+  const double* whole;          // inputs x rows, may be null: whole turns that the inputs are without, likewise
   OutputsView wanted;           // what `outputs` receives
   double* states;               // states x rows
   double* outputs;              // slots x rows, may be null

@@ -16,6 +16,7 @@
 #include "bindings.hpp"
 #include "output_list.hpp"
 #include "plan_builder.hpp"
+#include "stepper.hpp"
 #include "threads.hpp"
 #include "units.hpp"
 
@@ -128,6 +129,9 @@ void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.accelerations = given.read("accelerations", p.inputs);
   r.jerks = given.read("jerks", p.inputs);
   r.loads = given.read("loads", p.load_values);
+  const KernelUnit& narrow = *kernel_unit(2);
+  r.turned = given.read("turned", turn_slots(p, narrow));
+  r.whole = given.read("whole", p.inputs);
   const OutputList* outputs = nullptr;
   nb::object list = given.other("outputs");
   if (!list.is_none()) {
@@ -202,6 +206,7 @@ void bind_builder(nb::module_& m) {
            "sign"_a)
       .def("add_axis", &PlanBuilder::add_axis, "place"_a, "slide"_a, "link"_a, "vector"_a, "other"_a,
            "other_vector"_a)
+      .def("add_free_motion", &PlanBuilder::add_free_motion, "place"_a, "slide"_a, "code"_a, "link"_a, "vector"_a)
       .def("add_block", &PlanBuilder::add_block, "closing_joints"_a, "joints"_a, "unknown"_a)
       .def("set_rest", &PlanBuilder::set_rest, "joints"_a)
       .def("add_input", &PlanBuilder::add_input, "column"_a, "axis"_a, "scale"_a)

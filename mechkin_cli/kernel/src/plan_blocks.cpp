@@ -1,6 +1,7 @@
 // The order of a plan's parts: blocks, what they place and solve for, and the finish.
 #include "plan_builder.hpp"
 #include "requirements.hpp"
+#include "stepper.hpp"
 #include "units.hpp"
 
 namespace {
@@ -128,6 +129,25 @@ void PlanBuilder::sort_drives() {
   drive_ = sorted;
 }
 
+// Where springs on angles find how far these have turned.
+void PlanBuilder::find_turns() {
+  const Plan p = arrays();
+  for (Load& l : load_) {
+    if (l.type != LOAD_COORDINATE_SPRING) continue;
+    if (l.other < 0) {
+      for (const ClosingTurn& t : closing_turns(p, *kernel_unit(2)))
+        if (t.closing == -1 - l.other && t.freedom == l.freedom) l.turn = t.slot;
+      continue;
+    }
+    const TreeJoint& j = joints_[l.other];
+    if ((j.type != TREE_R && j.type != TREE_C) || l.freedom != 0) continue;
+    for (const TreeTurn& t : tree_turns(p, *kernel_unit(2)))
+      if (t.state == j.state) l.turn = t.slot;
+    for (int i = 0; i < p.inputs; ++i)
+      if (input_column_[i] == j.column) l.turn = -2 - i;
+  }
+}
+
 FrozenPlan PlanBuilder::finish() {
   open();
   // a tree whose states are given whole: only its poses are asked for
@@ -139,6 +159,7 @@ FrozenPlan PlanBuilder::finish() {
   }
   check_order();
   sort_drives();
+  find_turns();
   FrozenPlan plan(arrays(), constants_, repeated_);
   spent_ = true;
   return plan;
@@ -154,6 +175,7 @@ Plan PlanBuilder::arrays() const {
   p.loads = (int)load_.size();
   p.places = (int)place_.size();
   p.axes = (int)axis_.size();
+  p.frees = (int)free_.size();
   p.drives = (int)drive_.size();
   p.loop_entries = (int)loop_.size();
   p.order_count = (int)order_.size();
@@ -163,7 +185,7 @@ Plan PlanBuilder::arrays() const {
   p.largest_block = 0;
   for (const Block& b : block_) p.largest_block = b.rows > p.largest_block ? b.rows : p.largest_block;
   p.joints = joints_.data(), p.closing = closing_.data(), p.leg = leg_.data();
-  p.place = place_.data(), p.axis = axis_.data(), p.drive = drive_.data();
+  p.place = place_.data(), p.axis = axis_.data(), p.drive = drive_.data(), p.free = free_.data();
   p.loop = loop_.data(), p.block = block_.data();
   p.order = order_.data(), p.unknown = unknown_.data(), p.rest = rest_.data();
   p.input_column = input_column_.data();

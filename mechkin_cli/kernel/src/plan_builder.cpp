@@ -138,7 +138,7 @@ int PlanBuilder::add_place(int reference, int first, int second, int point_on, c
   check_link(point_on);
   check_finite(point);
   check_sign(sign);
-  JointPlace place = {reference, first, second, point_on, {}, sign, 0, 0};
+  JointPlace place = {reference, first, second, point_on, {}, sign, 0, 0, 0, 0};
   copy(point, place.point);
   number(ARRAY_PLACE, place_.size() * sizeof(JointPlace) + offsetof(JointPlace, point), 3);
   place_.push_back(place);
@@ -158,6 +158,23 @@ int PlanBuilder::add_axis(int place, bool slide, int link, const Triple& vector,
   number(ARRAY_AXIS, axis_.size() * sizeof(CoordinateAxis) + offsetof(CoordinateAxis, vector), 6);
   axis_.push_back(axis);
   return (int)axis_.size() - 1;
+}
+
+void PlanBuilder::add_free_motion(int place, bool slide, int code, int link, const Triple& vector) {
+  open();
+  require(place >= 0 && place < (int)place_.size(), "free motion of an unknown joint");
+  require(code >= 0 && code < FREE_CODES, "unknown kind of free motion");
+  check_link(link);
+  check_finite(vector);
+  JointPlace& at = place_[place];
+  const int next = (int)free_.size();
+  require(at.free_begin == at.free_end || at.free_end == next, "the free motions of a joint stand in a row");
+  if (at.free_begin == at.free_end) at.free_begin = next;
+  at.free_end = next + 1;
+  FreeMotion free = {place, slide, code, link, {}};
+  copy(vector, free.vector);
+  number(ARRAY_FREE, next * sizeof(FreeMotion) + offsetof(FreeMotion, vector), 3);
+  free_.push_back(free);
 }
 
 void PlanBuilder::add_input(int column, int axis, double scale) {
@@ -221,7 +238,7 @@ void PlanBuilder::add_load(int type, int link, int other, int freedom, const Tri
   open();
   check_load(type, link, other, freedom, varying);
   check_finite(point), check_finite(other_point), check_finite(vector);
-  Load l = {type, link, other, freedom, {}, {}, {}, varying ? plan_.load_values : -1};
+  Load l = {type, link, other, freedom, {}, {}, {}, varying ? plan_.load_values : -1, -1};
   if (varying) plan_.load_values += type == LOAD_COORDINATE ? 1 : 3;
   copy(point, l.point);
   copy(other_point, l.other_point);

@@ -29,6 +29,8 @@ class PlanBuilder {
   int add_place(int reference, int first, int second, int point_on, const Triple& point, double sign);
   // An axis of a joint's coordinate, see CoordinateAxis; returns its number.
   int add_axis(int place, bool slide, int link, const Triple& vector, int other, const Triple& other_vector);
+  // The next free motion of a joint, see FreeMotion; those of one joint in a row.
+  void add_free_motion(int place, bool slide, int code, int link, const Triple& vector);
   // The next closing joints, the tree joints that they place, parents first, and the columns that they solve for.
   void add_block(int closing_joints, const std::vector<int>& joints, const std::vector<int>& unknown);
   // The tree joints that no block places, parents first.
@@ -61,6 +63,7 @@ class PlanBuilder {
   void place_joints(int block, const std::vector<int>& joints);
   void check_order() const;
   void sort_drives();
+  void find_turns();
   Plan arrays() const;
 
   Plan plan_{};
@@ -71,6 +74,7 @@ class PlanBuilder {
   std::vector<JointPlace> place_;
   std::vector<CoordinateAxis> axis_;
   std::vector<Drive> drive_;
+  std::vector<FreeMotion> free_;
   std::vector<ClosingJoint> closing_;
   std::vector<Leg> leg_;
   std::vector<LoopEntry> loop_;

@@ -5,11 +5,15 @@
 // apart as the branch's bend allows, and the rows between are filled in where they lie on the curve between two nodes.
 // Where the path has a corner or the branch bends too much between two rows, the chord is followed as a line. The work
 // is linear in the rows: each row is looked at a bounded number of times.
+//
+// A line whose leading input is an angle is followed turn by turn, each from the angles within half a turn, until the
+// branch repeats itself (orbit.hpp). Inputs that move no loop count as held: where no other moves, no step is taken.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "orbit.hpp"
 #include "row_curve.hpp"
-#include "tracker.hpp"
 
 namespace {
 
@@ -24,37 +28,57 @@ struct Piece {
   long number = -1;  // of the course's piece
 };
 
+// Inputs whose joints no block places.
+std::vector<char> still_inputs(const Plan& plan) {
+  std::vector<char> still(plan.inputs, 1);
+  for (int b = 0; b < plan.blocks; ++b)
+    for (int o = plan.block[b].joint_begin; o < plan.block[b].joint_end; ++o)
+      for (int i = 0; i < plan.inputs; ++i)
+        if (plan.column_joint[plan.input_column[i]] == plan.order[o]) still[i] = 0;
+  return still;
+}
+
+// Whether an input is an angle that turns for ever without going anywhere.
+bool is_cyclic(const Plan& plan, int input) {
+  const int column = plan.input_column[input];
+  const TreeJoint& j = plan.joints[plan.column_joint[column]];
+  return (j.type == TREE_R || j.type == TREE_C) && column == j.column;
+}
+
 class RowFollower {
  public:
   RowFollower(const Plan& plan, const KernelUnit& unit, const InputRows& rows, const StepLimits& limits,
-              const RowGuesses& out, const Course* course)
+               const RowGuesses& out, const Course* course)
       : plan_(plan), unit_(unit), rows_(rows), limits_(limits), out_(out), course_(course), scale_(rows.inputs, 0.0),
         result_{TrackEnd::finished, 1, 0, 0, {}, {}, {}, std::vector<double>(rows.inputs, 0.0), {}, {}, {}} {
+    for (int i = 0; i < rows.inputs; ++i) cyclic_.push_back(out.turn && rows.whole && is_cyclic(plan, i));
     for (int i = 0; i < rows.inputs; ++i)
       for (long r = 0; r < rows.rows; ++r) scale_[i] = std::fmax(scale_[i], std::fabs(rows.at(i, r)));
   }
 
   Followed follow(const double* start, const std::vector<double>& turn, bool every_row) {
     result_.state.assign(start, start + plan_.states), result_.turn = turn;
-    for (int s = 0; s < plan_.states; ++s) out_.guess[s * out_.rows] = start[s];
     out_.limit[0] = limits_.jump;
-    if (!place_start()) return result_;
+    const bool placed = place_start();
+    for (int s = 0; s < plan_.states; ++s) out_.guess[s * out_.rows] = result_.state[s];
+    if (!placed) return result_;
     for (const Piece& piece : pieces(every_row)) {
       if (piece.way == Way::rest) rest(piece);
-      if (piece.way == Way::line && !line(piece.first, piece.last)) return result_;
-      if (piece.way == Way::curve && !curve(piece)) return result_;
-      if (piece.way == Way::course && !along_course(piece, every_row)) return result_;
+      if (piece.way == Way::line && !line(piece.first, piece.last, every_row)) return ended();
+      if (piece.way == Way::curve && !curve(piece)) return ended();
+      if (piece.way == Way::course && !along_course(piece, every_row)) return ended();
     }
     place_inputs(rows_.rows - 1);
-    return result_;
+    return ended();
   }
 
  private:
   // The closing joints' turns at the first row, where they are asked for.
   bool place_start() {
-    if (!out_.turn) return true;
     place_inputs(0);
-    const Line standing(plan_, result_.inputs.data(), result_.direction.data());
+    if (!out_.turn) return true;
+    const std::vector<double> x0 = line_start(0);
+    const Line standing(plan_, x0.data(), result_.direction.data());
     Stepper stepper(standing, unit_, limits_);
     Node node;
     if (!stepper.close(0.0, result_.state.data(), &node)) {
@@ -62,13 +86,31 @@ class RowFollower {
       return false;
     }
     if (!result_.turn.empty()) adopt_turns(stepper, result_.turn, &node);
-    result_.turn = node.turn;
+    node.state = result_.state;
+    stepper.reduce(&node);
+    result_.state = node.state, result_.turn = node.turn;
     for (int s = 0; s < stepper.turn_slots(); ++s) out_.turn[s * out_.rows] = node.turn[s];
     return true;
   }
   void place_inputs(long row) {
     result_.inputs.resize(rows_.inputs);
     for (int i = 0; i < rows_.inputs; ++i) result_.inputs[i] = rows_.at(i, row);
+  }
+  // The result; inputs that move no loop are where the last row reached has them.
+  Followed& ended() {
+    const long row = std::min(result_.reached, rows_.rows) - 1;
+    for (int i = 0; i < rows_.inputs; ++i)
+      if (rows_.still[i] && row >= 0) result_.inputs[i] = rows_.true_at(i, row);
+    // the inputs' states are the inputs, whole turns and all
+    for (int i = 0; i < rows_.inputs; ++i) result_.state[plan_.column_state[plan_.input_column[i]]] = result_.inputs[i];
+    return result_;
+  }
+  // The inputs at a row, angles within half a turn.
+  std::vector<double> line_start(long row) const {
+    std::vector<double> x0(rows_.inputs);
+    for (int i = 0; i < rows_.inputs; ++i)
+      x0[i] = cyclic_[i] && !rows_.still[i] ? rows_.values[i * rows_.rows + row] : rows_.at(i, row);
+    return x0;
   }
 
   // Direction from a row to the next, its largest part 1 (or -1), and which part that is; false where they coincide but
@@ -145,21 +187,133 @@ class RowFollower {
     result_.reached = piece.last + 1;
   }
 
-  bool line(long first, long last) {
+  // Places of rows (first, last] on the straight way from `first`: whole turns of the leading input, and the rest.
+  std::vector<Orbit::Place> places_of(long first, long last, int leading, double sense) const {
+    std::vector<Orbit::Place> places;
+    places.reserve(last - first);
+    if (!cyclic_[leading]) {
+      for (long row = first + 1; row <= last; ++row)
+        places.push_back({0, std::fabs(rows_.at(leading, row) - rows_.at(leading, first))});
+      return places;
+    }
+    const double *value = rows_.values + leading * rows_.rows, *whole = rows_.whole + leading * rows_.rows;
+    for (long row = first + 1; row <= last; ++row) {
+      double rest = sense * (value[row] - value[first]);
+      long turn = (long)(sense * (whole[row] - whole[first]));
+      if (rest < 0.0) rest += FULL_TURN, --turn;
+      places.push_back({turn, rest});
+    }
+    return places;
+  }
+
+  bool line(long first, long last, bool alone = false) {
     int leading = 0;
     direction_from(first, &result_.direction, &leading);
-    std::vector<double> origin(rows_.inputs), sigma(last - first);
-    for (int i = 0; i < rows_.inputs; ++i) origin[i] = rows_.at(i, first);
-    for (long row = first + 1; row <= last; ++row)
-      sigma[row - first - 1] = std::fabs(rows_.at(leading, row) - origin[leading]);
-    const Track track = follow_line(plan_, unit_, origin.data(), result_.direction.data(), last - first, sigma.data(),
-                                    result_.state.data(), result_.turn, limits_, out_, first + 1);
-    for (double place : track.crossings) {
-      std::vector<double> inputs = origin;
-      for (int i = 0; i < rows_.inputs; ++i) inputs[i] += place * result_.direction[i];
-      note_crossing(inputs, place, sigma.data(), first, last);
+    const std::vector<double> u = result_.direction, origin = line_start(first);
+    const std::vector<Orbit::Place> places = places_of(first, last, leading, u[leading]);
+    if (orbit_ && !stays_on_orbit(first, last)) orbit_.reset();
+    if (orbit_ && !alone) return go_round(first, last);
+    std::vector<double> x0 = origin, sigma;
+    long row = first + 1;
+    for (long turn = 0;; ++turn) {
+      long stop = row;
+      sigma.clear();
+      for (; stop <= last && places[stop - first - 1].turn <= turn; ++stop) sigma.push_back(places[stop - first - 1].rest);
+      const bool goes_on = stop <= last;
+      const bool records = goes_on && !alone && (turn == 0 || (orbit_ && orbit_->records()));
+      const double end = goes_on ? FULL_TURN : sigma.back();
+      std::vector<Segment> kept;
+      const Track track = follow_line(plan_, unit_, x0.data(), u.data(), stop - row, sigma.data(), end,
+                                      result_.state.data(), result_.turn, limits_, out_, row,
+                                      records ? &kept : nullptr);
+      const auto true_inputs = [&](double place, std::vector<double> inputs) {
+        inputs.resize(rows_.inputs);
+        for (int i = 0; i < rows_.inputs; ++i)
+          if (cyclic_[i]) inputs[i] = rows_.at(i, first) + u[i] * (FULL_TURN * turn + place);
+        return inputs;
+      };
+      adopt(track, row - 1, stop - 1, origin);
+      if (result_.steps > MOST_PATH_STEPS && result_.end == TrackEnd::finished) result_.end = TrackEnd::exhausted;
+      if (track.end == TrackEnd::start_not_closed)
+        for (int i = 0; i < rows_.inputs; ++i) result_.inputs[i] = rows_.at(i, first) + u[i] * (FULL_TURN * turn);
+      else
+        result_.inputs = true_inputs(track.last.sigma, result_.inputs);
+      for (Node* node : {&result_.limit.at, &result_.limit.beyond})
+        if (!node->inputs.empty()) node->inputs = true_inputs(node->sigma, node->inputs);
+      for (double place : track.crossings) {
+        std::vector<double> inputs = x0;
+        for (int i = 0; i < rows_.inputs; ++i) inputs[i] += place * u[i];
+        note_crossing(true_inputs(place, inputs), place, sigma.data(), row - 1, stop - 1);
+      }
+      if (result_.end != TrackEnd::finished) return false;
+      row = stop;
+      if (!goes_on) break;
+      bool back = true;
+      for (int i = 0; i < rows_.inputs; ++i) {
+        if (i == leading || u[i] == 0.0) continue;
+        x0[i] = origin[i] + u[i] * (FULL_TURN * (turn + 1));
+        if (cyclic_[i]) x0[i] -= FULL_TURN * std::rint(x0[i] / FULL_TURN);
+        const double off = std::fabs(x0[i] - origin[i]);
+        back = back && cyclic_[i] && std::fmin(off, std::fabs(off - FULL_TURN)) <= Orbit::SAME_PLACE;
+      }
+      if (!records || kept.empty()) continue;
+      const Line standing(plan_, origin.data(), u.data());
+      const Stepper stepper(standing, unit_, limits_);
+      if (turn == 0)
+        orbit_.emplace(stepper, kept.front().from, leading, u[leading], rows_.whole[leading * rows_.rows + first]),
+            orbit_begin_ = first;
+      orbit_->add_turn(std::move(kept), track.last, back);
+      if (!orbit_->complete()) continue;
+      go_round(first, last), before_orbit(first);
+      if (std::count(u.begin(), u.end(), 0.0) < rows_.inputs - 1) orbit_.reset();
+      return true;
     }
-    return adopt(track, first, last, origin);
+    if (orbit_ && orbit_->repeats_some()) fill_from_orbit(first, last);
+    orbit_.reset();
+    return true;
+  }
+
+  // Whether rows [first, last] go round on the orbit alone: its leading input moves, and no other has since.
+  bool stays_on_orbit(long first, long last) const {
+    if (first < orbit_begin_) return false;
+    for (int i = 0; i < rows_.inputs; ++i) {
+      if (i == orbit_->leading() || rows_.still[i]) continue;
+      for (long row : {first, last})
+        if (line_start(row)[i] != orbit_->inputs()[i]) return false;
+    }
+    return true;
+  }
+  // Guesses of rows [first, last] by the orbit.
+  void fill_from_orbit(long first, long last) {
+    const int leading = orbit_->leading();
+    const Line standing(plan_, orbit_->inputs().data(), result_.direction.data());
+    const Stepper stepper(standing, unit_, limits_);
+    std::vector<Orbit::Place> places;
+    places.reserve(last - first + 1);
+    for (long row = first; row <= last; ++row) {
+      const long k = leading * rows_.rows + row;
+      places.push_back(orbit_->place(rows_.values[k], rows_.whole[k]));
+    }
+    orbit_->fill(stepper, places, first, out_);
+  }
+  bool go_round(long first, long last) {
+    fill_from_orbit(first, last);
+    for (int s = 0; s < plan_.states; ++s) result_.state[s] = out_.guess[s * out_.rows + last];
+    for (std::size_t s = 0; s < result_.turn.size(); ++s) result_.turn[s] = out_.turn[s * out_.rows + last];
+    place_inputs(last);
+    result_.reached = last + 1, result_.end = TrackEnd::finished;
+    return true;
+  }
+  // Rows before the first turn that lie on it, too.
+  void before_orbit(long first) {
+    const auto is_held = [&](long row) {
+      for (int i = 0; i < rows_.inputs; ++i)
+        if (i != orbit_->leading() && rows_.at(i, row) != rows_.at(i, row + 1)) return false;
+      return true;
+    };
+    long row = first;
+    while (row > 0 && is_held(row - 1)) --row;
+    if (row < first) fill_from_orbit(row, first - 1);
   }
   // The end of a way along rows (first, last]; whether it reached the last.
   bool adopt(const Track& track, long first, long last, const std::vector<double>& origin) {
@@ -186,19 +340,22 @@ class RowFollower {
 
   // Rows (first, last] of a piece of the course, all in one way or each for itself.
   bool along_course(const Piece& piece, bool every_row) {
-    std::vector<double> sigma(piece.last - piece.first + 1);
-    for (long row = piece.first; row <= piece.last; ++row)
+    orbit_.reset();
+    const long count = piece.last - piece.first + 1;
+    std::vector<double> sigma(count), inputs(count * rows_.inputs);
+    for (long row = piece.first; row <= piece.last; ++row) {
       sigma[row - piece.first] = course_->sigma_of_row(piece.number, row);
-    const CoursePath path(plan_, *course_, piece.number,
-                          {sigma.data(), (long)sigma.size(), rows_.values + piece.first, rows_.rows});
+      for (int i = 0; i < rows_.inputs; ++i) inputs[i * count + row - piece.first] = rows_.true_at(i, row);
+    }
+    const CoursePath path(plan_, *course_, piece.number, {sigma.data(), count, inputs.data(), count});
     PathPoint point;
     for (long first = piece.first, last = first; first < piece.last; first = last) {
       last = every_row ? first + 1 : piece.last;
       const double begin = sigma[first - piece.first], *const places = &sigma[first + 1 - piece.first];
       std::vector<double> origin(rows_.inputs);
       for (int i = 0; i < rows_.inputs; ++i) origin[i] = rows_.at(i, first);
-      const Track track = follow_path(path, unit_, begin, last - first, places, result_.state.data(), result_.turn,
-                                      limits_, out_, first + 1);
+      const Track track = follow_path(path, unit_, begin, last - first, places, sigma[last - piece.first],
+                                      result_.state.data(), result_.turn, limits_, out_, first + 1);
       const bool on = adopt(track, first, last, origin);
       for (double place : track.crossings) {
         path.at(place, &point);
@@ -227,6 +384,7 @@ class RowFollower {
 
   // Rows (first, last] without a corner between them.
   bool stretch(long first, long last) {
+    orbit_.reset();
     RowCurve path(plan_, rows_, first, last, limits_.knot);
     Stepper stepper(path, unit_, limits_);
     Node node, next;
@@ -237,7 +395,7 @@ class RowFollower {
     for (long tries = 0; row < last; ++tries) {
       if (!placed && tries <= limits_.most_steps) {
         placed = stepper.close(path.length(row), result_.state.data(), &node);
-        if (placed && !result_.turn.empty()) adopt_turns(stepper, result_.turn, &node);
+        if (placed && !result_.turn.empty()) adopt_turns(stepper, result_.turn, &node), stepper.reduce(&node);
         const double wanted = placed ? stepper.wanted_step(node) : h;
         if (wanted < 0.5 * h) {
           // the derivatives were read over too long a way
@@ -253,6 +411,7 @@ class RowFollower {
       if (good) {
         const double taken = next.sigma - node.sigma;
         infill(stepper, node, next, path.lengths(row + 1), row + 1, target + 1, out_);
+        if (out_.turn) stepper.reduce(&next);
         std::swap(node, next);
         take(node);
         row = target, result_.reached = row + 1, ++result_.steps, tries = 0;
@@ -278,8 +437,11 @@ class RowFollower {
     if (!continue_turns(stepper, node, next) && h > limits_.angle_step) return false;
     const long begin = path.row_before(node.sigma) + 1;
     if (begin > target) return false;  // lengths that overflow are in no order
-    return stray(stepper, node, *next, path.lengths(begin), target - begin, rows_.values + begin, rows_.rows) <=
-           limits_.stray * h;
+    const long count = target - begin;
+    std::vector<double> inputs(count * rows_.inputs);
+    for (int i = 0; i < rows_.inputs; ++i)
+      for (long k = 0; k < count; ++k) inputs[i * count + k] = rows_.at(i, begin + k);
+    return stray(stepper, node, *next, path.lengths(begin), count, inputs.data(), count) <= limits_.stray * h;
   }
 
   const Plan& plan_;
@@ -290,13 +452,17 @@ class RowFollower {
   const Course* course_;
   std::vector<double> scale_;
   Followed result_;
+  std::vector<char> cyclic_;      // inputs whose angles are reduced
+  std::optional<Orbit> orbit_;    // of the turns that came last
+  long orbit_begin_ = 0;          // row where its first turn began
 };
 
 }  // namespace
 
-Followed follow_rows(const Plan& plan, const KernelUnit& unit, const double* inputs, const double* start,
+Followed follow_rows(const Plan& plan, const KernelUnit& unit, const double* inputs, const double* whole,
+                     const double* start,
                      const std::vector<double>& turn, bool every_row, const StepLimits& limits,
                      const RowGuesses& out, const Course* course) {
-  const InputRows rows = {inputs, plan.inputs, out.rows};
+  const InputRows rows = {inputs, whole, plan.inputs, out.rows, still_inputs(plan)};
   return RowFollower(plan, unit, rows, limits, out, course).follow(start, turn, every_row);
 }

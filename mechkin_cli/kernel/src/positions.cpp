@@ -2,8 +2,8 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
-#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <cmath>
@@ -17,24 +17,19 @@
 namespace nb = nanobind;
 using namespace nb::literals;
 
-namespace {
-
-constexpr double FULL_TURN = 2.0 * 3.14159265358979323846;
-
-}  // namespace
-
 Positions::Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRows rows, unsigned demand,
                      int iterations, const StepLimits& limits, std::vector<TurningOutput> angles)
     : plan_(plan), outputs_(outputs), rows_(std::move(rows)), demand_(demand), iterations_(iterations),
       limits_(limits), angles_(std::move(angles)) {
   const Plan& p = plan.view();
-  for (const ClosingTurn& t : closing_turns(p, *kernel_unit(2))) turn_slots_ += t.width;
+  turn_slots_ = ::turn_slots(p, *kernel_unit(2));
   const std::size_t n = rows_.rows, table = n * p.inputs;
   require(n > 0, "rows: none");
   require(rows_.rows <= MOST_ROWS, "rows: more than 100000000");
   require(outputs.fits(plan), "outputs: of a plan with another structure");
-  for (const auto* values : {&rows_.inputs, &rows_.rates, &rows_.accelerations, &rows_.jerks})
+  for (const auto* values : {&rows_.inputs, &rows_.rates, &rows_.accelerations, &rows_.jerks, &rows_.whole})
     require(values->size() == table, "inputs: wrong shape");
+  require(are_whole_turns(rows_.whole.data(), rows_.whole.size()), "whole: numbers of turns");
   require(rows_.state.size() == n * p.states, "states: wrong shape");
   require(rows_.turn.size() == n * turn_slots_, "turns: wrong shape");
   require(!(outputs.demand() & ~demand), "the outputs need more than is demanded");
@@ -45,40 +40,42 @@ Positions::Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRow
   require(!(demand & DEMAND_JERK) || demand & DEMAND_ACCELERATION, "jerks need accelerations");
   require(iterations >= 0 && iterations <= 10000, "iterations: 0 to 10000");
   for (const TurningOutput& a : angles_)
-    require(a.slot >= 0 && a.slot < outputs.view().slots && a.turn >= 0 && a.turn < turn_slots_, "angles: no slot");
+    require(a.slot >= 0 && a.slot < outputs.view().slots && a.turn != -1 && a.turn >= -1 - p.inputs &&
+                a.turn < turn_slots_,
+            "angles: no slot");
   memory_.resize(kernel_unit(2)->workspace_size(p));
-  path_.resize(2 * p.inputs), start_.resize(p.states), turn_.resize(turn_slots_);
+  path_.resize(2 * p.inputs), path_whole_.resize(2 * p.inputs), start_.resize(p.states), turn_.resize(turn_slots_);
   guess_.resize(2 * p.states), limit_.resize(2), way_turn_.resize(2 * turn_slots_);
   rates_.resize(p.inputs), accelerations_.resize(p.inputs), jerks_.resize(p.inputs);
 }
 
-long Positions::nearest(const double* inputs) const {
+long Positions::nearest(const double* inputs, const double* whole) const {
   long best = 0;
   double least = HUGE_VAL;
   for (long row = 0; row < rows_.rows; ++row) {
     double distance = 0.0;
     for (int i = 0; i < plan_.view().inputs; ++i)
-      distance = std::fmax(distance, std::fabs(rows_.inputs[i * rows_.rows + row] - inputs[i]));
+      distance = std::fmax(distance, std::fabs(rows_.inputs[i * rows_.rows + row] - inputs[i] +
+                                               FULL_TURN * (rows_.whole[i * rows_.rows + row] - whole[i])));
     if (distance < least) least = distance, best = row;
   }
   return best;
 }
 
-bool Positions::solve(const double* inputs, double* outputs) {
+bool Positions::solve(const double* inputs, const double* whole, double* outputs) {
   const Plan& p = plan_.view();
   const KernelUnit& unit = *kernel_unit(2);
-  const long row = nearest(inputs), n = rows_.rows;
+  const long row = nearest(inputs, whole), n = rows_.rows;
   for (int i = 0; i < p.inputs; ++i) {
     path_[2 * i] = rows_.inputs[i * n + row], path_[2 * i + 1] = inputs[i];
+    path_whole_[2 * i] = rows_.whole[i * n + row], path_whole_[2 * i + 1] = whole[i];
     rates_[i] = rows_.rates[i * n + row], accelerations_[i] = rows_.accelerations[i * n + row];
     jerks_[i] = rows_.jerks[i * n + row];
   }
   for (int s = 0; s < p.states; ++s) start_[s] = rows_.state[s * n + row];
   for (int s = 0; s < turn_slots_; ++s) turn_[s] = rows_.turn[s * n + row];
-  const bool turning = !angles_.empty();
-  const RowGuesses out = {2, guess_.data(), limit_.data(), turning ? way_turn_.data() : nullptr};
-  const std::vector<double> none;
-  const Followed way = follow_rows(p, unit, path_.data(), start_.data(), turning ? turn_ : none, false, limits_, out);
+  const RowGuesses out = {2, guess_.data(), limit_.data(), way_turn_.data()};
+  const Followed way = follow_rows(p, unit, path_.data(), path_whole_.data(), start_.data(), turn_, false, limits_, out);
   if (way.end != TrackEnd::finished) return false;
   for (int s = 0; s < p.states; ++s) start_[s] = guess_[2 * s + 1];
   double residual = 0.0, correction = 0.0;
@@ -87,13 +84,18 @@ bool Positions::solve(const double* inputs, double* outputs) {
   r.rows = 1;
   r.inputs = inputs, r.rates = rates_.data(), r.accelerations = accelerations_.data(), r.jerks = jerks_.data();
   r.guess = start_.data();
+  std::vector<double> turned(turn_slots_);
+  for (int s = 0; s < turn_slots_; ++s) turned[s] = way_turn_[2 * s + 1];
+  r.turned = turned.data(), r.whole = whole;
   r.wanted = outputs_.view(), r.outputs = outputs;
   r.residual = &residual, r.correction = &correction, r.flags = &flags;
   r.demand = demand_, r.iterations = iterations_;
   r.tight = limits_.tight, r.coarse = limits_.coarse, r.accept = limits_.accept;
   unit.run(p, r, memory_.data());
-  for (const TurningOutput& a : angles_)
-    outputs[a.slot] += FULL_TURN * std::rint((way_turn_[2 * a.turn + 1] - outputs[a.slot]) / FULL_TURN);
+  for (const TurningOutput& a : angles_) {
+    const double known = a.turn >= 0 ? turned[a.turn] : whole[-2 - a.turn];
+    outputs[a.slot] += FULL_TURN * (a.closing ? std::rint((known - outputs[a.slot]) / FULL_TURN) : known);
+  }
   return flags == 0 && correction <= limit_[1];
 }
 
@@ -107,11 +109,14 @@ std::vector<double> copy_of(const Table& a, long rows, const char* name) {
 }
 
 // The outputs at some inputs in kernel units, None where there is no position.
-nb::object solve(Positions& positions, const std::vector<double>& inputs) {
-  if ((int)inputs.size() != positions.inputs()) throw nb::value_error("one number for each input");
+nb::object solve(Positions& positions, const std::vector<double>& inputs, const std::vector<double>& whole) {
+  for (const auto* values : {&inputs, &whole})
+    if ((int)values->size() != positions.inputs()) throw nb::value_error("one number for each input");
+  if (!are_whole_turns(whole.data(), whole.size()))
+    throw nb::value_error("whole: numbers of turns");
   std::vector<double> outputs(positions.slots());
   FloatingPointState state;
-  if (!positions.solve(inputs.data(), outputs.data())) return nb::none();
+  if (!positions.solve(inputs.data(), whole.data(), outputs.data())) return nb::none();
   return nb::cast(outputs);
 }
 
@@ -121,23 +126,24 @@ void bind_positions(nb::module_& m) {
   nb::class_<Positions>(m, "Positions")
       .def("__init__",
            [](Positions* at, const FrozenPlan& plan, const OutputList& outputs, const Table& inputs,
-              const Table& rates, const Table& accelerations, const Table& jerks, const Table& states,
+              const Table& whole, const Table& rates, const Table& accelerations, const Table& jerks, const Table& states,
               const Table& turns, unsigned demand, int iterations, const StepLimits& limits,
-              const std::vector<std::pair<int, int>>& angles) {
+              const std::vector<std::tuple<int, int, bool>>& angles) {
              const long n = (long)inputs.shape(1);
              KnownRows rows = {n,
                                copy_of(inputs, n, "inputs"),
                                copy_of(rates, n, "rates"),
                                copy_of(accelerations, n, "accelerations"),
                                copy_of(jerks, n, "jerks"),
+                               copy_of(whole, n, "whole"),
                                copy_of(states, n, "states"),
                                copy_of(turns, n, "turns")};
              std::vector<TurningOutput> turning;
-             for (const auto& [slot, turn] : angles) turning.push_back({slot, turn});
+             for (const auto& [slot, turn, closing] : angles) turning.push_back({slot, turn, closing});
              new (at) Positions(plan, outputs, std::move(rows), demand, iterations, limits, std::move(turning));
            },
-           nb::kw_only(), "plan"_a, "outputs"_a, "inputs"_a, "rates"_a, "accelerations"_a, "jerks"_a, "states"_a,
+           nb::kw_only(), "plan"_a, "outputs"_a, "inputs"_a, "whole"_a, "rates"_a, "accelerations"_a, "jerks"_a, "states"_a,
            "turns"_a, "demand"_a, "iterations"_a, "limits"_a, "angles"_a, nb::keep_alive<1, 2>(),
            nb::keep_alive<1, 3>())
-      .def("solve", &solve, "inputs"_a);
+      .def("solve", &solve, "inputs"_a, "whole"_a);
 }

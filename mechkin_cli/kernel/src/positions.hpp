@@ -15,14 +15,16 @@ class module_;
 // Rows to start from; tables are columns x rows.
 struct KnownRows {
   long rows;
-  std::vector<double> inputs, rates, accelerations, jerks;  // inputs x rows
+  std::vector<double> inputs, rates, accelerations, jerks;  // inputs x rows; angles without their
+  std::vector<double> whole;                                // whole turns
   std::vector<double> state;                                // states x rows
   std::vector<double> turn;                                 // turn slots x rows: continuous over the rows
 };
 
-// An output that is the angle of a closing joint, and its turn's slot.
+// An output that is an angle, of a closing joint or of the tree, and its turn's slot; of an input -2 - its number.
 struct TurningOutput {
   int slot, turn;
+  bool closing;
 };
 
 class Positions {
@@ -31,15 +33,15 @@ class Positions {
   Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRows rows, unsigned demand, int iterations,
             const StepLimits& limits, std::vector<TurningOutput> angles);
 
-  // Fills `outputs` (slots); false where the branch ends before the inputs (inputs), or no row closes there. Rates are
-  // those of the nearest row. One call at a time.
-  bool solve(const double* inputs, double* outputs);
+  // Fills `outputs` (slots); false where the branch ends before the inputs (inputs, and their whole turns), or no row
+  // closes there. Rates are those of the nearest row. One call at a time.
+  bool solve(const double* inputs, const double* whole, double* outputs);
 
   int inputs() const { return plan_.view().inputs; }
   int slots() const { return outputs_.view().slots; }
 
  private:
-  long nearest(const double* inputs) const;
+  long nearest(const double* inputs, const double* whole) const;
 
   const FrozenPlan& plan_;
   const OutputList& outputs_;
@@ -50,7 +52,7 @@ class Positions {
   std::vector<TurningOutput> angles_;
   int turn_slots_ = 0;
   std::vector<char> memory_;
-  std::vector<double> path_, start_, turn_, guess_, limit_, way_turn_, rates_, accelerations_, jerks_;
+  std::vector<double> path_, path_whole_, start_, turn_, guess_, limit_, way_turn_, rates_, accelerations_, jerks_;
 };
 
 void bind_positions(nanobind::module_& m);

@@ -10,24 +10,18 @@
 
 namespace {
 
-struct Powers {
-  Pack sum, size;
-  MECHKIN_INLINE void add(Pack x) { sum += x, size += abs(x); }
-};
-
-// Forces on links as they are met: on the link's balance, on the ledger of powers, and, where they come
-// from outside, on the sum that tells the shaking wrench.
+// Forces on links as they are met: on the link's balance and, where they come from outside, on the sum that tells the
+// shaking wrench.
 struct Balance {
   const Plan& p;
   Workspace& w;
-  Powers powers;
   Wrench inertia, outside;
   bool moving;
+  Pack level;  // of the joints' wrenches
 
   MECHKIN_INLINE void apply(int link, Wrench load) {
     if (link < 0) return;
     w.carried[link] -= load;
-    if (moving) powers.add(power(w.motion[link].velocity, load));
   }
   MECHKIN_INLINE void apply_outside(int link, Wrench load) {
     apply(link, load);
@@ -66,7 +60,6 @@ inline void apply_inertia(Balance& balance, bool accelerating) {
     const Wrench needed = inertia_wrench(m, w.pose[k], w.motion[k]);
     w.carried[k] += needed;
     balance.inertia += needed;
-    balance.powers.add(-power(w.motion[k].velocity, needed));
   }
 }
 
@@ -138,7 +131,7 @@ inline void apply_between_points(Balance& balance, const Load& l) {
   balance.apply(l.other, Pack(-1.0) * force_at(p, pull));
 }
 
-// `row_value` gives a column of Request::loads for the pack's rows.
+// `row_value` gives a column of Request::loads for the pack's rows, and angles with their whole turns.
 template <class RowValue>
 MECHKIN_INLINE Vec3 load_vector(const Load& l, const RowValue& row_value) {
   if (l.varying < 0) return constant(l.vector);
@@ -167,6 +160,7 @@ inline void apply_load(Balance& balance, const Load& l, const RowValue& row_valu
     case LOAD_DAMPER: return apply_between_points(balance, l);
     case LOAD_COORDINATE_SPRING:
       joint_coordinate(p, w, l, balance.moving, &value, &rate);
+      value = row_value.turned(l, value);
       return apply_along_coordinate(balance, l.link,
                                     -(Pack(l.vector[0]) * (value - Pack(l.vector[1])) + Pack(l.vector[2])));
     case LOAD_COORDINATE_DAMPER:
@@ -205,9 +199,27 @@ inline void stretch_legs(const Plan& p, Workspace& w) {
   }
 }
 
+// The largest component of some wrenches: what their rounding is measured by, in whatever joint it is met.
+MECHKIN_INLINE Pack component_level(Pack level, const Wrench& r) {
+  const Vec3 f = r.force, m = r.moment;
+  level = max(max(level, abs(f.x)), max(abs(f.y), abs(f.z)));
+  return max(max(level, abs(m.x)), max(abs(m.y), abs(m.z)));
+}
+inline Pack tree_level(const Plan& p, const Workspace& w) {
+  Pack level = 0.0;
+  for (int k = 0; k < p.links; ++k) level = component_level(level, w.carried[k]);
+  return level;
+}
+inline Pack reaction_level(const Plan& p, const Workspace& w) {
+  Pack level = tree_level(p, w);
+  for (int c = 0; c < p.closings; ++c) level = component_level(level, w.reaction[c]);
+  return level;
+}
+
 // Closing wrenches block by block, last first: the unknowns of a block appear only in its own equations
 // and in those of later blocks, whose wrenches are in the sums already.
-inline void closing_wrenches(const Plan& p, Workspace& w, int shift) {
+// `level` is that of the wrenches, see reaction_level.
+inline void closing_wrenches(const Plan& p, Workspace& w, int shift, Pack level) {
   for (int index = p.blocks - 1; index >= 0; --index) {
     const Block& b = p.block[index];
     const BlockMatrices at = matrices_of(p, w, index);
@@ -215,7 +227,7 @@ inline void closing_wrenches(const Plan& p, Workspace& w, int shift) {
       const int column = p.unknown[b.column_begin + u];
       at.multiplier[u] = power(w.screw[column], w.carried[p.column_joint[column]]);
     }
-    at.solve_multipliers(at.multiplier, shift);
+    at.solve_multipliers(at.multiplier, shift, level);
     for (int c = b.closing_begin; c < b.closing_end; ++c) {
       const ClosingJoint& j = p.closing[c];
       with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
@@ -227,12 +239,11 @@ inline void closing_wrenches(const Plan& p, Workspace& w, int shift) {
   }
 }
 
-// Applies everything, solves for the closing wrenches and the efforts; returns the ledger.
+// Applies everything, solves for the closing wrenches and the efforts.
 template <class RowValue>
 inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool accelerating, int shift,
                               const RowValue& row_value) {
-  const Pack zero = 0.0;
-  Balance balance = {p, w, {zero, zero}, zero_wrench(), zero_wrench(), moving};
+  Balance balance = {p, w, zero_wrench(), zero_wrench(), moving, Pack(0.0)};
   apply_inertia(balance, accelerating);
   for (int l = 0; l < p.loads; ++l) apply_load(balance, p.load[l], row_value);
   for (int k = p.links - 1; k >= 0; --k)
@@ -240,12 +251,12 @@ inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool acc
       hang_on_ends(p, w, k);
     else if (p.joints[k].parent >= 0)
       w.carried[p.joints[k].parent] += w.carried[k];
-  closing_wrenches(p, w, shift);
+  closing_wrenches(p, w, shift, tree_level(p, w));
   stretch_legs(p, w);
+  balance.level = reaction_level(p, w);
   for (int i = 0; i < p.inputs; ++i) {
     const int column = p.input_column[i];
     w.effort[i] = power(w.screw[column], w.carried[p.column_joint[column]]);
-    if (moving) balance.powers.add(w.effort[i] * w.rate[column]);
   }
   return balance;
 }
@@ -258,6 +269,25 @@ inline Wrench joint_wrench(const Plan& p, const Workspace& w, const JointPlace& 
     r -= along_coordinate(p, w, drive.axis, Pack(drive.scale) * w.effort[drive.input]);
   }
   return r;
+}
+
+// What a force, or a moment about its point, of a joint keeps where it leaves motions free: what is zero by the kind of
+// joint is zero, and no rounding. Of two directions the second is taken square to the first.
+inline Vec3 without_free(const Plan& p, const Workspace& w, const JointPlace& j, bool slide, Vec3 a) {
+  Vec3 before = zero3();
+  for (int f = j.free_begin; f < j.free_end; ++f) {
+    const FreeMotion& free = p.free[f];
+    if ((free.slide != 0) != slide) continue;
+    if (free.code == FREE_ALL) return zero3();
+    Vec3 u = carried_vector(w, free.link, free.vector);
+    if (free.code == FREE_SQUARE) return dot(u, a) * u;
+    u = u - dot(before, u) * before;
+    const Pack square = dot(u, u);
+    const Mask none = square <= Pack(0.0);
+    a = a - (dot(u, a) * select(none, Pack(0.0), Pack(1.0) / select(none, Pack(1.0), square))) * u;
+    before = u;
+  }
+  return a;
 }
 
 }  // namespace

@@ -5,12 +5,20 @@
 
 #include "stepper.hpp"
 
-// Rows of a table of inputs, column after column.
+// Rows of a table of inputs, column after column; angles may stand without their whole turns.
 struct InputRows {
   const double* values;
+  const double* whole;  // of each value; null: none
   int inputs;
   long rows;
-  double at(int input, long row) const { return values[input * rows + row]; }
+  std::vector<char> still;  // inputs that move no loop: where they go does not matter to what is followed
+  double at(int input, long row) const {
+    return true_at(input, still[input] ? 0 : row);
+  }
+  double true_at(int input, long row) const {
+    const long k = input * rows + row;
+    return whole ? values[k] + FULL_TURN * whole[k] : values[k];
+  }
   double distance(long one, long other) const;
   // Cosine of the turn of the path at a row between two others; 1 where it rests, NaN beside a row that is no number.
   double turn_cosine(long row) const;

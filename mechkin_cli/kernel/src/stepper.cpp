@@ -33,10 +33,27 @@ std::vector<ClosingTurn> closing_turns(const Plan& plan, const KernelUnit& unit)
   return turns;
 }
 
+std::vector<TreeTurn> tree_turns(const Plan& plan, const KernelUnit& unit) {
+  int slot = 0;
+  for (const ClosingTurn& t : closing_turns(plan, unit)) slot += t.width;
+  std::vector<TreeTurn> turns;
+  for (int k = 0; k < plan.links; ++k) {
+    const TreeJoint& j = plan.joints[k];
+    if ((j.type == TREE_R || j.type == TREE_C) && plan.column_block[j.column] >= 0) turns.push_back({j.state, slot++});
+  }
+  return turns;
+}
+
+int turn_slots(const Plan& plan, const KernelUnit& unit) {
+  int slots = (int)tree_turns(plan, unit).size();
+  for (const ClosingTurn& t : closing_turns(plan, unit)) slots += t.width;
+  return slots;
+}
+
 Stepper::Stepper(const Path& path, const KernelUnit& unit, const StepLimits& limits)
     : path_(path), plan_(path.plan(0.0)), unit_(unit), limits_(limits), memory_(unit.workspace_size(plan_)),
-      turns_(closing_turns(plan_, unit)) {
-  for (const ClosingTurn& t : turns_) turn_slots_ += t.width;
+      turns_(closing_turns(plan_, unit)), tree_turns_(::tree_turns(plan_, unit)),
+      turn_slots_(::turn_slots(plan_, unit)) {
   for (int b = 0; b < plan_.blocks; ++b) entries_ += plan_.block[b].rows * plan_.block[b].size;
 }
 
@@ -69,6 +86,7 @@ bool Stepper::solve(double sigma, const double* guess, bool moving, Node* node) 
   node->sigma = node->place = sigma, node->rate = 1.0, node->bend = 0.0;
   node->inputs = point_.inputs;
   size_node(node);
+  for (const TreeTurn& t : tree_turns_) node->turn[t.slot] = 0.0;
   double residual = 0.0;
   unsigned char flags = 0;
   Request r = {};
@@ -152,6 +170,19 @@ double Stepper::longest_step(const Node& n) const {
   }
   const double longest = limits_.longest_step, fast = speed + std::sqrt(speed * speed + 2.0 * bend * longest);
   return fast > 2.0 ? 2.0 * longest / fast : longest;
+}
+
+bool are_whole_turns(const double* numbers, std::size_t count) {
+  for (std::size_t k = 0; k < count; ++k)
+    if (!(std::fabs(numbers[k]) <= 0x1p53) || numbers[k] != std::rint(numbers[k])) return false;
+  return true;
+}
+
+void Stepper::reduce(Node* n) const {
+  for (const TreeTurn& t : tree_turns_) {
+    const double whole = std::rint(n->state[t.state] / FULL_TURN);
+    n->state[t.state] -= FULL_TURN * whole, n->turn[t.slot] += whole;
+  }
 }
 
 void Stepper::normalise_quaternions(double* state, long stride) const {

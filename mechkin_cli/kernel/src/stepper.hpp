@@ -19,7 +19,7 @@ struct StepLimits {
   double infill;        // largest correction of an infilled row in parts of the nodes' distance
   double longest_step;  // largest step, rad or length units of the path
   double least_step;    // smallest step in parts of max(1, |sigma|)
-  int most_steps;
+  int most_steps;       // attempts of steps within a longest step's way
   double tight, coarse, accept;  // Newton's tests, see Request
   double pivot;         // least pivot of a node: the tangent next to a singular place is rounding
   double arc_pivot;     // the same of the matrix by arclength, whose derivatives are used to tell a dead centre
@@ -32,8 +32,9 @@ struct StepLimits {
   double knot;          // distance (rad, length units) of the rows from which the path's derivatives are read
   double corner_cosine; // cosine of the turn between neighbouring rows from which on the path has a corner
   double stray;         // distance of a row's inputs from the smooth path, in parts of the step
-  double angle_step;    // a step longer than this is halved where a closing joint turns too fast to be counted
-  double angle_miss;    // rad: largest change of a closing joint's angle against its prediction
+  double angle_step;    // a step longer than this is halved where a closing joint's turns are not sure
+  double angle_miss;    // rad: largest change of a closing joint's angle against the integral of its rate
+  double angle_bend;    // rad: largest part of that integral by the rate's derivatives that is not looked into
   double plan_step;     // sigma: distance of the places from which the derivatives by the plan's change are read
 };
 
@@ -82,11 +83,22 @@ struct Node {
   Matrix extended;                                // by arclength: [J g] of its own equations
   std::vector<double> danger;                     // blocks: radius of J^+ J_a - I by a unit of the step that led here from a;
                                                   // about 1 / the distance to a singular place
-  std::vector<double> turn, turn_first, turn_second;  // of closing joints, see ClosingTurn; as the kernel has them
+  // of closing joints, see ClosingTurn, as the kernel has them; then whole turns of the tree's angles, see TreeTurn
+  std::vector<double> turn, turn_first, turn_second;
 };
+
+// An unknown angle of the tree that may turn for ever: its state is kept within half a turn, and `slot` of a node's
+// turns counts its whole turns. Threads advance with each turn and keep theirs.
+struct TreeTurn {
+  int state, slot;
+};
+constexpr double FULL_TURN = 2.0 * 3.14159265358979323846;
+// Whether all are integers that doubles count by one.
+bool are_whole_turns(const double* numbers, std::size_t count);
 
 class Stepper {
  public:
+  virtual ~Stepper() = default;
   // Path, unit and limits must outlive the stepper.
   Stepper(const Path& path, const KernelUnit& unit, const StepLimits& limits);
 
@@ -102,10 +114,17 @@ class Stepper {
   bool step(const Node& a, double h, Node* b) { return step(a, h, a.sigma + h, b); }
   // The step that keeps prediction, turn of the tangent and change of the Jacobians within what is wanted.
   double wanted_step(const Node& node) const;
+  // Closes the place half way between two nodes, near where their derivatives say.
+  virtual bool close_middle(const Node& a, const Node& b, Node* node) {
+    return close(0.5 * (a.sigma + b.sigma), middle(a, b).data(), node);
+  }
 
   const Plan& plan() const { return plan_; }
   const StepLimits& limits() const { return limits_; }
   const std::vector<ClosingTurn>& turns() const { return turns_; }
+  const std::vector<TreeTurn>& tree_turns() const { return tree_turns_; }
+  // Brings the tree's angles within half a turn and counts what was taken off.
+  void reduce(Node* node) const;
   int turn_slots() const { return turn_slots_; }
   // Numbers of a node's Jacobians.
   long jacobian_entries() const { return entries_; }
@@ -137,6 +156,7 @@ class Stepper {
   double longest_step(const Node& node) const;
 
   std::vector<ClosingTurn> turns_;
+  std::vector<TreeTurn> tree_turns_;
   int turn_slots_ = 0;
   long entries_ = 0;
   std::vector<double> guess_;
@@ -150,3 +170,7 @@ double tangent_product(const Node& a, const Node& b);
 
 // The closing joints' angles and orientations of a plan, in the order of the joints.
 std::vector<ClosingTurn> closing_turns(const Plan& plan, const KernelUnit& unit);
+// The unknown angles of the tree's R and C; their slots follow those of the closing joints.
+std::vector<TreeTurn> tree_turns(const Plan& plan, const KernelUnit& unit);
+// Numbers of a node's turns.
+int turn_slots(const Plan& plan, const KernelUnit& unit);

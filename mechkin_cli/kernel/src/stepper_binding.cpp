@@ -7,7 +7,9 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "frozen_plan.hpp"
@@ -207,29 +209,44 @@ nb::object limit_of(const Followed& found) {
                         copied(at.second), at.bend, copied(beyond.inputs), copied(beyond.state));
 }
 
-nb::tuple follow_table(const FrozenPlan& store, Table inputs, const Numbers& start, const Numbers& turn, bool every_row,
-                       const StepLimits& limits, Table guess, Column limit, std::optional<Table> turns,
-                       const Course* course) {
+// Rows from `begin` on, which nothing has reached, are no numbers.
+void forget(const RowGuesses& out, long states, long slots, long begin) {
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  const long rows = out.rows - begin;
+  if (rows <= 0) return;
+  for (long s = 0; s < states; ++s) std::fill_n(out.guess + s * out.rows + begin, rows, nothing);
+  for (long s = 0; out.turn && s < slots; ++s) std::fill_n(out.turn + s * out.rows + begin, rows, nothing);
+  std::fill_n(out.limit + begin, rows, nothing);
+}
+
+nb::tuple follow_table(const FrozenPlan& store, Table inputs, std::optional<Table> whole, const Numbers& start,
+                       const Numbers& turn, bool every_row, const StepLimits& limits, Table guess, Column limit,
+                       std::optional<Table> turns, const Course* course) {
   const Plan& plan = store.view();
   const long rows = (long)inputs.shape(1);
   need(rows > 0, "inputs: no rows");
   table(inputs, plan.inputs, rows, "inputs");
+  const double* const turned = whole ? table(*whole, plan.inputs, rows, "whole") : nullptr;
+  need(!turned || are_whole_turns(turned, plan.inputs * rows), "whole: numbers of turns");
   need_length(start, plan.states, "start");
   need((long)limit.shape(0) == rows, "limit: wrong length");
-  long slots = 0;
-  for (const ClosingTurn& t : closing_turns(plan, narrow_unit())) slots += t.width;
+  const long slots = turn_slots(plan, narrow_unit());
   if (!turn.empty()) need_length(turn, slots, "turn");
-  if (course) need(course->rows() == rows && course->inputs() == plan.inputs, "course: of other rows or inputs");
+  if (course) need(course->rows() == rows && course->inputs() <= plan.inputs, "course: of other rows or inputs");
   const RowGuesses out = {rows, table(guess, plan.states, rows, "guess"), limit.data(),
                           turns ? table(*turns, slots, rows, "turns") : nullptr};
   const char* const shared = "guess, limit and turns share no memory with one another or with inputs";
   need_apart(guess, inputs, shared), need_apart(limit, inputs, shared), need_apart(guess, limit, shared);
+  if (whole) need_apart(guess, *whole, shared), need_apart(limit, *whole, shared);
+  if (turns && whole) need_apart(*turns, *whole, shared);
   if (turns) need_apart(*turns, inputs, shared), need_apart(*turns, guess, shared), need_apart(*turns, limit, shared);
   Followed found;
   {
     nb::gil_scoped_release released;
     FloatingPointState state;
-    found = follow_rows(plan, narrow_unit(), inputs.data(), start.data(), turn, every_row, limits, out, course);
+    forget(out, plan.states, slots, 0);
+    found = follow_rows(plan, narrow_unit(), inputs.data(), turned, start.data(), turn, every_row, limits, out, course);
+    forget(out, plan.states, slots, found.reached);
   }
   nb::list crossings;
   for (std::size_t k = 0; k < found.crossings.size(); ++k)
@@ -246,6 +263,13 @@ nb::list turn_table(const FrozenPlan& store) {
   return list;
 }
 
+// State and slot of each angle of the tree whose whole turns are counted.
+nb::list tree_turn_table(const FrozenPlan& store) {
+  nb::list list;
+  for (const TreeTurn& t : tree_turns(store.view(), narrow_unit())) list.append(nb::make_tuple(t.state, t.slot));
+  return list;
+}
+
 template <std::vector<double> Node::*Member>
 nb::object member(const Node& node) {
   return copied(node.*Member);
@@ -259,12 +283,13 @@ void bind_stepper(nb::module_& m) {
            [](StepLimits* at, double turn_cosine, double turn, double bend, double jump, double infill,
               double longest_step, double least_step, int most_steps, double tight, double coarse, double accept,
               double pivot, int iterations, double same_line, double knot, double corner_cosine, double stray,
-              double angle_step, double angle_miss, double plan_step, double arc_pivot, double radius, double narrow,
+              double angle_step, double angle_miss, double angle_bend, double plan_step, double arc_pivot, double radius, double narrow,
               int arc_steps, bool straight) {
              for (double cosine : {turn_cosine, corner_cosine})
                need(cosine >= -1.0 && cosine <= 1.0, "limits: a cosine is a number from -1 to 1");
              for (double limit : {turn, bend, jump, infill, longest_step, least_step, tight, coarse, accept, pivot,
-                                  same_line, knot, stray, angle_step, angle_miss, plan_step, arc_pivot, radius, narrow})
+                                  same_line, knot, stray, angle_step, angle_miss, angle_bend, plan_step, arc_pivot,
+                                  radius, narrow})
                need(limit >= 0.0, "limits: a limit is a number from 0 on");
              need(most_steps >= 0 && most_steps <= MOST_STEPS, "limits: 0 to 1000000 steps");
              need(iterations >= 0 && iterations <= MOST_ITERATIONS, "limits: 0 to 10000 iterations");
@@ -277,12 +302,12 @@ void bind_stepper(nb::module_& m) {
              limits.straight = straight;
              limits.iterations = iterations, limits.same_line = same_line, limits.knot = knot;
              limits.corner_cosine = corner_cosine, limits.stray = stray, limits.angle_step = angle_step;
-             limits.angle_miss = angle_miss, limits.plan_step = plan_step;
+             limits.angle_miss = angle_miss, limits.angle_bend = angle_bend, limits.plan_step = plan_step;
              new (at) StepLimits(limits);
            },
            nb::kw_only(), "turn_cosine"_a, "turn"_a, "bend"_a, "jump"_a, "infill"_a, "longest_step"_a, "least_step"_a,
            "most_steps"_a, "tight"_a, "coarse"_a, "accept"_a, "pivot"_a, "iterations"_a, "same_line"_a, "knot"_a,
-           "corner_cosine"_a, "stray"_a, "angle_step"_a, "angle_miss"_a, "plan_step"_a, "arc_pivot"_a, "radius"_a, "narrow"_a,
+           "corner_cosine"_a, "stray"_a, "angle_step"_a, "angle_miss"_a, "angle_bend"_a, "plan_step"_a, "arc_pivot"_a, "radius"_a, "narrow"_a,
            "arc_steps"_a, "straight"_a);
 
   nb::class_<Node>(m, "Node")
@@ -319,7 +344,9 @@ void bind_stepper(nb::module_& m) {
              return s.stepper->wanted_step(node);
            }, "node"_a);
 
+  m.attr("MOST_PATH_STEPS") = MOST_PATH_STEPS;
   m.def("closing_turns", &turn_table, "plan"_a);
-  m.def("follow_rows", &follow_table, "plan"_a, "inputs"_a, "start"_a, "turn"_a, "every_row"_a, "limits"_a, "guess"_a,
-        "limit"_a, "turns"_a.none(), "course"_a.none() = nb::none());
+  m.def("tree_turns", &tree_turn_table, "plan"_a);
+  m.def("follow_rows", &follow_table, "plan"_a, "inputs"_a, "whole"_a.none(), "start"_a, "turn"_a, "every_row"_a,
+        "limits"_a, "guess"_a, "limit"_a, "turns"_a.none(), "course"_a.none() = nb::none());
 }

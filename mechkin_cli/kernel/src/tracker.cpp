@@ -32,20 +32,23 @@ bool sees_between(const Path& path, const Stepper& stepper, const Node& a, const
 class Tracker {
  public:
   Tracker(const Path& path, const KernelUnit& unit, long rows, const double* sigma, const StepLimits& limits,
-          const RowGuesses& out, long first)
+          const RowGuesses& out, long first, std::vector<Segment>* kept)
       : path_(path), unit_(unit), rows_(rows), sigma_(sigma), limits_(limits), out_(out), first_(first),
-        stepper_(path, unit, limits), track_{TrackEnd::finished, 0, 0, 0, {}, 0.0, {}, {}} {}
+        kept_(kept), stepper_(path, unit, limits), progress_(limits), track_{TrackEnd::finished, 0, 0, 0, {}, 0.0, {}, {}} {}
 
-  Track follow(double begin, const double* start, const std::vector<double>& turn) {
+  Track follow(double begin, double end, const double* start, const std::vector<double>& turn) {
     if (!stepper_.close(begin, start, &node_)) {
       track_.end = TrackEnd::start_not_closed;
       return track_;
     }
     if (!turn.empty()) adopt_turns(stepper_, turn, &node_);
+    reduce(&node_);
     for (; row_ < rows_ && sigma_[row_] <= begin; ++row_) put_row(node_, limits_.jump, first_ + row_, out_);
-    end_ = rows_ ? sigma_[rows_ - 1] : begin;
+    end_ = end;
     step_ = stepper_.wanted_step(node_);
-    while (node_.sigma < end_ && go_on()) {
+    // longest steps alone would be too many
+    if (!(end_ - begin <= MOST_PATH_STEPS * limits_.longest_step)) track_.end = TrackEnd::exhausted;
+    while (track_.end == TrackEnd::finished && node_.sigma < end_ && go_on()) {
     }
     track_.reached = row_;
     track_.last = node_;
@@ -62,7 +65,7 @@ class Tracker {
   }
 
   bool go_on() {
-    if (track_.steps + track_.rejected >= limits_.most_steps) return stop(TrackEnd::exhausted, 0.0);
+    if (!progress_.goes_on(node_.sigma)) return stop(TrackEnd::exhausted, 0.0);
     const double least = limits_.least_step * std::fmax(1.0, std::fabs(node_.sigma));
     // the last step ends exactly on the last row
     // a rest of a millionth of a step is taken along
@@ -78,6 +81,8 @@ class Tracker {
       const long from = row_;
       while (row_ < rows_ && sigma_[row_] <= next.sigma) ++row_;
       infill(stepper_, node_, next, sigma_ + from, first_ + from, first_ + row_, out_);
+      if (kept_) keep(next);
+      reduce(&next);
       step_ = std::fmin(stepper_.wanted_step(next), 4.0 * h);
       std::swap(node_, next);
       looks_ = looks_ || step_ * speed() >= limits_.narrow;
@@ -89,6 +94,15 @@ class Tracker {
     return step_ >= least || stop(TrackEnd::stalled, h);
   }
 
+  // The tree's angles within half a turn, where their turns are counted.
+  void reduce(Node* node) const {
+    if (out_.turn) stepper_.reduce(node);
+  }
+  void keep(const Node& next) {
+    kept_->push_back({node_, next});
+    // rows need no Jacobians, which are the largest part of a node
+    kept_->back().from.jacobian = kept_->back().to.jacobian = {};
+  }
   bool looks() const { return looks_ && !path_.varies() && plan().blocks > 0; }
   const Plan& plan() const { return stepper_.plan(); }
   // Speed of the inputs along the path at the node.
@@ -143,6 +157,8 @@ class Tracker {
         next.danger[b] = last.danger[b] / std::fmax(last.rate, 1e-3);
       }
     }
+    if (kept_) kept_->clear(), kept_ = nullptr;
+    reduce(&next);
     node_ = next;
     step_ = stepper_.wanted_step(node_);
     return true;
@@ -163,6 +179,7 @@ class Tracker {
     Node guess;
     double limit = 0.0;
     if (!stretch.at(plan(), unit_, stepper_.turns(), sigma, &guess, &limit)) return false;
+    reduce(&guess);
     put_row(guess, limit, first_ + row_, out_);
     return true;
   }
@@ -174,7 +191,9 @@ class Tracker {
   const StepLimits& limits_;
   const RowGuesses& out_;
   long first_;
+  std::vector<Segment>* kept_;
   Stepper stepper_;
+  Progress progress_;
   Track track_;
   Node node_;
   long row_ = 0;
@@ -185,13 +204,13 @@ class Tracker {
 }  // namespace
 
 Track follow_line(const Plan& plan, const KernelUnit& unit, const double* x0, const double* u, long rows,
-                  const double* sigma, const double* start, const std::vector<double>& turn, const StepLimits& limits,
-                  const RowGuesses& out, long first) {
-  return follow_path(Line(plan, x0, u), unit, 0.0, rows, sigma, start, turn, limits, out, first);
+                  const double* sigma, double end, const double* start, const std::vector<double>& turn,
+                  const StepLimits& limits, const RowGuesses& out, long first, std::vector<Segment>* kept) {
+  return follow_path(Line(plan, x0, u), unit, 0.0, rows, sigma, end, start, turn, limits, out, first, kept);
 }
 
-Track follow_path(const Path& path, const KernelUnit& unit, double begin, long rows, const double* sigma,
+Track follow_path(const Path& path, const KernelUnit& unit, double begin, long rows, const double* sigma, double end,
                   const double* start, const std::vector<double>& turn, const StepLimits& limits, const RowGuesses& out,
-                  long first) {
-  return Tracker(path, unit, rows, sigma, limits, out, first).follow(begin, start, turn);
+                  long first, std::vector<Segment>* kept) {
+  return Tracker(path, unit, rows, sigma, limits, out, first, kept).follow(begin, end, start, turn);
 }

@@ -10,7 +10,8 @@
 
 enum class TrackEnd : int { finished = 0, stalled = 1, exhausted = 2, start_not_closed = 3 };
 
-// Guesses of a run of rows, stored column after column.
+// Guesses of a run of rows, stored column after column. Where turns are asked for, the tree's angles are within half a
+// turn, and their whole turns stand among them (TreeTurn).
 struct RowGuesses {
   long rows;
   double* guess;  // states x rows
@@ -25,6 +26,11 @@ struct Limit {
   Node at, beyond;  // the place, with derivatives by arclength; the first node on a dead centre's other side
 };
 
+// Two neighbouring nodes; the angles of the second go on from the first.
+struct Segment {
+  Node from, to;
+};
+
 struct Track {
   TrackEnd end;
   long reached;     // rows that have a guess
@@ -35,15 +41,16 @@ struct Track {
   std::vector<double> crossings;  // sigma of the branch points that were passed
 };
 
-// Rows on a path from `begin` on: sigma (rows) must not fall; row 0 of them is number `first` of the guesses.
-// `turn` (turn slots) are the closing joints' continuous turns at the start, empty: as the kernel finds them.
-Track follow_path(const Path& path, const KernelUnit& unit, double begin, long rows, const double* sigma,
+// Rows on a path from `begin` to `end`: sigma (rows) must not fall; row 0 of them is number `first` of the guesses.
+// `turn` (turn slots) are the continuous turns at the start, empty: as the kernel finds them. `kept`: takes the steps,
+// none where some were walked by arclength.
+Track follow_path(const Path& path, const KernelUnit& unit, double begin, long rows, const double* sigma, double end,
                   const double* start, const std::vector<double>& turn, const StepLimits& limits, const RowGuesses& out,
-                  long first);
+                  long first, std::vector<Segment>* kept = nullptr);
 // The same on the straight path x0 + sigma u, from x0 on.
 Track follow_line(const Plan& plan, const KernelUnit& unit, const double* x0, const double* u, long rows,
-                  const double* sigma, const double* start, const std::vector<double>& turn, const StepLimits& limits,
-                  const RowGuesses& out, long first);
+                  const double* sigma, double end, const double* start, const std::vector<double>& turn,
+                  const StepLimits& limits, const RowGuesses& out, long first, std::vector<Segment>* kept = nullptr);
 
 // How far rows were followed: the last place on the branch, and the way the inputs went there (largest part 1); on a
 // piece of their course, which one, and the course's parameter at the limit, or at the last place where none is known.
@@ -59,22 +66,44 @@ struct Followed {
   double parameter = 0.0;
 };
 
-// Follows the branch through `start` along all rows; `inputs` (inputs x rows, column after column). Straight runs of
+// Follows the branch through `start` along all rows; `inputs` (inputs x rows, column after column), of angles without
+// the `whole` turns of each (as many numbers; null: none). Straight runs of
 // rows are followed as lines, other stretches as smooth curves through the rows, corners between distant rows chord by
 // chord (polyline.cpp). `every_row` makes each row a node. Rows on the pieces of a `course` are followed along it.
-Followed follow_rows(const Plan& plan, const KernelUnit& unit, const double* inputs, const double* start,
-                     const std::vector<double>& turn, bool every_row, const StepLimits& limits, const RowGuesses& out,
-                     const Course* course = nullptr);
+Followed follow_rows(const Plan& plan, const KernelUnit& unit, const double* inputs, const double* whole,
+                     const double* start, const std::vector<double>& turn, bool every_row, const StepLimits& limits,
+                     const RowGuesses& out, const Course* course = nullptr);
+
+// Steps of one path at most: so many take a minute, and a path that needs more has an input that is a slip of the pen.
+constexpr long MOST_PATH_STEPS = 20000000;
+
+// Whether a path gets on: a path may be as long as it likes, but most_steps attempts must take it a longest step further.
+class Progress {
+ public:
+  explicit Progress(const StepLimits& limits) : limits_(limits) {}
+  bool goes_on(double sigma) {
+    if (!(sigma < from_ + limits_.longest_step)) from_ = sigma, tries_ = 0;
+    return tries_++ < limits_.most_steps;
+  }
+
+ private:
+  const StepLimits& limits_;
+  double from_ = 0.0;
+  long tries_ = 0;
+};
 
 // --- shared by both -------------------------------------------------------------------------------
 
 // Gives a node the turns that it has by another way: whole turns and signs are taken over.
 void adopt_turns(const Stepper& stepper, const std::vector<double>& turn, Node* node);
-// Makes the turns of a node continuous with those of the node before; false where one turned too fast to tell.
-bool continue_turns(const Stepper& stepper, const Node& a, Node* b);
-// Guesses for rows [begin, end) at place[0 ... end - begin) between two nodes.
+// Makes the turns of a node continuous with those of the node before; false where one turned too fast to tell. The
+// stepper closes places between the two where their derivatives leave a doubt.
+bool continue_turns(Stepper& stepper, const Node& a, Node* b);
+struct Chosen;
+// Guesses for rows [begin, end) at place[0 ... end - begin) between two nodes; `chosen`: of these states and turns
+// alone.
 void infill(const Stepper& stepper, const Node& a, const Node& b, const double* place, long begin, long end,
-            const RowGuesses& out);
+            const RowGuesses& out, const Chosen* chosen = nullptr);
 // How far the inputs of `count` rows (column after column, `stride` apart) lie from the curve between two nodes.
 double stray(const Stepper& stepper, const Node& a, const Node& b, const double* place, long count,
              const double* inputs, long stride);

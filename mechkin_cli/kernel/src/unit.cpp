@@ -4,6 +4,7 @@
 
 #include "condition.hpp"
 #include "elementwise.hpp"
+#include "energy.hpp"
 #include "held.hpp"
 #include "outputs.hpp"
 #include "search.hpp"
@@ -21,6 +22,21 @@ struct Reader {
     double buffer[LANES];
     for (int i = 0; i < LANES; ++i) buffer[i] = at[i < count ? i : count - 1];
     return load(buffer);
+  }
+};
+
+// What loads read of a row.
+struct RowValues {
+  const Request& r;
+  const Reader& in;
+  MECHKIN_INLINE Pack operator()(int column) const { return in.get(r.loads, column); }
+  // An angle with its whole turns: of a closing joint, what is nearest to what following says.
+  MECHKIN_INLINE Pack turned(const Load& l, Pack angle) const {
+    const Pack full = 2.0 * 3.14159265358979323846;
+    if (l.turn == -1 || !(l.turn >= 0 ? r.turned : r.whole)) return angle;
+    if (l.turn < -1) return angle + full * in.get(r.whole, -2 - l.turn);
+    const Pack known = in.get(r.turned, l.turn);
+    return angle + full * (l.other < 0 ? nearest_integer((known - angle) / full) : known);
   }
 };
 
@@ -160,13 +176,10 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int o = 0; o < r.wanted.count; ++o) write_output(p, w, balance, r.wanted.output[o], out);
   };
   if (r.demand & DEMAND_FORCES) {
-    const auto load_value = [&](int column) { return in.get(r.loads, column); };
-    const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift, load_value);
-    if (r.demand & DEMAND_POWER) {
-      const Mask none = balance.powers.size == Pack(0.0);
-      const Pack size = select(none, Pack(1.0), balance.powers.size);
-      writer(r.power_error).put(0, abs(balance.powers.sum) / size);
-    }
+    const RowValues row_values = {r, in};
+    const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift, row_values);
+    if (r.demand & DEMAND_POWER)
+      writer(r.power_error).put(0, velocities ? power_error(p, w, accelerations, row_values) : Pack(__builtin_nan("")));
     if (r.outputs) outputs(&balance);
   } else if (r.outputs) {
     outputs(nullptr);

@@ -15,7 +15,6 @@
 
 namespace {
 
-constexpr double FULL_TURN = 2.0 * 3.14159265358979323846;
 constexpr long VARIANTS_AT_A_TIME = 16;
 
 // What one thread works with; allocated once a call.
@@ -32,8 +31,9 @@ class Worker {
         replay_memory_(wide.replay_size(tape)), size_memory_(plan.view(), narrow_), guess_(plan.view().states * base.rows), way_(guess_.size()),
         limit_(base.rows), way_limit_(base.rows), correction_(base.rows), side_(plan.view().blocks * base.rows),
         flags_(base.rows), section_(base.rows, 0), way_inputs_(plan.view().inputs * base.rows) {
-    for (const ClosingTurn& t : closing_turns(plan.view(), narrow_)) turn_slots_ += t.width;
-    if (!base.angles.empty()) turn_.resize(turn_slots_ * base.rows), way_turn_.resize(turn_.size());
+    turn_slots_ = turn_slots(plan.view(), narrow_);
+    turn_.resize(turn_slots_ * base.rows), way_turn_.resize(turn_.size());
+    way_whole_.resize(way_inputs_.size()), nothing_.resize(way_inputs_.size());
   }
 
   // Variants [begin, end) of `count`.
@@ -86,8 +86,10 @@ class Worker {
     const long rows = base_.rows, table = (long)plan_.view().inputs * rows;
     const double* const moved = replayed + moving_;
     const double* const inputs = moves_ ? moved : base_.inputs.data();
-    if (!follow_all(inputs)) return VariantEnd::incomplete;
-    wrap_from_first();
+    const double* const whole = moves_ ? nothing_.data() : base_.whole.data();
+    if (moves_ && turns(inputs)) return VariantEnd::incomplete;
+    if (!follow_all(inputs, whole)) return VariantEnd::incomplete;
+    count_from_first();
     Request r = {};
     r.rows = rows;
     r.inputs = inputs;
@@ -95,6 +97,7 @@ class Worker {
     r.accelerations = moves_ ? moved + 2 * table : base_.accelerations.data();
     r.jerks = moves_ ? moved + 3 * table : base_.jerks.data();
     r.guess = guess_.data();
+    r.turned = turn_.data(), r.whole = whole;
     r.wanted = outputs_.view();
     r.outputs = out.outputs + number * (long)r.wanted.slots * rows;
     r.residual = out.residual + number * rows, r.condition = out.condition + number * rows;
@@ -111,7 +114,7 @@ class Worker {
       for (long row = 1; row < rows; ++row)
         if (section_[row] == section_[row - 1] && side_[b * rows + row] != side_[b * rows + row - 1])
           return VariantEnd::incomplete;
-    unwrap_angles(r.outputs);
+    add_turns(r.outputs, whole);
     if (!(r.demand & DEMAND_CONDITION)) std::fill_n(r.condition, rows, __builtin_nan(""));
     return VariantEnd::complete;
   }
@@ -135,82 +138,98 @@ class Worker {
   }
 
   // Guesses of all rows, both ways from the start's.
-  bool follow_all(const double* inputs) {
+  bool follow_all(const double* inputs, const double* whole) {
     const long rows = base_.rows, start = base_.start_row;
-    if (start && !follow_way(inputs, start, -1, start + 1)) return false;
-    return follow_way(inputs, start, 1, rows - start);
+    if (start && !follow_way(inputs, whole, start, -1, start + 1)) return false;
+    return follow_way(inputs, whole, start, 1, rows - start);
   }
 
-  bool follow_way(const double* inputs, long first, long direction, long count) {
+  bool follow_way(const double* inputs, const double* whole, long first, long direction, long count) {
     for (const VariantWay& way : base_.ways)
       if (way.step == direction) return follow_course(way);
     const Plan& p = plan_.view();
     const long rows = base_.rows;
     for (int i = 0; i < p.inputs; ++i)
-      for (long k = 0; k < count; ++k) way_inputs_[i * count + k] = inputs[i * rows + first + direction * k];
-    const RowGuesses guesses = {count, way_.data(), way_limit_.data(), way_turn_.empty() ? nullptr : way_turn_.data()};
-    const Followed found = follow_rows(p, narrow_, way_inputs_.data(), state_.data(), {}, false, base_.following, guesses);
+      for (long k = 0; k < count; ++k) {
+        way_inputs_[i * count + k] = inputs[i * rows + first + direction * k];
+        way_whole_[i * count + k] = whole[i * rows + first + direction * k];
+      }
+    const RowGuesses guesses = {count, way_.data(), way_limit_.data(), way_turn_.data()};
+    const Followed found = follow_rows(p, narrow_, way_inputs_.data(), way_whole_.data(), state_.data(), {}, false, base_.following, guesses);
     if (found.end != TrackEnd::finished) return false;
     const auto put = [&](const std::vector<double>& from, long columns, std::vector<double>* to) {
       for (long c = 0; c < columns; ++c)
         for (long k = 0; k < count; ++k) (*to)[c * rows + first + direction * k] = from[c * count + k];
     };
     put(way_, p.states, &guess_), put(way_limit_, 1, &limit_);
-    for (long k = 0; k < count; ++k) {
-      const auto passed = [&](long behind) { return behind <= k; };
-      const long sections = std::count_if(found.crossed_before.begin(), found.crossed_before.end(), passed);
-      section_[first + direction * k] = direction * sections;
-    }
-    if (!way_turn_.empty()) put(way_turn_, turn_slots_, &turn_);
+    for (long k = 0; k < count; ++k) section_[first + direction * k] = direction * sections_before(found, k);
+    put(way_turn_, turn_slots_, &turn_);
     return true;
+  }
+
+  // Branch points that a way passed before a row of it.
+  static long sections_before(const Followed& found, long row) {
+    return std::count_if(found.crossed_before.begin(), found.crossed_before.end(),
+                         [&](long behind) { return behind <= row; });
   }
 
   bool follow_course(const VariantWay& way) {
     const Plan& p = plan_.view();
     const long rows = base_.rows, count = (long)way.rows.size();
-    way_.resize(p.states * count), way_limit_.resize(count);
-    if (!turn_.empty()) way_turn_.resize(turn_slots_ * count);
-    const RowGuesses guesses = {count, way_.data(), way_limit_.data(), turn_.empty() ? nullptr : way_turn_.data()};
-    const Followed found = follow_rows(p, narrow_, way.values.data(), state_.data(), {}, false, base_.following,
-                                       guesses, way.course.get());
+    way_.resize(p.states * count), way_limit_.resize(count), way_turn_.resize(turn_slots_ * count);
+    const RowGuesses guesses = {count, way_.data(), way_limit_.data(), way_turn_.data()};
+    const Followed found = follow_rows(p, narrow_, way.values.data(), nullptr, state_.data(), {}, false,
+                                       base_.following, guesses, way.course.get());
     if (found.end != TrackEnd::finished) return false;
     const auto put = [&](const std::vector<double>& from, long columns, std::vector<double>* to) {
       for (long c = 0; c < columns; ++c)
         for (long k = 0; k < count; ++k)
           if (way.rows[k] >= 0) (*to)[c * rows + way.rows[k]] = from[c * count + k];
     };
-    put(way_, p.states, &guess_), put(way_limit_, 1, &limit_);
-    for (long k = 0; k < count; ++k) {
-      const auto passed = [&](long behind) { return behind <= k; };
-      const long sections = std::count_if(found.crossed_before.begin(), found.crossed_before.end(), passed);
-      if (way.rows[k] >= 0) section_[way.rows[k]] = way.step * sections;
-    }
-    if (!turn_.empty()) put(way_turn_, turn_slots_, &turn_);
+    put(way_, p.states, &guess_), put(way_limit_, 1, &limit_), put(way_turn_, turn_slots_, &turn_);
+    for (long k = 0; k < count; ++k)
+      if (way.rows[k] >= 0) section_[way.rows[k]] = way.step * sections_before(found, k);
     return true;
   }
 
-  // Unknown turns are continuous from the first row, which lies in (-pi, pi]; threads keep theirs.
-  void wrap_from_first() {
+  // Whether an input that moves with the parameters turns farther than half a turn: its whole turns are taken off in the
+  // file's unit, where it is built anew.
+  bool turns(const double* inputs) const {
     const Plan& p = plan_.view();
-    for (int k = 0; k < p.links; ++k) {
-      const TreeJoint& j = p.joints[k];
-      if ((j.type != TREE_R && j.type != TREE_C) || p.column_block[j.column] < 0) continue;
-      double* const row = guess_.data() + j.state * base_.rows;
-      const double turns = std::ceil((row[0] - 0.5 * FULL_TURN) / FULL_TURN);
-      const double shift = (row[0] - turns * FULL_TURN) - row[0];
-      if (shift == 0.0) continue;
-      for (long r = 0; r < base_.rows; ++r) row[r] += shift;
+    for (int i = 0; i < p.inputs; ++i) {
+      const int type = p.joints[p.column_joint[p.input_column[i]]].type;
+      if (type != TREE_R && type != TREE_C) continue;
+      for (long r = 0; r < base_.rows; ++r)
+        if (std::fabs(inputs[i * base_.rows + r]) > 0.5 * FULL_TURN) return true;
+    }
+    return false;
+  }
+
+  // Turns count from the first row, whose angles lie in (-pi, pi].
+  void count_from_first() {
+    const long rows = base_.rows;
+    for (const TreeTurn& t : tree_turns(plan_.view(), narrow_)) {
+      double* const turn = &turn_[t.slot * rows];
+      const double first = turn[0] - (guess_[t.state * rows] <= base_.half_turn_side - 0.5 * FULL_TURN ? 1.0 : 0.0);
+      for (long r = 0; r < rows; ++r) turn[r] -= first;
+    }
+    for (const ClosingTurn& t : closing_turns(plan_.view(), narrow_)) {
+      if (t.freedom < 0) continue;
+      double* const turn = &turn_[t.slot * rows];
+      const double first = std::ceil((turn[0] - 0.5 * FULL_TURN - base_.half_turn_side) / FULL_TURN);
+      for (long r = 0; r < rows; ++r) turn[r] -= first * FULL_TURN;
     }
   }
 
-  // Angles of closing joints without jumps by whole turns, as given in the first row.
-  void unwrap_angles(double* outputs) const {
+  // Angles with their whole turns.
+  void add_turns(double* outputs, const double* whole) const {
+    const long rows = base_.rows;
     for (const ClosingAngle& a : base_.angles) {
-      double* const value = outputs + a.slot * base_.rows;
-      const double* const followed = turn_.data() + a.turn * base_.rows;
-      const double first = std::rint((value[0] - followed[0]) / FULL_TURN);
-      for (long r = 0; r < base_.rows; ++r)
-        value[r] -= (std::rint((value[r] - followed[r]) / FULL_TURN) - first) * FULL_TURN;
+      double* const value = outputs + a.slot * rows;
+      const double* const known = a.turn >= 0 ? &turn_[a.turn * rows] : whole + (-2 - a.turn) * rows;
+      for (long r = 0; r < rows; ++r)
+        value[r] = a.closing ? value[r] - std::rint((value[r] - known[r]) / FULL_TURN) * FULL_TURN
+                             : value[r] + known[r] * FULL_TURN;
     }
   }
 
@@ -228,7 +247,7 @@ class Worker {
   std::vector<double> guess_, way_, limit_, way_limit_, correction_, side_;
   std::vector<unsigned char> flags_;
   std::vector<long> section_;  // of each row: branch points passed before it
-  std::vector<double> way_inputs_, turn_, way_turn_, state_;
+  std::vector<double> way_inputs_, way_whole_, nothing_, turn_, way_turn_, state_;
   std::vector<double> parameters_, by_tape_, replayed_;
   std::vector<std::uint8_t> verdict_;
   long turn_slots_ = 0;
@@ -264,14 +283,16 @@ Variants::Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputLi
     const std::size_t places = w.rows.size();
     require(places > 0 && w.values.size() == p.inputs * places, "ways: wrong shape");
     for (long row : w.rows) require(row < base_.rows, "ways: no such row");
-    require(!w.course || (w.course->rows() == (long)places && w.course->inputs() == p.inputs),
+    require(!w.course || (w.course->rows() == (long)places && w.course->inputs() <= p.inputs),
             "ways: a course of other rows or inputs");
     require((std::size_t)t.outputs == constants, "ways: of inputs that do not move with the parameters");
   }
-  int turns = 0;
-  for (const ClosingTurn& turn : closing_turns(p, *kernel_unit(2))) turns += turn.width;
+  require(base_.whole.size() == table, "whole: wrong shape");
+  require(are_whole_turns(base_.whole.data(), table), "whole: numbers of turns");
+  const int turns = turn_slots(p, *kernel_unit(2));
   for (const ClosingAngle& a : base_.angles)
-    require(a.slot >= 0 && a.slot < outputs.view().slots && a.turn >= 0 && a.turn < turns, "angles: unknown slot");
+    require(a.slot >= 0 && a.slot < outputs.view().slots && a.turn != -1 && a.turn >= -1 - p.inputs && a.turn < turns,
+            "angles: unknown slot");
 }
 
 void Variants::run(long count, const double* parameters, const KernelUnit& unit, int threads,

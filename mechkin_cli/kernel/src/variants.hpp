@@ -25,9 +25,11 @@ enum class VariantEnd : int {
   incomplete = 3,  // some row was not reached or did not close near its guess: to be looked at row by row
 };
 
-// An output that is the angle of a closing joint, and the slot of its turn as following carries it along.
+// An output that is an angle, of a closing joint or of the tree, and the slot of its turn as following carries it along;
+// of an input -2 - its number.
 struct ClosingAngle {
   int slot, turn;
+  bool closing;
 };
 
 // The way of the inputs from the first assembly's row on (step 1) or back (-1): rows, and between them (row -1) the places
@@ -43,7 +45,8 @@ struct VariantWay {
 // then, where the inputs move with the parameters, their values, rates, accelerations and jerks (4 x inputs x rows).
 struct VariantBase {
   std::vector<double> parameters;                            // the tape's inputs
-  std::vector<double> inputs, rates, accelerations, jerks;   // inputs x rows each
+  std::vector<double> inputs, rates, accelerations, jerks;   // inputs x rows each; angles without their
+  std::vector<double> whole;                                 // whole turns
   std::vector<double> state;                                 // states, the first assembly
   double size;                                               // m, as the first assembly has it
   long rows, start_row;                                      // the first assembly stands at this row
@@ -51,6 +54,7 @@ struct VariantBase {
   int iterations;
   StepLimits continuation, following;
   std::vector<ClosingAngle> angles;
+  double half_turn_side;                                     // rad: first angles so near to half a turn are +pi
   std::vector<VariantWay> ways;  // none where the inputs run straight from row to row
 };
 

@@ -112,7 +112,7 @@ def _laid(
         if name not in ways.number:
             raise errors.input_closes(name)
         k = ways.number[name]
-        driven.append((k, edges[k].joint.type.freedom_of[coordinate]))
+        driven.append((k, edges[k].joint.freedom_number(coordinate)))
     closings = {name: ways.closing(whole.joints[name]) for name in names}
     closings |= {leg.end.name: ways.leg(leg) for leg in whole.legs}
     place = {name: k for k, name in enumerate(closings)}

@@ -13,7 +13,7 @@ gone). The order does not matter. The bounds hold where the assemblies are isola
 - a leg and one other freedom: circle or line and sphere, 2. A body on six legs: 40 (Ronga, Vust
   1995).
 
-Blocks that are solved one after the other multiply.
+Loops that are planar or spherical as they are drawn have less (`loop_count`).
 """
 
 from __future__ import annotations
@@ -33,18 +33,8 @@ ON_SIX_LEGS = 40
 """Bound of a body that six legs hold."""
 
 
-def most_assemblies(graph: SolverGraph) -> int | None:
-    """The proven bound of a mechanism at fixed inputs, None where none is known."""
-    bound = 1
-    for block in graph.blocks:
-        most = _of_block(graph, block)
-        if most is None:
-            return None
-        bound *= most
-    return bound if graph.blocks else None
-
-
-def _of_block(graph: SolverGraph, block: Block) -> int | None:
+def most_of_block(graph: SolverGraph, block: Block) -> int | None:
+    """The proven bound of a block at fixed inputs and upstream states, None where none is known."""
     if all(graph.closings[c].leg for c in block.closings):
         return _of_legs(graph, block)
     if len(block.closings) != 1 or block.equations != len(block.unknowns):

@@ -1,0 +1,90 @@
+// The balance of powers of a row, each part by itself: from masses and velocities, from what the loads are and the
+// velocities where they act, and from efforts and rates of the drives. It shares no sum with the balance of forces, and
+// so tells whether that one took every load as it is.
+//
+//     d(kinetic energy)/dt = powers of gravity, springs, dampers, forces and torques + efforts by rates
+#pragma once
+
+#include "reactions.hpp"
+
+namespace {
+
+// The sum of the powers' parts, and the sum of their magnitudes.
+struct Powers {
+  Pack sum, size;
+  MECHKIN_INLINE void add(Pack x) { sum += x, size += abs(x); }
+  // a.b component by component: what cancels within it is no rounding of the balance
+  MECHKIN_INLINE void add(Vec3 a, Vec3 b) { add(a.x * b.x), add(a.y * b.y), add(a.z * b.z); }
+};
+
+// d/dt (m v.v/2 + omega.I omega/2) = m v.v' + omega.I omega', about the mass centre in the link's axes.
+inline void add_kinetic_power(Powers& powers, const LinkInertia& m, const Pose& pose, const Motion& motion) {
+  const Vec3 centre = pose.point(m.centre);
+  powers.add(Pack(-m.mass) * motion.velocity.at(centre), motion.point_acceleration(centre));
+  const Vec3 omega = pose.components(motion.velocity.angular), alpha = pose.components(motion.acceleration.angular);
+  const double* t = m.tensor;
+  const Vec3 x = {Pack(t[0]), Pack(t[3]), Pack(t[4])}, y = {Pack(t[3]), Pack(t[1]), Pack(t[5])},
+             z = {Pack(t[4]), Pack(t[5]), Pack(t[2])};
+  powers.add(-omega, {dot(x, alpha), dot(y, alpha), dot(z, alpha)});
+}
+
+// The power that a spring or damper between two points puts in: its tension by the rate at which they come nearer.
+inline void add_power_between_points(Powers& powers, const Plan& p, const Workspace& w, const Load& l) {
+  const Vec3 a = carried_point(w, l.link, l.point), b = carried_point(w, l.other, l.other_point), d = b - a;
+  const Vec3 apart = motion_of(w, l.other).velocity.at(b) - motion_of(w, l.link).velocity.at(a);
+  const Pack length = sqrt(dot(d, d));
+  const Mask meet = length == Pack(0.0);
+  const Vec3 along = select(meet, Pack(0.0), Pack(1.0) / select(meet, Pack(1.0), length)) * d;
+  const Pack tension = l.type == LOAD_SPRING ? Pack(l.vector[0]) * (length - Pack(l.vector[1])) + Pack(l.vector[2])
+                                             : Pack(l.vector[0]) * dot(along, apart);
+  powers.add(-tension * along, apart);
+}
+
+template <class RowValue>
+inline void add_load_power(Powers& powers, const Plan& p, const Workspace& w, const Load& l,
+                           const RowValue& row_value) {
+  Pack value, rate;
+  switch (l.type) {
+    case LOAD_FORCE_GROUND:
+    case LOAD_FORCE_LINK: {
+      const Vec3 velocity = w.motion[l.link].velocity.at(w.pose[l.link].point(l.point));
+      const Vec3 force = load_vector(l, row_value);
+      return powers.add(force, l.type == LOAD_FORCE_LINK ? w.pose[l.link].components(velocity) : velocity);
+    }
+    case LOAD_TORQUE_GROUND: return powers.add(load_vector(l, row_value), w.motion[l.link].velocity.angular);
+    case LOAD_TORQUE_LINK:
+      return powers.add(load_vector(l, row_value), w.pose[l.link].components(w.motion[l.link].velocity.angular));
+    case LOAD_SPRING:
+    case LOAD_DAMPER: return add_power_between_points(powers, p, w, l);
+    case LOAD_COORDINATE:
+      joint_coordinate(p, w, l, true, &value, &rate);
+      return powers.add((l.varying < 0 ? Pack(l.vector[0]) : row_value(l.varying)) * rate);
+    case LOAD_COORDINATE_SPRING:
+      joint_coordinate(p, w, l, true, &value, &rate);
+      value = row_value.turned(l, value);
+      return powers.add(-(Pack(l.vector[0]) * (value - Pack(l.vector[1])) + Pack(l.vector[2])) * rate);
+    case LOAD_COORDINATE_DAMPER:
+      joint_coordinate(p, w, l, true, &value, &rate);
+      return powers.add(-(Pack(l.vector[0]) * rate) * rate);
+  }
+}
+
+// |sum of powers| / sum of their magnitudes; nan where nothing moves, for then no balance is told.
+template <class RowValue>
+inline Pack power_error(const Plan& p, const Workspace& w, bool accelerating, const RowValue& row_value) {
+  Powers powers = {Pack(0.0), Pack(0.0)};
+  const Vec3 g = constant(p.gravity);
+  for (int k = 0; k < p.links; ++k) {
+    const LinkInertia& m = p.inertia[k];
+    if (!m.present) continue;
+    powers.add(Pack(m.mass) * g, w.motion[k].velocity.at(w.pose[k].point(m.centre)));
+    if (accelerating) add_kinetic_power(powers, m, w.pose[k], w.motion[k]);
+  }
+  for (int l = 0; l < p.loads; ++l) add_load_power(powers, p, w, p.load[l], row_value);
+  for (int i = 0; i < p.inputs; ++i) powers.add(w.effort[i] * w.rate[p.input_column[i]]);
+  const Mask none = powers.size == Pack(0.0);
+  const Pack size = select(none, Pack(1.0), powers.size);
+  return select(none, Pack(__builtin_nan("")), abs(powers.sum) / size);
+}
+
+}  // namespace

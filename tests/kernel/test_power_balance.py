@@ -1,0 +1,89 @@
+"""The balance of powers shares nothing with the balance of forces: a fault of one shows in it.
+
+Proved on copies of the sources in which the balance of forces takes a load or a mass wrongly. The
+efforts that follow are in equilibrium with what was taken, and do not fit the energies.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from kernel.compiler import COMPILER
+from kernel.test_new_pair import KEPT, python
+
+import mechkin_cli as mk
+
+ROOT = Path(__file__).parents[2]
+SOURCE = "mechkin_cli/kernel/src/reactions.hpp"
+FAULT = (
+    "balance.apply_outside(k, force_at(w.pose[k].point(m.centre), Pack(m.mass) * g));",
+    "balance.apply_outside(k, force_at(w.pose[k].point(m.centre), Pack(0.5 * m.mass) * g));",
+)
+"""Half the gravity in the balance of forces."""
+
+MECHANISM = """
+format: 1
+links:
+  crank: {mass: 2, center_of_mass: [0.05, 0, 0], inertia: {xx: .01, yy: .02, zz: .02}}
+  rod: {mass: 1, center_of_mass: [0.2, 0.1, 0], inertia: {xx: .01, yy: .02, zz: .03, xy: .005}}
+  slider: {mass: 3, center_of_mass: [0.4, 0, 0]}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: U, links: [crank, rod], point: [0.1, 0, 0], axis: [0, 0, 1], axis2: [0, 1, 0]}
+  C: {type: S, links: [rod, slider], point: [0.4, 0.1, 0.05]}
+  D: {type: P, links: [ground, slider], point: [0.4, 0.1, 0.05], axis: [1, 0, 0]}
+points: {p: {link: rod, at: [0.2, 0.1, 0.1]}, q: {link: ground, at: [0.2, 0.4, 0]}}
+motion: {inputs: {A.theta: {from: 20, to: 120, step: 20, rate: 3 rad/s, acceleration: 2 rad/s^2}}}
+loads:
+  - {type: gravity, g: [1, -9.81, 0.5]}
+  - {type: spring, between: [p, q], stiffness: 200, free: 0.1, preload: 3}
+  - {type: damper, between: [p, q], damping: 7}
+  - {type: spring, joint: D, coordinate: s, stiffness: 100, free: 0.1}
+  - {type: damper, joint: A, coordinate: theta, damping: 0.4}
+  - {type: force, joint: D, value: -20}
+  - {type: force, link: slider, point: [0.5, 0, 0], force: [3, 4, 5], axes: link}
+  - {type: torque, link: rod, torque: [1, 2, 3]}
+"""
+
+
+def test_all_parts_balance() -> None:
+    error = mk.loads(MECHANISM).analyze(["A.effort"])["row.power_error"]
+    assert error.max() < 1e-14
+    assert error.max() > 0.0
+
+
+def test_nothing_is_told_where_nothing_moves() -> None:
+    still = MECHANISM.replace("rate: 3 rad/s, acceleration: 2 rad/s^2", "rate: 0 rad/s")
+    analysis = mk.loads(still).analyze(["A.effort"])
+    assert np.isnan(analysis["row.power_error"]).all()
+    assert np.abs(analysis["A.effort"]).max() > 1.0
+
+
+def test_half_the_gravity_in_the_balance_of_forces_shows(tmp_path: Path) -> None:
+    if COMPILER is None:
+        pytest.skip("no C++ compiler here")
+    for name in KEPT:
+        if (ROOT / name).is_dir():
+            skipped = shutil.ignore_patterns("__pycache__", "*.so")
+            shutil.copytree(ROOT / name, tmp_path / name, ignore=skipped)
+        else:
+            shutil.copy(ROOT / name, tmp_path / name)
+    text = (tmp_path / SOURCE).read_text(encoding="utf-8")
+    assert text.count(FAULT[0]) == 1
+    (tmp_path / SOURCE).write_text(text.replace(*FAULT), encoding="utf-8")
+    install = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target"]
+    site = [str(tmp_path / "site"), str(tmp_path)]
+    done = subprocess.run([*install, *site], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-4000:]
+    (tmp_path / "m.yaml").write_text(MECHANISM, encoding="utf-8")
+    code = (
+        "import json, mechkin_cli as mk; r = mk.load('m.yaml').analyze(['A.effort']); "
+        "print(json.dumps(r['row.power_error'].tolist()))"
+    )
+    assert min(json.loads(python(tmp_path, code))) > 1e-3

@@ -1,0 +1,232 @@
+"""The same mechanism in random unit systems, in bare numbers or with units: the same answers.
+
+The templates use every field of the schema that has a dimension, and every number in them matters.
+`MECHKIN_RANDOM` multiplies the number of unit systems.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from types import UnionType
+from typing import Annotated, Any, Union, get_args, get_origin
+
+import numpy as np
+import pytest
+from random_families.unit_systems import (
+    WORDS,
+    factor,
+    places,
+    random_words,
+    with_number,
+    written,
+)
+
+import mechkin_cli as mk
+from mechkin_cli.schema.base import Section, fields_of
+from mechkin_cli.schema.file import MechanismFile
+from mechkin_cli.schema.rules import Dimension
+
+TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
+SI = {
+    "length": "m",
+    "angle": "rad",
+    "mass": "kg",
+    "force": "N",
+    "time": "s",
+    "angular_rate": "rad/s",
+}
+FOLDER = Path(__file__).parent / "unit_templates"
+CURVES = {
+    "push.csv": ("length", "force", [(0.0, 1.0), (0.02, 4.0), (0.04, 2.0), (0.06, 3.0)]),
+    "slide.csv": ("time", "length", [(0.0, 0.0), (0.2, 0.03), (0.4, 0.05), (0.6, 0.02)]),
+    "wind.csv": ("time", "force", [(0.0, 1.0), (0.2, 4.0), (0.4, 2.0), (0.6, 3.0)]),
+    "swirl.csv": ("time", "moment", [(0.0, 0.1), (0.2, 0.4), (0.4, 0.2), (0.6, 0.3)]),
+}
+"""CSV files beside the templates: kinds and rows in SI."""
+TEMPLATES = {path.stem: path.read_text() for path in sorted(FOLDER.glob("*.template"))}
+ROUNDING = 1e-10
+"""Parts of the largest number of its kind: conversions round at 1e-16, conditions are below 1e3."""
+
+KIND_OF_DIMENSION = {
+    "length": "length",
+    "angle": "angle",
+    "time": "time",
+    "length/time": "velocity",
+    "length/time^2": "acceleration",
+    "length/time^3": "jerk",
+    "angle/time": "angular_rate",
+    "angle/time^2": "angular_acceleration",
+    "angle/time^3": "angular_jerk",
+    "mass*length/time^2": "force",
+    "mass*length^2/time^2": "moment",
+    "": "number",
+}
+NEITHER = ("row.", ".transmission_angle", ".mechanical_advantage", ".finite_", ".screw_")
+"""Quantities left out: verdicts, and what is no matter of units."""
+
+Answers = dict[str, tuple[str, np.ndarray[Any, Any]]]
+
+
+def answers(
+    which: str,
+    folder: Path,
+    words: dict[str, str],
+    rng: random.Random,
+    explicit: float,
+    text: str = "",
+) -> Answers:
+    """Kind and SI values of all quantities, by name."""
+    for file, (x, y, rows) in CURVES.items():
+        lines = [f"{a / factor(x, words)!r},{b / factor(y, words)!r}" for a, b in rows]
+        (folder / file).write_text("\n".join(["x,y", *lines]) + "\n")
+    (folder / "m.yaml").write_text(written(text or TEMPLATES[which], words, rng, explicit))
+    model = mk.load(folder / "m.yaml")
+    quantities = {
+        name: KIND_OF_DIMENSION[str(found.dimension)]
+        for name, found in model.problem.quantities().items()
+        if not any(part in name for part in NEITHER) and name not in model.problem.parameters
+    }
+    found = model.analyze(list(quantities))
+    assert set(found["row.status"]) == {"ok"}, (which, words)
+    return {
+        name: (kind, np.asarray(found[name]) * factor(kind, words))
+        for name, kind in quantities.items()
+    }
+
+
+def worst(found: Answers, wanted: Answers) -> float:
+    """The largest difference in parts of the largest number of its kind."""
+    sizes: dict[str, float] = {}
+    for kind, values in wanted.values():
+        sizes[kind] = max(sizes.get(kind, 0.0), float(np.abs(values).max()))
+    assert found.keys() == wanted.keys()
+    return max(
+        float(np.abs(values - wanted[name][1]).max()) / (sizes[kind] or 1.0)
+        for name, (kind, values) in found.items()
+    )
+
+
+@pytest.mark.parametrize("which", TEMPLATES)
+@pytest.mark.parametrize("explicit", [0.0, 1.0, 0.5], ids=["bare", "with units", "mixed"])
+def test_the_same_answers_in_any_units(which: str, explicit: float, tmp_path: Path) -> None:
+    rng = random.Random(f"{which} {explicit}")
+    wanted = answers(which, tmp_path, SI, rng, 0.0)
+    for _ in range(5 * TIMES):
+        words = random_words(rng)
+        error = worst(answers(which, tmp_path, words, rng, explicit), wanted)
+        assert error < ROUNDING, (words, error)
+
+
+@pytest.mark.parametrize("entry", WORDS)
+def test_each_unit_by_itself(entry: str, tmp_path: Path) -> None:
+    rng = random.Random(entry)
+    for which in TEMPLATES:
+        wanted = answers(which, tmp_path, SI, rng, 0.0)
+        for word in WORDS[entry]:
+            assert worst(answers(which, tmp_path, SI | {entry: word}, rng, 0.0), wanted) < ROUNDING
+
+
+@pytest.mark.parametrize("which", TEMPLATES)
+def test_every_number_matters(which: str, tmp_path: Path) -> None:
+    """A number that were read in a wrong unit would be seen: even a hundredth of it is."""
+    template = TEMPLATES[which]
+    rng = random.Random(0)
+    wanted = answers(which, tmp_path, SI, rng, 0.0)
+    for place in places(template):
+        if float(place[1]) == 0.0 or only_chooses(template, place):
+            continue
+        changed = answers(which, tmp_path, SI, rng, 0.0, with_number(template, place, 1.01))
+        assert worst(changed, wanted) > 100 * ROUNDING, place[0]
+
+
+def only_chooses(template: str, place: re.Match[str]) -> bool:
+    """Whether a number is a direction, or only says which rows or which assembly are meant."""
+    before = template[: place.start()].splitlines()[-1]
+    after = template[place.end() :].splitlines()[0]
+    is_last_row = before.endswith("to: ") and "step:" in after
+    is_first_moment = before.endswith("time: {from: ")
+    directs = any(key in before for key in ("near:", "step:", "vector:", "axis:"))
+    return is_last_row or is_first_moment or directs
+
+
+def dimensional_fields() -> set[tuple[str, str]]:
+    """Section and key of every field of the schema that holds a number with a dimension."""
+    found: set[tuple[str, str]] = set()
+    waiting, seen = [MechanismFile], {MechanismFile}
+    while waiting:
+        section = waiting.pop()
+        for key, field in fields_of(section).items():
+            for part in parts(field.annotation):
+                if isinstance(part, Dimension) and part.name != "dimensionless number":
+                    found.add((declaring(section, field.name), key))
+                elif isinstance(part, type) and issubclass(part, Section) and part not in seen:
+                    seen.add(part)
+                    waiting.append(part)
+    return found
+
+
+def used_fields(value: Any) -> Iterator[tuple[str, str]]:
+    """The fields that a checked file gives a value."""
+    if isinstance(value, Section):
+        for key, field in fields_of(type(value)).items():
+            given = getattr(value, field.name)
+            if field.required or given != field.default:
+                yield declaring(type(value), field.name), key
+            yield from used_fields(given)
+    elif isinstance(value, dict):
+        for item in value.values():
+            yield from used_fields(item)
+    elif isinstance(value, tuple):
+        for item in value:
+            yield from used_fields(item)
+
+
+def declaring(section: type[Section], name: str) -> str:
+    return next(base.__name__ for base in section.__mro__ if name in base.__annotations__)
+
+
+def parts(annotation: Any) -> Iterator[Any]:
+    """The types and rules of an annotation."""
+    if get_origin(annotation) is Annotated:
+        inner, *rules = get_args(annotation)
+        yield from rules
+        yield from parts(inner)
+    elif get_origin(annotation) in (Union, UnionType, dict, tuple):
+        for argument in get_args(annotation):
+            yield from parts(argument)
+    else:
+        yield annotation
+
+
+def test_the_templates_use_every_dimensional_field(tmp_path: Path) -> None:
+    used: set[tuple[str, str]] = set()
+    for which in TEMPLATES:
+        answers(which, tmp_path, SI, random.Random(0), 0.0)
+        used.update(used_fields(mk.load(tmp_path / "m.yaml").built.read.file))
+    wanted = dimensional_fields()
+    assert len(wanted) > 50
+    assert wanted - used == WITHOUT
+
+
+WITHOUT = {
+    ("SpherePlaneJoint", "normal"),
+    ("SphereGrooveJoint", "groove"),
+    ("UniversalJoint", "axis"),
+    ("UniversalJoint", "axis2"),
+    ("PlanarJoint", "normal"),
+    ("PlanarJoint", "x"),
+    ("AxisJoint", "zero"),
+    ("SlottedSphereJoint", "slot"),
+    ("SlottedSphereJoint", "pin"),
+    ("SphereCylinderJoint", "axis"),
+    ("SphereCylinderJoint", "pin"),
+    ("CylinderPlaneJoint", "axis"),
+    ("CylinderPlaneJoint", "normal"),
+    ("Column", "value"),
+}
+"""Directions, whose unit does not matter (those of R, C and of `directions:` are in lengths), and
+columns, which are read here by their names."""
