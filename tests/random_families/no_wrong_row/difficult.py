@@ -32,7 +32,7 @@ SECOND_DIFFICULT = (
 SECOND_NOT_YET: frozenset[int] = frozenset(
     {21, 48, 64, 121, 179, 209, 267, 1102, 1123, 1354, 1392, 1469}
 )
-"""Chords of ties, singular places of arms and shafts taken for dead centres, rows that do not
+"""Singular places of arms and shafts taken for dead centres, rows that do not
 converge beside folds of platforms."""
 
 WRITTEN_NOT_YET: frozenset[tuple[int, int]] = frozenset({(2, 87)})
