@@ -173,7 +173,8 @@ JUMP_LIMIT: Final = 0.1
 branch is farther than twice the distance to the fold, a tenth of a step cannot reach it."""
 
 INFILL_LIMIT: Final = 0.02
-"""Largest correction of a row filled in between two nodes, in parts of the nodes' distance."""
+"""Largest correction of a row filled in between two nodes, in parts of the nodes' distance; an
+eighth of their least singular value (a lower bound of it) limits it, too."""
 
 LONGEST_STEP: Final = 0.5
 """Longest step along the path (rad, length units): 13 nodes a turn at least, so that no pair of

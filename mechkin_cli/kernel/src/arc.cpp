@@ -326,13 +326,14 @@ bool Arc::same_side(const Node& a, Node* b, int* blame) {
   half.extended = with_column(own_jacobian(half), seen.first, 1.0 / speed_);
   double own_danger = 0.0;
   const bool own_same =
-      is_regular_segment(bordered(a), with_row(half.extended, t), bordered(*b), limits_.radius, &own_danger);
+      is_regular_segment(bordered(a), with_row(half.extended, t), bordered(*b), limits_.radius, &own_danger, &b->least);
   for (int k = 0; k < plan_.blocks; ++k) {
     if (!carries(k)) continue;
     double danger = own_danger;
     const bool same = own_[k] ? own_same
                               : is_regular_segment(block_matrix(a.jacobian, k), block_matrix(half.jacobian, k),
-                                                   block_matrix(b->jacobian, k), limits_.radius, &danger);
+                                                   block_matrix(b->jacobian, k), limits_.radius, &danger,
+                                                   &b->least);
     b->danger[k] = danger / std::fabs(h);
     if (!same) {
       *blame = k;

@@ -51,7 +51,9 @@ void infill(const Stepper& stepper, const Node& a, const Node& b, const double* 
   const double h = b.place - a.place;
   double distance = h;
   for (int s = 0; s < states; ++s) distance = std::fmax(distance, std::fabs(b.state[s] - a.state[s]));
-  for (long row = begin; row < end; ++row) out.limit[row] = stepper.limits().infill * distance;
+  // a row nearer to a singular place than eight times its correction may have crossed it
+  const double limit = std::fmin(stepper.limits().infill * distance, 0.125 * std::fmin(a.least, b.least));
+  for (long row = begin; row < end; ++row) out.limit[row] = limit;
   const std::vector<Hermite> weights = weights_of(a, b, place, end - begin);
   for (int s = 0; s < states; ++s)
     if (!chosen || chosen->state[s])

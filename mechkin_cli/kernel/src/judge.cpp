@@ -9,8 +9,10 @@
 
 #include "stepper.hpp"
 
-bool is_regular_segment(const Matrix& a, const Matrix& middle, const Matrix& b, double limit, double* danger) {
+bool is_regular_segment(const Matrix& a, const Matrix& middle, const Matrix& b, double limit, double* danger,
+                        double* least) {
   const LeastSquares from(a), to(b);
+  *least = std::fmin(*least, to.least_singular_bound());
   const auto difference = [](const LeastSquares& at, const Matrix& other) {
     Matrix e = at.solve(other);
     subtract_identity(&e);
@@ -56,10 +58,11 @@ bool Stepper::same_side(const Node& a, Node* b) {
   r.jacobian = jacobian.data(), r.demand = DEMAND_JACOBIAN;
   unit_.run(plan, r, memory_.data());
   bool same = true;
+  b->least = HUGE_VAL;
   for (int k = 0; k < plan_.blocks; ++k) {
     double danger = 0.0;
     same = is_regular_segment(block_matrix(a.jacobian, k), block_matrix(jacobian, k), block_matrix(b->jacobian, k),
-                              limits_.radius, &danger) && same;
+                              limits_.radius, &danger, &b->least) && same;
     b->danger[k] = danger / std::fabs(h);
   }
   return same;

@@ -74,6 +74,7 @@ struct Node {
   double place;                                   // the parameter that derivatives are by: sigma, or an arclength
   double rate, bend;                              // sigma's derivatives by it: 1 and 0 where it is sigma
   double correction;                              // largest change of an unknown against the guess
+  double least = __builtin_inf();                 // at most the blocks' least singular value; infinite where not looked at
   double own;                                     // sigma's part in the tangent: 1 where the plan varies, else 0
   std::vector<double> inputs;
   std::vector<double> state, first, second;       // states, columns, columns
@@ -163,8 +164,10 @@ class Stepper {
 };
 
 // Whether the segments from one matrix to another, by way of a third half way, hold no singular one: the least of the
-// spectral radii of A^+ B - I and B^+ A - I, and both to the middle, are at most `limit`. `danger`: a bound of the radius of B^+ A - I.
-bool is_regular_segment(const Matrix& a, const Matrix& middle, const Matrix& b, double limit, double* danger);
+// spectral radii of A^+ B - I and B^+ A - I, and both to the middle, are at most `limit`. `danger`: a bound of the radius of
+// B^+ A - I; `least`: at most the least singular value of B, if that is less.
+bool is_regular_segment(const Matrix& a, const Matrix& middle, const Matrix& b, double limit, double* danger,
+                        double* least);
 
 double tangent_product(const Node& a, const Node& b);
 
