@@ -28,6 +28,8 @@ constexpr double SINGULAR_STEP = 1e-6;
 constexpr double STEEP = 0.1, ROUNDING_LEFT = 1e-12;
 // Pivots of a matrix that is singular a little farther on, in parts of the least that steps may have.
 constexpr double SINGULAR_PIVOTS = 10.0;
+// Rate and second derivative of sigma by arclength that are rounding.
+constexpr double AT_REST = 1e-9;
 // Least ratio of sigma's second derivative at a dead centre and its mean over the step that it lies in.
 constexpr double SAME_BEND = 0.2;
 
@@ -112,7 +114,7 @@ class Walker {
         continue;
       }
       ++p->steps;
-      if (b.rate <= 0.0) {
+      if (b.rate <= 0.0 && !rests(arc, a, b)) {
         Node fold;
         if (locate_dead_centre(arc, a, b, &fold)) {
           p->nodes.push_back(fold), p->beyond = b, p->end = PassageEnd::dead_centre;
@@ -134,6 +136,15 @@ class Walker {
   }
 
  private:
+  // Whether sigma stands still but for rounding, as it does in a narrow place that a block turns through while nothing
+  // else moves: its rate's sign there says nothing.
+  bool rests(const Arc& arc, const Node& a, const Node& b) const {
+    const double speed = arc.speed(), moved = std::fabs(b.sigma - a.sigma);
+    return std::fmax(std::fabs(a.rate), std::fabs(b.rate)) * speed <= AT_REST &&
+           std::fmax(std::fabs(a.bend), std::fabs(b.bend)) * speed <= AT_REST &&
+           moved <= 1e-14 * std::fmax(1.0, std::fabs(b.sigma));
+  }
+
   // Two dead centres in one step would go unseen: sigma's rate keeps its sign at both ends. Between them the rate's
   // cubic Hermite polynomial must not come near zero.
   bool shows_its_turns(const Node& a, const Node& b) const {
@@ -189,17 +200,21 @@ class Walker {
   }
 
   // Where two branches pass at a gap near rounding, steps end shortly before a dead centre. The last nodes tell it if
-  // what is left of sigma is a rounding.
+  // what is left of sigma is a rounding, and the branch is seen to go back behind it.
   bool touches_dead_centre(Passage* p) const {
     if (p->nodes.size() < 2) return false;
     const Node &a = p->nodes[p->nodes.size() - 2], &b = p->nodes.back();
-    const double bend = (b.rate - a.rate) / (b.place - a.place);
+    const double bend = (b.rate - a.rate) / (b.place - a.place), speed = p->arc->speed();
     if (!(b.bend < SAME_BEND * bend && bend < SAME_BEND * b.bend && b.bend < 0.0)) return false;
     const double left = -0.5 * b.rate * b.rate / b.bend;
-    if (!(b.rate * p->arc->speed() < STEEP && left <= ROUNDING_LEFT * std::fmax(1.0, std::fabs(b.sigma)))) return false;
-    if (!p->arc->close_from(b, -2.0 * b.rate / b.bend, &p->beyond)) p->beyond = b;
-    p->end = PassageEnd::dead_centre;
-    return true;
+    if (!(b.rate * speed < STEEP && left <= ROUNDING_LEFT * std::fmax(1.0, std::fabs(b.sigma)))) return false;
+    for (double h = p->arc->own_step(b); h > -2.0 * b.rate / b.bend; h *= 0.5) {
+      if (!p->arc->close_from(b, h, &p->beyond) || !(p->beyond.correction <= limits_.jump * h)) continue;
+      if (!(p->beyond.rate * speed < -STEEP * STEEP)) continue;
+      p->end = PassageEnd::dead_centre;
+      return true;
+    }
+    return false;
   }
 
   bool cross_branch_point(Passage* p, Node* a) const {

@@ -364,7 +364,8 @@ inline Closed close_block(const Plan& p, Workspace& w, int index, const Request&
   for (int iteration = 0;; ++iteration) {
     iteration ? place_moving(p, w, b) : place_block(p, w, b);
     residual = block_residual(p, w, b);
-    done = done | polished | (residual.test <= Pack(r.tight));
+    // a short step leaves its square times condition and curvature, which may yet be too much
+    done = done | (polished & (residual.test <= Pack(r.accept))) | (residual.test <= Pack(r.tight));
     if ((all(done) && !(keeps_factors && iteration == 0)) || iteration == r.iterations) break;
     moving_screws(p, w, b);
     const bool keep = keeps_factors && iteration > 0 && any(done);
