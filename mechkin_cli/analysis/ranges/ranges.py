@@ -3,7 +3,7 @@ which modes belong to one circuit."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -153,6 +153,22 @@ def _input_number(problem: Problem, name: str | None) -> int:
     return names.index(name)
 
 
+def _joined(circuits: list[set[str]]) -> list[set[str]]:
+    """Circuits that share a mode are one: a walk may end early on one side of a narrow place and
+    get through from the other."""
+    last = circuits[-1]
+    apart = [modes for modes in circuits[:-1] if not modes & last]
+    for modes in circuits[:-1]:
+        if modes & last:
+            last = last | modes
+    return [*apart, last]
+
+
+def _lost_ends(item: Range) -> int:
+    """Ends of a range at which following stopped without a reason."""
+    return sum(end.kind == "branch-lost" for end in (item.lower, item.upper))
+
+
 class _Survey:
     """The circuits of all modes, one after the other."""
 
@@ -173,7 +189,7 @@ class _Survey:
     def ranges(self) -> tuple[tuple[Range, ...], tuple[tuple[str, ...], ...]]:
         """The ranges in the order of the letters, and the circuits."""
         found: dict[str, Range] = {}
-        circuits: list[tuple[str, ...]] = []
+        circuits: list[set[str]] = []
         for number, letter in self.named.letters.items():
             if letter in found:
                 continue
@@ -185,16 +201,24 @@ class _Survey:
                     if name is not None and name not in members:
                         members[name] = (branch, value)
             members[letter] = (branches[0], float(self.walker.inputs[self.walker.number]))
-            circuits.append(tuple(sorted(members, key=lambda n: (len(n), n))))
+            circuits = _joined([*circuits, set(members)])
             for name, (branch, value) in members.items():
-                found[name] = self._range(name, branch, value, len(circuits))
-        return tuple(found[name] for name in self.named.letters.values()), tuple(circuits)
+                known = found.get(name)
+                if known is None or _lost_ends(known) > 0:
+                    seen = self._range(name, branch, value)
+                    found[name] = min((r for r in (known, seen) if r), key=_lost_ends)
+        names = list(self.named.letters.values())
+        ordered = sorted(circuits, key=lambda modes: min(names.index(name) for name in modes))
+        number_of = {name: k for k, modes in enumerate(ordered, 1) for name in modes}
+        ranges = (replace(found[name], circuit=number_of[name]) for name in names)
+        shown = tuple(tuple(sorted(modes, key=lambda n: (len(n), n))) for modes in ordered)
+        return tuple(ranges), shown
 
     def _letter(self, state: Floats) -> str | None:
         same = same_poses(self.keys, pose_keys(self.layout, state[:, None]))[:, 0]
         return self.named.letters[int(np.argmax(same))] if same.any() else None
 
-    def _range(self, name: str, branch: Branch, value: float, circuit: int) -> Range:
+    def _range(self, name: str, branch: Branch, value: float) -> Range:
         """The branch's range, counted in the turn in which it has this mode, at `value`."""
         origin, period = float(self.walker.inputs[self.walker.number]), self.walker.period
         shift = value - origin
@@ -202,12 +226,12 @@ class _Survey:
         if branch.upper.kind == "full-turn" and period is not None:
             limit = self._limit(End("full-turn", origin), 0.0)
             turns = round((branch.upper.value - branch.lower.value) / period)
-            return Range(name, limit, limit, turns, circuit, extremes)
+            return Range(name, limit, limit, turns, 0, extremes)
         lower, upper = (self._limit(end, shift) for end in (branch.lower, branch.upper))
         if self.shown != self.walker.number and lower.value > upper.value:
             # an input that follows may fall while the other rises
             lower, upper = upper, lower
-        return Range(name, lower, upper, 0, circuit, extremes)
+        return Range(name, lower, upper, 0, 0, extremes)
 
     def _limit(self, end: End, shift: float) -> Limit:
         return Limit(end.kind, self._limit_value(end.value - shift))

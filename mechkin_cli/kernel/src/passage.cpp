@@ -28,6 +28,8 @@ constexpr double SINGULAR_STEP = 1e-6;
 constexpr double STEEP = 0.1, ROUNDING_LEFT = 1e-12;
 // Pivots of a matrix that is singular a little farther on, in parts of the least that steps may have.
 constexpr double SINGULAR_PIVOTS = 10.0;
+// Attempts behind a dead centre; through a gap of 1e-12 it takes some sixty.
+constexpr int MOST_BEHIND = 300;
 // Rate and second derivative of sigma by arclength that are rounding.
 constexpr double AT_REST = 1e-9;
 // Least ratio of sigma's second derivative at a dead centre and its mean over the step that it lies in.
@@ -117,7 +119,7 @@ class Walker {
       if (b.rate <= 0.0 && !rests(arc, a, b)) {
         Node fold;
         if (locate_dead_centre(arc, a, b, &fold)) {
-          p->nodes.push_back(fold), p->beyond = b, p->end = PassageEnd::dead_centre;
+          p->nodes.push_back(fold), p->beyond = on_the_other_side(arc, b), p->end = PassageEnd::dead_centre;
           return;
         }
         h *= 0.5;
@@ -179,6 +181,25 @@ class Walker {
     if (other < 0) return false;
     p->blame = other;
     return true;
+  }
+
+  // On from the first node behind a dead centre to one that is as regular as the walk's ends are, but not over the next
+  // dead centre: from there the other assembly is followed.
+  Node on_the_other_side(Arc& arc, Node b) const {
+    Node c;
+    double h = arc.wanted_step(b);
+    for (int tries = 0; tries < MOST_BEHIND && h >= LEAST_ARC; ++tries) {
+      int blame = -1;
+      if (!arc.step(b, h, &c, &blame) || c.rate >= 0.0) {
+        h *= 0.5;
+        continue;
+      }
+      const bool regular = -std::fmax(b.rate, c.rate) * arc.speed() * h >= 2.0 * limits_.narrow;
+      b = c;
+      if (regular) break;
+      h = std::fmin(arc.wanted_step(b), 2.0 * h);
+    }
+    return b;
   }
 
   // Newton on sigma' = 0 between two nodes where it changes sign.
