@@ -66,7 +66,7 @@ def test_one_missing_row_is_told_in_the_singular() -> None:
     assert "row 2 lies beyond it and stays empty" in note.message
 
 
-def test_inputs_that_move_together_may_have_come_to_a_dead_centre() -> None:
+def test_inputs_that_move_together_come_to_a_dead_centre() -> None:
     """Crank and ground's length change at once: e = 2l at another place of both."""
     text = TEXT.format(values=[30, 40, 50]).replace(
         "D: {type: R, links: [ground, rocker]", "D: {type: R, links: [slide, rocker]"
@@ -77,6 +77,18 @@ def test_inputs_that_move_together_may_have_come_to_a_dead_centre() -> None:
     )
     text = text.replace("50]}}}", "50]}, P.s: {values: [0, 0.1, 0.2]}}}")
     analysis = mk.loads(text).analyze(["D.theta"])
-    assert analysis["row.status"].tolist() == ["ok", "ok", "branch-lost"]
+    assert analysis["row.status"].tolist() == ["ok", "ok", "beyond-dead-centre"]
+
+    def excess(part: float) -> float:
+        """e - 2l on the chord between the last two rows."""
+        crank, ground = radians(40 + 10 * part), 4.1 + 0.1 * part
+        return hypot(2 * cos(crank) - ground, 2 * sin(crank)) - 3
+
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if excess(middle) < 0.0 else (low, middle)
     (note,) = analysis.diagnostics
-    assert "dead centre of the inputs that move together" in note.hint
+    assert [number.name for number in note.numbers] == ["A.theta", "P.s"]
+    assert abs(note.numbers[0].value - (40 + 10 * low)) < 1e-9
+    assert abs(note.numbers[1].value - (0.1 + 0.1 * low)) < 1e-10
