@@ -188,7 +188,10 @@ def _from_home(session: Session) -> Start:
     """Followed from the drawing to the row whose inputs are nearest to it; whole turns of the
     drawing are the same place."""
     problem, layout, path = session.problem, session.layout, session.inputs.reduced
-    row = nearest_to_home(path)
+    # a row in the drawing's own turn comes before one that is nearer some turns away
+    row = nearest_to_home(session.inputs.values)
+    if np.max(np.abs(session.inputs.values[:, row]), initial=0.0) > np.pi:
+        row = nearest_to_home(path)
     followed = follow_from_home(session, path[:, row])
     if followed.end == TrackEnd.FINISHED:
         return Start(followed.state, HOME, "followed from the home drawing", row=row)

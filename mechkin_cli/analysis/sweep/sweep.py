@@ -163,6 +163,9 @@ def _failed(batch: Batch, rows: Rows) -> Bools:
     for section in np.unique(rows.section[rows.reached]):
         own = np.flatnonzero(rows.reached & (rows.section == section))
         turned[own] = (batch.side[:, own] != batch.side[:, own[:1]]).any(axis=0)
+    if batch.condition is not None:
+        # on a branch point a sign is rounding
+        turned &= batch.condition <= tolerances.CONDITION_RANK_UNCLEAR
     failed: Bools = ~batch.good | turned | ~(batch.correction <= rows.limit)
     return rows.reached & failed
 

@@ -149,7 +149,13 @@ namespace {
 Node node_at(Arc& arc, const BranchPointAhead& point, double before) {
   Node near, there;
   // the tangent's error grows towards the place, the prediction's away from it
-  if (!arc.close_from(point.base, point.distance - before, &near)) return point.base;
+  while (!arc.close_from(point.base, point.distance - before, &near)) {
+    before *= 10.0;
+    if (before >= point.distance) {
+      near = point.base, before = point.distance;
+      break;
+    }
+  }
   there = near;
   arc.predict(near, before, &there.state);
   there.place += before, there.sigma = point.sigma;

@@ -138,7 +138,7 @@ class Tracker {
     for (; row_ < rows_ && sigma_[row_] <= until; ++row_)
       if (!place_row(stretch, std::fmin(sigma_[row_], reach))) break;
     for (double sigma : stretch.last().crossings) track_.crossings.push_back(sigma);
-    if (ends && row_ < rows_) {
+    if (ends && (row_ < rows_ || until < end_)) {
       keep_limit(stretch);
       return stop(TrackEnd::stalled, 0.0);
     }
