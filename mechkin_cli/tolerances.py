@@ -141,6 +141,10 @@ MODE_ORDER: Final = 1e-6
 """Coordinates (rad, parts of the size) that differ less are equal for the order of the modes'
 letters, so that rounding cannot change it."""
 
+SAME_FOLD: Final = 1e-3
+"""Poses (parts of the size, direction cosines) that differ less stand on one fold: what is found
+there is known to the root of a rounding, and steps from both sides end as near."""
+
 NEAR_RUNNER_UP: Final = 1.2
 """Ratio of distances below which the nearest assembly is not clearly the one that was meant."""
 

@@ -129,10 +129,11 @@ def common_motions(
 
 
 class General:
-    """A general place of all joints; lengths in parts of `size` (m)."""
+    """A general place of all joints; lengths in parts of `size` (m), from an `origin` (m) near the
+    drawing: far from it lines would be lost in rounding."""
 
-    def __init__(self, place: int, size: float) -> None:
-        self.size = size
+    def __init__(self, place: int, size: float, origin: Vector) -> None:
+        self.size, self.origin = size, origin
         self._next = 7 * place
         self._seen: dict[tuple[str, str], tuple[Displacement, list[Screw]]] = {}
 
@@ -144,7 +145,7 @@ class General:
             screws: list[Screw] = []
             pitch = joint.pitch / self.size
             for part in joint.parts:
-                part = _scaled(part, self.size)
+                part = _scaled(part, self.size, self.origin)
                 own = part.screws(pitch)
                 screws += own if passed is STILL else [passed.screw(screw) for screw in own]
                 passed = passed.after(self._moved(part, pitch))
@@ -171,8 +172,10 @@ class General:
         return before.after(own).after(after.reversed())
 
 
-def _scaled(part: Part, size: float) -> Part:
-    before, after = (f._replace(o=scale(1.0 / size, f.o)) for f in (part.before, part.after))
+def _scaled(part: Part, size: float, origin: Vector) -> Part:
+    before, after = (
+        f._replace(o=scale(1.0 / size, subtract(f.o, origin))) for f in (part.before, part.after)
+    )
     return part._replace(before=before, after=after)
 
 

@@ -28,7 +28,7 @@ from mechkin_cli.mechanism.held_balls import HeldBall, ball_line, held_ball
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.legs import find_legs, frame_on
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
-from mechkin_cli.mechanism.vectors import Vector, norm, scale
+from mechkin_cli.mechanism.vectors import ZERO, Vector, add, norm, scale
 
 Coordinate = tuple[str, str]
 """A joint and its coordinate."""
@@ -90,7 +90,8 @@ def held_freedoms(mechanism: Mechanism, driven: Collection[Coordinate]) -> tuple
     """The idle freedoms that can be held at a coordinate, small groups of links first."""
     size = mechanism.box_diagonal()
     found: list[Held] = []
-    general = [General(place, size) for place in range(PLACES)]
+    origin = next((joint.point.vector for joint in mechanism.joints.values()), ZERO)
+    general = [General(place, size, origin) for place in range(PLACES)]
     legs = {frozenset(leg.links) for leg in find_legs(mechanism)}
     for links, inner, border in _groups(mechanism):
         if _is_all_told(links, border, found) or frozenset(links) in legs:
@@ -114,7 +115,16 @@ def held_freedoms(mechanism: Mechanism, driven: Collection[Coordinate]) -> tuple
         if fewest == 1 and not named and not in_leg:
             free = [joint for joint in border if all(joint.name != name for name, _ in taken)]
             found += _held_by_ball(mechanism, links, border, free, places, size)
-    return tuple(found)
+    return tuple(_from_ground(one, origin) for one in found)
+
+
+def _from_ground(held: Held, origin: Vector) -> Held:
+    """With lines from the ground's origin instead of another."""
+    axes = {
+        link: None if line is None else Line(line.along, add(line.start, origin))
+        for link, line in held.axes.items()
+    }
+    return held._replace(axes=axes)
 
 
 def _is_all_told(links: Sequence[str], border: Sequence[Joint], found: Sequence[Held]) -> bool:

@@ -70,7 +70,15 @@ def choose_start(session: Session) -> Start:
     if session.continued is not None:
         return _continued(session.continued)
     key = ("start", str(session.problem.assembly))
-    return session.once(key, lambda: _choose_start(session))
+    return session.once(key, lambda: _judged(session, _choose_start(session)))
+
+
+def _judged(session: Session, start: Start) -> Start:
+    if start.mode not in (NEAR, HOME) and session.problem.assembly.mode is not None:
+        return start
+    from mechkin_cli.analysis.assembly.on_fold import judged_at_second_row
+
+    return judged_at_second_row(session, start)
 
 
 def _continued(continued: Continued) -> Start:

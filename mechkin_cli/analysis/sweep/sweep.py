@@ -162,7 +162,7 @@ def _failed(batch: Batch, rows: Rows) -> Bools:
     turned = np.zeros(rows.reached.size, dtype=bool)
     for section in np.unique(rows.section[rows.reached]):
         own = np.flatnonzero(rows.reached & (rows.section == section))
-        turned[own] = (batch.side[:, own] != batch.side[:, own[:1]]).any(axis=0)
+        turned[own] = (batch.side[:, own] != batch.side[:, [own[own.size // 2]]]).any(axis=0)
     if batch.condition is not None:
         # on a branch point a sign is rounding
         turned &= batch.condition <= tolerances.CONDITION_RANK_UNCLEAR

@@ -100,7 +100,9 @@ class Walker {
     p->nodes.assign(1, a);
     double h = std::fmin(arc.wanted_step(a), refused_ / a.rate);
     int refuses = -1;  // the block that refused the last step
-    while (p->steps + p->rejected < limits_.arc_steps && a.place < FARTHEST) {
+    while (p->steps + p->rejected < limits_.arc_steps) {
+      p->unbounded = a.place >= FARTHEST;
+      if (p->unbounded) return;
       if (stands_in_the_way(arc, a, refuses, h, p)) return;
       if (h < LEAST_ARC) {
         if (touches_dead_centre(p) || !cross_branch_point(p, &a)) return;

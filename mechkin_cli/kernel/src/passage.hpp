@@ -13,6 +13,7 @@ struct Passage {
   PassageEnd end = PassageEnd::lost;
   int block = 0;                  // and those in trouble that it hangs on
   int blame = -1;                 // lost: the block that stood in the way
+  bool unbounded = false;         // lost: it went on and on while the path stood still
   std::unique_ptr<Arc> arc;
   std::vector<Node> nodes;        // sigma does not fall from one to the next
   Node beyond;                    // dead centre: the first node on its other side

@@ -121,6 +121,10 @@ class Tracker {
     track_.steps += stretch.steps, track_.rejected += stretch.rejected;
     const PassageEnd kind = stretch.end();
     const bool ends = kind == PassageEnd::dead_centre || kind == PassageEnd::branch_point;
+    if (stretch.last().unbounded) {
+      node_ = stretch.last().nodes.back();
+      return stop(TrackEnd::stalled, 0.0);
+    }
     if (!stretch.carries_all(plan().blocks)) {
       // blocks that nobody carried are followed by steps as short as it takes, and what was seen ends them
       looks_ = false;
@@ -158,6 +162,8 @@ class Tracker {
       }
     }
     if (kept_) kept_->clear(), kept_ = nullptr;
+    // a way whose last row lies on a dead centre is at its end
+    if (ends && until >= end_) next.sigma = end_;
     reduce(&next);
     node_ = next;
     step_ = stepper_.wanted_step(node_);
