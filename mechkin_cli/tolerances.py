@@ -9,6 +9,8 @@ stands beside it with its reason (`kernel/src/`):
 * `condition.hpp`: the condition up to which the estimate stands, 1e6, and how far its factors may
   be off, 5e-4; beyond, the condition is computed to rounding;
 * `linear.hpp`: cosines of Jacobi rotations, 1e-15 and 1e-8, and at most 30 sweeps;
+* `passage.cpp`, `branch_point.cpp`, `tracker.cpp`: what a walk by arclength takes for a dead centre, a narrow place or a
+  branch point;
 * `search.hpp`: damping of Levenberg-Marquardt steps;
 * `position.hpp`: a Newton step beyond 1e100 is none;
 * `row_curve.cpp`: rows from which a curve's derivatives are read, in parts of step and `PATH_KNOT`;
@@ -303,30 +305,14 @@ DEAD_CENTRE_STEP: Final = 1e-12
 """Newton on d(input)/d(coordinate) = 0 ends when the coordinate moves less (rad or parts of the
 size)."""
 
-DEAD_CENTRE_STRIDE: Final = 0.2
-"""Longest step of the driven coordinate (rad or length units) that Newton's guess still follows."""
-
-DEAD_CENTRE_BEHIND: Final = 1e-9
-"""How far (rad or length units) a dead centre may lie behind the last place followed: rounding of
-that place, which is about the root of a rounding away from it."""
-
 DEAD_CENTRE_ITERATIONS: Final = 40
 """Far more than quadratic convergence needs; a search that uses them all has found none."""
-
-EXCHANGE_SPEED: Final = 1e-3
-"""Least derivative of a coordinate with respect to the input (rad, length units) to be driven in
-its place: next to a dead centre it grows as one over the root of the distance. Measured without it:
-a rocker at rest, 1e-10, gave a dead centre 2e-6 rad before a branch point."""
 
 SAME_DEAD_CENTRE: Final = 1e-5
 """Two dead centres whose poses differ less are one: the states there are known to about 1e-8, the
 root of a rounding."""
 
 # --- circuits ----------------------------------------------------------------------------------
-
-FOLD_CROSSING: Final = 0.02
-"""Step of the fastest coordinate (rad, length units) by which a dead centre is left on its other
-side: short against the way between two of them, long against its own doubt of 1e-8."""
 
 SAME_TURN: Final = 1e-12
 """Turns by which two rows' inputs may differ from a whole number of them and still stand for the
@@ -343,20 +329,6 @@ PASSED: Final = 1e-6
 
 FAR_INPUT: Final = 20.0
 """How far a slide (length units) or a thread (rad) is driven in search of a dead centre."""
-
-# --- branch points -----------------------------------------------------------------------------
-
-BRANCH_POINT_SPANS: Final = (0.2, 0.05, 0.0125)
-"""Distances (rad, length units) before the place where a branch was lost, at which the singular
-value is read; the one whose extrapolation is surest counts."""
-
-BRANCH_POINT_DOUBT: Final = 1e-8
-"""Change of the extrapolated place by its last order (rad, length units) above which the singular
-value does not tell of a branch point. Measured at branch points of parallelograms: 3e-12."""
-
-BRANCH_POINT_NEAR: Final = 1e-3
-"""Distance from the last place on the branch up to which a branch point explains its end: steps
-are halved down to 1e-15, but next to the point Newton's residual test fails first."""
 
 RUNAWAY_SLIDE: Final = 20.0
 """Length of a slide (length units, about sizes) from which a lost branch is said to go out of
@@ -640,10 +612,6 @@ MOST_KEPT: Final = 400_000_000
 anything is computed with them."""
 
 # --- numbers of places, choices and threads ----------------------------------------------------
-
-APPROACH_PLACES: Final = 9
-"""Places that are read on the last stretch before a branch point: the polynomial through them is of
-eighth order, and its change by the last order is the doubt."""
 
 RANGE_SAMPLES: Final = 720
 """Places of a range at which the sign of an output's rate is read: half a degree of a full turn."""

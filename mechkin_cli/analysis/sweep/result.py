@@ -20,6 +20,7 @@ from mechkin_cli.analysis.sweep.admissible import (
     told_anew,
 )
 from mechkin_cli.analysis.sweep.closing_angles import make_continuous
+from mechkin_cli.analysis.sweep.read_off import read_off
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
 from mechkin_cli.solver.codes import Demand
@@ -381,22 +382,8 @@ class Result:
         )
 
     def _split(self, wanted: Sequence[Wanted], batch: Batch, session: Session) -> Columns:
-        """The outputs of a run by name; nan in rows without a position, and what depends on a rank
-        that is unclear."""
-        values, slots = batch.outputs, session.readout(wanted).slots
-        assert values is not None
-        rows = self.row_states
-        if not rows.reached.all():
-            values[:, ~rows.reached] = np.nan
-        unclear = rows.status == Status.rank_unclear
-        columns = {}
-        for quantity in wanted:
-            slot = slots[quantity.name]
-            column = values[slot.first : slot.first + slot.width]
-            if unclear.any() and demand_of(self.problem.mechanism, [quantity]):
-                column[:, unclear] = np.nan
-            columns[quantity.name] = column
-        return columns
+        slots = session.readout(wanted).slots
+        return read_off(self.row_states, self.problem.mechanism, wanted, batch, slots)
 
     def _store_verdicts(self, batch: Batch) -> None:
         missing = ~self.row_states.reached

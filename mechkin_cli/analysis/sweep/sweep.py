@@ -158,14 +158,15 @@ def _failed(batch: Batch, rows: Rows) -> Bools:
 
     Sides are there where the run demanded more than positions.
     """
-    # where a branch point was passed, sides change with it: a section has those of its median row
-    turned = np.zeros(rows.reached.size, dtype=bool)
-    for section in np.unique(rows.section[rows.reached]):
-        own = np.flatnonzero(rows.reached & (rows.section == section))
-        turned[own] = (batch.side[:, own] != batch.side[:, [own[own.size // 2]]]).any(axis=0)
+    # on a branch point a sign is rounding
+    told = rows.reached.copy()
     if batch.condition is not None:
-        # on a branch point a sign is rounding
-        turned &= batch.condition <= tolerances.CONDITION_RANK_UNCLEAR
+        told &= batch.condition <= tolerances.CONDITION_RANK_UNCLEAR
+    # where a branch point was passed sides change with it: each section has its own
+    turned = np.zeros(told.size, dtype=bool)
+    for section in np.unique(rows.section[told]):
+        own = np.flatnonzero(told & (rows.section == section))
+        turned[own] = (batch.side[:, own] != batch.side[:, own[:1]]).any(axis=0)
     failed: Bools = ~batch.good | turned | ~(batch.correction <= rows.limit)
     return rows.reached & failed
 
@@ -194,7 +195,7 @@ def _judge_inputs(session: Session, rows: Rows) -> None:
         return
     faults = input_faults(session)
     rows.diagnostics.extend(fault for fault in faults if fault not in rows.diagnostics)
-    if faults and any(moved.any() for moved in session.inputs[1:]):
+    if faults and any(moved.any() for moved in session.inputs.orders[1:]):
         rows.status[rows.reached] = Status.rank_unclear
 
 

@@ -273,6 +273,10 @@ class Walker {
 
 }  // namespace
 
+void walk_passage(const StepLimits& limits, const Node& from, double refused, double until, Passage* passage) {
+  Walker(limits, refused, until).walk(from, passage);
+}
+
 bool Passage::at(double sigma, Node* node, double* limit) const {
   std::size_t i = 1;
   while (i + 1 < nodes.size() && nodes[i].sigma < sigma) ++i;
@@ -288,125 +292,16 @@ bool Passage::at(double sigma, Node* node, double* limit) const {
   if (std::fmin(a.rate, b.rate) * arc->speed() >= SLOW) return true;
   // next to a dead centre the place of sigma on the arc counts
   double h = t * (b.place - a.place);
+  const Node between = *node;
   for (int k = 0; k < 40; ++k) {
-    if (!arc->close_from(a, h, node)) return false;
+    if (!arc->close_from(a, h, node)) {
+      *node = between;
+      return true;
+    }
     const double miss = (node->sigma - sigma) / node->rate;
     if (!(std::fabs(miss) > 1e-15 * std::fmax(1.0, std::fabs(h)))) break;
     h = std::fmin(std::fmax(h - miss, 0.0), b.place - a.place);
   }
   continue_turns(*arc, a, node);
   return true;
-}
-
-const Passage& Stretch::of_block(int block) const {
-  for (const Passage& p : passages)
-    if (p.arc->owns(block)) return p;
-  for (const Passage& p : passages)
-    if (p.arc->carries(block)) return p;
-  return passages.front();
-}
-
-bool Stretch::at(const Plan& plan, const KernelUnit& unit, const std::vector<ClosingTurn>& turns, double sigma,
-                 Node* node, double* limit) const {
-  std::vector<Node> found(passages.size());
-  *limit = 0.0;
-  for (std::size_t k = 0; k < passages.size(); ++k) {
-    double own = 0.0;
-    if (!passages[k].at(sigma, &found[k], &own)) return false;
-    *limit = std::fmax(*limit, own);
-  }
-  *node = found.front();
-  const auto of = [&](int block) -> const Node& { return found[&of_block(block) - passages.data()]; };
-  for (int k = 0; k < plan.links; ++k) {
-    const TreeJoint& j = plan.joints[k];
-    const bool turns_freely = j.type == TREE_S;
-    for (int f = 0; f < unit.tree_types[j.type].freedoms; ++f) {
-      const int block = plan.column_block[j.column + f];
-      if (block < 0) continue;
-      if (!turns_freely)
-        node->state[j.state + f] = of(block).state[j.state + f];
-      else
-        std::copy_n(&of(block).state[j.state], 4, &node->state[j.state]);
-    }
-  }
-  for (int b = 0; b < plan.blocks; ++b)
-    for (const ClosingTurn& t : turns)
-      if (t.closing >= plan.block[b].closing_begin && t.closing < plan.block[b].closing_end)
-        std::copy_n(&of(b).turn[t.slot], t.width, &node->turn[t.slot]);
-  return true;
-}
-
-bool Stretch::carries_all(int blocks) const {
-  for (int b = 0; b < blocks; ++b)
-    if (!of_block(b).arc->carries(b)) return false;
-  return true;
-}
-
-namespace {
-
-// The blocks in trouble that a block hangs on, itself, and all that lies between them: what is walked together.
-std::vector<char> chain_of(int block, const std::vector<int>& trouble, const std::vector<char>& upstream, int n) {
-  std::vector<char> own(n, 0);
-  own[block] = 1;
-  for (int other : trouble) {
-    if (!upstream[block * n + other]) continue;
-    own[other] = 1;
-    for (int b = 0; b < n; ++b)
-      if (upstream[b * n + other] && upstream[block * n + b]) own[b] = 1;
-  }
-  return own;
-}
-
-// All but the other blocks in trouble and what hangs on them.
-std::vector<char> carried_with(const std::vector<char>& own, const std::vector<int>& trouble,
-                               const std::vector<char>& upstream, int n) {
-  std::vector<char> carried(n, 1);
-  for (int other : trouble)
-    for (int b = 0; b < n && !own[other]; ++b)
-      if (b == other || upstream[b * n + other]) carried[b] = 0;
-  return carried;
-}
-
-// The block whose matrix changes fastest; at the start of a path no step has told that yet.
-int worst_block(const Node& node) {
-  int worst = 0;
-  for (int b = 1; b < (int)node.danger.size(); ++b) {
-    const bool told = node.danger[b] != node.danger[worst];
-    if (told ? node.danger[b] > node.danger[worst] : node.pivot[b] < node.pivot[worst]) worst = b;
-  }
-  return worst;
-}
-
-}  // namespace
-
-Stretch walk_stretch(const Path& path, const KernelUnit& unit, const StepLimits& limits, const Node& from,
-                     double refused, double until) {
-  const int n = path.plan(0.0).blocks;
-  const std::vector<char> upstream = upstream_blocks(path.plan(0.0), unit);
-  const Walker walker(limits, refused, until);
-  std::vector<int> trouble = {worst_block(from)};
-  Stretch stretch;
-  // every block that is found to stand in the way changes what is walked together, and what is carried along
-  for (bool again = true; again;) {
-    again = false;
-    stretch.passages.clear();
-    for (std::size_t k = 0; k < trouble.size() && !again; ++k) {
-      Passage p;
-      p.block = trouble[k];
-      const std::vector<char> own = chain_of(p.block, trouble, upstream, n);
-      p.arc = std::make_unique<Arc>(path, unit, limits, own, carried_with(own, trouble, upstream, n));
-      walker.walk(from, &p);
-      stretch.steps += p.steps, stretch.rejected += p.rejected;
-      const bool is_new = std::find(trouble.begin(), trouble.end(), p.blame) == trouble.end();
-      if (p.end == PassageEnd::lost && p.blame >= 0 && is_new) {
-        again = true;
-        trouble.push_back(p.blame);
-      }
-      if (p.nodes.empty()) p.nodes.assign(1, from);
-      stretch.passages.push_back(std::move(p));
-    }
-  }
-  for (std::size_t k = 0; k < stretch.passages.size(); ++k)
-    if (stretch.ends < 0 || stretch.passages[k].reach() < stretch.reach()) stretch.ends = (int)k;
-  return stretch;
 }

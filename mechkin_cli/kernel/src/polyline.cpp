@@ -13,20 +13,9 @@
 #include <optional>
 
 #include "orbit.hpp"
-#include "row_curve.hpp"
+#include "row_pieces.hpp"
 
 namespace {
-
-enum class Way { rest, line, curve, course };
-
-constexpr double ROUNDING = 0x1p-50;  // some units in the last place
-
-// Rows (first, last] that are reached one way from row `first`.
-struct Piece {
-  Way way;
-  long first, last;
-  long number = -1;  // of the course's piece
-};
 
 // Inputs whose joints no block places.
 std::vector<char> still_inputs(const Plan& plan) {
@@ -49,11 +38,9 @@ class RowFollower {
  public:
   RowFollower(const Plan& plan, const KernelUnit& unit, const InputRows& rows, const StepLimits& limits,
                const RowGuesses& out, const Course* course)
-      : plan_(plan), unit_(unit), rows_(rows), limits_(limits), out_(out), course_(course), scale_(rows.inputs, 0.0),
+      : plan_(plan), unit_(unit), rows_(rows), limits_(limits), out_(out), course_(course), cut_(rows, limits, course),
         result_{TrackEnd::finished, 1, 0, 0, {}, {}, {}, std::vector<double>(rows.inputs, 0.0), {}, {}, {}} {
     for (int i = 0; i < rows.inputs; ++i) cyclic_.push_back(out.turn && rows.whole && is_cyclic(plan, i));
-    for (int i = 0; i < rows.inputs; ++i)
-      for (long r = 0; r < rows.rows; ++r) scale_[i] = std::fmax(scale_[i], std::fabs(rows.at(i, r)));
   }
 
   Followed follow(const double* start, const std::vector<double>& turn, bool every_row) {
@@ -62,7 +49,7 @@ class RowFollower {
     const bool placed = place_start();
     for (int s = 0; s < plan_.states; ++s) out_.guess[s * out_.rows] = result_.state[s];
     if (!placed) return result_;
-    for (const Piece& piece : pieces(every_row)) {
+    for (const Piece& piece : cut_.pieces(every_row)) {
       if (piece.way == Way::rest) rest(piece);
       if (piece.way == Way::line && !line(piece.first, piece.last, every_row)) return ended();
       if (piece.way == Way::curve && !curve(piece)) return ended();
@@ -113,67 +100,8 @@ class RowFollower {
     return x0;
   }
 
-  // Direction from a row to the next, its largest part 1 (or -1), and which part that is; false where they coincide but
-  // for roundings of the inputs, which are no way to go.
   bool direction_from(long row, std::vector<double>* u, int* leading) const {
-    u->assign(rows_.inputs, 0.0), *leading = 0;
-    double size = 0.0;
-    bool moves = false;
-    for (int i = 0; i < rows_.inputs; ++i) {
-      (*u)[i] = rows_.at(i, row + 1) - rows_.at(i, row);
-      moves = moves || !(std::fabs((*u)[i]) <= ROUNDING * scale_[i]);
-      if (std::fabs((*u)[i]) > size) size = std::fabs((*u)[i]), *leading = i;
-    }
-    if (size == 0.0 || !moves) return false;
-    for (double& part : *u) part /= size;
-    return true;
-  }
-
-  // The last row that lies on the straight way from `first` through the row after it.
-  long end_of_line(long first, long end, const std::vector<double>& u, int leading) const {
-    double before = 0.0;
-    long row = first + 1;
-    for (; row <= end; ++row) {
-      const double along = (rows_.at(leading, row) - rows_.at(leading, first)) * u[leading];
-      bool onward = along > before;
-      for (int i = 0; onward && rows_.inputs > 1 && i < rows_.inputs; ++i) {
-        const double off = rows_.at(i, row) - (rows_.at(i, first) + u[i] * along);
-        onward = std::fabs(off) <= limits_.same_line * (1.0 + scale_[i]);
-      }
-      if (!onward) break;
-      before = along;
-    }
-    return std::max(row - 1, first + 1);
-  }
-
-  std::vector<Piece> pieces(bool every_row) const {
-    std::vector<Piece> found;
-    std::vector<double> u;
-    int leading = 0;
-    long next = 0;  // piece of the course
-    const long courses = course_ ? (long)course_->pieces().size() : 0;
-    for (long first = 0, last = 0; first + 1 < rows_.rows; first = last) {
-      if (next < courses && course_->pieces()[next].first == first) {
-        last = course_->pieces()[next].last;
-        found.push_back({Way::course, first, last, next});
-        ++next;
-        continue;
-      }
-      last = first + 1;
-      Way way = Way::rest;
-      if (direction_from(first, &u, &leading)) {
-        const long end = next < courses ? course_->pieces()[next].first : rows_.rows - 1;
-        if (!every_row) last = end_of_line(first, end, u, leading);
-        const bool whole = first == 0 && last == rows_.rows - 1;
-        const bool far = last > first + 1 && rows_.distance(first, last) >= limits_.knot;
-        way = every_row || whole || far || rows_.inputs == 1 ? Way::line : Way::curve;
-      }
-      if (way == Way::curve && !found.empty() && found.back().way == Way::curve)
-        found.back().last = last;
-      else
-        found.push_back({way, first, last});
-    }
-    return found;
+    return cut_.direction_from(row, u, leading);
   }
 
   void rest(const Piece& piece) {
@@ -450,7 +378,7 @@ class RowFollower {
   const StepLimits& limits_;
   const RowGuesses& out_;
   const Course* course_;
-  std::vector<double> scale_;
+  RowPieces cut_;
   Followed result_;
   std::vector<char> cyclic_;      // inputs whose angles are reduced
   std::optional<Orbit> orbit_;    // of the turns that came last

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "course.hpp"
-#include "passage.hpp"
+#include "stretch.hpp"
 
 enum class TrackEnd : int { finished = 0, stalled = 1, exhausted = 2, start_not_closed = 3 };
 
