@@ -9,7 +9,7 @@ stands beside it with its reason (`kernel/src/`):
 * `condition.hpp`: the condition up to which the estimate stands, 1e6, and how far its factors may
   be off, 5e-4; beyond, the condition is computed to rounding;
 * `linear.hpp`: cosines of Jacobi rotations, 1e-15 and 1e-8, and at most 30 sweeps;
-* `passage.cpp`, `branch_point.cpp`, `tracker.cpp`: what a walk by arclength takes for a dead centre,
+* `passage.cpp`, `branch_point.cpp`, `tracker.cpp`: what a walk by arclength takes for a fold,
   a narrow place or a branch point;
 * `search.hpp`: damping of Levenberg-Marquardt steps;
 * `position.hpp`: a Newton step beyond 1e100 is none;
