@@ -28,8 +28,9 @@ constexpr double SINGULAR_STEP = 1e-6;
 constexpr double STEEP = 0.1, ROUNDING_LEFT = 1e-12;
 // Pivots of a matrix that is singular a little farther on, in parts of the least that steps may have.
 constexpr double SINGULAR_PIVOTS = 100.0;
-// Arclength (rad, length units) after which a walk comes to nothing: a slide that grows without bound.
-constexpr double FARTHEST = 100.0;
+// Arclength (rad, length units) on which the path moves by less than this where a walk comes to nothing: a slide that
+// grows without bound. A screw of a thousandth of the size's lead moves it by some tenths.
+constexpr double FARTHEST = 100.0, STANDING = 1e-6;
 // Attempts behind a dead centre; through a gap of 1e-12 it takes some sixty.
 constexpr int MOST_BEHIND = 300;
 // Rate and second derivative of sigma by arclength that are rounding.
@@ -100,9 +101,13 @@ class Walker {
     p->nodes.assign(1, a);
     double h = std::fmin(arc.wanted_step(a), refused_ / a.rate);
     int refuses = -1;  // the block that refused the last step
+    Node mark = a;
     while (p->steps + p->rejected < limits_.arc_steps) {
-      p->unbounded = a.place >= FARTHEST;
-      if (p->unbounded) return;
+      if (a.place - mark.place >= FARTHEST) {
+        p->unbounded = std::fabs(a.sigma - mark.sigma) * arc.speed() < STANDING;
+        if (p->unbounded) return;
+        mark = a;
+      }
       if (stands_in_the_way(arc, a, refuses, h, p)) return;
       if (h < LEAST_ARC) {
         if (touches_dead_centre(p) || !cross_branch_point(p, &a)) return;
