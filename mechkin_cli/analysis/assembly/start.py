@@ -197,12 +197,12 @@ def _from_home(session: Session) -> Start:
     drawing are the same place."""
     problem, layout, path = session.problem, session.layout, session.inputs.reduced
     # a row in the drawing's own turn comes before one that is nearer some turns away
-    row = nearest_to_home(session.inputs.values)
-    if np.max(np.abs(session.inputs.values[:, row]), initial=0.0) > np.pi:
-        row = nearest_to_home(path)
-    followed = follow_from_home(session, path[:, row])
-    if followed.end == TrackEnd.FINISHED:
-        return Start(followed.state, HOME, "followed from the home drawing", row=row)
+    own = nearest_to_home(session.inputs.values)
+    near = np.max(np.abs(session.inputs.values[:, own]), initial=0.0) <= np.pi
+    for row in dict.fromkeys([own, nearest_to_home(path)] if near else [nearest_to_home(path)]):
+        followed = follow_from_home(session, path[:, row])
+        if followed.end == TrackEnd.FINISHED:
+            return Start(followed.state, HOME, "followed from the home drawing", row=row)
     turned = _without_turns(session, path)
     if (turned != path).any():
         # the drawing serves whole turns away from it as well

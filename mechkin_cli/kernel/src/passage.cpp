@@ -30,7 +30,7 @@ constexpr double STEEP = 0.1, ROUNDING_LEFT = 1e-12;
 constexpr double SINGULAR_PIVOTS = 100.0;
 // Arclength (rad, length units) on which the path moves by less than this where a walk comes to nothing: a slide that
 // grows without bound. A screw of a thousandth of the size's lead moves it by some tenths.
-constexpr double FARTHEST = 100.0, STANDING = 1e-6;
+constexpr double FARTHEST = 1000.0, STANDING = 1e-6;
 // Attempts behind a dead centre; through a gap of 1e-12 it takes some sixty.
 constexpr int MOST_BEHIND = 300;
 // Rate and second derivative of sigma by arclength that are rounding.
