@@ -53,6 +53,10 @@ class Way:
         return t - turns * TURN, turns
 
 
+MOST_MINIMA = 60
+"""Low minima of a discriminant on a turn; more are rounding of one that hardly changes."""
+
+
 def way(linkage: Linkage, sign: int, span: float) -> Way:
     """The way from the drawing to |t| = span, or once around where that is its period.
 
@@ -68,7 +72,10 @@ def way(linkage: Linkage, sign: int, span: float) -> Way:
         if body.rod is None:
             continue
         margin = linkage.at(sign * t, FAST, body.name).margin[body.name]
-        for low, high in low_places(margin, t):
+        places = low_places(margin, t)
+        if len(places) > MOST_MINIMA:
+            raise Undecided(f"the discriminant of {body.name} rests at its own rounding")
+        for low, high in places:
             place, least = lowest(linkage, body.name, sign, low, high)
             critical.append((place, body.name, max(least, 0.0)))
             t = np.union1d(t, fine(place, end))
