@@ -53,7 +53,7 @@ class Way:
         return t - turns * TURN, turns
 
 
-MOST_MINIMA = 60
+MOST_MINIMA = 2000
 """Low minima of a discriminant on a turn; more are rounding of one that hardly changes."""
 
 
@@ -73,7 +73,7 @@ def way(linkage: Linkage, sign: int, span: float) -> Way:
             continue
         margin = linkage.at(sign * t, FAST, body.name).margin[body.name]
         places = low_places(margin, t)
-        if len(places) > MOST_MINIMA:
+        if len(places) > MOST_MINIMA * max(1.0, reach / TURN):
             raise Undecided(f"the discriminant of {body.name} rests at its own rounding")
         for low, high in places:
             place, least = lowest(linkage, body.name, sign, low, high)
