@@ -9,8 +9,8 @@ stands beside it with its reason (`kernel/src/`):
 * `condition.hpp`: the condition up to which the estimate stands, 1e6, and how far its factors may
   be off, 5e-4; beyond, the condition is computed to rounding;
 * `linear.hpp`: cosines of Jacobi rotations, 1e-15 and 1e-8, and at most 30 sweeps;
-* `passage.cpp`, `branch_point.cpp`, `tracker.cpp`: what a walk by arclength takes for a fold,
-  a narrow place or a branch point;
+* `arc.cpp`, `passage.cpp`, `stretch.cpp`, `branch_point.cpp`, `tracker.cpp`: what a walk by
+  arclength takes for a fold, a narrow place or a branch point, and what rounding leaves there;
 * `search.hpp`: damping of Levenberg-Marquardt steps;
 * `position.hpp`: a Newton step beyond 1e100 is none;
 * `row_curve.cpp`: rows from which a curve's derivatives are read, in parts of step and `PATH_KNOT`;
@@ -203,7 +203,9 @@ numbers of double precision come to a singular place on a branch."""
 
 ARC_PIVOT: Final = 1e-7
 """The same of the bordered matrix that follows a branch by arclength: its derivatives are wrong by
-a rounding over its square, a hundredth. Two branches at a gap of 1e-12 leave 1e-6."""
+a rounding over its square, a hundredth. Two branches at a gap of 1e-12 leave 1e-6; where one narrow
+place follows another the pivot is their product, and what a rounding does to the matrix is
+measured."""
 
 SPECTRAL_RADIUS: Final = 0.5
 """Largest spectral radius of J_a^+ J_b - I for the Jacobians of a step from a to b, and to its

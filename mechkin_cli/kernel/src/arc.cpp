@@ -3,6 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+namespace {
+
+// Half a unit in the last place of an equation; singular values below which it moves the unknowns by more than a
+// hundredth of the least that steps have.
+constexpr double ROUNDING = 1e-16, LOOSE = 1e-4;
+
+}  // namespace
+
 std::vector<char> upstream_blocks(const Plan& plan, const KernelUnit& unit) {
   const int n = plan.blocks;
   std::vector<char> before((std::size_t)n * n, 0);
@@ -22,8 +30,9 @@ std::vector<char> upstream_blocks(const Plan& plan, const KernelUnit& unit) {
 }
 
 Arc::Arc(const Path& path, const KernelUnit& unit, const StepLimits& limits, std::vector<char> own,
-         std::vector<char> carried)
-    : Stepper(path, unit, limits), own_(std::move(own)), before_(plan_.blocks, 0), carried_(std::move(carried)) {
+         std::vector<char> carried, double weight)
+    : Stepper(path, unit, limits), own_(std::move(own)), before_(plan_.blocks, 0), carried_(std::move(carried)),
+      weight_(weight) {
   const std::vector<char> upstream = upstream_blocks(plan_, unit);
   const int n = plan_.blocks;
   for (int b = 0; b < n; ++b) {
@@ -122,7 +131,7 @@ Matrix with_column(const Matrix& a, const std::vector<double>& column, double fa
 std::vector<double> Arc::tangent(const Node& node) const {
   std::vector<double> t(size_ + 1);
   for (int u = 0; u < size_; ++u) t[u] = node.first[unknown_[u]];
-  t[size_] = node.rate * speed_;
+  t[size_] = node.rate * scale_;
   return t;
 }
 
@@ -187,7 +196,7 @@ bool Arc::close_by(std::vector<double> state, double sigma, const std::vector<do
     node->sigma = sigma;
     look(state.data(), false, none, 1.0, none, 0.0, limits_.iterations, DEMAND_VELOCITY, node, &seen);
     state = node->state;
-    node->extended = with_column(own_jacobian(*node), seen.first, 1.0 / speed_);
+    node->extended = with_column(own_jacobian(*node), seen.first, 1.0 / scale_);
     if (short_step) break;
     std::vector<double> right(rows_ + 1);
     for (int i = 0; i < rows_; ++i) right[i] = -seen.equations[i];
@@ -196,12 +205,12 @@ bool Arc::close_by(std::vector<double> state, double sigma, const std::vector<do
     const std::vector<double> step = LeastSquares(with_row(extended(*node), border)).solve(right);
     if (!is_finite(step)) return false;
     advance(step, state.data());
-    sigma += step[size_] / speed_;
+    sigma += step[size_] / scale_;
     for (int u = 0; u <= size_; ++u) way[u] += step[u];
     short_step = length_of(step) <= limits_.coarse;
   }
   if (!short_step) return false;
-  double correction = std::fabs(sigma - guessed) * speed_;
+  double correction = std::fabs(sigma - guessed) * scale_;
   for (int s = 0; s < plan_.states; ++s) correction = std::fmax(correction, std::fabs(state[s] - guess[s]));
   node->correction = correction;
   return true;
@@ -217,7 +226,7 @@ bool Arc::differentiate(Node* node) {
   if (!(size > 0.0) || !std::isfinite(size)) return false;
   for (double& x : t) x /= size;
   const std::vector<double> rates(t.begin(), t.end() - 1), none(size_, 0.0);
-  const double rate = t[size_] / speed_;
+  const double rate = t[size_] / scale_;
   const std::vector<double> state = node->state;
   const double correction = node->correction;
   Looked seen;
@@ -228,17 +237,44 @@ bool Arc::differentiate(Node* node) {
   const LeastSquares matrix(with_row(extended(*node), t));
   const std::vector<double> second = matrix.solve(right);
   const std::vector<double> accelerations(second.begin(), second.end() - 1);
-  const double bend = second[size_] / speed_;
+  const double bend = second[size_] / scale_;
   if (!is_finite(second) || !look(state.data(), true, rates, rate, accelerations, bend, limits_.iterations,
                                   DEMAND_VELOCITY | DEMAND_ACCELERATION, node, &seen))
     return false;
   node->rate = rate, node->bend = bend;
   node->correction = std::fmax(correction, node->correction);
+  // what the weight adds to the inputs' own part in the tangent
+  const double more = std::sqrt(weight_ * weight_ - 1.0) * speed_;
+  node->own = rate * more, node->own_second = bend * more;
+  double pivot = matrix.least_pivot();
+  if (pivot < limits_.arc_pivot) pivot = std::sqrt(ROUNDING / rounding_of_matrix(*node, matrix, t));
   for (int b = 0; b < plan_.blocks; ++b)
-    if (own_[b]) node->pivot[b] = matrix.least_pivot();
+    if (own_[b]) node->pivot[b] = pivot;
   clear_uncarried(node);
   differentiate_states(node), differentiate_turns(node);
   return is_finite(node->first) && is_finite(node->second);
+}
+
+// What a rounding of the equations does to the matrix: the sum of the radii of M^-1 (M' - M), with M' at the states that
+// a rounding moves along the directions that the equations hardly tell. Of one narrow place it is a rounding over the
+// pivot's square; where one follows another the pivot is as small as the product of both, and the matrix is as sure
+// as with the smaller of them alone.
+double Arc::rounding_of_matrix(const Node& node, const LeastSquares& matrix, const std::vector<double>& border) {
+  const Singular s = singular_vectors(node.extended);
+  double radius = 0.0;
+  for (int i = 0; i < size_; ++i) {
+    if (s.value[i] > LOOSE) continue;
+    std::vector<double> moved(size_);
+    const double part = ROUNDING / s.value[i];
+    for (int u = 0; u < size_; ++u) moved[u] = part * s.v(u, i);
+    std::vector<double> state = node.state;
+    advance(moved, state.data());
+    Matrix change = matrix.solve(
+        with_row(extended_at(node, state, node.sigma + part * s.v(size_, i) / scale_), border));
+    subtract_identity(&change);
+    radius += spectral_radius_bound(change);
+  }
+  return radius;
 }
 
 void Arc::clear_uncarried(Node* node) const {
@@ -255,7 +291,7 @@ bool Arc::enter(const Node& node, Node* start) {
     const double rate = node.first[plan_.input_column[i]] / (node.rate != 0.0 ? node.rate : 1.0);
     square += rate * rate;
   }
-  speed_ = square > 0.0 ? std::sqrt(square) : 1.0;
+  speed_ = square > 0.0 ? std::sqrt(square) : 1.0, scale_ = weight_ * speed_;
   *start = node;
   start->place = 0.0, start->rate = node.rate;
   start->correction = 0.0;
@@ -263,15 +299,15 @@ bool Arc::enter(const Node& node, Node* start) {
   std::vector<double> border(size_ + 1);
   double size = 0.0;
   for (int u = 0; u < size_; ++u) border[u] = node.first[unknown_[u]];
-  border[size_] = node.rate * speed_;
+  border[size_] = node.rate * scale_;
   size = length_of(border);
   if (!(size > 0.0) || !std::isfinite(size)) return false;
   for (double& x : border) x /= size;
   for (int u = 0; u < size_; ++u) start->first[unknown_[u]] = border[u];
-  start->rate = border[size_] / speed_;
+  start->rate = border[size_] / scale_;
   if (!close_by(node.state, node.sigma, border, 0.0, start)) return false;
   for (int u = 0; u < size_; ++u) start->first[unknown_[u]] = border[u];
-  start->rate = border[size_] / speed_;
+  start->rate = border[size_] / scale_;
   const bool good = differentiate(start);
   start->turn = node.turn.size() == start->turn.size() ? node.turn : start->turn;
   return good;
@@ -302,13 +338,20 @@ Matrix Arc::extended_at(const Node& near, const std::vector<double>& state, doub
   copy.sigma = sigma;
   Looked seen;
   look(state.data(), false, none, 1.0, none, 0.0, limits_.iterations, DEMAND_VELOCITY, &copy, &seen);
-  return with_column(own_jacobian(copy), seen.first, 1.0 / speed_);
+  return with_column(own_jacobian(copy), seen.first, 1.0 / scale_);
+}
+
+// sigma counts by its own speed, whatever its weight.
+double Arc::longest_step(const Node& n) const {
+  if (weight_ == 1.0) return Stepper::longest_step(n);
+  const double part = n.rate * scale_, plain = n.rate * speed_;
+  return limits_.longest_step / std::sqrt(std::fmax(1.0 - part * part, 0.0) + plain * plain);
 }
 
 double Arc::own_step(const Node& n) const {
-  double bend = n.bend * speed_ * n.bend * speed_;
+  double bend = n.bend * scale_ * n.bend * scale_;
   for (int u = 0; u < size_; ++u) bend += n.second[unknown_[u]] * n.second[unknown_[u]];
-  const double most = std::fmin(limits_.longest_step, 0.8 * limits_.radius / own_danger(n));
+  const double most = std::fmin(longest_step(n), 0.8 * limits_.radius / own_danger(n));
   return std::fmin(most, std::fmin(limits_.bend, limits_.turn) / std::sqrt(bend));
 }
 
@@ -323,7 +366,7 @@ bool Arc::same_side(const Node& a, Node* b, int* blame) {
   for (double& x : t) x /= size;
   Looked seen;
   look(guess.data(), true, none, 1.0, none, 0.0, 0, DEMAND_VELOCITY, &half, &seen);
-  half.extended = with_column(own_jacobian(half), seen.first, 1.0 / speed_);
+  half.extended = with_column(own_jacobian(half), seen.first, 1.0 / scale_);
   double own_danger = 0.0;
   const bool own_same =
       is_regular_segment(bordered(a), with_row(half.extended, t), bordered(*b), limits_.radius, &own_danger, &b->least);
@@ -355,14 +398,14 @@ bool Arc::step(const Node& a, double h, Node* b, int* blame) {
     }
   if (turned_too_far(a, *b) || !looks_back(a, *b, limits_.jump * length)) return false;
   const double back = b->sigma - h * b->rate + 0.5 * h * h * b->bend;
-  return std::fabs(back - a.sigma) * speed_ <= limits_.jump * length && same_side(a, b, blame);
+  return std::fabs(back - a.sigma) * scale_ <= limits_.jump * length && same_side(a, b, blame);
 }
 
 std::vector<double> Arc::second_along(const Node& node, const std::vector<double>& v) {
   Node copy = node;
   const std::vector<double> rates(v.begin(), v.end() - 1), none(size_, 0.0);
   Looked seen;
-  look(node.state.data(), false, rates, v[size_] / speed_, none, 0.0, limits_.iterations,
+  look(node.state.data(), false, rates, v[size_] / scale_, none, 0.0, limits_.iterations,
        DEMAND_VELOCITY | DEMAND_ACCELERATION, &copy, &seen);
   return seen.second;
 }

@@ -15,9 +15,9 @@
 class Arc : public Stepper {
  public:
   // `own` (blocks): those whose unknowns the arc is of; `carried`: those to be followed besides them and the ones that
-  // they hang on.
+  // they hang on. `weight`: of sigma in the arclength against the inputs' own way; at least 1.
   Arc(const Path& path, const KernelUnit& unit, const StepLimits& limits, std::vector<char> own,
-      std::vector<char> carried);
+      std::vector<char> carried, double weight = 1.0);
 
   // The arc through a place of the path, with sigma rising; false if there is none.
   bool enter(const Node& node, Node* start);
@@ -39,13 +39,16 @@ class Arc : public Stepper {
   const std::vector<char>& before() const { return before_; }
   // [J g; t^T] of a node.
   Matrix bordered(const Node& node) const;
-  // [J g] of a node: equations x (unknowns, sigma in parts of the inputs' speed).
+  // [J g] of a node: equations x (unknowns, sigma in parts of its scale).
   const Matrix& extended(const Node& node) const { return node.extended; }
   // Second derivative of the equations along v = (unknowns, sigma) at a node, for v with [J g] v = 0.
   std::vector<double> second_along(const Node& node, const std::vector<double>& v);
-  // The node's tangent (unknowns, sigma in parts of the inputs' speed), of length 1.
+  // The node's tangent (unknowns, sigma in parts of its scale), of length 1.
   std::vector<double> tangent(const Node& node) const;
+  // Of the inputs by sigma where the arc begins; times sigma's weight in the arclength.
   double speed() const { return speed_; }
+  double scale() const { return scale_; }
+  double weight() const { return weight_; }
   std::vector<double> inputs_at(double sigma);
   // [J g] at states that need not close.
   Matrix extended_at(const Node& near, const std::vector<double>& state, double sigma);
@@ -62,6 +65,8 @@ class Arc : public Stepper {
   Matrix own_jacobian(const Node& node);
   bool close_by(std::vector<double> state, double sigma, const std::vector<double>& border, double target, Node* node);
   bool differentiate(Node* node);
+  double longest_step(const Node& node) const override;
+  double rounding_of_matrix(const Node& node, const LeastSquares& matrix, const std::vector<double>& border);
   bool same_side(const Node& a, Node* b, int* blame);
   void advance(const std::vector<double>& step, double* state) const;
   void clear_uncarried(Node* node) const;
@@ -70,7 +75,7 @@ class Arc : public Stepper {
   std::vector<int> unknown_;              // columns
   std::vector<char> own_, before_, carried_;
   std::vector<ClosingTurn> carried_turns_;
-  double speed_ = 1.0;  // of the inputs by sigma, where the arc begins
+  double weight_, speed_ = 1.0, scale_ = 1.0;
 };
 
 // The blocks that each block hangs on, directly or not (blocks x blocks, row by row).

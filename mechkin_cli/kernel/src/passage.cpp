@@ -150,7 +150,7 @@ class Walker {
   // Whether sigma stands still but for rounding, as it does in a narrow place that a block turns through while nothing
   // else moves: its rate's sign there says nothing.
   bool rests(const Arc& arc, const Node& a, const Node& b) const {
-    const double speed = arc.speed(), moved = std::fabs(b.sigma - a.sigma);
+    const double speed = arc.scale(), moved = std::fabs(b.sigma - a.sigma);
     return std::fmax(std::fabs(a.rate), std::fabs(b.rate)) * speed <= AT_REST &&
            std::fmax(std::fabs(a.bend), std::fabs(b.bend)) * speed <= AT_REST &&
            moved <= 1e-14 * std::fmax(1.0, std::fabs(b.sigma));
@@ -211,6 +211,12 @@ class Walker {
     return b;
   }
 
+  // Whether nothing of sigma but a rounding is left before its rate is zero.
+  bool is_at_rest(const Arc& arc, const Node& fold) const {
+    if (std::fabs(fold.rate) * arc.scale() <= 1e-7) return true;
+    return 0.5 * fold.rate * fold.rate <= ROUNDING_LEFT * std::fmax(1.0, std::fabs(fold.sigma)) * std::fabs(fold.bend);
+  }
+
   // Newton on sigma' = 0 between two nodes where it changes sign.
   bool locate_dead_centre(Arc& arc, const Node& a, const Node& b, Node* fold) const {
     double low = 0.0, high = b.place - a.place, h = high * a.rate / (a.rate - b.rate);
@@ -225,8 +231,7 @@ class Walker {
     continue_turns(arc, a, fold);
     // its derivatives must tell what the ends of the step do
     const double bend = (b.rate - a.rate) / (b.place - a.place);
-    return std::fabs(fold->rate) * arc.speed() <= 1e-7 && fold->bend < SAME_BEND * bend &&
-           bend < SAME_BEND * fold->bend;
+    return is_at_rest(arc, *fold) && fold->bend < SAME_BEND * bend && bend < SAME_BEND * fold->bend;
   }
 
   // Where two branches pass at a gap near rounding, steps end shortly before a dead centre. The last nodes tell it if
@@ -234,7 +239,7 @@ class Walker {
   bool touches_dead_centre(Passage* p) const {
     if (p->nodes.size() < 2) return false;
     const Node &a = p->nodes[p->nodes.size() - 2], &b = p->nodes.back();
-    const double bend = (b.rate - a.rate) / (b.place - a.place), speed = p->arc->speed();
+    const double bend = (b.rate - a.rate) / (b.place - a.place), speed = p->arc->scale();
     if (!(b.bend < SAME_BEND * bend && bend < SAME_BEND * b.bend && b.bend < 0.0)) return false;
     const double left = -0.5 * b.rate * b.rate / b.bend;
     if (!(b.rate * speed < STEEP && left <= ROUNDING_LEFT * std::fmax(1.0, std::fabs(b.sigma)))) return false;
@@ -294,7 +299,7 @@ bool Passage::at(double sigma, Node* node, double* limit) const {
   *node = a;
   interpolate_all(a, b, t, node);
   *limit = std::fmax(CLOSED, arc->limits().infill * (b.place - a.place));
-  if (std::fmin(a.rate, b.rate) * arc->speed() >= SLOW) return true;
+  if (std::fmin(a.rate, b.rate) * arc->scale() >= SLOW) return true;
   // next to a dead centre the place of sigma on the arc counts
   double h = t * (b.place - a.place);
   const Node between = *node;

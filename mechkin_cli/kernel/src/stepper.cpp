@@ -59,7 +59,7 @@ Stepper::Stepper(const Path& path, const KernelUnit& unit, const StepLimits& lim
 
 bool Stepper::close(double sigma, const double* guess, Node* node) {
   if (!solve(sigma, guess, true, node)) return false;
-  node->own = path_.varies() ? 1.0 : 0.0;
+  node->own = path_.varies() ? 1.0 : 0.0, node->own_second = 0.0;
   if (path_.varies()) {
     if (!differentiate_by_plan(node)) return false;
     columns_of_states(node);
@@ -147,7 +147,7 @@ bool Stepper::step(const Node& a, double h, double sigma, Node* b) {
 
 // The inputs are columns too, so the first derivatives hold the whole tangent of the branch.
 double Stepper::wanted_step(const Node& n) const {
-  double b2 = 0.0, along = 0.0, most = longest_step(n);
+  double b2 = n.own_second * n.own_second, along = n.own * n.own_second, most = longest_step(n);
   // a fifth less than what would be refused
   for (double danger : n.danger) most = std::fmin(most, 0.8 * limits_.radius / danger);
   for (double s : n.second) b2 += s * s;

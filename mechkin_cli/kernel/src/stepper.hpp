@@ -75,7 +75,7 @@ struct Node {
   double rate, bend;                              // sigma's derivatives by it: 1 and 0 where it is sigma
   double correction;                              // largest change of an unknown against the guess
   double least = __builtin_inf();                 // at most the blocks' least singular value; infinite where not looked at
-  double own;                                     // sigma's part in the tangent: 1 where the plan varies, else 0
+  double own = 0.0, own_second = 0.0;             // sigma's part in the tangent besides the inputs', and its derivative
   std::vector<double> inputs;
   std::vector<double> state, first, second;       // states, columns, columns
   std::vector<double> state_first, state_second;  // derivatives of the raw states
@@ -139,6 +139,7 @@ class Stepper {
   bool turned_too_far(const Node& a, const Node& b) const;
   bool looks_back(const Node& a, const Node& b, double tolerance) const;
   void size_node(Node* node) const;
+  virtual double longest_step(const Node& node) const;
   void differentiate_states(Node* node) const;
   void differentiate_turns(Node* node) const;
 
@@ -154,7 +155,6 @@ class Stepper {
   bool same_side(const Node& a, Node* b);
   bool differentiate_by_plan(Node* node);
   void columns_of_states(Node* node) const;
-  double longest_step(const Node& node) const;
 
   std::vector<ClosingTurn> turns_;
   std::vector<TreeTurn> tree_turns_;

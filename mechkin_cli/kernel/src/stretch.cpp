@@ -82,6 +82,20 @@ int worst_block(const Node& node) {
   return worst;
 }
 
+// Rate of sigma (in parts of the inputs' speed) below which a walk that comes to nothing is done again with sigma's weight
+// raised to the unknowns' own speed.
+constexpr double SLOW_SIGMA = 0.1;
+
+// A block that follows another through its narrow place goes by it on a hyperbola as steep as the first one turns
+// fast: sigma hardly moves on both sides of it, and the tangent turns over a way that is as many times smaller than the
+// gap. In an arclength in which sigma weighs as much more, it turns over the gap itself.
+double weight_for(const Passage& p) {
+  if (p.end != PassageEnd::lost || p.blame >= 0 || p.unbounded || p.nodes.empty()) return 1.0;
+  double slowest = 1.0;
+  for (const Node& node : p.nodes) slowest = std::fmin(slowest, node.rate * p.arc->speed());
+  return slowest > 0.0 && slowest < SLOW_SIGMA ? 1.0 / slowest : 1.0;
+}
+
 }  // namespace
 
 Stretch walk_stretch(const Path& path, const KernelUnit& unit, const StepLimits& limits, const Node& from,
@@ -95,12 +109,21 @@ Stretch walk_stretch(const Path& path, const KernelUnit& unit, const StepLimits&
     again = false;
     stretch.passages.clear();
     for (std::size_t k = 0; k < trouble.size() && !again; ++k) {
-      Passage p;
-      p.block = trouble[k];
-      const std::vector<char> own = chain_of(p.block, trouble, upstream, n);
-      p.arc = std::make_unique<Arc>(path, unit, limits, own, carried_with(own, trouble, upstream, n));
-      walk_passage(limits, from, refused, until, &p);
-      stretch.steps += p.steps, stretch.rejected += p.rejected;
+      const std::vector<char> own = chain_of(trouble[k], trouble, upstream, n);
+      const auto walk = [&](double weight) {
+        Passage p;
+        p.block = trouble[k];
+        p.arc = std::make_unique<Arc>(path, unit, limits, own, carried_with(own, trouble, upstream, n), weight);
+        walk_passage(limits, from, refused, until, &p);
+        stretch.steps += p.steps, stretch.rejected += p.rejected;
+        return p;
+      };
+      Passage p = walk(1.0);
+      const double weight = weight_for(p);
+      if (weight > 1.0) {
+        Passage heavier = walk(weight);
+        if (heavier.end != PassageEnd::lost || heavier.blame >= 0) p = std::move(heavier);
+      }
       const bool is_new = std::find(trouble.begin(), trouble.end(), p.blame) == trouble.end();
       if (p.end == PassageEnd::lost && p.blame >= 0 && is_new) {
         again = true;

@@ -1,5 +1,6 @@
 #include "tracker.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -59,8 +60,8 @@ class Tracker {
   bool stop(TrackEnd end, double refused) {
     track_.end = end, track_.refused_step = refused;
     // what was seen ahead ended the branch only if it came there
-    const double ahead = track_.limit.at.sigma - node_.sigma;
-    if (refused > 0.0 && !(std::fabs(ahead) <= NEAR_LIMIT)) track_.limit = {};
+    for (const Limit& seen : seen_)
+      if (refused > 0.0 && std::fabs(seen.at.sigma - node_.sigma) <= NEAR_LIMIT) track_.limit = seen;
     return false;
   }
 
@@ -125,10 +126,10 @@ class Tracker {
       node_ = stretch.last().nodes.back();
       return stop(TrackEnd::stalled, 0.0);
     }
+    note_ends(stretch);
     if (!stretch.carries_all(plan().blocks)) {
       // blocks that nobody carried are followed by steps as short as it takes, and what was seen ends them
       looks_ = false;
-      if (ends) keep_limit(stretch);
       return true;
     }
     if (!ends && !(stretch.reach() > node_.sigma)) {
@@ -143,7 +144,7 @@ class Tracker {
       if (!place_row(stretch, std::fmin(sigma_[row_], reach))) break;
     for (double sigma : stretch.last().crossings) track_.crossings.push_back(sigma);
     if (ends && (row_ < rows_ || until < end_)) {
-      keep_limit(stretch);
+      track_.limit = limit_of(stretch.last());
       return stop(TrackEnd::stalled, 0.0);
     }
     Node guess, next;
@@ -170,9 +171,13 @@ class Tracker {
     return true;
   }
 
-  void keep_limit(const Stretch& stretch) {
-    const Passage& last = stretch.last();
-    track_.limit = {last.end, last.block, last.nodes.back(), last.beyond};
+  static Limit limit_of(const Passage& p) { return {p.end, p.block, p.nodes.back(), p.beyond}; }
+  // Keeps the ends that blocks have ahead, even where another block's walk comes to nothing before.
+  void note_ends(const Stretch& stretch) {
+    const auto passed = [this](const Limit& seen) { return seen.at.sigma < node_.sigma - NEAR_LIMIT; };
+    seen_.erase(std::remove_if(seen_.begin(), seen_.end(), passed), seen_.end());
+    for (const Passage& p : stretch.passages)
+      if (p.end == PassageEnd::dead_centre || p.end == PassageEnd::branch_point) seen_.push_back(limit_of(p));
   }
 
   void path_inputs(double sigma, std::vector<double>* inputs) const {
@@ -204,6 +209,7 @@ class Tracker {
   Node node_;
   long row_ = 0;
   double end_ = 0.0, step_ = 0.0;
+  std::vector<Limit> seen_;  // ends that were seen ahead
   bool looks_ = true;  // whether a refusal is looked into: not again where that led nowhere
 };
 
