@@ -104,12 +104,21 @@ class Walker:
             start = Passage(beyond, end.fold.beyond)
             direction = -direction
             far, places = self._climb(start, direction, None)
+            places = [*self._back_to(end, start, direction), *places]
             ends = (end, far) if direction > 0.0 else (far, end)
             found.append(Branch(*ends, places if direction > 0.0 else places[::-1]))
             if far.fold is not None and goal.fold is not None and self._same(far.fold, goal.fold):
                 return found, True
             end = far
         return found, False
+
+    def _back_to(self, fold: End, start: Passage, direction: float) -> list[Passage]:
+        """The place between a dead centre and the first place of the branch beyond it."""
+        value = self._next(start.value, -direction)
+        if (fold.value - value) * -direction <= 0.0:
+            return []
+        way = self.follow(np.array([start.value, value]), start.state)
+        return [Passage(value, way.state)] if way.end == TrackEnd.FINISHED else []
 
     def _climb(
         self, start: Passage, direction: float, first: Passage | None

@@ -155,3 +155,24 @@ def test_slides_of_rccc_grow_out_of_bounds() -> None:
     assert note.code == "unbounded"
     assert "the slide of J4 grows out of bounds" in note.message
     assert abs(result["J4.s"][result["row.status"] == "ok"][-1]) > 100
+
+
+@pytest.mark.parametrize("before", [1e-6, 1e-3, 0.1, 1.0, 1.6, 5.0, 20.0])
+@pytest.mark.parametrize("side", [7, 3])
+def test_modes_next_to_a_dead_centre_share_a_circuit(before: float, side: int) -> None:
+    """Crank and coupler in line at both ends of the rocker's swing, the law of cosines; the first
+    row stands some degrees before one of them."""
+
+    def angle(length: float) -> float:
+        return math.pi - math.acos((36 + 16 - length**2) / (2 * 6 * 4))
+
+    drawn = angle(math.hypot(x_of(2, 5, 4, 6), y_of(2, 5, 4, 6)))
+    lower, upper = sorted(math.degrees(angle(length) - drawn) for length in (3, 7))
+    at = upper - before if side == 7 else lower + before
+    found = four_bar(2, 5, 4, 6, "D", at).ranges()
+    swings = [item for item in found.ranges if abs(item.upper.value - upper) < 1]
+    assert len(swings) == 2
+    assert len({item.circuit for item in swings}) == 1
+    for item in swings:
+        assert abs(item.lower.value - lower) < 1e-8
+        assert abs(item.upper.value - upper) < 1e-8
