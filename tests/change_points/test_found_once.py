@@ -85,3 +85,18 @@ def test_a_crank_turns_a_lead_screw_with_a_spring() -> None:
 
 def test_no_turn_is_lost() -> None:
     assert set(run("lost-after-eleven-turns")["row.status"].tolist()) == {"ok"}
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_drawing_serves_the_rows_on_its_other_side(order: int) -> None:
+    """Crank 3, rod sqrt 10, rocker sqrt 13 and ground 6: the rocker swings to where crank and rod
+    are in line, and the row nearest to the drawing lies beyond that."""
+    text = (FOUND / "start-beside-drawing.yaml").read_text(encoding="utf-8")
+    head, _, _ = text.partition("motion:")
+    rows = [-25, 40, 100][::order]
+    result = mk.loads(head + f"motion: {{inputs: {{D.theta: {{values: {rows}}}}}}}").analyze()
+    drawn = degrees(acos(2 / sqrt(13)))
+    fold = drawn - degrees(acos((49 - (3 + sqrt(10)) ** 2) / (12 * sqrt(13))))
+    assert result["row.status"].tolist() == ["beyond-dead-centre", "ok", "ok"][::order]
+    (note,) = [d for d in result.diagnostics if d.code == "dead-centre"]
+    assert abs(note.numbers[0].value - fold) < 1e-8

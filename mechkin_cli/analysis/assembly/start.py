@@ -19,6 +19,7 @@ from mechkin_cli.analysis.assembly.distances import (
     unclear,
 )
 from mechkin_cli.analysis.assembly.home import (
+    across_home,
     follow_from_home,
     is_home_assembled,
     nearest_to_home,
@@ -193,16 +194,19 @@ def _nearest_about(
 
 
 def _from_home(session: Session) -> Start:
-    """Followed from the drawing to the row whose inputs are nearest to it; whole turns of the
-    drawing are the same place."""
+    """Followed from the drawing to the row whose inputs are nearest to it, or to the nearest on its
+    other side; whole turns of the drawing are the same place."""
     problem, layout, path = session.problem, session.layout, session.inputs.reduced
     # a row in the drawing's own turn comes before one that is nearer some turns away
     own = nearest_to_home(session.inputs.values)
     near = np.max(np.abs(session.inputs.values[:, own]), initial=0.0) <= np.pi
-    for row in dict.fromkeys([own, nearest_to_home(path)] if near else [nearest_to_home(path)]):
-        followed = follow_from_home(session, path[:, row])
-        if followed.end == TrackEnd.FINISHED:
-            return Start(followed.state, HOME, "followed from the home drawing", row=row)
+    rows = [own, nearest_to_home(path)] if near else [nearest_to_home(path)]
+    ways = []
+    for row in dict.fromkeys([*rows, *across_home(path, rows[0])]):
+        ways.append(follow_from_home(session, path[:, row]))
+        if ways[-1].end == TrackEnd.FINISHED:
+            return Start(ways[-1].state, HOME, "followed from the home drawing", row=row)
+    followed = ways[0]
     turned = _without_turns(session, path)
     if (turned != path).any():
         # the drawing serves whole turns away from it as well

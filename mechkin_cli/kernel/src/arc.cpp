@@ -246,7 +246,7 @@ bool Arc::differentiate(Node* node) {
   // what the weight adds to the inputs' own part in the tangent
   const double more = std::sqrt(weight_ * weight_ - 1.0) * speed_;
   node->own = rate * more, node->own_second = bend * more;
-  double pivot = matrix.least_pivot();
+  double pivot = matrix.least_singular_bound();
   if (pivot < limits_.arc_pivot) pivot = std::sqrt(ROUNDING / rounding_of_matrix(*node, matrix, t));
   for (int b = 0; b < plan_.blocks; ++b)
     if (own_[b]) node->pivot[b] = pivot;
@@ -376,9 +376,9 @@ bool Arc::same_side(const Node& a, Node* b, int* blame) {
     const bool same = own_[k] ? own_same
                               : is_regular_segment(block_matrix(a.jacobian, k), block_matrix(half.jacobian, k),
                                                    block_matrix(b->jacobian, k), limits_.radius, &danger,
-                                                   &b->least);
-    b->danger[k] = danger / std::fabs(h);
-    if (!same) {
+                                                   &b->singular[k]);
+    b->danger[k] = danger / std::fabs(h), b->least = std::fmin(b->least, b->singular[k]);
+    if (!same || !(b->singular[k] >= limits_.pivot)) {
       *blame = k;
       return false;
     }

@@ -77,6 +77,3 @@ class Arc : public Stepper {
   std::vector<ClosingTurn> carried_turns_;
   double weight_, speed_ = 1.0, scale_ = 1.0;
 };
-
-// The blocks that each block hangs on, directly or not (blocks x blocks, row by row).
-std::vector<char> upstream_blocks(const Plan& plan, const KernelUnit& unit);

@@ -9,6 +9,13 @@
 
 #include "stepper.hpp"
 
+namespace {
+
+// Least singular value of a block below which it makes those that hang on it wrong by more than their own rounding.
+constexpr double NARROW = 1e-3;
+
+}  // namespace
+
 bool is_regular_segment(const Matrix& a, const Matrix& middle, const Matrix& b, double limit, double* danger,
                         double* least) {
   const LeastSquares from(a), to(b);
@@ -62,8 +69,8 @@ bool Stepper::same_side(const Node& a, Node* b) {
   for (int k = 0; k < plan_.blocks; ++k) {
     double danger = 0.0;
     same = is_regular_segment(block_matrix(a.jacobian, k), block_matrix(jacobian, k), block_matrix(b->jacobian, k),
-                              limits_.radius, &danger, &b->least) && same;
-    b->danger[k] = danger / std::fabs(h);
+                              limits_.radius, &danger, &b->singular[k]) && same;
+    b->danger[k] = danger / std::fabs(h), b->least = std::fmin(b->least, b->singular[k]);
   }
   return same;
 }
@@ -82,10 +89,27 @@ bool Stepper::looks_back(const Node& a, const Node& b, double tolerance) const {
   return true;
 }
 
+// Whether rounding leaves a node on its branch: pivots of a triangle may hide that it is singular, and the unknowns of a
+// block are as wrong as those that it hangs on make them.
+bool Stepper::is_told(const Node& node) {
+  const double square = limits_.pivot * limits_.pivot;
+  for (double s : node.singular)
+    if (!(s >= limits_.pivot)) return false;
+  if (node.least * node.least * node.least >= square) return true;
+  if (upstream_.empty()) upstream_ = upstream_blocks(plan_, unit_);
+  for (int k = 0; k < plan_.blocks; ++k) {
+    double product = node.singular[k] * node.singular[k];
+    for (int other = 0; other < plan_.blocks; ++other)
+      if (upstream_[k * plan_.blocks + other] && node.singular[other] < NARROW) product *= node.singular[other];
+    if (!(product >= square)) return false;
+  }
+  return true;
+}
+
 bool Stepper::judge(const Node& a, Node* b) {
   const double length = std::fabs(b->place - a.place) * std::sqrt(tangent_product(a, a));
   if (!(b->correction <= limits_.jump * length)) return false;
   for (double p : b->pivot)
     if (!(p >= limits_.pivot)) return false;
-  return !turned_too_far(a, *b) && looks_back(a, *b, limits_.jump * length) && same_side(a, b);
+  return !turned_too_far(a, *b) && looks_back(a, *b, limits_.jump * length) && same_side(a, b) && is_told(*b);
 }

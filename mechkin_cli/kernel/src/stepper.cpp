@@ -77,6 +77,7 @@ void Stepper::size_node(Node* node) const {
   node->first.resize(plan_.columns), node->second.resize(plan_.columns);
   node->side.assign(plan_.blocks, 1.0), node->pivot.resize(plan_.blocks);
   node->jacobian.resize(entries_), node->danger.assign(plan_.blocks, 0.0);
+  node->singular.assign(plan_.blocks, HUGE_VAL);
   node->turn.resize(turn_slots_), node->turn_first.resize(turn_slots_), node->turn_second.resize(turn_slots_);
 }
 

@@ -80,6 +80,7 @@ struct Node {
   std::vector<double> state, first, second;       // states, columns, columns
   std::vector<double> state_first, state_second;  // derivatives of the raw states
   std::vector<double> side, pivot;                // blocks: sign of a square block's determinant; least pivot
+  std::vector<double> singular;                   // blocks: at most the least singular value; infinite where not looked at
   std::vector<double> jacobian;                   // blocks, one after the other, rows x size
   Matrix extended;                                // by arclength: [J g] of its own equations
   std::vector<double> danger;                     // blocks: radius of J^+ J_a - I by a unit of the step that led here from a;
@@ -153,6 +154,7 @@ class Stepper {
  private:
   bool solve(double sigma, const double* guess, bool moving, Node* node);
   bool same_side(const Node& a, Node* b);
+  bool is_told(const Node& node);
   bool differentiate_by_plan(Node* node);
   void columns_of_states(Node* node) const;
 
@@ -160,6 +162,7 @@ class Stepper {
   std::vector<TreeTurn> tree_turns_;
   int turn_slots_ = 0;
   long entries_ = 0;
+  std::vector<char> upstream_;  // blocks x blocks, where it was needed
   std::vector<double> guess_;
 };
 
@@ -170,6 +173,9 @@ bool is_regular_segment(const Matrix& a, const Matrix& middle, const Matrix& b, 
                         double* least);
 
 double tangent_product(const Node& a, const Node& b);
+
+// The blocks that each block hangs on, directly or not (blocks x blocks, row by row).
+std::vector<char> upstream_blocks(const Plan& plan, const KernelUnit& unit);
 
 // The closing joints' angles and orientations of a plan, in the order of the joints.
 std::vector<ClosingTurn> closing_turns(const Plan& plan, const KernelUnit& unit);

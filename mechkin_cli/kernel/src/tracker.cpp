@@ -68,6 +68,7 @@ class Tracker {
   bool go_on() {
     if (!progress_.goes_on(node_.sigma)) return stop(TrackEnd::exhausted, 0.0);
     const double least = limits_.least_step * std::fmax(1.0, std::fabs(node_.sigma));
+    if (end_ - node_.sigma <= least) return arrive();
     // the last step ends exactly on the last row
     // a rest of a millionth of a step is taken along
     const bool last = node_.sigma + 1.000001 * step_ >= end_;
@@ -93,6 +94,14 @@ class Tracker {
     step_ = 0.5 * h;
     if (looks() && step_ * speed() < limits_.narrow) return look();
     return step_ >= least || stop(TrackEnd::stalled, h);
+  }
+
+  // What is left of the way is a rounding, as it is of a whole turn: no step is that short.
+  bool arrive() {
+    const double limit = std::fmin(limits_.jump, 0.125 * node_.least);
+    for (; row_ < rows_ && sigma_[row_] <= end_; ++row_) put_row(node_, limit, first_ + row_, out_);
+    node_.sigma = end_;
+    return false;
   }
 
   // The tree's angles within half a turn, where their turns are counted.

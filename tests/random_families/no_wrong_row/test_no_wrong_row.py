@@ -48,3 +48,12 @@ def test_not_yet(number: int) -> None:
 @pytest.mark.xfail(strict=True, reason="verdicts beside singular places")
 def test_second_not_yet(number: int) -> None:
     assert not run_one(number, 2).faults
+
+
+@pytest.mark.parametrize(
+    ("number", "series"),
+    [*((n, 1) for n in sorted(NOT_YET)), *((n, 2) for n in sorted(SECOND_NOT_YET))],
+)
+def test_what_is_lost_is_not_wrong(number: int, series: int) -> None:
+    faults = run_one(number, series).faults
+    assert not [kind for kind in faults if kind.startswith("wrong")], faults
