@@ -8,11 +8,12 @@ loop turns fast because another is nearly singular get points of their own.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from mpmath import mpf
+from mpmath import mp, mpf
 from numpy.typing import NDArray
 from random_families.no_wrong_row.field import EXACT, FAST
 from random_families.no_wrong_row.linkage import Linkage
@@ -26,8 +27,16 @@ LOW = 2e-3
 about 1e-4."""
 DECIDED = 1e-8
 """Below this float64 does not tell a discriminant's sign behind another loop nearly singular."""
+SUDDEN = 2.5
+"""A change between neighbouring points of a way (rad) whose sense float64 does not show: a shaft
+nearly at a right angle to one that is nearly at a right angle itself turns by half a turn within
+the product of both gaps, 1e-22 of the input."""
 UNDECIDED = 3e-15
 """A discriminant below this may have either sign for numbers rounded to float64."""
+AGREED = 1e-3
+"""Rad that float64 may be off 50 digits where an angle does not change suddenly."""
+RESOLVED = mpf(10) ** -40
+"""Width of a place that 50 digits still resolve."""
 
 
 class Undecided(Exception):
@@ -91,7 +100,7 @@ def way(linkage: Linkage, sign: int, span: float) -> Way:
         folds,
         t,
         {name: np.maximum(m, 0.0) for name, m in final.margin.items()},
-        {name: np.unwrap(v) for name, v in final.value.items()},
+        {name: unwrapped(linkage, name, sign, t, v) for name, v in final.value.items()},
         critical,
         folds is None and repeats and reach == TURN,
     )
@@ -157,3 +166,51 @@ def fine(place: float, end: float) -> Array:
     steps = 10.0 ** np.arange(-13, -2, 0.125)
     points = np.concatenate([place - steps, [place], place + steps])
     return points[(points > 0) & (points < end)]
+
+
+def unwrapped(linkage: Linkage, name: str, sign: int, t: Array, value: Array) -> Array:
+    """A coordinate without jumps of whole turns; where it changes suddenly its values and the
+    sense are those of 50 digits. What stays sudden there is NaN from its place on."""
+    found = np.unwrap(value)
+    if not linkage.turns(name):
+        return found
+
+    def at(place: Any) -> Any:
+        return linkage.at(sign * mpf(place), EXACT, name).value[name]
+
+    known = -1
+    for k in np.flatnonzero(np.abs(np.diff(found)) > SUDDEN):
+        if k < known:
+            continue
+        first, known = int(k), int(k) + 1
+        while first > 0 and abs(turned(found[first], at(t[first]))) > AGREED:
+            first -= 1
+        while known < len(t) - 1 and abs(turned(found[known], at(t[known]))) > AGREED:
+            known += 1
+        after = found[known + 1 :] - found[known]
+        for i in range(first, known):
+            found[i + 1] = found[i] + float(exact_change(at, t[i], t[i + 1]))
+        found[known + 1 :] = found[known] + after
+    return found
+
+
+def turned(a: Any, b: Any) -> Any:
+    """The angle from a to b that is at most half a turn."""
+    return b - a - 2 * mp.pi * mp.nint((b - a) / (2 * mp.pi))
+
+
+def exact_change(at: Callable[[Any], Any], first: float, last: float) -> mpf:
+    """The change of an angle between two places, by halving its sudden part."""
+    low, high, total = mpf(first), mpf(last), mpf(0)
+    here, there = at(low), at(high)
+    while abs(whole := turned(here, there)) > SUDDEN / 2:
+        if high - low < RESOLVED:
+            return mp.nan
+        middle = (low + high) / 2
+        value = at(middle)
+        before, after = turned(here, value), turned(value, there)
+        if abs(before) > abs(after):
+            total, high, there = total + after, middle, value
+        else:
+            total, low, here = total + before, middle, value
+    return total + whole

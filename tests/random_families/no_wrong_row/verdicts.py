@@ -27,8 +27,6 @@ AT_FOLD = 1e-8
 """Places this near (rad) to a dead centre may be on either side of it."""
 ANGLE = 1e-9
 """What a coordinate may be off by rounding, rad or parts of the size, besides its condition."""
-SUDDEN = 2.5
-"""A change between neighbouring points of a way (rad) whose sense is not known."""
 SOLVED = ("ok", "near-singular", "rank-unclear")
 
 
@@ -203,10 +201,6 @@ class Truth:
             value = one.value[column.body]
             winding = round((value[-1] - value[0]) / TURN) if one.periodic else 0
             want[here] = np.interp(at, one.t, value) + winding * TURN * turns
-            # half a turn between two points of the way may be either way around
-            sudden = np.flatnonzero(np.abs(np.diff(value)) > SUDDEN)
-            if column.angle and len(sudden):
-                want[here & (np.abs(radians) > one.t[sudden[0]])] = np.nan
         return want
 
 
