@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from mpmath import mp, mpf
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from random_families.no_wrong_row.branch import TURN, Undecided, Way, way
 from random_families.no_wrong_row.case import Case
 from random_families.no_wrong_row.drawing import Column
@@ -27,6 +27,9 @@ AT_FOLD = 1e-8
 """Places this near (rad) to a dead centre may be on either side of it."""
 ANGLE = 1e-9
 """What a coordinate may be off by rounding, rad or parts of the size, besides its condition."""
+ROUNDINGS = 4
+"""Of the input that the roundings of all dimensions come to: where two loops are singular at once,
+one rounding of the input alone may turn a wrist by degrees."""
 SOLVED = ("ok", "near-singular", "rank-unclear")
 
 
@@ -164,9 +167,9 @@ class Truth:
                 words[k] = words[k] or f"{column.name} {have[k]:.6g} is off by whole turns"
         return words
 
-    def _off(self, column: Column, have: Array, want: Array) -> Array:
+    def _off(self, column: Column, have: ArrayLike, want: ArrayLike) -> Array:
         if not column.angle:
-            return np.asarray(np.abs(have - want) / self.linkage.size)
+            return np.asarray(np.abs(np.subtract(have, want)) / self.linkage.size)
         d = np.radians(have) - want
         return np.asarray(np.abs(d - TURN * np.round(d / TURN)))
 
@@ -178,15 +181,18 @@ class Truth:
         return np.minimum(ANGLE + 1e-14 / singular, 1e-3)
 
     def _exactly(self, k: int, found: dict[str, Array]) -> str:
-        """A row's differences at 50 digits."""
-        placed = self.linkage.at(mpf(float(self.case.travel.rows[k])) * mp.pi / 180, EXACT)
+        """A row's differences at 50 digits, beyond what roundings of the input change."""
+        t = mpf(float(self.case.travel.rows[k])) * mp.pi / 180
+        unit = mpf(2) ** -52 * max(mpf(1), abs(t))
+        placed, *beside = (self.linkage.at(t + d * unit, EXACT) for d in (0, -1, 1))
         margin = {name: np.array([float(m)]) for name, m in placed.margin.items()}
         allowed = float(self._allowed(margin, 1)[0])
         out = []
         for column in self.case.drawing.columns:
-            want = float(placed.value[column.body])
+            want, *others = (float(one.value[column.body]) for one in (placed, *beside))
+            moved = self._off(column, np.degrees(others) if column.angle else others, want).max()
             have = np.array([float(found[column.name][k])])
-            if self._off(column, have, np.array([want]))[0] > allowed:
+            if self._off(column, have, np.array([want]))[0] > allowed + ROUNDINGS * moved:
                 shown = math.degrees(want) if column.angle else want
                 out.append(f"{column.name} {have[0]:.12g} for {shown:.12g}")
         return ", ".join(out)
