@@ -34,7 +34,7 @@ SECOND_NOT_YET: frozenset[int] = frozenset()
 """As above."""
 
 THIRD_NOT_YET: frozenset[int] = frozenset({110, 143})
-"""Of the third series: a tied crank that starts over half a turn from the drawing, and rows given up
+"""Of the third series: a tied crank that starts half a turn or more off the drawing, and rows lost
 beside gaps of two loops."""
 
 WRITTEN_NOT_YET: frozenset[tuple[int, int]] = frozenset()
