@@ -72,7 +72,7 @@ def chain(rng: random.Random) -> Drawing:
 
 def test_half_turns_go_the_way_of_the_ratio() -> None:
     seen = 0
-    for seed in range(12):
+    for seed in range(8):
         drawing = chain(random.Random(seed))
         for sign in (1, -1):
             try:
@@ -88,4 +88,4 @@ def test_half_turns_go_the_way_of_the_ratio() -> None:
                     if abs(off - TURN * round(off / TURN)) < NEAR:
                         assert abs(off) < NEAR, (seed, sign, body.name, one.t[k])
                         seen += 1
-    assert seen > 2000
+    assert seen > 1000
