@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from mpmath import mp, mpf
 from numpy.typing import NDArray
+from random_families.no_wrong_row.bodies import Placed
 from random_families.no_wrong_row.field import EXACT, FAST
 from random_families.no_wrong_row.linkage import Linkage
 
@@ -33,6 +34,8 @@ nearly at a right angle to one that is nearly at a right angle itself turns by h
 the product of both gaps, 1e-22 of the input."""
 UNDECIDED = 3e-15
 """A discriminant below this may have either sign for numbers rounded to float64."""
+ROUNDING = 2.0**-52
+"""A rounding of a discriminant of a body before, in parts of its scale."""
 AGREED = 1e-3
 """Rad that float64 may be off 50 digits where an angle does not change suddenly."""
 RESOLVED = mpf(10) ** -40
@@ -66,8 +69,11 @@ MOST_MINIMA = 2000
 """Low minima of a discriminant on a turn; more are rounding of one that hardly changes."""
 
 
-def way(linkage: Linkage, sign: int, span: float) -> Way:
+def way(linkage: Linkage, sign: int, span: float, *, judging: bool = False) -> Way:
     """The way from the drawing to |t| = span, or once around where that is its period.
+
+    Mechanisms are drawn by it as well; for `judging` them a minimum counts as zero to rounding
+    also where bodies before enlarge what is rounding.
 
     Raises:
         Undecided: a discriminant touches zero.
@@ -85,7 +91,7 @@ def way(linkage: Linkage, sign: int, span: float) -> Way:
         if len(places) > MOST_MINIMA * max(1.0, reach / TURN):
             raise Undecided(f"the discriminant of {body.name} rests at its own rounding")
         for low, high in places:
-            place, least = lowest(linkage, body.name, sign, low, high)
+            place, least = lowest(linkage, body.name, sign, low, high, judging)
             critical.append((place, body.name, max(least, 0.0)))
             t = np.union1d(t, fine(place, end))
             if least <= 0:
@@ -123,7 +129,9 @@ def one(linkage: Linkage, name: str, sign: int, t: Any) -> Any:
     return linkage.at(sign * t, FAST, name).margin[name]
 
 
-def lowest(linkage: Linkage, name: str, sign: int, low: float, high: float) -> tuple[float, float]:
+def lowest(
+    linkage: Linkage, name: str, sign: int, low: float, high: float, judging: bool
+) -> tuple[float, float]:
     """Place and value of the least margin between two places.
 
     Raises:
@@ -140,9 +148,26 @@ def lowest(linkage: Linkage, name: str, sign: int, low: float, high: float) -> t
     if abs(least) < DECIDED:
         placed = linkage.at(sign * mpf(place), EXACT, name)
         least = float(placed.margin[name])
-        if abs(least) < UNDECIDED * float(placed.blur.get(name, 1)):
+        unit = UNDECIDED * float(placed.blur.get(name, 1))
+        if judging:
+            unit *= roundings(linkage, name, sign * mpf(place), placed)
+        if abs(least) < unit:
             raise Undecided
     return place, least
+
+
+def roundings(linkage: Linkage, name: str, t: mpf, placed: Placed) -> float:
+    """What roundings of the input change in a margin, in parts of its own: those too that a nearly
+    singular body before it enlarges, by 1 over twice the root of its discriminant."""
+    own, total = UNDECIDED * float(placed.blur.get(name, 1)), 1.0
+    for before, margin in placed.margin.items():
+        if before == name or before not in placed.value or margin <= 0:
+            continue
+        unit = 1.0 if linkage.turns(before) else linkage.size
+        step = ROUNDING * placed.blur.get(before, 1) * unit / (2 * mp.sqrt(margin))
+        moved = linkage.at(t, EXACT, name, {before: placed.value[before] + step}).margin[name]
+        total += float(abs(moved - placed.margin[name])) / own
+    return total
 
 
 def first_zero(linkage: Linkage, name: str, sign: int, low: float, high: float) -> float:

@@ -2,7 +2,7 @@
 
 DIFFICULT = (
     141, 5012, 5038, 5084, 5179, 5685, 10027, 10083, 10095, 10097, 10242, 10397, 10444, 10467,
-    10770, 10943, 10960, 11184, 20036, 20218,
+    10770, 10943, 10960, 11184, 20036, 20218, 302124,
 )  # fmt: skip
 """Rows on another branch, rows beyond a fold, rows given up, or turns miscounted, once."""
 

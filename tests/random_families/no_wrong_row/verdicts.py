@@ -93,7 +93,7 @@ class Truth:
         travel = case.travel
         self.high, self.low = np.radians(travel.highest), -np.radians(travel.lowest)
         self.ways = {
-            sign: way(self.linkage, sign, float(reach.max()))
+            sign: way(self.linkage, sign, float(reach.max()), judging=True)
             for sign, reach in ((1, self.high), (-1, self.low))
             if reach.max() > 0
         }
@@ -160,8 +160,9 @@ class Truth:
                 continue
             apart = np.radians(have) - self._continuous(column)
             if self.case.sides or self.case.travel.rows[0]:
-                # the first row counts from where it finds itself
-                apart -= TURN * np.round(apart[0] / TURN) if np.isfinite(apart[0]) else 0.0
+                # the first row that is there counts from where it finds itself
+                first = apart[np.isfinite(apart)][:1]
+                apart -= TURN * np.round(first / TURN).sum()
             turns = np.abs(apart) > 0.75 * TURN
             for k in np.flatnonzero(turns):
                 words[k] = words[k] or f"{column.name} {have[k]:.6g} is off by whole turns"
