@@ -45,8 +45,8 @@ class TurningLoop:
     def __init__(self, rng: np.random.Generator, gap: float, *, planar: bool) -> None:
         self.planar = planar
         while True:
-            self._draw(rng)
-            a, b, c = self._terms(np.linspace(0, TURN, 7201))
+            self.draw(rng)
+            a, b, c = self.terms(np.linspace(0, TURN, 7201))
             if ((a * a + b * b - c * c) / (a * a + b * b)).min() > gap:
                 break
         self.pairs = PAIRS[rng.integers(len(PAIRS))] if planar else ("S", "S")
@@ -62,7 +62,7 @@ class TurningLoop:
             off.append((abs(math.remainder(q, TURN)), side, q))
         _, self.side, self.drawn = min(off)
 
-    def _draw(self, rng: np.random.Generator) -> None:
+    def draw(self, rng: np.random.Generator) -> None:
         f = frame(rng)
         self.u1, self.o1 = f[:, 2], rng.normal(size=3)
         if self.planar:
@@ -76,7 +76,7 @@ class TurningLoop:
             self.a, self.b = self.o1 + 0.4 * rng.normal(size=3), self.o4 + rng.normal(size=3)
         self.square = float(((self.a - self.b) ** 2).sum())
 
-    def _terms(self, t: Array) -> tuple[Array, Array, Array]:
+    def terms(self, t: Array) -> tuple[Array, Array, Array]:
         w, d = about(self.u1, t, self.a, self.o1) - self.o4, self.b - self.o4
         along = self.u4 * (self.u4 @ d)
         c = (w * w).sum(-1) + d @ d - self.square - 2 * (w @ along)
@@ -84,7 +84,7 @@ class TurningLoop:
 
     def angle(self, reduced: Array, turns: Array) -> Array:
         """The rocker's angle since the drawing at crank angles reduced + turns 2 pi."""
-        a, b, c = self._terms(reduced)
+        a, b, c = self.terms(reduced)
         heading = np.arctan2(b, a)
         near = np.interp(reduced, self.table, self.heading)
         heading += TURN * np.round((near - heading) / TURN)
