@@ -46,8 +46,9 @@ class Verdict:
             self.faults.setdefault(kind, words)
 
 
-def judged(case: Case) -> Verdict:
-    """The verdict on one case; `undecided` where a margin is zero to rounding."""
+def judged(case: Case, closed_at: list[str] | None = None) -> Verdict:
+    """The verdict on one case, its loops closed at these joints or as they are closed by
+    themselves; `undecided` where a margin is zero to rounding."""
     verdict = Verdict()
     try:
         truth = Truth(case)
@@ -56,7 +57,7 @@ def judged(case: Case) -> Verdict:
         return verdict
     names = [column.name for column in case.drawing.columns]
     asked = list(dict.fromkeys(vector_of(name)[0] for name in names))
-    analysis = mk.loads(case.text).analyze(asked, tables=[])
+    analysis = mk.loads(case.text).analyze(asked, tables=[], closed_at=closed_at)
     status = analysis["row.status"].tolist()
     if truth.starts_beyond():
         verdict.counts["first row beyond a fold"] += len(status)
