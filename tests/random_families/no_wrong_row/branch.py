@@ -72,8 +72,8 @@ MOST_MINIMA = 2000
 def way(linkage: Linkage, sign: int, span: float, *, judging: bool = False) -> Way:
     """The way from the drawing to |t| = span, or once around where that is its period.
 
-    Mechanisms are drawn by it as well; for `judging` them a minimum counts as zero to rounding
-    also where bodies before enlarge what is rounding.
+    Mechanisms are drawn by it as well. For `judging` them a minimum counts as zero to rounding
+    also where bodies before enlarge what is rounding, and sudden turns have their sense.
 
     Raises:
         Undecided: a discriminant touches zero.
@@ -106,7 +106,10 @@ def way(linkage: Linkage, sign: int, span: float, *, judging: bool = False) -> W
         folds,
         t,
         {name: np.maximum(m, 0.0) for name, m in final.margin.items()},
-        {name: unwrapped(linkage, name, sign, t, v) for name, v in final.value.items()},
+        {
+            name: unwrapped(linkage, name, sign, t, v) if judging else np.unwrap(v)
+            for name, v in final.value.items()
+        },
         critical,
         folds is None and repeats and reach == TURN,
     )
@@ -161,7 +164,7 @@ def roundings(linkage: Linkage, name: str, t: mpf, placed: Placed) -> float:
     singular body before it enlarges, by 1 over twice the root of its discriminant."""
     own, total = UNDECIDED * float(placed.blur.get(name, 1)), 1.0
     for before, margin in placed.margin.items():
-        if before == name or before not in placed.value or margin <= 0:
+        if before == name or before not in placed.value or not 0 < margin < DECIDED:
             continue
         unit = 1.0 if linkage.turns(before) else linkage.size
         step = ROUNDING * placed.blur.get(before, 1) * unit / (2 * mp.sqrt(margin))

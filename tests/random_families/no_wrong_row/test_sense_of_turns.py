@@ -76,7 +76,7 @@ def test_half_turns_go_the_way_of_the_ratio() -> None:
         drawing = chain(random.Random(seed))
         for sign in (1, -1):
             try:
-                one = way(drawing.linkage(), sign, TURN)
+                one = way(drawing.linkage(), sign, TURN, judging=True)
             except Undecided:
                 continue
             for k in range(0, len(one.t), 7):
