@@ -42,15 +42,6 @@ def nearest_to_home(path: Floats) -> int:
     return int(np.argmin(np.max(np.abs(path), axis=0))) if path.size else 0
 
 
-def across_home(path: Floats, row: int) -> list[int]:
-    """The row nearest to the drawing among those (inputs, rows) on its other side than a row,
-    within half a turn (slides: as many sizes); none if there is none."""
-    far = np.max(np.abs(path), axis=0, initial=0.0)
-    other = np.flatnonzero((path * path[:, row : row + 1]).sum(axis=0) < 0.0)
-    other = other[far[other] <= np.pi]
-    return [int(other[np.argmin(far[other])])] if other.size else []
-
-
 def follow_from_home(session: Session, inputs: Floats) -> Followed:
     """The branch of an assembled drawing, straight to `inputs` (inputs,)."""
     path = np.stack([np.zeros_like(inputs), inputs], axis=1)

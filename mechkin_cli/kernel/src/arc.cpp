@@ -115,19 +115,6 @@ Matrix Arc::own_jacobian(const Node& node) {
   return j;
 }
 
-namespace {
-
-Matrix with_column(const Matrix& a, const std::vector<double>& column, double factor) {
-  Matrix b(a.rows, a.columns + 1);
-  for (int i = 0; i < a.rows; ++i) {
-    for (int j = 0; j < a.columns; ++j) b(i, j) = a(i, j);
-    b(i, a.columns) = column[i] * factor;
-  }
-  return b;
-}
-
-}  // namespace
-
 std::vector<double> Arc::tangent(const Node& node) const {
   std::vector<double> t(size_ + 1);
   for (int u = 0; u < size_; ++u) t[u] = node.first[unknown_[u]];
@@ -136,13 +123,6 @@ std::vector<double> Arc::tangent(const Node& node) const {
 }
 
 namespace {
-
-Matrix with_row(const Matrix& a, const std::vector<double>& row) {
-  Matrix b(a.rows + 1, a.columns);
-  std::copy(a.a.begin(), a.a.end(), b.a.begin());
-  std::copy(row.begin(), row.end(), b.a.begin() + a.a.size());
-  return b;
-}
 
 double length_of(const std::vector<double>& v) {
   double square = 0.0;

@@ -172,6 +172,22 @@ Singular singular_vectors(Matrix a) {
   return found;
 }
 
+Matrix with_row(const Matrix& a, const std::vector<double>& row) {
+  Matrix b(a.rows + 1, a.columns);
+  std::copy(a.a.begin(), a.a.end(), b.a.begin());
+  std::copy(row.begin(), row.end(), b.a.begin() + a.a.size());
+  return b;
+}
+
+Matrix with_column(const Matrix& a, const std::vector<double>& column, double factor) {
+  Matrix b(a.rows, a.columns + 1);
+  for (int i = 0; i < a.rows; ++i) {
+    for (int j = 0; j < a.columns; ++j) b(i, j) = a(i, j);
+    b(i, a.columns) = column[i] * factor;
+  }
+  return b;
+}
+
 Matrix transposed(const Matrix& a) {
   Matrix t(a.columns, a.rows);
   for (int i = 0; i < a.rows; ++i)

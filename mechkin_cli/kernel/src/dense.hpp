@@ -46,6 +46,9 @@ struct Singular {
 Singular singular_vectors(Matrix a);
 
 Matrix transposed(const Matrix& a);
+// The matrix with one row, or a multiple of one column, more.
+Matrix with_row(const Matrix& a, const std::vector<double>& row);
+Matrix with_column(const Matrix& a, const std::vector<double>& column, double factor);
 // Minus the identity, in place.
 void subtract_identity(Matrix* a);
 double determinant(Matrix a);

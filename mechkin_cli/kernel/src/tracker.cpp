@@ -8,7 +8,9 @@ namespace {
 
 // Rounding of a dead centre's place in parts of max(1, |sigma|): a row so near lies on it.
 constexpr double ON_DEAD_CENTRE = 1e-14;
-// The same of a branch point, which is extrapolated: a row so near has no branch of its own.
+// What may be left of a way after whole turns of written numbers; steps so short are no longer than what rounding corrects.
+constexpr double AT_END = 1e-12;
+// The rounding of a branch point's place, which is extrapolated: a row so near has no branch of its own.
 constexpr double ON_BRANCH_POINT = 1e-11;
 // How near steps as short as they may be come to a place that ends a branch: the root of the square of a pivot.
 constexpr double NEAR_LIMIT = 1e-10;
@@ -68,7 +70,7 @@ class Tracker {
   bool go_on() {
     if (!progress_.goes_on(node_.sigma)) return stop(TrackEnd::exhausted, 0.0);
     const double least = limits_.least_step * std::fmax(1.0, std::fabs(node_.sigma));
-    if (end_ - node_.sigma <= least) return arrive();
+    if (end_ - node_.sigma <= AT_END * std::fmax(1.0, std::fabs(node_.sigma))) return arrive();
     // the last step ends exactly on the last row
     // a rest of a millionth of a step is taken along
     const bool last = node_.sigma + 1.000001 * step_ >= end_;
