@@ -19,10 +19,12 @@ from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Mechanism
 from mechkin_cli.mechanism.vectors import ZERO, add, cross, norm, scale, subtract
 from mechkin_cli.solver.graph.records import SolverGraph, UnsolvableGraph
 from mechkin_cli.solver.home import home_state
+from mechkin_cli.solver.random_starts import RandomStarts
 from mechkin_cli.solver.reduction import HALF
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.solver.layout import Layout
     from mechkin_cli.solver.session import Session
 
 Poses = Callable[[str], Frame]
@@ -35,9 +37,9 @@ def assembled_places(mechanism: Mechanism, graph: Callable[[], SolverGraph]) -> 
         yield _as_drawn
     session = _session(mechanism, graph)
     if session is not None:
-        moves = tolerances.PLACE_MOVES if drawn else (0.0, *tolerances.PLACE_MOVES)
-        for move in moves:
-            poses = _closed(session, move)
+        moves = [(move, off) for off in (1.0, 0.0) for move in tolerances.PLACE_MOVES]
+        for move, off in moves if drawn else [(0.0, 0.0), *moves]:
+            poses = _closed(session, move, off * move)
             if poses is not None:
                 yield poses
     if not drawn:
@@ -84,9 +86,19 @@ def _session(mechanism: Mechanism, graph: Callable[[], SolverGraph]) -> Session 
     return Session(problem, found, driven=found.driven)
 
 
-def _closed(session: Session, move: float) -> Poses | None:
-    """The poses that Newton's method reaches from the drawing with all inputs moved; None where it
-    does not close."""
+def _displaced(layout: Layout, move: float) -> Floats:
+    """The drawing with all coordinates but those of balls moved, up to so much."""
+    state, random = home_state(layout), RandomStarts()
+    for carrier in layout.carriers:
+        if not carrier.part.type.is_ball:
+            count = len(carrier.part.type.freedoms)
+            state[carrier.state : carrier.state + count] = move + random.between(move, count)
+    return state
+
+
+def _closed(session: Session, move: float, off: float) -> Poses | None:
+    """The poses that Newton's method reaches with all inputs moved, from a guess that is `off` the
+    drawing; None where it does not close."""
     layout = session.layout
     origin, length = layout.origin, layout.length
     ends = (ZERO, scale(length, GROUND.x), scale(length, GROUND.y))
@@ -94,7 +106,7 @@ def _closed(session: Session, move: float) -> Poses | None:
     points = [Attached(name, add(origin, end)) for name in links for end in ends]
     readout = session.readout((), points)
     inputs: Floats = np.full((len(layout.graph.inputs), 1), move)
-    batch = session.run(inputs, home_state(layout)[:, None], readout=readout)
+    batch = session.run(inputs, _displaced(layout, off)[:, None], readout=readout)
     if not batch.good[0] or batch.outputs is None:
         return None
     values = batch.outputs[:, 0].tolist()

@@ -64,13 +64,14 @@ class Rates:
         self.driven = driven
         self.unit = unit
         self._screws: dict[str, Floats] = {}
+        self._forces: dict[str, tuple[float, ...]] = {}
 
     def still(
         self, links: Collection[str], connections: Sequence[Connection], placed: Collection[str]
     ) -> set[str]:
         """Which of some links cannot move against what is placed, by the connections between
         them and those that lead to it."""
-        some = [c for c in connections if _joins(c, links, placed)]
+        some = [c for c in connections if joins(c, links, placed)]
         tree, closing = _tree([c for c in some if c.leg is None], placed)
         if not tree:
             return set()
@@ -85,7 +86,7 @@ class Rates:
             ends = [end for end in (c.first, c.second) if end not in placed]
             if c.leg is not None and all(end in tree for end in ends):
                 apart = _of(twists, c.second, count) - _of(twists, c.first, count)
-                rows.append(_along(self._force(c.leg), apart)[None])
+                rows.append(_along(self._force(c.name, c.leg), apart)[None])
         equations = np.concatenate(rows)
         below = np.concatenate([twists[link] for link in tree])
         left = _reduced(equations, below).reshape(len(tree), -1)
@@ -145,13 +146,15 @@ class Rates:
                 found.append([*direction, *add(cross(at, direction), scale(along, direction))])
         return found
 
-    def _force(self, leg: Leg) -> tuple[float, ...]:
+    def _force(self, name: str, leg: Leg) -> tuple[float, ...]:
         """The force along a leg: its moment, then itself."""
-        foot = self._point(Attached(leg.first, frame_on(leg.start, leg.first).o))
-        head = self._point(Attached(leg.second, frame_on(leg.end, leg.second).o))
-        span = subtract(head, foot)
-        line = scale(1.0 / (norm(span) or 1.0), span)
-        return (*cross(self.unit.place(foot), line), *line)
+        if name not in self._forces:
+            foot = self._point(Attached(leg.first, frame_on(leg.start, leg.first).o))
+            head = self._point(Attached(leg.second, frame_on(leg.end, leg.second).o))
+            span = subtract(head, foot)
+            line = scale(1.0 / (norm(span) or 1.0), span)
+            self._forces[name] = (*cross(self.unit.place(foot), line), *line)
+        return self._forces[name]
 
     def _direction(self, at: Attached) -> Vector:
         pose = self.poses(at.link)
@@ -162,7 +165,7 @@ class Rates:
         return add(self.poses(at.link).o, self._direction(at))
 
 
-def _joins(c: Connection, links: Collection[str], placed: Collection[str]) -> bool:
+def joins(c: Connection, links: Collection[str], placed: Collection[str]) -> bool:
     """Whether a connection holds some of the links, or two of them together."""
     if c.leg is not None and c.leg.slide is not None and not c.driven:
         return False  # it only moves its slide
