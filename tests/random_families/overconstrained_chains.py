@@ -68,8 +68,8 @@ def drawn(links: Sequence[str]) -> dict[str, Body]:
 
 @dataclass
 class Part:
-    """What turns a rocker about `axis` through `foot` on `base`: a rod of length `span` from `head`
-    on `driver` to `pin`; `slide` lengthens it, `sign` tells its two assemblies apart."""
+    """What turns a rocker about `axis` through `foot` on `base`: a rod from `head` on `driver` to
+    `pin`, longer by `slide` than they are drawn apart; `sign` tells its two assemblies apart."""
 
     number: int
     kind: str
@@ -85,6 +85,11 @@ class Part:
     @property
     def span(self) -> float:
         return float(np.linalg.norm(self.pin - self.head))
+
+    @property
+    def longer(self) -> Array:
+        """How far the rod's pin is drawn from the rocker's."""
+        return (self.pin - self.head) * (self.slide / self.span)
 
     def angle(self, bodies: Mapping[str, Body]) -> tuple[float, float]:
         """The rocker's angle against its base, and how far its two assemblies are apart (0 to 1).
@@ -157,14 +162,18 @@ class Chain:
 
 
 def random_chain(rng: random.Random) -> Chain | None:
-    """A chain of one to four parts that is assembled in its drawing; None where it is not."""
+    """A chain of one to four parts; None where it is not assembled next to its drawing."""
     chain = Chain([], (0.0, 0.0, 1.0), [])
-    start = 5.0 * rng.randint(-4, 4)
+    # rods longer or shorter than drawn: the first row is then next to the drawing
+    apart = rng.random() < 0.3
+    start = 0.0 if apart else 5.0 * rng.randint(-4, 4)
     chain.rows = (start, start + rng.choice([20, 40, 90]), rng.choice([2.0, 5.0, 10.0]))
     flat, anywhere = ["c0"], ["c0"]
     for number in range(rng.randint(1, 4)):
         part = _space_part(rng, number, anywhere) if rng.random() < 0.3 else None
         part = part or _plane_part(rng, number, flat)
+        if apart and part.kind != "telescope":
+            part.slide = rng.choice([0.01, -0.01, 1e-4])
         chain.parts.append(part)
         chain.loads.append(rng.uniform(-5, 5))
         anywhere.append(f"k{number}")
@@ -258,19 +267,28 @@ class _Writer:
         return str([float(x) for x in self.turn @ at])
 
     def joint(
-        self, name: str, letter: str, ends: tuple[str, str], at: Array, axis: Array = Z
+        self,
+        name: str,
+        letter: str,
+        ends: tuple[str, str],
+        at: Array,
+        axis: Array = Z,
+        off: Array | None = None,
     ) -> None:
+        """A joint; `off` is how far from it its place on the first link is drawn."""
         rest = "" if letter == "S" else f", axis: {self.vector(axis)}"
-        links = ", ".join(ends)
-        line = f"{{type: {letter}, links: [{links}], point: {self.vector(at)}{rest}}}"
+        links, point = ", ".join(ends), self.vector(at)
+        if off is not None and np.any(off):
+            point = f"{{{ends[0]}: {self.vector(at + off)}, {ends[1]}: {point}}}"
+        line = f"{{type: {letter}, links: [{links}], point: {point}{rest}}}"
         self.joints.append((name, line))
         self.tree.append((name, *ends))
 
-    def rod(self, name: str, ends: tuple[str, str], foot: Array, head: Array) -> None:
+    def rod(self, name: str, part: Part, rocker: str, up: float = 0.0) -> None:
         """A link between two spheres, which the solver takes for a distance."""
         self.links.append(name)
-        self.joint(f"{name}p", "S", (ends[0], name), foot)
-        self.joint(f"{name}q", "S", (name, ends[1]), head)
+        self.joint(f"{name}p", "S", (part.driver, name), part.head + up * Z)
+        self.joint(f"{name}q", "S", (name, rocker), part.pin + up * Z, off=part.longer)
         del self.tree[-2:]
 
     def part(self, part: Part, kind: str, mark: str) -> None:
@@ -283,11 +301,11 @@ class _Writer:
         if kind == "telescope":
             self.telescope(part, name)
         elif kind in ("leg", "SSR"):
-            self.rod(f"b{name}", (part.driver, rocker), part.head, part.pin)
+            self.rod(f"b{name}", part, rocker)
         else:
             self.links.append(f"b{name}")
             self.joint(f"P{name}", kind[0], (part.driver, f"b{name}"), part.head)
-            self.joint(f"M{name}", kind[1], (f"b{name}", rocker), part.pin)
+            self.joint(f"M{name}", kind[1], (f"b{name}", rocker), part.pin, off=part.longer)
 
     def telescope(self, part: Part, name: str) -> None:
         tube, piston = f"t{name}", f"b{name}"
@@ -309,8 +327,7 @@ class _Writer:
             if copy.kind != "rod":
                 self.part(part, copy.kind, f"x{number}")
             elif part.kind != "telescope":
-                ends, up = (part.driver, f"k{part.number}"), copy.height * Z
-                self.rod(f"r{number}", ends, part.head + up, part.pin + up)
+                self.rod(f"r{number}", part, f"k{part.number}", copy.height)
         closed_at = self.closings()
         first, last, step = chain.rows
         inputs = [f"A0.theta: {{from: {first}, to: {last}, step: {step}, rate: 1 rad/s}}"]

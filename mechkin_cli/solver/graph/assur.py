@@ -9,6 +9,9 @@ have their own count: `d_r` freedoms a link beside the pose of the region's fram
 What the screws as drawn leave undetermined is counted once more with six freedoms a link: a
 drawing can be special, and the dimensions of an overconstrained loop decide later. If that is
 enough, all that hangs together is one group; what is undetermined even then is not driven.
+
+Where there are more equations than freedoms, all this only proposes groups: ranks decide
+(determined.py).
 """
 
 from __future__ import annotations
