@@ -9,12 +9,19 @@ from __future__ import annotations
 
 import math
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import mechkin_cli as mk
+from mechkin_cli.mechanism.frames import GROUND
+from mechkin_cli.solver.assembled_places import is_drawn_assembled
+from mechkin_cli.solver.graph.network import connections_of
+from mechkin_cli.solver.graph.rates import Rates, unit_of
+from mechkin_cli.solver.reduction import reduce
 
+MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 KINDS = ("RRR", "RSR", "SSR", "CSR", "SCR", "SRR")
 UNKNOWNS = {"RRR": 2, "RSR": 2, "SSR": 1, "CSR": 3, "SCR": 3, "SRR": 2}
 
@@ -134,3 +141,24 @@ def test_an_equal_dyad_beside_one_of_other_joints() -> None:
     found = mk.loads(text + sweep("A0")).analyze(["D1.theta", "D2.theta"])
     assert found["row.status"].tolist() == ["ok"] * 5
     assert np.abs(found["D1.theta"] - found["D2.theta"]).max() < 1e-9
+
+
+DRAWN_FLAT = {"parallelogram"}
+"""Drawn in a branch point."""
+
+
+@pytest.mark.parametrize("path", sorted(MECHANISMS.glob("*.yaml")), ids=lambda path: path.stem)
+def test_inputs_hold_a_mechanism_and_one_less_does_not(path: Path) -> None:
+    """Of every pair, in mechanisms of which all rows are solved."""
+    problem = mk.load(path).problem
+    mechanism = problem.solved_mechanism
+    whole = reduce(mechanism)
+    if not is_drawn_assembled(mechanism) or path.stem in DRAWN_FLAT:
+        return
+    for left_out in range(-1, len(problem.driven)):
+        driven = [name for k, name in enumerate(problem.driven) if k != left_out]
+        numbers = {(j, mechanism.joints[j].freedom_number(c)) for j, c in driven}
+        rates = Rates(lambda link: GROUND, numbers, unit_of(mechanism))
+        connections = connections_of(mechanism, whole, driven)
+        still = rates.still(set(whole.links), connections, {"ground"})
+        assert (still == set(whole.links)) == (left_out < 0), left_out
