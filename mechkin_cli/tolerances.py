@@ -629,6 +629,13 @@ MOST_COMPARED_TREES: Final = 400
 """Choices of closing joints of equal size that are compared for evenness; of more, single
 exchanges."""
 
+PLACE_MOVES: Final = (0.05, -0.07)
+"""Moves of all inputs (rad, parts of the size) off a drawing that is a special position: far enough
+that pivots there are well above LOOP_RANK."""
+
+MOST_SPLIT_LINKS: Final = 40
+"""Links of one overconstrained set that is looked through for smaller ones: each costs a rank."""
+
 REFINEMENT_ROUNDS: Final = 12
 """Rounds of telling links apart by their neighbours: each doubles what is seen of the structure."""
 

@@ -18,6 +18,9 @@ from mechkin_cli.mechanism.legs import Leg, find_legs, frame_on
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
 from mechkin_cli.mechanism.vectors import ZERO, Vector, add, scale
 
+HALF = " (cut)"
+"""Ends the name of the second half of a cut link; a name as written has no such end."""
+
 
 class Reduction(NamedTuple):
     """Joints by name and moving links of the tree and its closing joints, and the legs beside
@@ -65,7 +68,7 @@ def cut_link(reduction: Reduction, link: str, loop: Sequence[str]) -> Reduction:
         for name in loop
         if link in (reduction.joints[name].first, reduction.joints[name].second)
     ]
-    half = f"{link} (cut)"
+    half = link + HALF
     joints = dict(reduction.joints)
     joints[own[-1].name] = _moved(own[-1], link, half)
     joints[half] = Joint(half, "W", link, half, GROUND, GROUND, (Part("W", GROUND, GROUND),))

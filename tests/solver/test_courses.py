@@ -11,8 +11,8 @@ import pytest
 from random_families.five_bars import FiveBar
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.assembly.home import home_state
 from mechkin_cli.solver.follow import TrackEnd
+from mechkin_cli.solver.home import home_state
 from mechkin_cli.solver.session import Session
 
 BAR = FiveBar(2.2, 1.3)

@@ -11,7 +11,6 @@ import pytest
 from prepared import Setup, prepared
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.assembly.home import home_state
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.closing_turns import (
     ORIENTATION,
@@ -22,6 +21,7 @@ from mechkin_cli.solver.closing_turns import (
 )
 from mechkin_cli.solver.codes import OutputCode
 from mechkin_cli.solver.follow import Followed, TrackEnd, follow
+from mechkin_cli.solver.home import home_state
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.records import Output, hand_over_outputs
 

@@ -7,21 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.solver.home import home_state
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.solver.follow import Followed
-    from mechkin_cli.solver.layout import Layout
     from mechkin_cli.solver.session import Session
-
-
-def home_state(layout: Layout) -> Floats:
-    """States of the home drawing: every coordinate zero."""
-    state = np.zeros(layout.states)
-    for carrier in layout.carriers:
-        if carrier.part.type.is_ball:
-            state[carrier.state] = 1.0
-    return state
 
 
 def is_home_assembled(session: Session) -> bool:

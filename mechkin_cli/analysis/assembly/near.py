@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.assembly.home import home_state
 from mechkin_cli.mechanism.model import GROUND_NAME
 from mechkin_cli.mechanism.vectors import norm
 from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.home import home_state
 from mechkin_cli.solver.search import Within, single_assembly
 
 if TYPE_CHECKING:

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.assembly.home import home_state
 from mechkin_cli.analysis.mobility.closed import closed
 from mechkin_cli.analysis.mobility.displacements import displacement
 from mechkin_cli.analysis.mobility.loops import Closing, Loops
@@ -25,6 +24,7 @@ from mechkin_cli.mechanism.elementary import screws_at
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
 from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.solver.home import home_state
 from mechkin_cli.solver.random_starts import RandomStarts
 from mechkin_cli.solver.session import Session
 from mechkin_cli.units import UnitSystem

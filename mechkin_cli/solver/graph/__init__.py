@@ -1,10 +1,11 @@
 """The solver graph: a spanning tree from ground, closing joints, and blocks in the order of
 solution.
 
-By structure alone: biconnected components (components.py), in each the Assur groups by matching
-(assur.py), in each group the closing joints (trees.py), over all the order (blocks.py). Neither
-the order nor the names in which a mechanism is written change verdict or blocks, and the work is
-nearly linear in the number of loops. RCSR: closed at S, 3 unknowns.
+By structure: biconnected components (components.py), in each the Assur groups by matching
+(assur.py) and, where that counts too many equations, by rank (determined.py), in each group the
+closing joints (trees.py), over all the order (blocks.py). Neither the order nor the names in which
+a mechanism is written change verdict or blocks, and the work is nearly linear in the number of
+loops. RCSR: closed at S, 3 unknowns.
 """
 
 from mechkin_cli.solver.graph.build import build_graph

@@ -9,17 +9,22 @@ have their own count: `d_r` freedoms a link beside the pose of the region's fram
 What the screws as drawn leave undetermined is counted once more with six freedoms a link: a
 drawing can be special, and the dimensions of an overconstrained loop decide later. If that is
 enough, all that hangs together is one group; what is undetermined even then is not driven.
+
+Where there are more equations than freedoms, all this only proposes groups: ranks decide
+(determined.py).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from mechkin_cli import tolerances
 from mechkin_cli.solver.graph.components import Component
+from mechkin_cli.solver.graph.determined import Found, determined_sets
 from mechkin_cli.solver.graph.matching import Matching, Row
 from mechkin_cli.solver.graph.network import Connection, distances, incidence
+from mechkin_cli.solver.graph.rates import Rates
 from mechkin_cli.solver.graph.regions import SPACE, Region, find_regions, order_of
 
 
@@ -38,24 +43,65 @@ class Undriven(NamedTuple):
     missing: int
 
 
-def assur_groups(component: Component) -> tuple[list[Group], Undriven | None]:
-    """The groups of a component in order, and what nothing drives."""
+def assur_groups(
+    component: Component, places: Iterable[Rates]
+) -> tuple[list[Group], Undriven | None]:
+    """The groups of a component in order, and what nothing drives.
+
+    `places` are asked for only where there are too many equations: the rates at places where the
+    mechanism is assembled, of which the first that determines everything decides.
+    """
     if component.loops < 2:
         return _single(component)
     order = order_of(component.connections)
-    regions: list[Region] = []
-    if order > 3 or _System(component, order, []).matching.is_redundant:
-        regions = find_regions(component, order)
-    system = _System(component, order, regions)
+    system = _System(component, order, [])
+    is_redundant = system.matching.is_redundant
+    if order > 3 and is_redundant:
+        system = _System(component, order, find_regions(component, order))
     groups = system.groups()
     placed = {link for group in groups for link in group.links}
     rest = _rest(component, placed)
-    if rest is None:
-        return groups, None
-    loose = _System(rest, SPACE, []).undriven()
-    if loose is not None:
-        return groups, Undriven(_own_names(component, loose.connections), loose.missing)
-    return groups + _pieces(component, rest), None
+    if rest is not None:
+        loose = _System(rest, SPACE, []).undriven()
+        if loose is not None:
+            return groups, Undriven(_own_names(component, loose.connections), loose.missing)
+        groups += _pieces(component, rest)
+    return _determined(component, groups, places) if is_redundant else groups, None
+
+
+def _determined(
+    component: Component, proposed: Sequence[Group], places: Iterable[Rates]
+) -> list[Group]:
+    """The groups as ranks say; what they leave open is solved together."""
+    best: Found | None = None
+    for rates in places:
+        found = determined_sets(component, [group.links for group in proposed], rates)
+        if best is None or len(found.left) < len(best.left):
+            best = found
+        if not best.left:
+            break
+    if best is None:
+        return [Group(component.entry, component.links, component.connections)]
+    return _with_connections(component, [*best.sets, *([best.left] if best.left else [])])
+
+
+def _with_connections(component: Component, sets: Iterable[tuple[str, ...]]) -> list[Group]:
+    """Sets of links as groups, each with the connections that its links are the last to reach;
+    slides of legs come by themselves."""
+    found: list[Group] = []
+    inside = {component.entry}
+    waiting = list(component.connections)
+    for links in sets:
+        inside.update(links)
+        reached = [c for c in waiting if c.first in inside and c.second in inside]
+        waiting = [c for c in waiting if c.first not in inside or c.second not in inside]
+        slides = [c for c in reached if c.leg is not None and c.leg.slide and not c.driven]
+        members = tuple(c for c in reached if c not in slides)
+        own = set(links)
+        ordered = tuple(link for link in component.links if link in own)
+        found.append(Group(component.entry, ordered, members))
+        found += [Group(component.entry, (), (c,)) for c in slides]
+    return found
 
 
 def _single(component: Component) -> tuple[list[Group], Undriven | None]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism
 from mechkin_cli.solver.graph import errors
@@ -10,6 +10,7 @@ from mechkin_cli.solver.graph.assur import Group, Undriven, assur_groups
 from mechkin_cli.solver.graph.blocks import in_order, lay_blocks
 from mechkin_cli.solver.graph.components import biconnected
 from mechkin_cli.solver.graph.network import Connection, connections_of, distances, incidence
+from mechkin_cli.solver.graph.rates import Rates, unit_of
 from mechkin_cli.solver.graph.records import SolverGraph, TreeEdge, UnsolvableGraph
 from mechkin_cli.solver.graph.tree_edges import Ways, spanning_tree
 from mechkin_cli.solver.graph.trees import NothingCloses, closings_of, tree_depths
@@ -29,10 +30,47 @@ def build_graph(
         UnsolvableGraph: links not connected to ground, no joint to close a loop at, undriven or
             overconstrained loops.
     """
+    return _built(mechanism, inputs, closed_at, _Places(mechanism, inputs))
+
+
+class _Places:
+    """The rates at places where a mechanism is assembled, each found when it is asked for."""
+
+    def __init__(self, mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> None:
+        self._sought = self._seek(mechanism, inputs)
+        self._found: list[Rates] = []
+
+    def __iter__(self) -> Iterator[Rates]:
+        yield from self._found
+        for rates in self._sought:
+            self._found.append(rates)
+            yield rates
+
+    @staticmethod
+    def _seek(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> Iterator[Rates]:
+        from mechkin_cli.solver.assembled_places import assembled_places
+
+        def coarse() -> SolverGraph:
+            return _built(mechanism, inputs, None, ())
+
+        joints = mechanism.joints
+        driven = {(name, joints[name].freedom_number(c)) for name, c in inputs}
+        unit = unit_of(mechanism)
+        for poses in assembled_places(mechanism, coarse):
+            yield Rates(poses, driven, unit)
+
+
+def _built(
+    mechanism: Mechanism,
+    inputs: Sequence[tuple[str, str]],
+    closed_at: Sequence[str] | None,
+    places: Iterable[Rates],
+) -> SolverGraph:
+    """As `build_graph`; without places whatever has too many equations is one block."""
     whole = reduce(mechanism)
     while True:
         connections = connections_of(mechanism, whole, inputs)
-        groups = _groups(mechanism, whole, connections, inputs)
+        groups = _groups(mechanism, whole, connections, inputs, places)
         try:
             names = _closing_names(whole, groups) if closed_at is None else list(closed_at)
         except NothingCloses as loop:
@@ -46,6 +84,7 @@ def _groups(
     whole: Reduction,
     connections: Sequence[Connection],
     inputs: Sequence[tuple[str, str]],
+    places: Iterable[Rates],
 ) -> list[Group]:
     """The Assur groups of all components, each after those that it hangs on."""
     components = biconnected(connections, incidence(connections), GROUND_NAME)
@@ -55,7 +94,7 @@ def _groups(
     found: list[Group] = []
     loose: list[Undriven] = []
     for component in components:
-        groups, undriven = assur_groups(component)
+        groups, undriven = assur_groups(component, places)
         found += groups
         if undriven is not None:
             loose.append(undriven)

@@ -1,0 +1,122 @@
+"""Places where a mechanism is assembled, next to its drawing, to take ranks at.
+
+The drawing itself if it is assembled; else what Newton's method makes of it, all loops of a
+component in one block. A drawing may be a special position, so places with the inputs moved a
+little follow. If nothing closes, the drawing has to do as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.mechanism.frames import GROUND, Frame
+from mechkin_cli.mechanism.legs import find_legs, frame_on
+from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Mechanism
+from mechkin_cli.mechanism.vectors import ZERO, add, cross, norm, scale, subtract
+from mechkin_cli.solver.graph.records import SolverGraph, UnsolvableGraph
+from mechkin_cli.solver.home import home_state
+from mechkin_cli.solver.random_starts import RandomStarts
+from mechkin_cli.solver.reduction import HALF
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.solver.layout import Layout
+    from mechkin_cli.solver.session import Session
+
+Poses = Callable[[str], Frame]
+
+
+def assembled_places(mechanism: Mechanism, graph: Callable[[], SolverGraph]) -> Iterator[Poses]:
+    """Where the links' drawings stand; `graph` closes all loops of a component at once."""
+    drawn = is_drawn_assembled(mechanism)
+    if drawn:
+        yield _as_drawn
+    session = _session(mechanism, graph)
+    if session is not None:
+        moves = [(move, off) for off in (1.0, 0.0) for move in tolerances.PLACE_MOVES]
+        for move, off in moves if drawn else [(0.0, 0.0), *moves]:
+            poses = _closed(session, move, off * move)
+            if poses is not None:
+                yield poses
+    if not drawn:
+        yield _as_drawn
+
+
+def is_drawn_assembled(mechanism: Mechanism) -> bool:
+    """Whether all joints are drawn with their frames on each other, and legs as long as they are
+    apart."""
+    most = tolerances.LOOP_RANK
+    size = mechanism.box_diagonal()
+    parts = [part for joint in mechanism.joints.values() for part in joint.parts]
+    turns = [
+        norm(subtract(one, other))
+        for part in parts
+        if not part.type.is_ball
+        for one, other in zip(part.before[:3], part.after[:3], strict=True)
+    ]
+    apart = [norm(subtract(part.before.o, part.after.o)) for part in parts]
+    for leg in find_legs(mechanism):
+        foot, head = frame_on(leg.start, leg.first).o, frame_on(leg.end, leg.second).o
+        apart.append(abs(norm(subtract(head, foot)) - norm(leg.span)))
+    return max(turns, default=0.0) <= most and max(apart, default=0.0) <= most * size
+
+
+def _as_drawn(link: str) -> Frame:
+    return GROUND
+
+
+def _session(mechanism: Mechanism, graph: Callable[[], SolverGraph]) -> Session | None:
+    """The mechanism in the kernel, where it can be solved as it is driven."""
+    from mechkin_cli.mechanism.motion import Assembly, Motion
+    from mechkin_cli.mechanism.problem import Problem
+    from mechkin_cli.solver.session import Session
+    from mechkin_cli.units import UnitSystem
+
+    try:
+        found = graph()
+    except UnsolvableGraph:
+        return None
+    if any(block.equations > tolerances.MOST_EQUATIONS for block in found.blocks):
+        return None
+    problem = Problem(mechanism, Motion((), 1), Assembly(), UnitSystem())
+    return Session(problem, found, driven=found.driven)
+
+
+def _displaced(layout: Layout, move: float) -> Floats:
+    """The drawing with all coordinates but those of balls moved, up to so much."""
+    state, random = home_state(layout), RandomStarts()
+    for carrier in layout.carriers:
+        if not carrier.part.type.is_ball:
+            count = len(carrier.part.type.freedoms)
+            state[carrier.state : carrier.state + count] = move + random.between(move, count)
+    return state
+
+
+def _closed(session: Session, move: float, off: float) -> Poses | None:
+    """The poses that Newton's method reaches with all inputs moved, from a guess that is `off` the
+    drawing; None where it does not close."""
+    layout = session.layout
+    origin, length = layout.origin, layout.length
+    ends = (ZERO, scale(length, GROUND.x), scale(length, GROUND.y))
+    links = [name for name in layout.mechanism.links if name != GROUND_NAME]
+    points = [Attached(name, add(origin, end)) for name in links for end in ends]
+    readout = session.readout((), points)
+    inputs: Floats = np.full((len(layout.graph.inputs), 1), move)
+    batch = session.run(inputs, _displaced(layout, off)[:, None], readout=readout)
+    if not batch.good[0] or batch.outputs is None:
+        return None
+    values = batch.outputs[:, 0].tolist()
+    read = [(values[k], values[k + 1], values[k + 2]) for k in readout.points]
+    found = {GROUND_NAME: GROUND}
+    for number, name in enumerate(links):
+        middle, *others = read[3 * number : 3 * number + 3]
+        x, y = (scale(1.0 / length, subtract(end, middle)) for end in others)
+        turn = Frame(x, y, cross(x, y), ZERO)
+        back = add(add(scale(origin[0], x), scale(origin[1], y)), scale(origin[2], turn.z))
+        found[name] = turn._replace(o=subtract(middle, back))
+    # the half of a cut link goes with the other
+    return lambda link: found[link.removesuffix(HALF)]

@@ -1,0 +1,229 @@
+"""What can move at one place of the mechanism while all inputs rest: the rank of loops as they are.
+
+Counting equations says too much where loops hold by their dimensions: of the equations of an equal
+second rod none is new, of a plane loop closed in space two of five. The rates of a part's joints
+are the null space of its loops' screws and its legs' forces, taken at a place where all loops are
+closed (Hunt 1978; Davies 1981). Lengths are in parts of the mechanism's size, and a rank is decided
+by complete pivoting, far above rounding and far below what a regular place has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.mechanism.frames import GROUND, Frame
+from mechkin_cli.mechanism.legs import Leg, frame_on
+from mechkin_cli.mechanism.model import Attached, Joint, Mechanism
+from mechkin_cli.mechanism.vectors import ZERO, Vector, add, cross, norm, scale, subtract
+from mechkin_cli.solver.graph.network import Connection
+from mechkin_cli.tolerances import LOOP_RANK
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
+
+
+class Scale(NamedTuple):
+    """The point about which moments are taken (m), and the length that is one (m)."""
+
+    centre: Vector
+    length: float
+
+    def place(self, point: Vector) -> Vector:
+        """A point (m) about the centre, in parts of the length."""
+        return scale(1.0 / self.length, subtract(point, self.centre))
+
+
+def unit_of(mechanism: Mechanism) -> Scale:
+    """The middle and the size of a mechanism as drawn."""
+    points = [at.vector for _, at in mechanism.joint_points()]
+    total = ZERO
+    for point in points:
+        total = add(total, point)
+    return Scale(scale(1.0 / max(1, len(points)), total), mechanism.box_diagonal())
+
+
+class Rates:
+    """The joints' rates at a place.
+
+    Args:
+        poses: where the drawing's axes and origin (m) stand with each link.
+        driven: freedoms (joint, number along its chain) that rest.
+        unit: lengths as rows are told in.
+    """
+
+    def __init__(
+        self,
+        poses: Callable[[str], Frame],
+        driven: Collection[tuple[str, int]],
+        unit: Scale,
+    ) -> None:
+        self.poses = poses
+        self.driven = driven
+        self.unit = unit
+        self._screws: dict[str, Floats] = {}
+        self._forces: dict[str, tuple[float, ...]] = {}
+
+    def still(
+        self, links: Collection[str], connections: Sequence[Connection], placed: Collection[str]
+    ) -> set[str]:
+        """Which of some links cannot move against what is placed, by the connections between
+        them and those that lead to it."""
+        some = [c for c in connections if joins(c, links, placed)]
+        tree, closing = _tree([c for c in some if c.leg is None], placed)
+        if not tree:
+            return set()
+        columns, count = self._columns([*tree.values(), *closing])
+        twists = self._twists(tree, columns, count)
+        rows = [np.zeros((0, count))]
+        for c in closing:
+            apart = _of(twists, c.second, count) - _of(twists, c.first, count)
+            apart[:, columns[c.name]] -= self._of_joint(c)
+            rows.append(apart)
+        for c in some:
+            ends = [end for end in (c.first, c.second) if end not in placed]
+            if c.leg is not None and all(end in tree for end in ends):
+                apart = _of(twists, c.second, count) - _of(twists, c.first, count)
+                rows.append(_along(self._force(c.name, c.leg), apart)[None])
+        equations = np.concatenate(rows)
+        below = np.concatenate([twists[link] for link in tree])
+        left = _reduced(equations, below).reshape(len(tree), -1)
+        moved = np.max(np.abs(left), axis=1, initial=0.0)
+        return {link for link, most in zip(tree, moved, strict=True) if most <= LOOP_RANK}
+
+    def _columns(self, joints: Sequence[Connection]) -> tuple[dict[str, slice], int]:
+        """Which columns are each joint's rates, and how many there are."""
+        found, count = {}, 0
+        for c in joints:
+            freedoms = self._of_joint(c).shape[1]
+            found[c.name] = slice(count, count + freedoms)
+            count += freedoms
+        return found, count
+
+    def _twists(
+        self, tree: Mapping[str, Connection], columns: Mapping[str, slice], count: int
+    ) -> dict[str, Floats]:
+        """Twists (6, rates) of the links of a tree, each after that before it."""
+        found: dict[str, Floats] = {}
+        for link, c in tree.items():
+            twist = _of(found, c.other(link), count).copy()
+            sign = 1.0 if link == c.second else -1.0
+            twist[:, columns[c.name]] += sign * self._of_joint(c)
+            found[link] = twist
+        return found
+
+    def _of_joint(self, c: Connection) -> Floats:
+        """Screws (6, freedoms that do not rest) of a joint's second link against its first."""
+        if c.name not in self._screws:
+            found = [
+                screw
+                for number, screw in enumerate(self._chain(c.joint))
+                if (c.name, number) not in self.driven
+            ]
+            self._screws[c.name] = np.array(found, dtype=np.float64).reshape(-1, 6).T
+        return self._screws[c.name]
+
+    def _chain(self, joint: Joint) -> list[list[float]]:
+        """The screws of all freedoms: turns go through the joint's point."""
+        at = self.unit.place(self._point(joint.point))
+        pitch = joint.pitch / self.unit.length
+        found = []
+        for step, part in zip(joint.type.steps, joint.parts, strict=True):
+            for freedom in part.type.freedoms:
+                if freedom.motion == "ball":
+                    direction: Vector = getattr(GROUND, freedom.axis)
+                elif step.along is None:
+                    # it leads from one drawing to the other, behind slides alone
+                    direction = self._direction(Attached(joint.first, part.before.z))
+                else:
+                    direction = self._direction(joint.drawn(step.along))
+                if freedom.is_slide:
+                    found.append([*ZERO, *direction])
+                    continue
+                along = pitch if freedom.motion == "thread" else 0.0
+                found.append([*direction, *add(cross(at, direction), scale(along, direction))])
+        return found
+
+    def _force(self, name: str, leg: Leg) -> tuple[float, ...]:
+        """The force along a leg: its moment, then itself."""
+        if name not in self._forces:
+            foot = self._point(Attached(leg.first, frame_on(leg.start, leg.first).o))
+            head = self._point(Attached(leg.second, frame_on(leg.end, leg.second).o))
+            span = subtract(head, foot)
+            line = scale(1.0 / (norm(span) or 1.0), span)
+            self._forces[name] = (*cross(self.unit.place(foot), line), *line)
+        return self._forces[name]
+
+    def _direction(self, at: Attached) -> Vector:
+        pose = self.poses(at.link)
+        x, y, z = at.vector
+        return add(add(scale(x, pose.x), scale(y, pose.y)), scale(z, pose.z))
+
+    def _point(self, at: Attached) -> Vector:
+        return add(self.poses(at.link).o, self._direction(at))
+
+
+def joins(c: Connection, links: Collection[str], placed: Collection[str]) -> bool:
+    """Whether a connection holds some of the links, or two of them together."""
+    if c.leg is not None and c.leg.slide is not None and not c.driven:
+        return False  # it only moves its slide
+    ends = (c.first in links, c.second in links)
+    return any(ends) and all(
+        inside or end in placed for inside, end in zip(ends, (c.first, c.second), strict=True)
+    )
+
+
+def _tree(
+    joints: Sequence[Connection], placed: Collection[str]
+) -> tuple[dict[str, Connection], list[Connection]]:
+    """The joints that carry the links which joints reach from what is placed, each after the one
+    before it, and the other joints between these."""
+    at: dict[str, list[Connection]] = {}
+    for c in joints:
+        for end in (c.first, c.second):
+            at.setdefault("" if end in placed else end, []).append(c)
+    tree: dict[str, Connection] = {}
+    front = [""]
+    for link in front:
+        for c in at.get(link, ()):
+            for end in (c.first, c.second):
+                if end not in placed and end not in tree:
+                    tree[end] = c
+                    front.append(end)
+    carrying = {c.name for c in tree.values()}
+    reached = [c for c in joints if c.first in tree or c.second in tree]
+    return tree, [c for c in reached if c.name not in carrying]
+
+
+def _of(twists: Mapping[str, Floats], link: str, count: int) -> Floats:
+    """The twist of a link; of what is placed zero."""
+    return twists[link] if link in twists else np.zeros((6, count))
+
+
+def _along(force: Sequence[float], twist: Floats) -> Floats:
+    """Power (rates,) of a force and moment on twists (6, rates)."""
+    found = np.zeros(twist.shape[1])
+    for component, row in zip(force, twist, strict=True):
+        found += component * row
+    return found
+
+
+def _reduced(equations: Floats, below: Floats) -> Floats:
+    """What rows `below` are on the null space of `equations`: in terms of the columns without a
+    pivot."""
+    rows, columns = equations.shape
+    table = np.concatenate([equations, below])
+    rank = 0
+    while rank < min(rows, columns):
+        sizes = np.abs(table[rank:rows, rank:])
+        row, column = divmod(int(np.argmax(sizes)), columns - rank)
+        if sizes[row, column] <= LOOP_RANK:
+            break
+        table[[rank, rank + row]] = table[[rank + row, rank]]
+        table[:, [rank, rank + column]] = table[:, [rank + column, rank]]
+        factors = table[rank + 1 :, rank] / table[rank, rank]
+        table[rank + 1 :, rank:] -= factors[:, None] * table[rank, rank:]
+        rank += 1
+    return table[rows:, rank:]
