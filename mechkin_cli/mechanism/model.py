@@ -258,17 +258,24 @@ class Mechanism:
 
     def box_diagonal(self) -> float:
         """Diagonal of the box of all joint points as drawn, in m; 1 if they all coincide."""
-        points = [at.vector for _, at in self.joint_points()]
-        return diagonal(points)
+        return self._box_diagonal
 
-    def joint_points(self) -> list[tuple[str, Attached]]:
+    @cached_property
+    def _box_diagonal(self) -> float:
+        return diagonal([at.vector for _, at in self.joint_points()])
+
+    def joint_points(self) -> tuple[tuple[str, Attached], ...]:
         """Every joint's point on each of its links, by joint name; welds have none."""
+        return self._joint_points
+
+    @cached_property
+    def _joint_points(self) -> tuple[tuple[str, Attached], ...]:
         found = []
         for joint in self.joints.values():
             if joint.type.has_point:
                 found.append((joint.name, Attached(joint.first, joint.on_first.o)))
                 found.append((joint.name, Attached(joint.second, joint.on_second.o)))
-        return found
+        return tuple(found)
 
 
 def diagonal(points: list[Vector]) -> float:

@@ -4,6 +4,7 @@ nearest to it."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -54,7 +55,8 @@ class Start:
     """States at a row (the first, or the one nearest to an assembled home) and the mode's name,
     where it is known (`near` and `home` stand for one that nobody asked for); `how` says how it was
     found. Without states `status` says why there are none, and `stuck` whether the inputs did not
-    move from the drawing at all."""
+    move from the drawing at all. `off` is the distance from what `near` names and `condition` that
+    of the assembly, as far as the choice has found them."""
 
     state: Floats | None
     mode: str
@@ -63,6 +65,8 @@ class Start:
     status: Status = Status.not_assembled
     row: int = 0
     stuck: bool = False
+    off: float = inf
+    condition: float | None = None
 
 
 def choose_start(session: Session) -> Start:
@@ -156,7 +160,7 @@ def _from_near(session: Session, inputs: Floats) -> Start | None:
             f"{distance:.2g} rad or sizes off what near names, found by Newton's method; no other "
             f"within {newton.unique:.2g}"
         )
-        return Start(newton.state, NEAR, how)
+        return Start(newton.state, NEAR, how, off=distance, condition=newton.condition)
     # what is named exactly is named to rounding
     radius = tolerances.NEAR_RUNNER_UP * max(distance, tolerances.SAME_MODE)
     if radius > tolerances.NEAR_BALL:
@@ -166,7 +170,8 @@ def _from_near(session: Session, inputs: Floats) -> Start | None:
 
 
 def _told_if_far(session: Session, inputs: Floats, start: Start) -> Start:
-    if start.state is None:
+    if start.state is None or start.off <= tolerances.NEAR_FAR:
+        # no coordinate is off by more than all together
         return start
     notes = far_notes(session, inputs, start.state)
     return replace(start, diagnostics=[*start.diagnostics, *notes])
@@ -189,7 +194,8 @@ def _nearest_about(
     notes = []
     if len(order) > 1 and is_unclear(best, distances[order[1]]):
         notes.append(unclear("two assemblies", (best, distances[order[1]])))
-    return Start(found.states[:, order[0]], NEAR, how, notes)
+    condition = float(found.condition[order[0]])
+    return Start(found.states[:, order[0]], NEAR, how, notes, off=best, condition=condition)
 
 
 def _from_home(session: Session) -> Start:
@@ -267,4 +273,5 @@ def _nearest(modes: NamedModes, distances: list[float], home: list[float], how: 
                 both = f"modes {modes.letters[best]} and {modes.letters[second]}"
             notes.append(unclear(both, (distances[best], distances[second])))
     words = f"{how}, 1 of {modes.number} found"
-    return Start(modes.found.states[:, best], modes.letters.get(best, NEAR), words, notes)
+    state, condition = modes.found.states[:, best], float(modes.found.condition[best])
+    return Start(state, modes.letters.get(best, NEAR), words, notes, condition=condition)
