@@ -128,10 +128,8 @@ class Joint(NamedTuple):
             return ()
         return tuple(
             # a part that leads from one drawing to the other stands behind slides alone
-            Attached(self.first, part.before.z) if step.along is None else self.drawn(step.along)
-            for step, part in zip(self.type.steps, self.parts, strict=True)
-            for freedom in part.type.freedoms
-            if freedom.motion == motion
+            Attached(self.first, self.parts[step].before.z) if along is None else self.drawn(along)
+            for step, along in self.type.free[motion]
         )
 
     @property

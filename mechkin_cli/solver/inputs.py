@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.solver.layout import Layout
     from mechkin_cli.solver.session import Session
+    from mechkin_cli.units.compound import CompoundUnit
 
 
 class KernelInputs(NamedTuple):
@@ -97,12 +98,12 @@ def turn_of(problem: Problem, item: DrivenInput) -> Fraction | None:
     kind = problem.mechanism.joints[item.joint].type
     if not kind.chain[kind.freedom_of[item.coordinate]].is_cyclic:
         return None
-    return _turn(problem.units.angle.factor)
+    return _turn(problem.units.angle)
 
 
 @cache
-def _turn(unit: Fraction) -> Fraction:
-    return 2 * PI / unit
+def _turn(unit: CompoundUnit) -> Fraction:
+    return 2 * PI / unit.factor
 
 
 def input_rest(session: Session, name: str) -> Floats | None:

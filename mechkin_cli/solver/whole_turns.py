@@ -44,13 +44,14 @@ def without_turns(values: Floats, turn: Fraction) -> tuple[Floats, Floats]:
     if not 0.5 * size < most <= MOST_TURNS * size:
         return values, np.zeros_like(values)
     if Fraction(size) == turn:
-        rest = np.fmod(values, size)  # exact by IEEE 754, and so are the differences
-        rest = np.where(rest > 0.5 * size, rest - size, rest)
-        rest = np.where(rest <= -0.5 * size, rest + size, rest)
+        rest = np.fmod(values, size)  # exact by IEEE 754
     else:
-        rest, one = _subtract(values, np.rint(values / size), turn), np.ones_like(values)
-        rest = np.where(rest > 0.5 * size, _subtract(rest, one, turn), rest)
-        rest = np.where(rest <= -0.5 * size, _subtract(rest, -one, turn), rest)
+        rest = _subtract(values, np.rint(values / size), turn)
+    for way in (1.0, -1.0):
+        beyond = rest > 0.5 * size if way > 0.0 else rest <= -0.5 * size
+        if beyond.any():
+            here = rest[beyond]
+            rest[beyond] = _subtract(here, np.full_like(here, way), turn)
     return rest, np.rint((values - rest) / size)
 
 
