@@ -166,9 +166,9 @@ def _work(equations: int, unknowns: int) -> float:
 
 
 def _count(request: Request, number: int, bases: Floats, searches: list[PlaceSearch]) -> None:
-    from mechkin_cli.solver.loop_count import count_assemblies
+    from mechkin_cli.solver.loop_count import count_assemblies, state_error
 
-    error = tolerances.ROOT_STATE_ERROR if number else tolerances.ROOT_ROUNDING
+    error = state_error(number)
     for i, search in enumerate(searches):
         if not search.is_complete:
             search.learn(count_assemblies(request.layout, number, bases[:, i], error))

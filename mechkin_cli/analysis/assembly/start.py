@@ -32,6 +32,7 @@ from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.inputs import input_numbers, input_text
 from mechkin_cli.solver.search import Found, with_assemblies
+from mechkin_cli.solver.short_proof import is_in_reach
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
@@ -126,7 +127,7 @@ def mode_letter(session: Session, start: Start, *, thorough: bool = True) -> str
         return start.mode
     first = session.inputs.reduced[:, 0]
     state = state_at_first_row(session, start)
-    if state is None:
+    if state is None or not (thorough or is_in_reach(session.layout, state)):
         return start.mode
     modes = name_modes(session, first, thorough=thorough)
     if not modes.letters:
