@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     isolated assemblies, and how many are assemblies but not isolated."""
 
 
+_IN_CACHE = 1 << 14
+"""Differences of poses that are taken all at once; more of them leave the processor's cache."""
+
+
 class Clusters:
     """Representatives (columns of `states`) of the assemblies that starts ended on, told apart by
     some of the kernel's joints (None: all), and how often each was met.
@@ -147,6 +151,10 @@ def same_poses(
     known: Floats, keys: Floats, limit: float = tolerances.SAME_MODE
 ) -> NDArray[np.bool_]:
     """Which columns of `keys` are the poses of which columns of `known`: (known, keys)."""
+    if known.size * keys.shape[1] <= _IN_CACHE:
+        near = np.abs(known[:, :, None] - keys[:, None, :]) < limit
+        few: NDArray[np.bool_] = np.logical_and.reduce(near, axis=0)
+        return few
     found = np.ones((known.shape[1], keys.shape[1]), dtype=bool)
     for one, other in zip(known, keys, strict=True):
         found &= np.abs(one[:, None] - other[None, :]) < limit

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.solver.clusters import pose_keys
+from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.random_starts import RandomStarts
 from mechkin_cli.solver.start_box import Within, randomise, unknown_states
 
@@ -61,3 +61,16 @@ def test_poses_are_told_by_cosines_sines_slides_and_products(name: str) -> None:
             else:
                 expected.append(list(row))
     assert pose_keys(layout, states) == pytest.approx(np.array(expected), abs=1e-15)
+
+
+@pytest.mark.parametrize(("known", "others"), [(1, 1), (2, 60), (30, 400)])
+def test_the_same_poses_are_those_no_key_of_which_is_off(known: int, others: int) -> None:
+    """Few are compared at once and many key by key."""
+    rng = np.random.default_rng(known)
+    one = rng.uniform(-1.0, 1.0, (7, known))
+    other = one[:, rng.integers(0, known, others)] + rng.choice([0.0, 4e-7, 2e-6], (7, others))
+    other[3, ::5] = np.nan
+    expected = [
+        [all(abs(a - b) < 1e-6 for a, b in zip(p, q, strict=True)) for q in other.T] for p in one.T
+    ]
+    assert same_poses(one, other, 1e-6).tolist() == expected
