@@ -90,6 +90,10 @@ SEARCH_MOST_STARTS: Final = 262_144
 SEARCH_MOST_QUICK_STARTS: Final = 16_384
 """The same for a search that is for one assembly."""
 
+SEARCH_REACHED_BOUND: Final = 8
+"""Proven bounds up to this are reached by everyday loops; 16 of a general one and 40 of a platform
+only by dimensions that were looked for, so no short search is made to reach them."""
+
 SEARCH_MOST_MODES: Final = 1024
 """More different end points than this are no list of modes but a motion that is left with the
 inputs held; platforms have 40 modes."""

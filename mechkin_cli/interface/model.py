@@ -145,7 +145,8 @@ class Model:
         layouts = self._chosen_tables(tables)
         asked = () if quantities is None else texts("quantities", quantities, '["O4.theta"]')
         asked = tuple(name for name in asked if name not in ROW_TEXTS)  # always there
-        names = [*used_quantities(layouts, problem.quantities()), *asked]
+        used = used_quantities(layouts, problem.quantities()) if layouts else []
+        names = [*used, *asked]
         for name in names:
             if name not in self.quantities:
                 hint = hint_of(name) or nearest_hint(name, self.quantities) or QUANTITIES
@@ -174,11 +175,11 @@ class Model:
             cure = "leave out closed_at, or choose other closing joints"
             raise UsageError(f"{why}; {cure}") from None
 
-    def _refuse_loaded_spin(self, problem: Problem, names: Iterable[str]) -> None:
+    def _refuse_loaded_spin(self, problem: Problem, names: Sequence[str]) -> None:
         """Forces need what spins freely to have no cause to spin."""
-        known = problem.quantities()
         if not (find_legs(problem.mechanism) or problem.held):
             return
+        known = problem.quantities() if names else {}
         if demand_of(problem.mechanism, [known[name] for name in names]) & Demand.FORCES:
             from mechkin_cli.mechanism.idle import spin_errors
 

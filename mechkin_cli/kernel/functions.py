@@ -81,5 +81,9 @@ def _apply(operation: _Operation, first: Value, second: Value) -> Value:
 
 
 def _rows(value: float | FloatArray) -> FloatArray:
-    rows = value if isinstance(value, np.ndarray) else [value]
-    return np.require(rows, dtype=np.float64, requirements=["C", "W"])
+    if not isinstance(value, np.ndarray):
+        return np.array([value], dtype=np.float64)
+    flags = value.flags
+    if flags.c_contiguous and flags.writeable and value.dtype == np.float64:
+        return value
+    return np.require(value, dtype=np.float64, requirements=["C", "W"])

@@ -202,8 +202,8 @@ def _dynamic_freedom(idle: Idle, cause: str, measured: str) -> Diagnostic:
 def conventional_notes(problem: Problem, wanted: Iterable[Wanted]) -> list[Diagnostic]:
     """Notes on quantities that depend on the convention about an idle freedom."""
     wanted = list(wanted)
-    notes = []
-    for idle in idle_freedoms(problem):
+    notes: list[Diagnostic] = []
+    for idle in idle_freedoms(problem) if wanted else ():
         names = [q.name for q in wanted if _is_conventional(problem.mechanism, idle, q)]
         if names:
             notes.append(

@@ -135,6 +135,20 @@ class JointType:
         """For each freedom, whether it is a length."""
         return tuple(freedom.is_slide for freedom in self.chain)
 
+    @cached_property
+    def free(self) -> dict[str, tuple[tuple[int, Drawn | None], ...]]:
+        """Of its freedoms that turn, and of those that slide: the steps that have them (`turn`,
+        `slide`) with their directions."""
+        return {
+            motion: tuple(
+                (number, step.along)
+                for number, step in enumerate(self.steps)
+                for freedom in ELEMENTARY[step.letter].freedoms
+                if freedom.motion == motion
+            )
+            for motion in ("turn", "slide")
+        }
+
     @property
     def has_point(self) -> bool:
         """Whether it has a point of its own."""

@@ -9,7 +9,8 @@ no freedom of their own.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism.frames import Frame
@@ -18,7 +19,8 @@ from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale, subtr
 from mechkin_cli.tape.scalars import largest
 
 
-class Leg(NamedTuple):
+@dataclass(frozen=True)
+class Leg:
     """A leg from the sphere `start` on link `first` to the sphere `end` on link `second`.
 
     `body` is the link at `start`; a telescope has a `rod` at `end` that moves by `slide`.
@@ -49,12 +51,12 @@ class Leg(NamedTuple):
         spins = "spins" if self.rod is None else "spin"
         return f"{' and '.join(self.links)} {spins} freely about {self.start.name}-{self.end.name}"
 
-    @property
+    @cached_property
     def span(self) -> Vector:
         """From sphere to sphere in the drawing of `body`, the slide at zero, in m."""
         return subtract(self._end_on_body(), frame_on(self.start, self.body).o)
 
-    @property
+    @cached_property
     def line(self) -> Vector:
         """Unit vector from sphere to sphere in the drawing of `body`."""
         span = self.span
@@ -63,7 +65,7 @@ class Leg(NamedTuple):
             return scale(1.0 / length, span)
         return self._outward_axis()
 
-    @property
+    @cached_property
     def slide_sign(self) -> float:
         """Rate of the distance by the slide: 1 or -1; 0 without a slide."""
         if self.slide is None:

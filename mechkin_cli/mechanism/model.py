@@ -128,10 +128,8 @@ class Joint(NamedTuple):
             return ()
         return tuple(
             # a part that leads from one drawing to the other stands behind slides alone
-            Attached(self.first, part.before.z) if step.along is None else self.drawn(step.along)
-            for step, part in zip(self.type.steps, self.parts, strict=True)
-            for freedom in part.type.freedoms
-            if freedom.motion == motion
+            Attached(self.first, self.parts[step].before.z) if along is None else self.drawn(along)
+            for step, along in self.type.free[motion]
         )
 
     @property
@@ -258,17 +256,24 @@ class Mechanism:
 
     def box_diagonal(self) -> float:
         """Diagonal of the box of all joint points as drawn, in m; 1 if they all coincide."""
-        points = [at.vector for _, at in self.joint_points()]
-        return diagonal(points)
+        return self._box_diagonal
 
-    def joint_points(self) -> list[tuple[str, Attached]]:
+    @cached_property
+    def _box_diagonal(self) -> float:
+        return diagonal([at.vector for _, at in self.joint_points()])
+
+    def joint_points(self) -> tuple[tuple[str, Attached], ...]:
         """Every joint's point on each of its links, by joint name; welds have none."""
+        return self._joint_points
+
+    @cached_property
+    def _joint_points(self) -> tuple[tuple[str, Attached], ...]:
         found = []
         for joint in self.joints.values():
             if joint.type.has_point:
                 found.append((joint.name, Attached(joint.first, joint.on_first.o)))
                 found.append((joint.name, Attached(joint.second, joint.on_second.o)))
-        return found
+        return tuple(found)
 
 
 def diagonal(points: list[Vector]) -> float:

@@ -128,6 +128,15 @@ def catalogue(
     return found
 
 
+def coordinate_quantities(mechanism: Mechanism) -> list[Wanted]:
+    """The joint coordinates themselves, in joint order."""
+    return [
+        Wanted(name, "coordinate", joint.name, known.dimension, False, known.name)
+        for joint in mechanism.joints.values()
+        for name, known in zip(joint.coordinates, joint.type.named, strict=True)
+    ]
+
+
 def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
     for joint in mechanism.joints.values():
         for known in joint.type.named:

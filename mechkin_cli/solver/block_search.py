@@ -18,10 +18,8 @@ from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.block_bounds import most_of_block
 from mechkin_cli.solver.clusters import Clusters
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.loop_count import Count, count_assemblies
 from mechkin_cli.solver.start_box import (
     Within,
-    bring_within,
     most_turn,
     randomise,
     thread_states,
@@ -31,6 +29,7 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.solver.layout import Layout
+    from mechkin_cli.solver.loop_count import Count
     from mechkin_cli.solver.random_starts import RandomStarts
 
 
@@ -122,7 +121,8 @@ def search_block(
             places = active[first : first + at_once]
             states = np.repeat(bases[:, places], share, axis=1)
             search_round(request, number, states, generator, [searches[i] for i in places])
-        if not tried:
+        if not tried and request.within is None:
+            # a box has a part of them, whose number nothing tells
             _count(request, number, bases, searches)
         active = [i for i in active if not searches[i].is_over]
         if _is_hopeless(searches):
@@ -166,7 +166,9 @@ def _work(equations: int, unknowns: int) -> float:
 
 
 def _count(request: Request, number: int, bases: Floats, searches: list[PlaceSearch]) -> None:
-    error = tolerances.ROOT_STATE_ERROR if number else tolerances.ROOT_ROUNDING
+    from mechkin_cli.solver.loop_count import count_assemblies, state_error
+
+    error = state_error(number)
     for i, search in enumerate(searches):
         if not search.is_complete:
             search.learn(count_assemblies(request.layout, number, bases[:, i], error))
@@ -181,9 +183,7 @@ def search_round(
 ) -> None:
     """The same number of starts from each place, columns of `states`, place by place."""
     layout, middle = request.layout, request.middle
-    randomise(layout, number, states, generator, request.turns, middle)
-    if request.within is not None:
-        bring_within(layout, number, states, generator, request.within)
+    randomise(layout, number, states, generator, request.turns, middle, request.within)
     values = np.repeat(request.inputs[:, None], states.shape[1], axis=1)
     residual, closed = ends(request.plan, number, values, states)
     threads = thread_states(layout, number)

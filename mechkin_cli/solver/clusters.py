@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     isolated assemblies, and how many are assemblies but not isolated."""
 
 
+_IN_CACHE = 1 << 14
+"""Differences of poses that are taken all at once; more of them leave the processor's cache."""
+
+
 class Clusters:
     """Representatives (columns of `states`) of the assemblies that starts ended on, told apart by
     some of the kernel's joints (None: all), and how often each was met.
@@ -53,16 +57,18 @@ class Clusters:
         are not known yet as `isolated` leaves them."""
         keys = pose_keys(self.layout, states, self.carriers)
         unknown = self._left(keys)
-        states, good, free = isolated(states[:, unknown])
+        given = states[:, unknown]
+        ended, good, free = isolated(given)
         closing = np.ones(keys.shape[1], dtype=bool)
         closing[unknown[~good]] = False
         order = self.closed + np.cumsum(closing)
         self.closed += int(np.count_nonzero(closing))
         self.free += free
-        self._take(states[:, good], order[unknown[good]])
+        moved = ended is not given
+        keys = pose_keys(self.layout, ended, self.carriers) if moved else keys[:, unknown]
+        self._take(ended[:, good], keys[:, good], order[unknown[good]])
 
-    def _take(self, states: Floats, order: NDArray[np.int64]) -> None:
-        keys = pose_keys(self.layout, states, self.carriers)
+    def _take(self, states: Floats, keys: Floats, order: NDArray[np.int64]) -> None:
         while keys.shape[1]:
             left = self._left(keys)
             states, keys, order = states[:, left], keys[:, left], order[left]
@@ -107,28 +113,48 @@ def pose_keys(
 
     `left_out` are freedoms (tree edge, number) that do not matter.
     """
+    kept = [
+        carrier
+        for carrier in (layout.carriers if carriers is None else carriers)
+        if (carrier.edge, carrier.first_freedom) not in left_out
+    ]
+    turns = _cosines_and_sines(states, kept)
     keys: list[Floats] = []
-    for carrier in layout.carriers if carriers is None else carriers:
+    for carrier in kept:
         state = carrier.state
-        if (carrier.edge, carrier.first_freedom) in left_out:
-            continue
         if carrier.part.type.is_ball:
             q = states[state : state + 4]
             keys.extend(q[i] * q[j] for i in range(4) for j in range(i, 4))
             continue
-        for number, freedom in enumerate(carrier.part.type.freedoms):
-            value = np.ascontiguousarray(states[state + number])
-            if freedom.is_cyclic:
-                keys.extend((functions.cos(value), functions.sin(value)))
-            else:
-                keys.append(value)
-    return np.stack(keys) if keys else np.zeros((0, states.shape[1]))
+        for number, freedom in enumerate(carrier.part.type.freedoms, start=state):
+            keys.extend(turns[number] if freedom.is_cyclic else (states[number],))
+    return np.array(keys) if keys else np.zeros((0, states.shape[1]))
+
+
+def _cosines_and_sines(
+    states: Floats, carriers: Sequence[Carrier]
+) -> dict[int, tuple[Floats, Floats]]:
+    """Of the turns of some joints, by state; all in one call."""
+    cyclic = [
+        number
+        for carrier in carriers
+        for number, freedom in enumerate(carrier.part.type.freedoms, start=carrier.state)
+        if freedom.is_cyclic
+    ]
+    angles = states[cyclic].reshape(-1)
+    shape = (len(cyclic), states.shape[1])
+    cosines, sines = (f(angles).reshape(shape) for f in (functions.cos, functions.sin))
+    return dict(zip(cyclic, zip(cosines, sines, strict=True), strict=True))
 
 
 def same_poses(
     known: Floats, keys: Floats, limit: float = tolerances.SAME_MODE
 ) -> NDArray[np.bool_]:
     """Which columns of `keys` are the poses of which columns of `known`: (known, keys)."""
+    if known.size * keys.shape[1] <= _IN_CACHE:
+        near = np.abs(known[:, :, None] - keys[:, None, :]) < limit
+        few: NDArray[np.bool_] = np.logical_and.reduce(near, axis=0)
+        return few
     found = np.ones((known.shape[1], keys.shape[1]), dtype=bool)
     for one, other in zip(known, keys, strict=True):
         found &= np.abs(one[:, None] - other[None, :]) < limit

@@ -7,6 +7,7 @@ messages, and rounds by its size.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.solver.layout import Layout
     from mechkin_cli.solver.session import Session
+    from mechkin_cli.units.compound import CompoundUnit
 
 
 class KernelInputs(NamedTuple):
@@ -73,7 +75,7 @@ def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
     def table(name: str, at: list[float]) -> Floats:
         moving = [getattr(i, name) / unit for i, unit in zip(inputs, units, strict=True)]
         still = [np.full(rows, value) for value in at]
-        return np.stack([*moving, *still]) if moving or still else np.empty((0, rows))
+        return np.array([*moving, *still]) if moving or still else np.empty((0, rows))
 
     rest = [0.0] * len(held)
     rates, accelerations, jerks = (
@@ -96,7 +98,12 @@ def turn_of(problem: Problem, item: DrivenInput) -> Fraction | None:
     kind = problem.mechanism.joints[item.joint].type
     if not kind.chain[kind.freedom_of[item.coordinate]].is_cyclic:
         return None
-    return 2 * PI / problem.units.angle.factor
+    return _turn(problem.units.angle)
+
+
+@cache
+def _turn(unit: CompoundUnit) -> Fraction:
+    return 2 * PI / unit.factor
 
 
 def input_rest(session: Session, name: str) -> Floats | None:

@@ -158,7 +158,7 @@ class Layout:
         k, local = self.carrier_of(edge, freedom)
         return self.carriers[k].state + local
 
-    @property
+    @cached_property
     def states(self) -> int:
         """Length of the state vector."""
         return sum(c.part.type.states for c in self.carriers)

@@ -150,9 +150,11 @@ def _frame(numbers: list[float]) -> Frame:
 
 def carried(outer: Frame, inner: Frame) -> Frame:
     """A frame given in another one's axes, in the axes that one is given in."""
+    (a, b, c), (d, e, f), (g, h, i), _ = outer
 
     def turned(v: Vector) -> Vector:
-        return add(add(scale(v[0], outer.x), scale(v[1], outer.y)), scale(v[2], outer.z))
+        x, y, z = v
+        return (x * a + y * d + z * g, x * b + y * e + z * h, x * c + y * f + z * i)
 
     place = add(outer.o, turned(inner.o))
     return Frame(turned(inner.x), turned(inner.y), turned(inner.z), place)

@@ -26,6 +26,11 @@ class Count(NamedTuple):
     most: int
 
 
+def state_error(number: int) -> float:
+    """The error of the upstream states of a block: inputs are given, unknowns are found."""
+    return tolerances.ROOT_STATE_ERROR if number else tolerances.ROOT_ROUNDING
+
+
 def count_assemblies(layout: Layout, number: int, base: Floats, error: float) -> Count | None:
     """The count of a block, upstream states as in `base` (states,) but for `error`; None for loops
     of other kinds."""

@@ -32,6 +32,10 @@ class RandomStarts:
     def __init__(self) -> None:
         self._counter = 0
 
+    def skip(self, count: int) -> None:
+        """Passes over the next words of the stream."""
+        self._counter += count
+
     def words(self, count: int) -> NDArray[np.uint64]:
         """The next words of the stream."""
         numbers = np.arange(self._counter + 1, self._counter + count + 1, dtype=np.uint64)

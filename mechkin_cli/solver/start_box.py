@@ -70,8 +70,10 @@ def randomise(
     generator: RandomStarts,
     turns: int,
     middle: Floats,
+    within: Within | None = None,
 ) -> None:
-    """Fills the unknown states of a block with random starts, threads about `middle`."""
+    """Fills the unknown states of a block with random starts, threads about `middle`; where a box
+    bounds them, from there."""
     rows = states.shape[1]
     reach = tolerances.SEARCH_SLIDES * layout.mechanism.box_diagonal() / layout.length
     for edge, freedom in layout.graph.blocks[number].unknowns:
@@ -81,6 +83,8 @@ def randomise(
         if carrier.part.type.is_ball:
             if local == 0:
                 states[state : state + 4] = generator.quaternions(rows)
+        elif within is not None and isfinite(within.radius[state]):
+            generator.skip(rows)
         elif carrier.part.type.slides[local]:
             states[state] = generator.between(reach, rows)
         else:
@@ -89,9 +93,11 @@ def randomise(
             states[state] = generator.between(half, rows)
             if thread:
                 states[state] += middle[state]
+    if within is not None:
+        _bring_within(layout, number, states, generator, within)
 
 
-def bring_within(
+def _bring_within(
     layout: Layout, number: int, states: Floats, generator: RandomStarts, within: Within
 ) -> None:
     """Takes the starts of a block from a box, where it is bounded."""

@@ -9,6 +9,7 @@ Manual for the Elementary Functions, 1980; D. E. Knuth, The Art of Computer Prog
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,16 +40,18 @@ def without_turns(values: Floats, turn: Fraction) -> tuple[Floats, Floats]:
         turn: a full turn in their unit.
     """
     size = float(turn)
-    if not np.any(np.abs(values) > 0.5 * size):
-        return values, np.zeros_like(values)
-    if not np.all(np.abs(values) <= MOST_TURNS * size):
+    most = float(np.max(np.abs(values), initial=0.0))
+    if not 0.5 * size < most <= MOST_TURNS * size:
         return values, np.zeros_like(values)
     if Fraction(size) == turn:
         rest = np.fmod(values, size)  # exact by IEEE 754
     else:
         rest = _subtract(values, np.rint(values / size), turn)
-    rest = np.where(rest > 0.5 * size, _subtract(rest, np.ones_like(rest), turn), rest)
-    rest = np.where(rest <= -0.5 * size, _subtract(rest, -np.ones_like(rest), turn), rest)
+    for way in (1.0, -1.0):
+        beyond = rest > 0.5 * size if way > 0.0 else rest <= -0.5 * size
+        if beyond.any():
+            here = rest[beyond]
+            rest[beyond] = _subtract(here, np.full_like(here, way), turn)
     return rest, np.rint((values - rest) / size)
 
 
@@ -71,6 +74,7 @@ def _difference(a: Floats, b: Floats) -> tuple[Floats, Floats]:
     return s, (a - (s - t)) - (b + t)
 
 
+@cache
 def _parts(turn: Fraction) -> tuple[float, float, float]:
     found = []
     rest = turn

@@ -41,3 +41,9 @@ def test_quaternions_have_no_preferred_direction():
     assert np.abs((q * q).sum(axis=0) - 1.0).max() < 1e-14
     moments = q @ q.T / q.shape[1]
     assert np.abs(moments - np.eye(4) / 4).max() < 0.01
+
+
+def test_words_that_are_skipped_are_those_of_the_same_stream():
+    whole, skipping = RandomStarts(), RandomStarts()
+    skipping.skip(37)
+    assert skipping.words(5).tolist() == whole.words(42)[37:].tolist()

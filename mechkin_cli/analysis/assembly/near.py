@@ -43,10 +43,11 @@ class Named(NamedTuple):
 
 class Near(NamedTuple):
     """The assembly (states,) that Newton's method finds, and the distance from it within which
-    there is no other, 0 where none is known."""
+    there is no other, 0 where none is known; `condition` of its loops."""
 
     state: Floats
     unique: float
+    condition: float
 
     def is_nearest(self, distance: float) -> bool:
         """Whether no other assembly is nearer, or about as near, where this is at a distance."""
@@ -96,7 +97,8 @@ def newton_from(session: Session, inputs: Floats, named: Named) -> Near | None:
     found, condition = batch.states[:, 0], float(batch.condition[0])
     if not condition < tolerances.SEARCH_CONDITION:
         return None
-    return Near(found, _unique(session, found, condition) if named.complete else 0.0)
+    unique = _unique(session, found, condition) if named.complete else 0.0
+    return Near(found, unique, condition)
 
 
 def box_about(session: Session, named: Named, radius: float) -> Within:

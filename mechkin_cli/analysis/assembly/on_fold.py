@@ -30,9 +30,12 @@ def judged_at_second_row(session: Session, start: Start) -> Start:
     """The same start, or where it is singular the assembly at the second row that the file means
     among those that come back to it."""
     inputs = session.inputs.reduced
-    if start.state is None or start.row or inputs.shape[1] < 2:
+    if start.state is None or start.row or inputs.shape[1] < 2 or not session.graph.blocks:
         return start
-    if not _is_singular(session, inputs[:, 0], start.state):
+    condition = start.condition
+    if condition is None:
+        condition = _condition(session, inputs[:, 0], start.state)
+    if condition is None or condition <= tolerances.CONDITION_NEAR_SINGULAR:
         return start
     modes = name_modes(session, inputs[:, 1], thorough=False)
     if modes.number == 0:
@@ -56,11 +59,10 @@ def judged_at_second_row(session: Session, start: Start) -> Start:
     return replace(start, state=state, how=how, diagnostics=notes, row=1)
 
 
-def _is_singular(session: Session, inputs: Floats, state: Floats) -> bool:
+def _condition(session: Session, inputs: Floats, state: Floats) -> float | None:
+    """The condition of an assembly; None where it is none."""
     batch = session.run(inputs[:, None], state[:, None], demand=Demand.CONDITION)
-    if not batch.good[0] or batch.condition is None or not session.graph.blocks:
-        return False
-    return not float(batch.condition[0]) <= tolerances.CONDITION_NEAR_SINGULAR
+    return float(batch.condition[0]) if batch.good[0] and batch.condition is not None else None
 
 
 def _comes_back(session: Session, state: Floats, first: Floats) -> bool:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.mechanism.model import GROUND_NAME
+from mechkin_cli.mechanism.quantities import coordinate_quantities
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -19,12 +20,11 @@ class Probe:
 
     def __init__(self, session: Session) -> None:
         self.session = session
-        mechanism, quantities = session.problem.mechanism, session.problem.quantities()
+        mechanism = session.problem.mechanism
         self.coordinates = list(mechanism.coordinates)
         self.points = [at for _, at in mechanism.joint_points() if at.link != GROUND_NAME]
         self.fixed = [at.vector for _, at in mechanism.joint_points() if at.link == GROUND_NAME]
-        wanted = [quantities[name] for name in self.coordinates]
-        self.readout = session.readout(wanted, self.points)
+        self.readout = session.readout(coordinate_quantities(mechanism), self.points)
 
     @classmethod
     def of(cls, session: Session) -> Probe:

@@ -4,6 +4,7 @@ nearest to it."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,6 +29,7 @@ from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.inputs import input_numbers, input_text
 from mechkin_cli.solver.search import Found, with_assemblies
+from mechkin_cli.solver.short_proof import is_in_reach
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
@@ -52,7 +54,8 @@ class Start:
     """States at a row (the first, or the one nearest to an assembled home) and the mode's name,
     where it is known (`near` and `home` stand for one that nobody asked for); `how` says how it was
     found. Without states `status` says why there are none, and `stuck` whether the inputs did not
-    move from the drawing at all."""
+    move from the drawing at all. `off` is the distance from what `near` names and `condition` that
+    of the assembly, as far as the choice has found them."""
 
     state: Floats | None
     mode: str
@@ -61,6 +64,8 @@ class Start:
     status: Status = Status.not_assembled
     row: int = 0
     stuck: bool = False
+    off: float = inf
+    condition: float | None = None
 
 
 def choose_start(session: Session) -> Start:
@@ -120,7 +125,7 @@ def mode_letter(session: Session, start: Start, *, thorough: bool = True) -> str
         return start.mode
     first = session.inputs.reduced[:, 0]
     state = state_at_first_row(session, start)
-    if state is None:
+    if state is None or not (thorough or is_in_reach(session.layout, state)):
         return start.mode
     modes = name_modes(session, first, thorough=thorough)
     if not modes.letters:
@@ -154,7 +159,7 @@ def _from_near(session: Session, inputs: Floats) -> Start | None:
             f"{distance:.2g} rad or sizes off what near names, found by Newton's method; no other "
             f"within {newton.unique:.2g}"
         )
-        return Start(newton.state, NEAR, how)
+        return Start(newton.state, NEAR, how, off=distance, condition=newton.condition)
     # what is named exactly is named to rounding
     radius = tolerances.NEAR_RUNNER_UP * max(distance, tolerances.SAME_MODE)
     if radius > tolerances.NEAR_BALL:
@@ -164,7 +169,8 @@ def _from_near(session: Session, inputs: Floats) -> Start | None:
 
 
 def _told_if_far(session: Session, inputs: Floats, start: Start) -> Start:
-    if start.state is None:
+    if start.state is None or start.off <= tolerances.NEAR_FAR:
+        # no coordinate is off by more than all together
         return start
     notes = far_notes(session, inputs, start.state)
     return replace(start, diagnostics=[*start.diagnostics, *notes])
@@ -187,7 +193,8 @@ def _nearest_about(
     notes = []
     if len(order) > 1 and is_unclear(best, distances[order[1]]):
         notes.append(unclear("two assemblies", (best, distances[order[1]])))
-    return Start(found.states[:, order[0]], NEAR, how, notes)
+    condition = float(found.condition[order[0]])
+    return Start(found.states[:, order[0]], NEAR, how, notes, off=best, condition=condition)
 
 
 def _from_home(session: Session) -> Start:
@@ -247,4 +254,5 @@ def _nearest(modes: NamedModes, distances: list[float], home: list[float], how: 
                 both = f"modes {modes.letters[best]} and {modes.letters[second]}"
             notes.append(unclear(both, (distances[best], distances[second])))
     words = f"{how}, 1 of {modes.number} found"
-    return Start(modes.found.states[:, best], modes.letters.get(best, NEAR), words, notes)
+    state, condition = modes.found.states[:, best], float(modes.found.condition[best])
+    return Start(state, modes.letters.get(best, NEAR), words, notes, condition=condition)

@@ -44,17 +44,25 @@ def _places(session: Session) -> Iterator[tuple[int, Floats, bool]]:
     """Rows to try, their inputs (inputs,), and whether these leave whole turns out."""
     leading, tried = _leading(session), set()
     values, reduced = session.inputs.values, session.inputs.reduced
-    own = np.max(np.abs(values[leading]), axis=0, initial=0.0) <= np.pi
-    near = [values] if own.any() else []
-    # an assembly is the same whole turns of an input away; in the drawing's own turn what follows
-    # others goes all its way
-    for path in (*near, reduced, without_turns(session, reduced)):
+    for path in _paths(session, leading):
         turned = path is not values and path is not reduced
         for row in _two_sides(path[leading]):
             inputs = np.ascontiguousarray(path[:, row])
             if (row, inputs.tobytes()) not in tried:
                 tried.add((row, inputs.tobytes()))
                 yield row, inputs, turned
+
+
+def _paths(session: Session, leading: Bools) -> Iterator[Floats]:
+    """The inputs of all rows (inputs, rows) as they are, reduced, and without whole turns, one
+    after the other is asked for."""
+    values, reduced = session.inputs.values, session.inputs.reduced
+    # an assembly is the same whole turns of an input away; in the drawing's own turn what follows
+    # others goes all its way
+    if (np.max(np.abs(values[leading]), axis=0, initial=0.0) <= np.pi).any():
+        yield values
+    yield reduced
+    yield without_turns(session, reduced)
 
 
 def _leading(session: Session) -> Bools:

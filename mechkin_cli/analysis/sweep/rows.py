@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 def sections(found: Followed, rows: int) -> NDArray[np.int64]:
     """The number of branch points that a way passed before each row (rows,)."""
+    if not found.crossings:
+        return np.zeros(rows, dtype=np.int64)
     passed = [crossing.row for crossing in found.crossings]
     return np.searchsorted(np.sort(np.array(passed)), np.arange(rows), side="right")
 

@@ -52,8 +52,9 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     Raises:
         KeyError: an unknown quantity.
     """
-    known = session.problem.quantities()
-    asked = [known[name] for name in dict.fromkeys(quantities)]
+    names = dict.fromkeys(quantities)
+    known = session.problem.quantities() if names else {}
+    asked = [known[name] for name in names]
     session = _followed_part(session, asked)
     session, start = first_assembly(session)
     if start.stuck:
@@ -164,7 +165,7 @@ def _failed(batch: Batch, rows: Rows) -> Bools:
         told &= batch.condition <= tolerances.CONDITION_RANK_UNCLEAR
     # where a branch point was passed sides change with it: each section has its own
     turned = np.zeros(told.size, dtype=bool)
-    for section in np.unique(rows.section[told]):
+    for section in set(rows.section[told].tolist()):
         own = np.flatnonzero(told & (rows.section == section))
         turned[own] = (batch.side[:, own] != batch.side[:, own[:1]]).any(axis=0)
     failed: Bools = ~batch.good | turned | ~(batch.correction <= rows.limit)

@@ -1,0 +1,61 @@
+"""What a sweep leaves undone, and that nothing it leaves out would have changed its answer."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+from references import MECHANISMS
+
+import mechkin_cli as mk
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.assembly.distances import far_notes
+from mechkin_cli.analysis.assembly.start import HOME, NEAR, choose_start
+from mechkin_cli.solver.short_proof import is_in_reach
+
+PROVEN = ("rcsr", "rcsr_csr", "rssr", "slider_crank", "swash_plate", "rspr")
+OPEN = ("rchch", "sevenr", "stewart", "five_link_suspension", "rprhrrr")
+
+
+def searches(session) -> list[object]:
+    return [key for key in session._kept if isinstance(key, tuple) and key[0] == "search"]
+
+
+@pytest.mark.parametrize("name", [*PROVEN, *OPEN])
+def test_no_search_is_left_out_that_would_have_told_the_letter(name: str) -> None:
+    analysis = mk.load(MECHANISMS / f"{name}.yaml").analyze()
+    session, result = analysis.result.session, analysis.result
+    mode = result.mode
+    left_out = mode in (HOME, NEAR) and not searches(session)
+    assert left_out == (name in OPEN)
+    first = session.inputs.reduced[:, 0]
+    found = session.search(first, thorough=False)
+    if left_out:
+        assert not found.complete
+    else:
+        assert found.complete
+        states = found.states.T
+        assert all(is_in_reach(session.layout, state) for state in states)
+
+
+def test_a_sweep_of_positions_lists_no_quantities() -> None:
+    for name in ("rcsr", "sevenr", "stewart"):
+        model = mk.load(MECHANISMS / f"{name}.yaml")
+        model.analyze(tables=[])
+        assert "_quantities" not in model.problem.__dict__
+
+
+@pytest.mark.parametrize("number", range(24))
+def test_a_distance_within_the_limit_leaves_no_coordinate_far(number: int) -> None:
+    rng = random.Random(number)
+    text = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8")
+    (line,) = (row for row in text.splitlines() if row.startswith("assembly:"))
+    near = f"O2.theta: {rng.uniform(-180, 180):.6f}, O4.theta: {rng.uniform(-180, 180):.6f}"
+    session = mk.loads(text.replace(line, f"assembly: {{near: {{{near}}}}}")).session
+    start = choose_start(session)
+    assert start.state is not None
+    notes = far_notes(session, session.inputs.reduced[:, 0], start.state)
+    told = [note for note in start.diagnostics if note.code == "nearest-far"]
+    assert told == notes
+    if start.off <= tolerances.NEAR_FAR:
+        assert not notes
