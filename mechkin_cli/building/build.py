@@ -20,7 +20,7 @@ from mechkin_cli.building.source import Source
 from mechkin_cli.building.unit_system import note_force_unit, read_units
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
-from mechkin_cli.mechanism.held import held_freedoms
+from mechkin_cli.mechanism.holding import held_freedoms
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.model import Attached, Link, Mechanism
 from mechkin_cli.mechanism.problem import Problem
