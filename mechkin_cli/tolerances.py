@@ -634,5 +634,9 @@ MOST_CHANGES: Final = 3
 MOST_IDLE_LINKS: Final = 3
 """Links of one idle group: a leg of S-P-S has two."""
 
+IDLE_MOVE: Final = 0.1
+"""Move (rad, parts of the size) between two general configurations at which idle motions are
+compared: as long as those by which mobility is told."""
+
 MOST_THREADS: Final = 1024
 """As many threads as may be asked for."""

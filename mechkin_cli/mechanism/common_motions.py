@@ -23,6 +23,9 @@ Freedom = tuple[str, int]
 PLACES = 2
 """General places at which motions are compared."""
 
+DRAWN = -1
+"""The drawing, as a place: links have at least the common motions there that they have anywhere."""
+
 _TURNS = ((0.6, 0.8), (5 / 13, 12 / 13), (15 / 17, -8 / 17), (7 / 25, 24 / 25), (-20 / 29, 21 / 29))
 """Cosine and sine of the angles of general places: Pythagorean, so that no function is needed."""
 
@@ -145,12 +148,13 @@ def common_motions(
 
 
 class General:
-    """A general place of all joints; lengths in parts of `size` (m), from an `origin` (m) near the
-    drawing: far from it lines would be lost in rounding."""
+    """A general place of all joints, or the drawing; lengths in parts of `size` (m), from an
+    `origin` (m) near the drawing: far from it lines would be lost in rounding."""
 
     def __init__(self, place: int, size: float, origin: Vector) -> None:
         self.size, self.origin = size, origin
         self._next = 7 * place
+        self._drawn = place == DRAWN
         self._seen: dict[tuple[str, str], tuple[Displacement, list[Screw]]] = {}
 
     def seen_from(self, joint: Joint, link: str) -> tuple[Displacement, list[Screw]]:
@@ -175,7 +179,9 @@ class General:
         self._next += 1
         turn, slide = _TURNS[self._next % len(_TURNS)], _SLIDES[self._next % len(_SLIDES)]
         own = STILL
-        if part.type.is_ball:
+        if self._drawn:
+            pass
+        elif part.type.is_ball:
             own = _turned_by(_BALLS[self._next % len(_BALLS)])
         elif part.type.freedoms:
             motions = {freedom.motion for freedom in part.type.freedoms}

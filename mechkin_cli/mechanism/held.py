@@ -37,7 +37,8 @@ class Held(NamedTuple):
     told as other turns to have it; or `stop`, one more pair, holds it. `moves` are the coordinates
     that move with it; `axes` the lines about which each link turns, None where it does not turn
     about lines of its own; `slides` whether it slides without a turn; `holding` names the effort
-    that holds it.
+    that holds it. `everywhere`: it is idle wherever these joints are, not only where the mechanism
+    takes them.
     """
 
     links: tuple[str, ...]
@@ -49,6 +50,7 @@ class Held(NamedTuple):
     holding: str
     told: Joint | None = None
     stop: Joint | None = None
+    everywhere: bool = True
 
     @property
     def name(self) -> str:

@@ -10,6 +10,7 @@ plane.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from typing import NamedTuple
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism.common_motions import Freedom, Motion, line_of
@@ -36,22 +37,45 @@ EQUAL = 1.0 + tolerances.HELD_RATE
 """Factor up to which two rates count as equal."""
 
 
-def held_freedoms(mechanism: Mechanism, driven: Collection[Coordinate]) -> tuple[Held, ...]:
-    """The idle freedoms but those of legs, each with what holds it, small groups of links first."""
+class Holding(NamedTuple):
+    """What is held, small groups of links first; `as_drawn` says whether more may be idle because
+    the mechanism keeps its joints as they are drawn (`Groups`)."""
+
+    held: tuple[Held, ...]
+    as_drawn: bool
+
+
+def held_freedoms(mechanism: Mechanism, driven: Collection[Coordinate]) -> Holding:
+    """The idle freedoms that joints have wherever they are, but those of legs."""
     size = mechanism.box_diagonal()
     origin = next((joint.point.vector for joint in mechanism.joints.values()), ZERO)
+    groups, as_drawn = idle_groups(mechanism, driven, size, origin, _legs(mechanism))
+    return Holding(held_groups(mechanism, driven, groups, size, origin), as_drawn)
+
+
+def held_groups(
+    mechanism: Mechanism,
+    driven: Collection[Coordinate],
+    groups: Sequence[Group],
+    size: float,
+    origin: Vector,
+) -> tuple[Held, ...]:
+    """What holds the motions of some groups; lengths in parts of `size` (m), about `origin` (m)."""
     holder = _Holder(mechanism, driven, size, origin)
-    groups = list(idle_groups(mechanism, driven, size, origin))
-    legs = [frozenset(leg.links) for leg in find_legs(mechanism)]
+    legs = _legs(mechanism)
     for group in groups:
         if frozenset(group.links) in legs:
             holder.leave(group)
-    groups = [group for group in groups if frozenset(group.links) not in legs]
+    others = [group for group in groups if frozenset(group.links) not in legs]
     # what can be held at few places has the choice before what can be held at many
-    groups.sort(key=lambda group: (len(group.links), len(holder.named(group))))
-    for group in groups:
+    others.sort(key=lambda group: (len(group.links), len(holder.named(group))))
+    for group in others:
         holder.hold(group)
     return tuple(_from_ground(one, origin) for one in holder.held)
+
+
+def _legs(mechanism: Mechanism) -> set[frozenset[str]]:
+    return {frozenset(leg.links) for leg in find_legs(mechanism)}
 
 
 def _from_ground(held: Held, origin: Vector) -> Held:

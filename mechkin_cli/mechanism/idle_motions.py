@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism.common_motions import (
+    DRAWN,
     PLACES,
     Freedom,
     General,
@@ -154,13 +155,30 @@ def is_pure_turn(screw: Screw | None) -> bool:
     )
 
 
+class Groups(NamedTuple):
+    """Groups that may move wherever their joints are, few links first; `as_drawn` says whether more
+    may move as they are drawn, by chance or because the mechanism keeps them so."""
+
+    groups: list[Group]
+    as_drawn: bool
+
+
 def idle_groups(
-    mechanism: Mechanism, driven: Collection[Coordinate], size: float, origin: Vector
-) -> Iterator[Group]:
+    mechanism: Mechanism,
+    driven: Collection[Coordinate],
+    size: float,
+    origin: Vector,
+    legs: Collection[frozenset[str]],
+) -> Groups:
     """Groups of links with common motions that move no driven coordinate; lengths in parts of
-    `size` (m), about `origin` (m)."""
+    `size` (m), about `origin` (m). Those of `legs` only where others are beside them."""
+    drawn = General(DRAWN, size, origin)
     general = [General(place, size, origin) for place in range(PLACES)]
-    for links, inner, border in _chains(mechanism):
+    groups: list[Group] = []
+    waiting: list[tuple[Chain, list[Freedom]]] = []
+    as_drawn = False
+    for chain in _chains(mechanism):
+        links, _, border = chain
         others = {end for joint in border for end in (joint.first, joint.second)}
         if len(others.difference(links)) < 2:
             continue  # a freedom like any other
@@ -170,16 +188,29 @@ def idle_groups(
             for name, coordinate in driven
             if name == joint.name
         ]
-        first = common_motions(links, inner, border, still, general[0])
-        if first:
-            others_ = [common_motions(links, inner, border, still, one) for one in general[1:]]
-            yield Group(links, border, [first, *others_])
+        if frozenset(links) in legs:
+            waiting.append((chain, still))
+            continue
+        there = len(common_motions(*chain, still, drawn))
+        if not there:
+            continue
+        group = Group(links, border, [common_motions(*chain, still, one) for one in general])
+        as_drawn = as_drawn or there > group.count
+        groups += [group] if group.count else []
+    beside = {joint.name for group in groups for joint in group.joints}
+    for chain, still in waiting:
+        if beside & {joint.name for joint in chain[2]}:
+            motions = [common_motions(*chain, still, one) for one in general]
+            groups.append(Group(chain[0], chain[2], motions))
+    return Groups(groups, as_drawn)
 
 
-def _chains(
-    mechanism: Mechanism,
-) -> Iterator[tuple[tuple[str, ...], tuple[Joint, ...], tuple[Joint, ...]]]:
-    """Links, joints between them and joints to others: single links with two or more joints, then
+Chain = tuple[tuple[str, ...], tuple[Joint, ...], tuple[Joint, ...]]
+"""Links, the joints between them, and the joints to other links."""
+
+
+def _chains(mechanism: Mechanism) -> Iterator[Chain]:
+    """Single links with two or more joints, then
     chains of links with two joints each."""
     joints_of = mechanism.joints_of
     single = [name for name in mechanism.links if name != GROUND_NAME and len(joints_of[name]) > 1]

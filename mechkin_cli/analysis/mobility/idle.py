@@ -29,21 +29,30 @@ def idle_freedoms(
     """Freedoms that move no input and nothing but a link between two or more joints."""
     found: list[IdleFreedom] = []
     body = configuration.body
-    columns = [body.column(*each) for each in driven]
     known = np.zeros((body.count, 0))
-    for links, border in _groups(configuration):
-        motions = _common_motions(configuration, links, border)
-        motions = motions @ _split(motions[columns])[1]  # that move no input
+    for names, border, motions in group_motions(configuration, driven):
         new = motions @ _split(motions - known @ (known.T @ motions))[0]
         if not new.shape[1]:
             continue
         known = np.linalg.qr(np.concatenate([known, new], axis=1))[0]
-        names = tuple(n for n in body.links if n in links)
-        for twist in _told(configuration.twists[min(links)] @ new).T:
+        for twist in _told(configuration.twists[names[0]] @ new).T:
             verb, how = _words(border, twist)
             verb = f"{verb} together" if len(names) > 1 else f"{verb}s"
             found.append(IdleFreedom(names, f"{' and '.join(names)} {verb} freely {how}"))
     return tuple(found)
+
+
+def group_motions(
+    configuration: Configuration, driven: Sequence[tuple[str, str]]
+) -> Iterator[tuple[tuple[str, ...], tuple[Joint, ...], Floats]]:
+    """Groups of links, few first, with the joints to others and their motions (freedoms, count) as
+    one body that move no input and leave all others at rest."""
+    body = configuration.body
+    columns = [body.column(*each) for each in driven]
+    for links, border in _groups(configuration):
+        motions = _common_motions(configuration, links, border)
+        names = tuple(name for name in body.links if name in links)
+        yield names, tuple(border), motions @ _split(motions[columns])[1]
 
 
 def _split(matrix: Floats) -> tuple[Floats, Floats]:
@@ -97,7 +106,7 @@ def _common_motions(configuration: Configuration, links: set[str], border: list[
     return found
 
 
-def _words(border: list[Joint], twist: Floats) -> tuple[str, str]:
+def _words(border: Sequence[Joint], twist: Floats) -> tuple[str, str]:
     """Verb, and about or along what."""
     spin, slide = twist[:3], twist[3:]
     names = ", ".join(joint.name for joint in border)
