@@ -383,6 +383,10 @@ HELD_RATE: Final = 1e-3
 """Least rate of a coordinate in an idle motion, in parts of its fastest, to be held in its place:
 one that hardly moves would not hold it."""
 
+HELD_WELL: Final = 0.1
+"""The same, for a turn of a ball some turns of which are held already: three turns of one ball are
+never singular together, and turns of two balls may be."""
+
 LOOP_RANK: Final = 1e-6
 """Pivot of a loop's screws (moments in sizes) below which they are dependent as drawn: written
 numbers leave 1e-9, and loops that close only by their dimensions are drawn more exactly still."""

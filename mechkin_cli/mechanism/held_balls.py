@@ -25,7 +25,8 @@ def held_ball(mechanism: Mechanism, joint: Joint, link: str, line: Vector) -> tu
     """A joint whose ball is told as three turns, one of them about a line (a unit vector) on the
     drawing of one of its links; and the number of that freedom."""
     far = joint.second if joint.first == link else joint.first
-    own, other = frame_on(joint, link), frame_on(joint, far)
+    ball = next(part for part in joint.parts if part.type.is_ball)
+    own, other = (ball.before, ball.after) if link == joint.first else (ball.after, ball.before)
     first = _axis_of(mechanism, joint, far, other, own, line)
     parts: list[Part] = []
     number = held = 0

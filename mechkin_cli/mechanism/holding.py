@@ -68,7 +68,7 @@ def held_groups(
             holder.leave(group)
     others = [group for group in groups if frozenset(group.links) not in legs]
     # what can be held at few places has the choice before what can be held at many
-    others.sort(key=lambda group: (len(group.links), len(holder.named(group))))
+    others.sort(key=lambda group: (len(group.links), len(holder.steady(group))))
     for group in others:
         holder.hold(group)
     return tuple(_from_ground(one, origin) for one in holder.held)
@@ -121,6 +121,10 @@ class _Holder:
         found.sort(key=lambda one: not one[0].type.coordinate[one[1]].is_angle)
         return found
 
+    def steady(self, group: Group) -> list[tuple[Joint, str, Freedom]]:
+        """Those that move at the same rate wherever the mechanism goes."""
+        return [one for one in self.named(group) if group.is_steady(one[2])]
+
     def hold(self, group: Group) -> None:
         """Holds whatever a group may do beside what is held."""
         group.look_beside(self.found)
@@ -133,15 +137,18 @@ class _Holder:
 
     def _hold_once(self, group: Group) -> bool:
         """Holds one of the motions that are left, if there is a way."""
-        named = self.named(group)
-        steady = [one for one in named if group.is_steady(one[2])]
+        named, steady = self.named(group), self.steady(group)
         if not steady and self._hold_by_stop(group):
             return True
         for joint, name, freedom in steady or named:
             screws = self._screws(group)
             self._put(group, (joint.name, name), group.take(freedom, self.found), screws)
             return True
-        return self._hold_by_line(group) or self._hold_by_unnamed(group)
+        # three turns of one ball are never singular together
+        begun = self._unnamed(group, self.split, tolerances.HELD_WELL, slides=False)
+        if begun is None and self._hold_by_line(group):
+            return True
+        return self._hold_by_unnamed(group, begun)
 
     def _screws(self, group: Group) -> Screws:
         return {link: group.carried(link) for link in group.links}
@@ -193,34 +200,44 @@ class _Holder:
         if screw is not None:
             return screw[0] if any(screw[0]) else None
         other = next((j for j in group.joints if j is not ball and j.type.is_oriented), None)
-        if other is None or len(group.joints) > 2 or link not in (other.first, other.second):
+        if other is None or len(group.joints) > 2:
             return None
-        return ball_line(frame_on(ball, link).o, frame_on(other, link).o, self.size)
+        end = other.second if other.second in group.links else other.first
+        return ball_line(frame_on(ball, link).o, frame_on(other, end).o, self.size)
 
-    def _hold_by_unnamed(self, group: Group) -> bool:
-        """Holds what is left at a turn of a ball or a slide without a name: that which moves
-        most."""
-        balls = {joint.name for joint in self._balls(group)} | self.split
-        best: tuple[float, Joint, int, str] | None = None
-        for joint in group.joints:
-            for number, freedom in enumerate(joint.type.chain):
-                of_ball = freedom.motion == "ball"
-                name = turn_name(number) if of_ball else slide_name(number)
-                told = number in joint.type.scalars.values() or (joint.name, name) in self.taken
-                if told or joint.name in self.in_legs or (of_ball and joint.name not in balls):
-                    continue
-                rate = group.least_rate((joint.name, number))
-                # of equal ones the first, whatever rounding says
-                if rate > (best[0] * EQUAL if best else tolerances.HELD_RATE):
-                    best = (rate, joint, number, name)
+    def _hold_by_unnamed(self, group: Group, best: tuple[Joint, int, str] | None) -> bool:
+        """Holds what is left at a turn of a ball or a slide without a name: that which moves most,
+        if none is `best`."""
+        if best is None:
+            balls = {joint.name for joint in self._balls(group)} | self.split
+            best = self._unnamed(group, balls, tolerances.HELD_RATE)
         if best is None:
             return False
-        _, joint, number, name = best
+        joint, number, name = best
         told_joint = three_turns(joint) if joint.type.is_oriented else None
         self.split.add(joint.name)
         moving = group.take((joint.name, number), self.found)
         self._put(group, (joint.name, name), moving, {}, told=told_joint)
         return True
+
+    def _unnamed(
+        self, group: Group, balls: Collection[str], least: float, *, slides: bool = True
+    ) -> tuple[Joint, int, str] | None:
+        """The turn of one of some balls, or slide, that moves most, and more than `least`."""
+        # of equal ones the first is taken, whatever rounding says
+        best: tuple[Joint, int, str] | None = None
+        for joint in group.joints:
+            for number, freedom in enumerate(joint.type.chain):
+                of_ball = freedom.motion == "ball"
+                name = turn_name(number) if of_ball else slide_name(number)
+                told = number in joint.type.scalars.values() or (joint.name, name) in self.taken
+                allowed = joint.name in balls if of_ball else slides
+                if told or joint.name in self.in_legs or not allowed:
+                    continue
+                rate = group.least_rate((joint.name, number))
+                if rate > least:
+                    best, least = (joint, number, name), rate * EQUAL
+        return best
 
     def _put(
         self,
