@@ -15,10 +15,11 @@ from typing import NamedTuple
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism.common_motions import Freedom, Motion, line_of
 from mechkin_cli.mechanism.elementary import Screw
-from mechkin_cli.mechanism.held import Held, Line, is_turn, slide_name, turn_name
+from mechkin_cli.mechanism.held import Held, Line, is_turn, is_unnamed, slide_name, turn_name
 from mechkin_cli.mechanism.held_balls import ball_line, held_ball, three_turns
 from mechkin_cli.mechanism.idle_motions import (
     Coordinate,
+    Drawn,
     Found,
     Group,
     Moving,
@@ -38,8 +39,8 @@ EQUAL = 1.0 + tolerances.HELD_RATE
 
 
 class Holding(NamedTuple):
-    """What is held, small groups of links first; `as_drawn` says whether more may be idle because
-    the mechanism keeps its joints as they are drawn (`Groups`)."""
+    """What is held, small groups of links first; `as_drawn` says whether more, or other motions,
+    may be idle because the mechanism keeps its joints as they are drawn."""
 
     held: tuple[Held, ...]
     as_drawn: bool
@@ -49,8 +50,26 @@ def held_freedoms(mechanism: Mechanism, driven: Collection[Coordinate]) -> Holdi
     """The idle freedoms that joints have wherever they are, but those of legs."""
     size = mechanism.box_diagonal()
     origin = next((joint.point.vector for joint in mechanism.joints.values()), ZERO)
-    groups, as_drawn = idle_groups(mechanism, driven, size, origin, _legs(mechanism))
-    return Holding(held_groups(mechanism, driven, groups, size, origin), as_drawn)
+    groups, drawn = idle_groups(mechanism, driven, size, origin, _legs(mechanism))
+    held = held_groups(mechanism, driven, groups, size, origin)
+    return Holding(held, any(_moves_as_drawn(one, held) for one in drawn))
+
+
+def _moves_as_drawn(group: Drawn, held: Sequence[Held]) -> bool:
+    """Whether a group may do more as it is drawn than anywhere, or something that is not held."""
+    if len(group.motions([])) > group.anywhere:
+        return True
+    links, _, border = group.chain
+    still: list[Freedom] = []
+    for one in held:
+        if one.coordinate is None or is_unnamed(one.coordinate[1]):
+            if {*one.links} & {*links}:
+                return False
+            continue
+        joint = next((j for j in border if j.name == one.coordinate[0]), None)
+        if joint is not None:
+            still.append((joint.name, joint.type.freedom_of[one.coordinate[1]]))
+    return bool(group.motions(still))
 
 
 def held_groups(

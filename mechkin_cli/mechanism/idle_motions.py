@@ -9,7 +9,7 @@ general place (common_motions.py), and reduced by those that were found before.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
 from mechkin_cli import tolerances
@@ -155,12 +155,29 @@ def is_pure_turn(screw: Screw | None) -> bool:
     )
 
 
+Chain = tuple[tuple[str, ...], tuple[Joint, ...], tuple[Joint, ...]]
+"""Links, the joints between them, and the joints to other links."""
+
+
 class Groups(NamedTuple):
-    """Groups that may move wherever their joints are, few links first; `as_drawn` says whether more
-    may move as they are drawn, by chance or because the mechanism keeps them so."""
+    """Groups that may move wherever their joints are, few links first; `drawn` are all that may
+    move as they are drawn, with the number of motions that they have anywhere."""
 
     groups: list[Group]
-    as_drawn: bool
+    drawn: list[Drawn]
+
+
+class Drawn(NamedTuple):
+    """A group as it is drawn, the freedoms of inputs there, and its number of motions anywhere."""
+
+    chain: Chain
+    still: list[Freedom]
+    place: General
+    anywhere: int
+
+    def motions(self, still: Sequence[Freedom]) -> list[Motion]:
+        """Its motions as drawn that leave the inputs and some more freedoms at rest."""
+        return common_motions(*self.chain, [*self.still, *still], self.place)
 
 
 def idle_groups(
@@ -176,7 +193,7 @@ def idle_groups(
     general = [General(place, size, origin) for place in range(PLACES)]
     groups: list[Group] = []
     waiting: list[tuple[Chain, list[Freedom]]] = []
-    as_drawn = False
+    found: list[Drawn] = []
     for chain in _chains(mechanism):
         links, _, border = chain
         others = {end for joint in border for end in (joint.first, joint.second)}
@@ -191,22 +208,17 @@ def idle_groups(
         if frozenset(links) in legs:
             waiting.append((chain, still))
             continue
-        there = len(common_motions(*chain, still, drawn))
-        if not there:
+        if not common_motions(*chain, still, drawn):
             continue
         group = Group(links, border, [common_motions(*chain, still, one) for one in general])
-        as_drawn = as_drawn or there > group.count
+        found.append(Drawn(chain, still, drawn, group.count))
         groups += [group] if group.count else []
     beside = {joint.name for group in groups for joint in group.joints}
     for chain, still in waiting:
         if beside & {joint.name for joint in chain[2]}:
             motions = [common_motions(*chain, still, one) for one in general]
             groups.append(Group(chain[0], chain[2], motions))
-    return Groups(groups, as_drawn)
-
-
-Chain = tuple[tuple[str, ...], tuple[Joint, ...], tuple[Joint, ...]]
-"""Links, the joints between them, and the joints to other links."""
+    return Groups(groups, found)
 
 
 def _chains(mechanism: Mechanism) -> Iterator[Chain]:

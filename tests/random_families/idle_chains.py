@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from random import Random
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -258,8 +259,7 @@ class Loop:
         return state
 
 
-@dataclass(frozen=True)
-class Told:
+class Told(NamedTuple):
     """What is known of a loop: numbers of idle and of undriven freedoms, the coordinates that no
     idle motion moves, and these along the sweep, in every row; None where it is no clear case."""
 

@@ -50,7 +50,10 @@ def held_along(problem: Problem, known: tuple[Held, ...]) -> tuple[Held, ...]:
         groups += [group] if group.count else []
     x, y, z = (float(c) for c in body.centre)
     held = held_groups(problem.mechanism, driven, groups, body.size, (x, y, z))
-    if len(held) <= len(known):
+    same = {(one.links, one.coordinate) for one in held} == {
+        (one.links, one.coordinate) for one in known
+    }
+    if same or len(held) < len(known):
         return known
     return tuple(one._replace(everywhere=False) for one in held)
 
