@@ -52,7 +52,18 @@ def held_freedoms(mechanism: Mechanism, driven: Collection[Coordinate]) -> Holdi
     origin = next((joint.point.vector for joint in mechanism.joints.values()), ZERO)
     groups, drawn = idle_groups(mechanism, driven, size, origin, _legs(mechanism))
     held = held_groups(mechanism, driven, groups, size, origin)
-    return Holding(held, any(_moves_as_drawn(one, held) for one in drawn))
+    as_drawn = any(_moves_as_drawn(one, held) for one in drawn)
+    return Holding(held, as_drawn or _count(drawn) != len(held))
+
+
+def _count(drawn: Sequence[Drawn]) -> int:
+    """How many independent motions some groups have as they are drawn."""
+    found = Found()
+    for one in drawn:
+        group = Group(one.chain[0], one.chain[2], [one.motions([])])
+        group.look_beside(found)
+        group.join(found)
+    return found.count
 
 
 def _moves_as_drawn(group: Drawn, held: Sequence[Held]) -> bool:
@@ -82,13 +93,17 @@ def held_groups(
     """What holds the motions of some groups; lengths in parts of `size` (m), about `origin` (m)."""
     holder = _Holder(mechanism, driven, size, origin)
     legs = _legs(mechanism)
+    others = [group for group in groups if frozenset(group.links) not in legs]
+    known = Found()
     for group in groups:
         if frozenset(group.links) in legs:
+            group.join(known)
             holder.leave(group)
-    others = [group for group in groups if frozenset(group.links) not in legs]
+    for group in sorted(others, key=lambda group: len(group.links)):
+        group.look_beside(known)
+        group.join(known)
     # what can be held at few places has the choice before what can be held at many
-    others.sort(key=lambda group: (len(group.links), len(holder.steady(group))))
-    for group in others:
+    for group in sorted(others, key=lambda group: len(holder.steady(group))):
         holder.hold(group)
     return tuple(_from_ground(one, origin) for one in holder.held)
 

@@ -160,25 +160,26 @@ def spin_errors(problem: Problem) -> list[tuple[str, Diagnostic]]:
     """
     if problem.hold_idle:
         return []
-    found = []
+    found: list[tuple[str, Diagnostic]] = []
     for idle in idle_freedoms(problem):
         for link in idle.links:
             cause = _spin_cause(problem, idle, link)
             if cause is not None:
-                found.append((link, _dynamic_freedom(idle, *cause)))
+                error = (link, _dynamic_freedom(idle, *cause))
+                found += [error] if error not in found else []
                 break
     return found
 
 
 def holding_notes(problem: Problem, moments: Mapping[str, Floats]) -> list[Diagnostic]:
     """The largest moment (force) that holds each idle freedom; `moments` (N m, N) by name,
-    (rows,)."""
+    (components, rows)."""
     notes = []
     for idle in idle_freedoms(problem):
         moment = moments.get(idle.holding)
         if moment is None:
             continue
-        row = np.abs(moment)
+        row = np.sqrt(np.einsum("kr,kr->r", moment, moment))
         most = float(np.max(row[np.isfinite(row)], initial=0.0))
         dimension = problem.quantities()[idle.holding].dimension
         text = f"{float(problem.units.from_si(most, dimension)):.6g}"
@@ -239,7 +240,8 @@ def _spin_cause(problem: Problem, idle: Idle, link: str) -> tuple[str, str] | No
             return f"{link} has mass", f"{body.mass:.4g} kg"
         return None
     if body.mass != 0.0 and (off := _off_line(problem, idle, line, body.center_of_mass)):
-        return f"the mass centre of {link} lies off that line", off
+        where = "centre" if line.along is None else "line"
+        return f"the mass centre of {link} lies off that {where}", off
     asymmetry = 0.0 if line.along is None else _asymmetry(body, line.along)
     if asymmetry > tolerances.ON_LINE:
         words = f"the inertia of {link} is not symmetric about that line"

@@ -55,6 +55,11 @@ class Found:
     def __init__(self) -> None:
         self._at: list[list[tuple[Freedom, Motion]]] = [[] for _ in range(PLACES)]
 
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return len(self._at[0])
+
     def beside(self, place: int, motion: Motion) -> Motion:
         """A motion less those that were found."""
         for freedom, known in self._at[place]:
@@ -96,6 +101,13 @@ class Group:
                     own.add(place, freedom, beside)
                     kept.append(Moving(moving.own, beside))
             self.left[place] = kept
+
+    def join(self, found: Found) -> None:
+        """Accounts for all that is left, and keeps it."""
+        for place, motions in enumerate(self.left):
+            for _, beside in motions:
+                freedom = max(beside.rates, key=lambda each: abs(beside.rates[each]))
+                found.add(place, freedom, beside)
 
     def least_rate(self, freedom: Freedom) -> float:
         """The rate of a freedom in the motion that moves it most, at the place where it is

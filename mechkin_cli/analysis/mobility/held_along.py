@@ -53,7 +53,7 @@ def held_along(problem: Problem, known: tuple[Held, ...]) -> tuple[Held, ...]:
     same = {(one.links, one.coordinate) for one in held} == {
         (one.links, one.coordinate) for one in known
     }
-    if same or len(held) < len(known):
+    if same:
         return known
     return tuple(one._replace(everywhere=False) for one in held)
 
