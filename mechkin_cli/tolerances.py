@@ -642,5 +642,9 @@ IDLE_MOVE: Final = 0.1
 """Move (rad, parts of the size) between two general configurations at which idle motions are
 compared: as long as those by which mobility is told."""
 
+IDLE_DECIMALS: Final = 9
+"""Decimals of a line (parts of the size) that an idle freedom is held about: what depends on it is
+conventional, and as many are written; errors of the configurations found are far smaller."""
+
 MOST_THREADS: Final = 1024
 """As many threads as may be asked for."""

@@ -179,7 +179,7 @@ def holding_notes(problem: Problem, moments: Mapping[str, Floats]) -> list[Diagn
         moment = moments.get(idle.holding)
         if moment is None:
             continue
-        row = np.sqrt(np.einsum("kr,kr->r", moment, moment))
+        row = np.sqrt(sum(part * part for part in moment))
         most = float(np.max(row[np.isfinite(row)], initial=0.0))
         dimension = problem.quantities()[idle.holding].dimension
         text = f"{float(problem.units.from_si(most, dimension)):.6g}"

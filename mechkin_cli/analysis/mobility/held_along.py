@@ -104,5 +104,6 @@ def _motions(
 
 
 def _vector(entries: Floats) -> Vector:
-    x, y, z = (float(entry) for entry in entries)
+    """Rounded, so that no plan holds digits that change with the linear algebra of a machine."""
+    x, y, z = (round(float(entry), tolerances.IDLE_DECIMALS) for entry in entries)
     return (x, y, z)
