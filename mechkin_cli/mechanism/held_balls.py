@@ -17,7 +17,7 @@ from mechkin_cli.mechanism.legs import frame_on
 from mechkin_cli.mechanism.model import Joint, Mechanism
 from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale, unit
 
-STEEP = 0.9
+STEEP = 0.5
 """Cosine of the angle between line and axis up to which the axis is taken."""
 
 

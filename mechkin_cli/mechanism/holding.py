@@ -142,7 +142,7 @@ class _Holder:
             group.take(max(rates, key=lambda each: abs(rates[each])), self.found)
 
     def named(self, group: Group) -> list[tuple[Joint, str, Freedom]]:
-        """The coordinates by which a group may be held, angles first."""
+        """The coordinates by which a group may be held: angles first, of one turn before two."""
         found = [
             (joint, name, (joint.name, freedom))
             for joint in group.joints
@@ -152,8 +152,12 @@ class _Holder:
             and group.count
             and group.least_rate((joint.name, freedom)) > tolerances.HELD_RATE
         ]
-        found.sort(key=lambda one: not one[0].type.coordinate[one[1]].is_angle)
-        return found
+        coordinates = [joint.type.coordinate[name] for joint, name, _ in found]
+        order = sorted(
+            range(len(found)),
+            key=lambda k: (not coordinates[k].is_angle, coordinates[k].axis is None),
+        )
+        return [found[k] for k in order]
 
     def steady(self, group: Group) -> list[tuple[Joint, str, Freedom]]:
         """Those that move at the same rate wherever the mechanism goes."""
@@ -174,7 +178,9 @@ class _Holder:
         named, steady = self.named(group), self.steady(group)
         if not steady and self._hold_by_stop(group):
             return True
-        for joint, name, freedom in steady or named:
+        if named:
+            unsteady = sorted(named, key=lambda one: -group.least_rate(one[2]))
+            joint, name, freedom = (steady or unsteady)[0]
             screws = self._screws(group)
             self._put(group, (joint.name, name), group.take(freedom, self.found), screws)
             return True

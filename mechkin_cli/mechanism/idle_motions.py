@@ -116,15 +116,17 @@ class Group:
 
     def take(self, freedom: Freedom, found: Found) -> Moving:
         """Accounts for the motion that moves a freedom most, which the others then leave at rest;
-        gives it as it is at the place with the fewest."""
+        gives it as it is at the first place."""
         taken = []
         for place, motions in enumerate(self.left):
             best = max(range(len(motions)), key=lambda k: motions[k].rate(freedom))
-            one = motions[best]
-            rate = one.beside.rates[freedom]
-            found.add(place, freedom, one.beside)
+            one, own = motions[best], freedom
+            if one.rate(own) <= tolerances.SAME_COMMON_MOTION:  # at rest here, by chance
+                own = max(one.beside.rates, key=lambda each: abs(one.beside.rates[each]))
+            rate = one.beside.rates[own]
+            found.add(place, own, one.beside)
             self.left[place] = [
-                other.less(other.beside.rates.get(freedom, 0.0) / rate, one)
+                other.less(other.beside.rates.get(own, 0.0) / rate, one)
                 for k, other in enumerate(motions)
                 if k != best
             ]
@@ -150,7 +152,8 @@ class Group:
             turn, slide = norm(angular), norm(linear)
             speed = turn if turn > tolerances.SAME_COMMON_MOTION * slide else slide
             speeds.append(abs(moving.own.rates.get(freedom, 0.0)) / speed)
-        return max(speeds) - min(speeds) <= tolerances.SAME_COMMON_MOTION * max(speeds)
+        apart = max(speeds) - min(speeds)
+        return min(speeds) > tolerances.HELD_RATE and apart <= tolerances.SAME_COMMON_MOTION
 
 
 def is_slide(screw: Screw | None) -> bool:
