@@ -56,7 +56,10 @@ def build_motion(
         expressions = tied.expressions
     if fields.error_count == errors:
         names = [name for name in section.inputs if name in orders]
-        inputs = [_driven(fields, name, orders[name], rows) for name in names]
+        inputs = [
+            _driven(fields, name, orders[name], rows)._replace(follows=name in following)
+            for name in names
+        ]
         if fields.error_count == errors:
             moving = Motion(tuple(inputs), rows, time)
             return _with_course(fields, section, moving, expressions)

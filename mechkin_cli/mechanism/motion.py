@@ -19,7 +19,7 @@ class DrivenInput(NamedTuple):
     """One driven coordinate over the rows, in rad, m and s.
 
     `written_orders` (4, rows) holds values, rates, accelerations and jerks in the file's units, as
-    they were written.
+    they were written. `follows` says whether it is an expression of other inputs.
     """
 
     joint: str
@@ -29,6 +29,7 @@ class DrivenInput(NamedTuple):
     accelerations: Floats
     jerks: Floats
     written_orders: Floats
+    follows: bool = False
 
     @property
     def name(self) -> str:

@@ -18,14 +18,11 @@ from mechkin_cli.analysis.assembly.distances import (
     is_unclear,
     unclear,
 )
-from mechkin_cli.analysis.assembly.home import (
-    follow_from_home,
-    is_home_assembled,
-    nearest_to_home,
-)
-from mechkin_cli.analysis.assembly.named_modes import NamedModes, is_cyclic, name_modes
+from mechkin_cli.analysis.assembly.home import is_home_assembled
+from mechkin_cli.analysis.assembly.named_modes import NamedModes, name_modes
 from mechkin_cli.analysis.assembly.near import Near, box_about, named_by, newton_from
 from mechkin_cli.analysis.assembly.not_assembled import nothing_found
+from mechkin_cli.analysis.assembly.ways_from_home import ways_from_home
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.follow import TrackEnd
@@ -35,6 +32,7 @@ from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.solver.follow import Followed
     from mechkin_cli.solver.session import Continued, Session
 
 NEAR = "near"
@@ -193,25 +191,18 @@ def _nearest_about(
 
 
 def _from_home(session: Session) -> Start:
-    """Followed from the drawing to the row whose inputs are nearest to it; whole turns of the
-    drawing are the same place."""
-    problem, layout, path = session.problem, session.layout, session.inputs.reduced
-    # a row in the drawing's own turn comes before one that is nearer some turns away
-    own = nearest_to_home(session.inputs.values)
-    near = np.max(np.abs(session.inputs.values[:, own]), initial=0.0) <= np.pi
-    for row in dict.fromkeys([own, nearest_to_home(path)] if near else [nearest_to_home(path)]):
-        followed = follow_from_home(session, path[:, row])
-        if followed.end == TrackEnd.FINISHED:
-            return Start(followed.state, HOME, "followed from the home drawing", row=row)
-    turned = _without_turns(session, path)
-    if (turned != path).any():
-        # the drawing serves whole turns away from it as well
-        there = nearest_to_home(turned)
-        again = follow_from_home(session, np.ascontiguousarray(turned[:, there]))
-        if again.end == TrackEnd.FINISHED:
-            words = "followed from the home drawing, whole turns away"
-            return Start(again.state, HOME, words, row=there)
-    places = input_numbers(problem, layout, followed.inputs)
+    """Followed from the drawing to the row whose inputs are nearest to it, or on its other side."""
+    ways = ways_from_home(session)
+    for way in ways:
+        if way.followed.end == TrackEnd.FINISHED:
+            words = "followed from the home drawing" + (", whole turns away" if way.turned else "")
+            return Start(way.followed.state, HOME, words, row=way.row)
+    return _ends_before_rows(session, ways[0].followed)
+
+
+def _ends_before_rows(session: Session, followed: Followed) -> Start:
+    """Why no row has the assembly of the drawing: how the way to the nearest one ended."""
+    places = input_numbers(session.problem, session.layout, followed.inputs)
     rigid = f"; {MAY_BE_RIGID}" if session.is_redundant else ""
     diagnostic = Diagnostic(
         "home-branch-ends",
@@ -228,17 +219,6 @@ def _from_home(session: Session) -> Start:
     status = Status.beyond_dead_centre if folds else Status.branch_lost
     stuck = float(np.max(np.abs(followed.inputs), initial=0.0)) <= tolerances.PASSED
     return Start(None, HOME, "", [diagnostic], status, stuck=stuck)
-
-
-def _without_turns(session: Session, path: Floats) -> Floats:
-    """Inputs (inputs, rows) without the whole turns after which the mechanism stands as drawn; as
-    they are where a thread counts turns."""
-    joints = session.problem.mechanism.joints
-    if any(joint.type.is_threaded for joint in joints.values()):
-        return path
-    cyclic = np.array([is_cyclic(session.problem.mechanism, f"{j}.{c}") for j, c in session.driven])
-    turns = np.rint(path / (2.0 * np.pi))
-    return np.where(cyclic[:, None], path - turns * (2.0 * np.pi), path)
 
 
 def _by_name(modes: NamedModes, name: str) -> Start:

@@ -27,7 +27,7 @@ def main() -> int:
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--show", type=int, default=3, help="cases shown of each kind of fault")
     parser.add_argument("--save", type=Path, help="folder for the files of the cases shown")
-    parser.add_argument("--series", type=int, default=1, choices=(1, 2))
+    parser.add_argument("--series", type=int, default=1, choices=(1, 2, 3))
     options = parser.parse_args()
     numbers = range(options.first, options.first + options.mechanisms)
     rows: Counter[str] = Counter()

@@ -8,12 +8,14 @@ loop turns fast because another is nearly singular get points of their own.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from mpmath import mpf
+from mpmath import mp, mpf
 from numpy.typing import NDArray
+from random_families.no_wrong_row.bodies import Placed
 from random_families.no_wrong_row.field import EXACT, FAST
 from random_families.no_wrong_row.linkage import Linkage
 
@@ -26,8 +28,18 @@ LOW = 2e-3
 about 1e-4."""
 DECIDED = 1e-8
 """Below this float64 does not tell a discriminant's sign behind another loop nearly singular."""
+SUDDEN = 2.5
+"""A change between neighbouring points of a way (rad) whose sense float64 does not show: a shaft
+nearly at a right angle to one that is nearly at a right angle itself turns by half a turn within
+the product of both gaps, 1e-22 of the input."""
 UNDECIDED = 3e-15
 """A discriminant below this may have either sign for numbers rounded to float64."""
+ROUNDING = 2.0**-52
+"""A rounding of a discriminant of a body before, in parts of its scale."""
+AGREED = 1e-3
+"""Rad that float64 may be off 50 digits where an angle does not change suddenly."""
+RESOLVED = mpf(10) ** -40
+"""Width of a place that 50 digits still resolve."""
 
 
 class Undecided(Exception):
@@ -57,8 +69,11 @@ MOST_MINIMA = 2000
 """Low minima of a discriminant on a turn; more are rounding of one that hardly changes."""
 
 
-def way(linkage: Linkage, sign: int, span: float) -> Way:
+def way(linkage: Linkage, sign: int, span: float, *, judging: bool = False) -> Way:
     """The way from the drawing to |t| = span, or once around where that is its period.
+
+    Mechanisms are drawn by it as well. For `judging` them a minimum counts as zero to rounding
+    also where bodies before enlarge what is rounding, and sudden turns have their sense.
 
     Raises:
         Undecided: a discriminant touches zero.
@@ -76,7 +91,7 @@ def way(linkage: Linkage, sign: int, span: float) -> Way:
         if len(places) > MOST_MINIMA * max(1.0, reach / TURN):
             raise Undecided(f"the discriminant of {body.name} rests at its own rounding")
         for low, high in places:
-            place, least = lowest(linkage, body.name, sign, low, high)
+            place, least = lowest(linkage, body.name, sign, low, high, judging)
             critical.append((place, body.name, max(least, 0.0)))
             t = np.union1d(t, fine(place, end))
             if least <= 0:
@@ -91,7 +106,10 @@ def way(linkage: Linkage, sign: int, span: float) -> Way:
         folds,
         t,
         {name: np.maximum(m, 0.0) for name, m in final.margin.items()},
-        {name: np.unwrap(v) for name, v in final.value.items()},
+        {
+            name: unwrapped(linkage, name, sign, t, v) if judging else np.unwrap(v)
+            for name, v in final.value.items()
+        },
         critical,
         folds is None and repeats and reach == TURN,
     )
@@ -114,7 +132,9 @@ def one(linkage: Linkage, name: str, sign: int, t: Any) -> Any:
     return linkage.at(sign * t, FAST, name).margin[name]
 
 
-def lowest(linkage: Linkage, name: str, sign: int, low: float, high: float) -> tuple[float, float]:
+def lowest(
+    linkage: Linkage, name: str, sign: int, low: float, high: float, judging: bool
+) -> tuple[float, float]:
     """Place and value of the least margin between two places.
 
     Raises:
@@ -131,9 +151,26 @@ def lowest(linkage: Linkage, name: str, sign: int, low: float, high: float) -> t
     if abs(least) < DECIDED:
         placed = linkage.at(sign * mpf(place), EXACT, name)
         least = float(placed.margin[name])
-        if abs(least) < UNDECIDED * float(placed.blur.get(name, 1)):
+        unit = UNDECIDED * float(placed.blur.get(name, 1))
+        if judging:
+            unit *= roundings(linkage, name, sign * mpf(place), placed)
+        if abs(least) < unit:
             raise Undecided
     return place, least
+
+
+def roundings(linkage: Linkage, name: str, t: mpf, placed: Placed) -> float:
+    """What roundings of the input change in a margin, in parts of its own: those too that a nearly
+    singular body before it enlarges, by 1 over twice the root of its discriminant."""
+    own, total = UNDECIDED * float(placed.blur.get(name, 1)), 1.0
+    for before, margin in placed.margin.items():
+        if before == name or before not in placed.value or not 0 < margin < DECIDED:
+            continue
+        unit = 1.0 if linkage.turns(before) else linkage.size
+        step = ROUNDING * placed.blur.get(before, 1) * unit / (2 * mp.sqrt(margin))
+        moved = linkage.at(t, EXACT, name, {before: placed.value[before] + step}).margin[name]
+        total += float(abs(moved - placed.margin[name])) / own
+    return total
 
 
 def first_zero(linkage: Linkage, name: str, sign: int, low: float, high: float) -> float:
@@ -157,3 +194,51 @@ def fine(place: float, end: float) -> Array:
     steps = 10.0 ** np.arange(-13, -2, 0.125)
     points = np.concatenate([place - steps, [place], place + steps])
     return points[(points > 0) & (points < end)]
+
+
+def unwrapped(linkage: Linkage, name: str, sign: int, t: Array, value: Array) -> Array:
+    """A coordinate without jumps of whole turns; where it changes suddenly its values and the
+    sense are those of 50 digits. What stays sudden there is NaN from its place on."""
+    found = np.unwrap(value)
+    if not linkage.turns(name):
+        return found
+
+    def at(place: Any) -> Any:
+        return linkage.at(sign * mpf(place), EXACT, name).value[name]
+
+    known = -1
+    for k in np.flatnonzero(np.abs(np.diff(found)) > SUDDEN):
+        if k < known:
+            continue
+        first, known = int(k), int(k) + 1
+        while first > 0 and abs(turned(found[first], at(t[first]))) > AGREED:
+            first -= 1
+        while known < len(t) - 1 and abs(turned(found[known], at(t[known]))) > AGREED:
+            known += 1
+        after = found[known + 1 :] - found[known]
+        for i in range(first, known):
+            found[i + 1] = found[i] + float(exact_change(at, t[i], t[i + 1]))
+        found[known + 1 :] = found[known] + after
+    return found
+
+
+def turned(a: Any, b: Any) -> Any:
+    """The angle from a to b that is at most half a turn."""
+    return b - a - 2 * mp.pi * mp.nint((b - a) / (2 * mp.pi))
+
+
+def exact_change(at: Callable[[Any], Any], first: float, last: float) -> mpf:
+    """The change of an angle between two places, by halving its sudden part."""
+    low, high, total = mpf(first), mpf(last), mpf(0)
+    here, there = at(low), at(high)
+    while abs(whole := turned(here, there)) > SUDDEN / 2:
+        if high - low < RESOLVED:
+            return mp.nan
+        middle = (low + high) / 2
+        value = at(middle)
+        before, after = turned(here, value), turned(value, there)
+        if abs(before) > abs(after):
+            total, high, there = total + after, middle, value
+        else:
+            total, low, here = total + before, middle, value
+    return total + whole

@@ -7,6 +7,7 @@ import random
 from dataclasses import dataclass
 
 import numpy as np
+from random_families.no_wrong_row.chains import chained
 from random_families.no_wrong_row.design import Impossible, random_unit
 from random_families.no_wrong_row.drawing import Drawing
 from random_families.no_wrong_row.field import FAST
@@ -43,10 +44,7 @@ def drawn(number: int, series: int = 1) -> Case:
         drawing, gaps = Drawing(rng), []
         crank(drawing, "A", np.zeros(3), random_unit(rng))
         try:
-            if series == 1:
-                _several(drawing, rng, gaps)
-            else:
-                _more(drawing, rng, gaps)
+            (_several, _more, _chain)[series - 1](drawing, rng, gaps)
         except Impossible:
             continue
         if series == 1:
@@ -74,6 +72,15 @@ def _more(drawing: Drawing, rng: random.Random, gaps: list[float]) -> None:
         gaps.append(random_gap(rng))
         loop = platform if k == 0 and rng.random() < 0.2 else rng.choice(MORE_LOOPS)
         _grown(drawing, rng, loop, f"B{k}", gaps[-1])
+    if rng.random() < 0.15:
+        double(drawing)
+
+
+def _chain(drawing: Drawing, rng: random.Random, gaps: list[float]) -> None:
+    """Dyads on rods and rockers of others."""
+    for k in range(rng.choice([1, 2, 2, 3, 4])):
+        gaps.append(random_gap(rng))
+        _grown(drawing, rng, chained, f"B{k}", gaps[-1])
     if rng.random() < 0.15:
         double(drawing)
 

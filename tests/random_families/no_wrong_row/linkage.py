@@ -52,6 +52,10 @@ class Linkage:
         self._carriers = {b.parent for b in bodies}.union(*(b.others for b in bodies))
         self.side = {body.name: self._side(body) for body in bodies if body.rod}
 
+    def turns(self, name: str) -> bool:
+        """Whether a body's coordinate is an angle."""
+        return any(body.name == name and not body.slides for body in self.bodies)
+
     def _side(self, body: Body | Node) -> int:
         """The side of the drawn assembly: the sign of d(A cos + B sin)/d(theta) at 0, negative."""
         if isinstance(body, Node):

@@ -11,6 +11,7 @@ from random_families.no_wrong_row.difficult import (
     NOT_YET,
     SECOND_DIFFICULT,
     SECOND_NOT_YET,
+    THIRD_NOT_YET,
 )
 from random_families.no_wrong_row.run import run_one
 
@@ -38,6 +39,10 @@ def test_arms_platforms_shafts_and_ties() -> None:
     check([n for n in numbers if n not in SECOND_NOT_YET], 2, 5 * COUNT)
 
 
+def test_chains_of_dyads_on_rods_and_rockers() -> None:
+    check([n for n in range(COUNT // 2) if n not in THIRD_NOT_YET], 3, 5 * COUNT)
+
+
 @pytest.mark.parametrize("number", sorted(NOT_YET))
 @pytest.mark.xfail(strict=True, reason="rows given up early")
 def test_not_yet(number: int) -> None:
@@ -48,3 +53,9 @@ def test_not_yet(number: int) -> None:
 @pytest.mark.xfail(strict=True, reason="verdicts beside singular places")
 def test_second_not_yet(number: int) -> None:
     assert not run_one(number, 2).faults
+
+
+@pytest.mark.parametrize("number", sorted(THIRD_NOT_YET))
+@pytest.mark.xfail(strict=True, reason="another turn's drawing; rows given up early")
+def test_third_not_yet(number: int) -> None:
+    assert not run_one(number, 3).faults

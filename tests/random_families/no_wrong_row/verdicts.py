@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from mpmath import mp, mpf
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from random_families.no_wrong_row.branch import TURN, Undecided, Way, way
 from random_families.no_wrong_row.case import Case
 from random_families.no_wrong_row.drawing import Column
@@ -27,8 +27,9 @@ AT_FOLD = 1e-8
 """Places this near (rad) to a dead centre may be on either side of it."""
 ANGLE = 1e-9
 """What a coordinate may be off by rounding, rad or parts of the size, besides its condition."""
-SUDDEN = 2.5
-"""A change between neighbouring points of a way (rad) whose sense is not known."""
+ROUNDINGS = 4
+"""Of the input that the roundings of all dimensions come to: where two loops are singular at once,
+one rounding of the input alone may turn a wrist by degrees."""
 SOLVED = ("ok", "near-singular", "rank-unclear")
 
 
@@ -45,8 +46,9 @@ class Verdict:
             self.faults.setdefault(kind, words)
 
 
-def judged(case: Case) -> Verdict:
-    """The verdict on one case; `undecided` where a margin is zero to rounding."""
+def judged(case: Case, closed_at: list[str] | None = None) -> Verdict:
+    """The verdict on one case, its loops closed at these joints or as they are closed by
+    themselves; `undecided` where a margin is zero to rounding."""
     verdict = Verdict()
     try:
         truth = Truth(case)
@@ -55,7 +57,7 @@ def judged(case: Case) -> Verdict:
         return verdict
     names = [column.name for column in case.drawing.columns]
     asked = list(dict.fromkeys(vector_of(name)[0] for name in names))
-    analysis = mk.loads(case.text).analyze(asked, tables=[])
+    analysis = mk.loads(case.text).analyze(asked, tables=[], closed_at=closed_at)
     status = analysis["row.status"].tolist()
     if truth.starts_beyond():
         verdict.counts["first row beyond a fold"] += len(status)
@@ -92,7 +94,7 @@ class Truth:
         travel = case.travel
         self.high, self.low = np.radians(travel.highest), -np.radians(travel.lowest)
         self.ways = {
-            sign: way(self.linkage, sign, float(reach.max()))
+            sign: way(self.linkage, sign, float(reach.max()), judging=True)
             for sign, reach in ((1, self.high), (-1, self.low))
             if reach.max() > 0
         }
@@ -159,16 +161,17 @@ class Truth:
                 continue
             apart = np.radians(have) - self._continuous(column)
             if self.case.sides or self.case.travel.rows[0]:
-                # the first row counts from where it finds itself
-                apart -= TURN * np.round(apart[0] / TURN) if np.isfinite(apart[0]) else 0.0
+                # the first row that is there counts from where it finds itself
+                first = apart[np.isfinite(apart)][:1]
+                apart -= TURN * np.round(first / TURN).sum()
             turns = np.abs(apart) > 0.75 * TURN
             for k in np.flatnonzero(turns):
                 words[k] = words[k] or f"{column.name} {have[k]:.6g} is off by whole turns"
         return words
 
-    def _off(self, column: Column, have: Array, want: Array) -> Array:
+    def _off(self, column: Column, have: ArrayLike, want: ArrayLike) -> Array:
         if not column.angle:
-            return np.asarray(np.abs(have - want) / self.linkage.size)
+            return np.asarray(np.abs(np.subtract(have, want)) / self.linkage.size)
         d = np.radians(have) - want
         return np.asarray(np.abs(d - TURN * np.round(d / TURN)))
 
@@ -180,15 +183,18 @@ class Truth:
         return np.minimum(ANGLE + 1e-14 / singular, 1e-3)
 
     def _exactly(self, k: int, found: dict[str, Array]) -> str:
-        """A row's differences at 50 digits."""
-        placed = self.linkage.at(mpf(float(self.case.travel.rows[k])) * mp.pi / 180, EXACT)
+        """A row's differences at 50 digits, beyond what roundings of the input change."""
+        t = mpf(float(self.case.travel.rows[k])) * mp.pi / 180
+        unit = mpf(2) ** -52 * max(mpf(1), abs(t))
+        placed, *beside = (self.linkage.at(t + d * unit, EXACT) for d in (0, -1, 1))
         margin = {name: np.array([float(m)]) for name, m in placed.margin.items()}
         allowed = float(self._allowed(margin, 1)[0])
         out = []
         for column in self.case.drawing.columns:
-            want = float(placed.value[column.body])
+            want, *others = (float(one.value[column.body]) for one in (placed, *beside))
+            moved = self._off(column, np.degrees(others) if column.angle else others, want).max()
             have = np.array([float(found[column.name][k])])
-            if self._off(column, have, np.array([want]))[0] > allowed:
+            if self._off(column, have, np.array([want]))[0] > allowed + ROUNDINGS * moved:
                 shown = math.degrees(want) if column.angle else want
                 out.append(f"{column.name} {have[0]:.12g} for {shown:.12g}")
         return ", ".join(out)
@@ -203,10 +209,6 @@ class Truth:
             value = one.value[column.body]
             winding = round((value[-1] - value[0]) / TURN) if one.periodic else 0
             want[here] = np.interp(at, one.t, value) + winding * TURN * turns
-            # half a turn between two points of the way may be either way around
-            sudden = np.flatnonzero(np.abs(np.diff(value)) > SUDDEN)
-            if column.angle and len(sudden):
-                want[here & (np.abs(radians) > one.t[sudden[0]])] = np.nan
         return want
 
 
