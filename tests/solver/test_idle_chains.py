@@ -173,3 +173,25 @@ def test_the_force_that_holds_a_slide() -> None:
     assert any(d.code == "held-spin" for d in held.diagnostics)
     assert np.isfinite(held["pad.holding_force"]).all()
     assert np.abs(held["pad.holding_force"]).max() > 1.0
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "other"),
+    [
+        (TILTED.replace("-0.6, 0, -0.7", "q, 0, -0.7"), "C.x", "-0.5"),
+        (CONCENTRIC.replace("point: [1, 0.5", "point: [q, 0.5"), "P.s", "1.1"),
+        (CONCENTRIC.replace("point: [0.4, 0.1, 0.2]", "point: [0.4, 0.1, q]"), "C.s", "0.25"),
+    ],
+)
+def test_other_parameters_go_with_what_is_held(text: str, name: str, other: str) -> None:
+    first = {"C.x": "-0.6", "P.s": "1", "C.s": "0.2"}[name]
+    text = text.replace("MASS", "").replace("ONE", "a, pad").replace("TWO", "b, pad")
+    text = text.replace("OFF", "[0.4, 0.1, q]" if name == "C.s" else "[0.4, 0.1, 0.2]")
+    given = "format: 1\nparameters: {q: VALUE m}\n"
+    one = text.replace("format: 1\n", given.replace("VALUE", first))
+    two = text.replace("format: 1\n", given.replace("VALUE", other))
+    varied = mk.loads(one).with_parameters({"q": f"{other} m"}).analyze([name])
+    fresh = mk.loads(two).analyze([name])
+    assert varied["row.status"].tolist() == fresh["row.status"].tolist()
+    assert np.abs(varied[name] - fresh[name]).max() < 1e-11
+    assert np.abs(fresh[name] - mk.loads(one).analyze([name])[name]).max() > 1e-3
