@@ -391,6 +391,10 @@ HELD_RATE: Final = 1e-3
 """Least rate of a coordinate in an idle motion, in parts of its fastest, to be held in its place:
 one that hardly moves would not hold it."""
 
+HELD_WELL: Final = 0.1
+"""The same, for a turn of a ball some turns of which are held already: three turns of one ball are
+never singular together, and turns of two balls may be."""
+
 LOOP_RANK: Final = 1e-6
 """Pivot of a loop's screws (moments in sizes) below which they are dependent as drawn: written
 numbers leave 1e-9, and loops that close only by their dimensions are drawn more exactly still."""
@@ -648,6 +652,14 @@ MOST_CHANGES: Final = 3
 
 MOST_IDLE_LINKS: Final = 3
 """Links of one idle group: a leg of S-P-S has two."""
+
+IDLE_MOVE: Final = 0.1
+"""Move (rad, parts of the size) between two general configurations at which idle motions are
+compared: as long as those by which mobility is told."""
+
+IDLE_DECIMALS: Final = 9
+"""Decimals of a line (parts of the size) that an idle freedom is held about: what depends on it is
+conventional, and as many are written; errors of the configurations found are far smaller."""
 
 MOST_THREADS: Final = 1024
 """As many threads as may be asked for."""

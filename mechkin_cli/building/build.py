@@ -20,7 +20,8 @@ from mechkin_cli.building.source import Source
 from mechkin_cli.building.unit_system import note_force_unit, read_units
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
-from mechkin_cli.mechanism.held import held_freedoms
+from mechkin_cli.mechanism.held import Held
+from mechkin_cli.mechanism.holding import held_freedoms
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.model import Attached, Link, Mechanism
 from mechkin_cli.mechanism.problem import Problem
@@ -66,7 +67,7 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
     follow = build_follow(fields, file.follow, problem.mechanism.joints)
     problem = replace(problem, hold_idle=file.idle == "hold", follow=follow)
     if not fields.error_count:
-        problem = replace(problem, held=held_freedoms(problem.mechanism, problem.motion.driven))
+        problem = replace(problem, held=_held(problem))
     graph = _graph(fields, file, problem)
     if isinstance(graph, SolverGraph):
         check_spins(fields, problem, tables)
@@ -79,6 +80,16 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
         raise InvalidFile(in_order(fields.diagnostics))
     problem = replace(problem, diagnostics=tuple(in_order(fields.diagnostics)))
     return Built(problem, graph, tables, bool(file.tables), file.source or "", source)
+
+
+def _held(problem: Problem) -> tuple[Held, ...]:
+    """What holds the idle freedoms."""
+    held, as_drawn = held_freedoms(problem.mechanism, problem.motion.driven)
+    if not as_drawn:
+        return held
+    from mechkin_cli.analysis.mobility.held_along import held_along
+
+    return held_along(problem, held)
 
 
 def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fields:

@@ -138,7 +138,11 @@ class Fields:
 
     def _bounded(self, path: Path, value: float, in_si: float, dimension: Dimension) -> float:
         """The value, or zero and an error where it cannot be computed with."""
-        if is_tiny_length(in_si, dimension):
+        vanished = isinstance(value, float) and value != 0.0 and in_si == 0.0
+        if vanished and dimension != LENGTH:
+            hint = "check its exponent and unit, or write 0"
+            self.error("too-small", path, "this number is too small: it would be zero", hint)
+        elif vanished or is_tiny_length(in_si, dimension):
             self._refuse_size(path, "too-small", "this length is too small", in_si, SMALLEST_SIZE)
         elif abs(value) <= LARGEST_NUMBER:
             return value

@@ -60,13 +60,13 @@ def record(built: Built, names: Sequence[str]) -> Recording:
 
 
 def _refuse_varied_lines(problem: Problem) -> None:
-    """What is held is idle as long as the joints around it lie as they are drawn.
+    """What is held is idle as long as the joints around it, or all, lie as they are drawn.
 
     Raises:
         TraceLost: one of them depends on a parameter.
     """
     for held in problem.held:
-        for name in held.joints:
+        for name in held.joints if held.everywhere else problem.mechanism.joints:
             joint = problem.mechanism.joints[name]
             drawn = [*joint.on_first, *joint.on_second]
             numbers = [joint.lead, *(number for vector in drawn for number in vector)]

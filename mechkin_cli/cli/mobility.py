@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.answer import Question, answer
@@ -66,6 +67,11 @@ def _truth(found: Mobility) -> str:
     return f"{text}, to first order, too" if same else text + first
 
 
+def _idle(found: Mobility) -> list[str]:
+    several = Counter(item.sentence for item in found.idle)
+    return [text if n == 1 else f"{text} ({n} freedoms)" for text, n in several.items()]
+
+
 def _lines(found: Mobility, quiet: bool) -> list[str]:
     lines = [f"{found.name}: {found.verdict}"]
     if quiet:
@@ -75,7 +81,7 @@ def _lines(found: Mobility, quiet: bool) -> list[str]:
         ("mobility", _truth(found)),
         ("loops", str(found.loops)),
         ("inputs", ", ".join(found.inputs) or "none"),
-        *(("idle", item.sentence) for item in found.idle),
+        *(("idle", text) for text in _idle(found)),
         *(("redundant", item.sentence) for item in found.redundant),
     ]
     if found.fixed:

@@ -51,7 +51,8 @@ def _driven(analysis: Analysis) -> str:
     plural = "freedom" if len(inputs) == 1 else "freedoms"
     text = f"{len(inputs)} {plural} by {', '.join(inputs)}" if inputs else "nothing"
     words = [leg.words for leg in find_legs(mechanism)]
-    words += [held.words for held in analysis.model.problem.held]
+    several = Counter(held.words for held in analysis.model.problem.held)
+    words += [text if n == 1 else f"{text} ({n} freedoms)" for text, n in several.items()]
     idle = "".join(f"; {text}" for text in words[:IDLE_SHOWN])
     more = len(words) - IDLE_SHOWN
     idle += f"; and {more} more idle" if more > 0 else ""

@@ -24,6 +24,7 @@ from mechkin_cli.expressions.nodes import Name, Node, Number, Operation
 from mechkin_cli.expressions.operand import Operand, Resolve, Site
 from mechkin_cli.expressions.parser import parse_nodes
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Value, Vector
+from mechkin_cli.expressions.tokens import VANISHES, WRITE_ZERO
 from mechkin_cli.tape.scalars import is_finite, is_number, plain
 from mechkin_cli.units import UNITS, UnitError, UnitSystem, conversion
 
@@ -166,6 +167,9 @@ def _literal(number: Number) -> Quantity:
     if not math.isfinite(value):
         text = f"{number.text[:MAX_QUOTED]} {number.unit}"
         raise ExpressionError(f"{text} is too large", number.offset)
+    if value == 0.0 and number.value != 0.0:
+        text = f"{number.text[:MAX_QUOTED]} {number.unit}"
+        raise ExpressionError(f"{text} {VANISHES}", number.offset, WRITE_ZERO)
     return Quantity(value, number.unit.dimension)
 
 

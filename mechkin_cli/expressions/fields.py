@@ -13,7 +13,7 @@ from mechkin_cli.expressions.expression import Expression, parse
 from mechkin_cli.expressions.nodes import Number
 from mechkin_cli.expressions.operand import Operand, Resolve, Site
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Vector
-from mechkin_cli.expressions.tokens import vanishes
+from mechkin_cli.expressions.tokens import VANISHES, WRITE_ZERO, vanishes
 from mechkin_cli.tape.scalars import is_number
 from mechkin_cli.units import Dimension, UnitError, UnitSystem, conversion
 
@@ -57,6 +57,8 @@ def constant(
     value = units.to_si(bare, dimension)
     if not math.isfinite(value):
         raise ExpressionError(f"{text.strip()} {units.label(dimension)} is too large", 0)
+    if value == 0.0 and bare != 0.0:
+        raise ExpressionError(f"{text.strip()} {units.label(dimension)} {VANISHES}", 0, WRITE_ZERO)
     return value
 
 

@@ -44,6 +44,11 @@ _INSTEAD = {
 }
 
 
+VANISHES = "is too small: in SI units it would be zero"
+WRITE_ZERO = "check its exponent and unit, or write 0"
+"""What is said of a number that a change of unit makes zero."""
+
+
 def vanishes(text: str, value: float) -> bool:
     """Whether a number was written that is not zero, and none of its digits are left."""
     return value == 0.0 and any(digit in "123456789" for digit in text.lower().partition("e")[0])

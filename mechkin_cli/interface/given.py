@@ -75,7 +75,13 @@ def _known(problem: Problem, given: Mapping[str, Any]) -> list[tuple[str, Quanti
 
 def _one(name: str, value: Setting, dimension: Dimension, units: UnitSystem) -> float:
     if not isinstance(value, str):
-        return _bounded(name, units.to_si(float(value), dimension), value, dimension)
+        in_si = units.to_si(float(value), dimension)
+        if in_si == 0.0 and value != 0.0:
+            raise UsageError(
+                f"{name} = {value} is too small: in SI units it would be zero; write 0 or another "
+                "value or unit"
+            )
+        return _bounded(name, in_si, value, dimension)
     try:
         return _bounded(name, constant(value, dimension, units), value, dimension)
     except ExpressionError as error:
@@ -102,8 +108,10 @@ def _column(name: str, value: Any, dimension: Dimension, units: UnitSystem) -> F
     in_si = units.to_si(array.astype(np.float64), dimension)
     sizes = np.abs(in_si)
     least = SMALLEST_SIZE if dimension == LENGTH else 0.0
-    wrong = np.flatnonzero(~((sizes <= LARGEST_NUMBER) & ((sizes >= least) | (sizes == 0.0))))
+    kept = (sizes >= least) & (sizes > 0.0) | (array == 0)
+    wrong = np.flatnonzero(~((sizes <= LARGEST_NUMBER) & kept))
     if wrong.size:
+        _one(f"{name}[{wrong[0]}]", array[wrong[0]].item(), dimension, units)
         _bounded(f"{name}[{wrong[0]}]", float(in_si[wrong[0]]), array[wrong[0]], dimension)
     return in_si
 

@@ -23,6 +23,9 @@ Freedom = tuple[str, int]
 PLACES = 2
 """General places at which motions are compared."""
 
+DRAWN = -1
+"""The drawing, as a place: links have at least the common motions there that they have anywhere."""
+
 _TURNS = ((0.6, 0.8), (5 / 13, 12 / 13), (15 / 17, -8 / 17), (7 / 25, 24 / 25), (-20 / 29, 21 / 29))
 """Cosine and sine of the angles of general places: Pythagorean, so that no function is needed."""
 
@@ -65,12 +68,32 @@ class Displacement(NamedTuple):
 STILL = Displacement(*GROUND)
 
 
-class Common(NamedTuple):
-    """Independent common motions at one place: the rates of all freedoms, and the twist of each
-    link on its own drawing."""
+class Motion(NamedTuple):
+    """A motion of some links at one place: the rates of the freedoms that move, and the twist of
+    each link on its own drawing."""
 
-    rates: tuple[Mapping[Freedom, float], ...]
-    twists: tuple[Mapping[str, Screw], ...]
+    rates: Mapping[Freedom, float]
+    twists: Mapping[str, Screw]
+
+    @property
+    def fastest(self) -> float:
+        """The largest rate."""
+        return max((abs(rate) for rate in self.rates.values()), default=0.0)
+
+    def less(self, factor: float, other: Motion) -> Motion:
+        """This, and another motion back by a factor."""
+        rates = {
+            known: self.rates.get(known, 0.0) - factor * other.rates.get(known, 0.0)
+            for known in (*self.rates, *(each for each in other.rates if each not in self.rates))
+        }
+        twists = dict(self.twists)
+        for link, (angular, linear) in other.twists.items():
+            own = twists.get(link, (ZERO, ZERO))
+            twists[link] = (
+                subtract(own[0], scale(factor, angular)),
+                subtract(own[1], scale(factor, linear)),
+            )
+        return Motion(rates, twists)
 
 
 def common_motions(
@@ -79,8 +102,8 @@ def common_motions(
     border: Sequence[Joint],
     still: Sequence[Freedom],
     general: General,
-) -> Common:
-    """The motions of a chain of links as one body that leave all others at rest.
+) -> list[Motion]:
+    """Independent motions of a chain of links as one body that leave all others at rest.
 
     Args:
         links: in the order of the chain.
@@ -96,9 +119,11 @@ def common_motions(
     for number, joint in enumerate(border):
         link = joint.first if joint.first in pose else joint.second
         at = pose[link]
+        outward = 1.0 if link == joint.second else -1.0  # rates are of the second link
         for own, screw in enumerate(general.seen_from(joint, link)[1]):
             seen = screw if at is STILL else at.screw(screw)
-            columns.append((number, (joint.name, own), (*seen[0], *seen[1])))
+            entries = tuple(outward * entry for entry in (*seen[0], *seen[1]))
+            columns.append((number, (joint.name, own), entries))
     # the twist by the first joint is that by each other
     rows = [
         [
@@ -110,31 +135,26 @@ def common_motions(
     ]
     for freedom in still:
         rows.append([1.0 if known == freedom else 0.0 for _, known, _ in columns])
-    found = _null_space(rows, len(columns))
-    rates = tuple(
-        {freedom: rate for rate, (_, freedom, _) in zip(motion, columns, strict=True)}
-        for motion in found
-    )
-    twists = []
-    for motion in found:
-        first = [
-            (rate, screw)
-            for rate, (number, _, screw) in zip(motion, columns, strict=True)
-            if number == 0
-        ]
-        v = [sum(rate * screw[i] for rate, screw in first) for i in range(6)]
-        twist = ((v[0], v[1], v[2]), (v[3], v[4], v[5]))
-        twists.append({link: pose[link].reversed().screw(twist) for link in links})
-    return Common(rates, tuple(twists))
+    found = []
+    for motion in _null_space(rows, len(columns)):
+        v = [0.0] * 6
+        for rate, (number, _, entries) in zip(motion, columns, strict=True):
+            if number == 0:
+                v = [known + rate * entry for known, entry in zip(v, entries, strict=True)]
+        twist: Screw = ((v[0], v[1], v[2]), (v[3], v[4], v[5]))
+        rates = {freedom: rate for rate, (_, freedom, _) in zip(motion, columns, strict=True)}
+        found.append(Motion(rates, {n: pose[n].reversed().screw(twist) for n in links}))
+    return found
 
 
 class General:
-    """A general place of all joints; lengths in parts of `size` (m), from an `origin` (m) near the
-    drawing: far from it lines would be lost in rounding."""
+    """A general place of all joints, or the drawing; lengths in parts of `size` (m), from an
+    `origin` (m) near the drawing: far from it lines would be lost in rounding."""
 
     def __init__(self, place: int, size: float, origin: Vector) -> None:
         self.size, self.origin = size, origin
         self._next = 7 * place
+        self._drawn = place == DRAWN
         self._seen: dict[tuple[str, str], tuple[Displacement, list[Screw]]] = {}
 
     def seen_from(self, joint: Joint, link: str) -> tuple[Displacement, list[Screw]]:
@@ -159,7 +179,9 @@ class General:
         self._next += 1
         turn, slide = _TURNS[self._next % len(_TURNS)], _SLIDES[self._next % len(_SLIDES)]
         own = STILL
-        if part.type.is_ball:
+        if self._drawn:
+            pass
+        elif part.type.is_ball:
             own = _turned_by(_BALLS[self._next % len(_BALLS)])
         elif part.type.freedoms:
             motions = {freedom.motion for freedom in part.type.freedoms}

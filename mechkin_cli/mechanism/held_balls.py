@@ -1,43 +1,32 @@
-"""Balls whose turn about a line of a link can be held: as three turns one after the other.
+"""Balls told as three turns one after the other, of which some can be held.
 
 Where an idle spin moves no coordinate that has a name, a ball around the links is told as turns
 about an axis of the far link, about what is square to both, and about the line of the near link;
 the last one is held. It is singular where the line comes to lie along the first axis, which is
-chosen as that of a joint of the far link, about which the line as a rule goes round.
+chosen as that of a joint of the far link, about which the line as a rule goes round. Where no line
+is told, the turns are about the axes of the drawing; if all three are held, they are never
+singular.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism.elementary import Part
-from mechkin_cli.mechanism.frames import Frame, frame_about, perpendicular
+from mechkin_cli.mechanism.frames import GROUND, Frame, frame_about, perpendicular
 from mechkin_cli.mechanism.legs import frame_on
 from mechkin_cli.mechanism.model import Joint, Mechanism
 from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale, unit
 
-STEEP = 0.9
+STEEP = 0.5
 """Cosine of the angle between line and axis up to which the axis is taken."""
 
 
-class HeldBall(NamedTuple):
-    """A ball told as three turns, in the joint of its name; `freedom` is the one that is held."""
-
-    joint: Joint
-    freedom: int
-
-    @property
-    def coordinate(self) -> str:
-        """The held turn's name; no user's name has a blank."""
-        return f"turn {self.freedom}"
-
-
-def held_ball(mechanism: Mechanism, joint: Joint, link: str, line: Vector) -> HeldBall:
-    """The ball of a joint with its turn about a line of one of its links, a unit vector on that
-    link's drawing, as one of three turns."""
+def held_ball(mechanism: Mechanism, joint: Joint, link: str, line: Vector) -> tuple[Joint, int]:
+    """A joint whose ball is told as three turns, one of them about a line (a unit vector) on the
+    drawing of one of its links; and the number of that freedom."""
     far = joint.second if joint.first == link else joint.first
-    own, other = frame_on(joint, link), frame_on(joint, far)
+    ball = next(part for part in joint.parts if part.type.is_ball)
+    own, other = (ball.before, ball.after) if link == joint.first else (ball.after, ball.before)
     first = _axis_of(mechanism, joint, far, other, own, line)
     parts: list[Part] = []
     number = held = 0
@@ -56,7 +45,22 @@ def held_ball(mechanism: Mechanism, joint: Joint, link: str, line: Vector) -> He
         parts += [Part("R", before[0], before[0]), Part("R", before[1], before[1])]
         parts.append(Part("R", before[2], after))
         number += 3
-    return HeldBall(joint._replace(parts=tuple(parts)), held)
+    return joint._replace(parts=tuple(parts)), held
+
+
+def three_turns(joint: Joint) -> Joint:
+    """A joint whose ball is told as turns about x, y and z as drawn."""
+    parts: list[Part] = []
+    for part in joint.parts:
+        if not part.type.is_ball:
+            parts.append(part)
+            continue
+        x, y, z = GROUND.x, GROUND.y, GROUND.z
+        for axis, beside in ((x, y), (y, z)):
+            frame = _about(part.before, axis, beside)
+            parts.append(Part("R", frame, frame))
+        parts.append(Part("R", _about(part.before, z, x), _about(part.after, z, x)))
+    return joint._replace(parts=tuple(parts))
 
 
 def _axis_of(

@@ -25,7 +25,8 @@ from mechkin_cli.mechanism.derived_quantities import (
     INSTANT_KINDS,
     ORIENTATION_KINDS,
 )
-from mechkin_cli.mechanism.held import Coordinate, Held, Line
+from mechkin_cli.mechanism.held import Held, Line
+from mechkin_cli.mechanism.idle_motions import Coordinate
 from mechkin_cli.mechanism.legs import Leg, find_legs, frame_on
 from mechkin_cli.mechanism.model import (
     Attached,
@@ -40,7 +41,7 @@ from mechkin_cli.mechanism.model import (
 )
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
-from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale, subtract
+from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale
 from mechkin_cli.tape.scalars import largest
 from mechkin_cli.units import LENGTH, MOMENT
 
@@ -120,8 +121,15 @@ def without_spin(problem: Problem) -> Problem:
     for held in problem.held:
         for name, line in held.axes.items():
             if line is not None and links[name].has_mass:
-                links[name] = _without_moment_about(links[name], line.along)
+                links[name] = _without_spin_about(links[name], line)
     return replace(problem, mechanism=replace(problem.mechanism, links=links))
+
+
+def _without_spin_about(body: Link, line: Line) -> Link:
+    if line.along is None:
+        # what turns about its mass centre in every way asks no moment of anything
+        return body._replace(inertia=(0.0,) * 6)
+    return _without_moment_about(body, line.along)
 
 
 def _without_moment_about(body: Link, line: Vector) -> Link:
@@ -152,25 +160,26 @@ def spin_errors(problem: Problem) -> list[tuple[str, Diagnostic]]:
     """
     if problem.hold_idle:
         return []
-    found = []
+    found: list[tuple[str, Diagnostic]] = []
     for idle in idle_freedoms(problem):
         for link in idle.links:
             cause = _spin_cause(problem, idle, link)
             if cause is not None:
-                found.append((link, _dynamic_freedom(idle, *cause)))
+                error = (link, _dynamic_freedom(idle, *cause))
+                found += [error] if error not in found else []
                 break
     return found
 
 
 def holding_notes(problem: Problem, moments: Mapping[str, Floats]) -> list[Diagnostic]:
     """The largest moment (force) that holds each idle freedom; `moments` (N m, N) by name,
-    (rows,)."""
+    (components, rows)."""
     notes = []
     for idle in idle_freedoms(problem):
         moment = moments.get(idle.holding)
         if moment is None:
             continue
-        row = np.abs(moment)
+        row = np.sqrt(sum(part * part for part in moment))
         most = float(np.max(row[np.isfinite(row)], initial=0.0))
         dimension = problem.quantities()[idle.holding].dimension
         text = f"{float(problem.units.from_si(most, dimension)):.6g}"
@@ -203,9 +212,11 @@ def conventional_notes(problem: Problem, wanted: Iterable[Wanted]) -> list[Diagn
     """Notes on quantities that depend on the convention about an idle freedom."""
     wanted = list(wanted)
     notes: list[Diagnostic] = []
+    told: set[tuple[str, str]] = set()
     for idle in idle_freedoms(problem) if wanted else ():
         names = [q.name for q in wanted if _is_conventional(problem.mechanism, idle, q)]
-        if names:
+        if names and (idle.words, idle.convention) not in told:
+            told.add((idle.words, idle.convention))
             notes.append(
                 Diagnostic(
                     "conventional",
@@ -229,8 +240,9 @@ def _spin_cause(problem: Problem, idle: Idle, link: str) -> tuple[str, str] | No
             return f"{link} has mass", f"{body.mass:.4g} kg"
         return None
     if body.mass != 0.0 and (off := _off_line(problem, idle, line, body.center_of_mass)):
-        return f"the mass centre of {link} lies off that line", off
-    asymmetry = _asymmetry(body, line.along)
+        where = "centre" if line.along is None else "line"
+        return f"the mass centre of {link} lies off that {where}", off
+    asymmetry = 0.0 if line.along is None else _asymmetry(body, line.along)
     if asymmetry > tolerances.ON_LINE:
         words = f"the inertia of {link} is not symmetric about that line"
         return words, f"{asymmetry:.2g} of its largest entry"
@@ -239,7 +251,7 @@ def _spin_cause(problem: Problem, idle: Idle, link: str) -> tuple[str, str] | No
 
 def _off_line(problem: Problem, idle: Idle, line: Line, point: Vector) -> str | None:
     """How far a point lies off a line, in the file's units; None if it lies on it."""
-    off = _distance(point, line)
+    off = line.distance(point)
     if off <= tolerances.ON_LINE * idle.length:
         return None
     return f"{float(problem.units.from_si(off, LENGTH)):.4g} {problem.units.label(LENGTH)}"
@@ -275,14 +287,10 @@ def _load_cause(problem: Problem, idle: Idle, link: str, load: Load) -> tuple[st
 
 def _runs_along(load: LinkLoad, line: Line) -> bool:
     """Whether a constant force runs along a line."""
-    if varying(load):
+    if varying(load) or line.along is None:
         return False
     across = cross(load.value, line.along)  # type: ignore[arg-type]
     return norm(across) <= tolerances.ON_LINE * norm(load.value)  # type: ignore[arg-type]
-
-
-def _distance(point: Vector, line: Line) -> float:
-    return norm(cross(subtract(point, line.start), line.along))
 
 
 def _asymmetry(body: Link, line: Vector) -> float:
@@ -333,14 +341,14 @@ def _point_moves(idle: Idle, at: Attached) -> bool:
     if at.link not in idle.links:
         return False
     line = idle.lines[at.link]
-    return line is None or _distance(at.vector, line) > tolerances.ON_LINE * idle.length
+    return line is None or line.distance(at.vector) > tolerances.ON_LINE * idle.length
 
 
 def _direction_moves(idle: Idle, at: Attached) -> bool:
     if at.link not in idle.links or idle.slides:
         return False
     line = idle.lines[at.link]
-    if line is None:
+    if line is None or line.along is None:
         return True
     off = cross(scale(1.0 / (norm(at.vector) or 1.0), at.vector), line.along)
     return norm(off) > tolerances.ON_LINE

@@ -97,14 +97,15 @@ class Joint(NamedTuple):
     def unit_of(self, coordinate: str, length: float) -> float:
         """A coordinate (rad, m) per unit of its freedom, whose slides are told in `length` (m)."""
         known = self.type.coordinate.get(coordinate)
-        if known is None:
-            return 1.0
+        if known is None:  # a freedom without a name
+            return length if coordinate.startswith("slide ") else 1.0
         if known.on_thread:
             return self.pitch
         return 1.0 if known.is_angle else length
 
     def freedom_number(self, coordinate: str) -> int:
-        """The freedom of a coordinate; `turn 2` stands for a ball's that has no name."""
+        """The freedom of a coordinate; `turn 2` and `slide 3` stand for those without
+        a name."""
         known = self.type.freedom_of.get(coordinate)
         return int(coordinate.rpartition(" ")[2]) if known is None else known
 

@@ -38,20 +38,30 @@ class Problem:
     @property
     def driven(self) -> list[tuple[str, str]]:
         """The inputs (joint, coordinate), then the coordinates at which idle freedoms are held."""
-        return [*self.motion.driven, *(one.coordinate for one in self.held)]
+        return [*self.motion.driven, *self.held_at]
+
+    @cached_property
+    def held_at(self) -> dict[tuple[str, str], float]:
+        """Where the held coordinates stand (rad, m): as drawn, or where `near` puts them."""
+        near = self.assembly.near
+        held = [one for one in self.held if one.coordinate is not None]
+        return {one.coordinate: near.get(one.name, 0.0) for one in held if one.coordinate}
+
+    @cached_property
+    def laid_mechanism(self) -> Mechanism:
+        """The mechanism with the pairs that hold idle freedoms."""
+        stops = {one.stop.name: one.stop for one in self.held if one.stop is not None}
+        if not stops:
+            return self.mechanism
+        return replace(self.mechanism, joints={**self.mechanism.joints, **stops})
 
     @cached_property
     def solved_mechanism(self) -> Mechanism:
-        """The mechanism with the balls that hold idle freedoms told as three turns."""
-        balls = {one.ball.joint.name: one.ball.joint for one in self.held if one.ball is not None}
-        if not balls:
-            return self.mechanism
-        return replace(self.mechanism, joints={**self.mechanism.joints, **balls})
-
-    @property
-    def held_at(self) -> list[float]:
-        """Where the held coordinates stand (rad, m): as drawn, or where `near` puts them."""
-        return [self.assembly.near.get(one.name, 0.0) for one in self.held]
+        """The same with the balls that hold idle freedoms told as three turns."""
+        told = {one.told.name: one.told for one in self.held if one.told is not None}
+        if not told:
+            return self.laid_mechanism
+        return replace(self.laid_mechanism, joints={**self.laid_mechanism.joints, **told})
 
     def quantities(self) -> Mapping[str, Wanted]:
         """The quantities that the mechanism has, by name."""

@@ -190,8 +190,11 @@ def _of_links(mechanism: Mechanism) -> Iterator[Wanted]:
 
 def _of_held(held: Sequence[Held]) -> Iterator[Wanted]:
     for one in held:
-        kind: Kind = "holding_moment" if is_angle(one.coordinate[1]) else "holding_force"
-        dimension = MOMENT if kind == "holding_moment" else FORCE
+        if one.stop is not None:
+            yield Wanted(one.holding, "force", one.stop.name, FORCE, True)
+            continue
+        kind: Kind = "holding_moment" if one.turns else "holding_force"
+        dimension = MOMENT if one.turns else FORCE
         yield Wanted(one.holding, kind, one.links[0], dimension, False, one.name)
 
 

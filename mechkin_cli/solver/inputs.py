@@ -88,8 +88,8 @@ def held_values(problem: Problem, layout: Layout) -> list[float]:
     """The held coordinates in kernel units."""
     joints = layout.mechanism.joints
     return [
-        value / joints[one.coordinate[0]].unit_of(one.coordinate[1], layout.length)
-        for one, value in zip(problem.held, problem.held_at, strict=True)
+        value / joints[name].unit_of(coordinate, layout.length)
+        for (name, coordinate), value in problem.held_at.items()
     ]
 
 

@@ -104,7 +104,7 @@ class Session:
     @cached_property
     def layout(self) -> Layout:
         """How the mechanism lies in the kernel."""
-        return Layout(self.problem.mechanism, self.graph)
+        return Layout(self.problem.laid_mechanism, self.graph)
 
     @cached_property
     def plan(self) -> Plan:

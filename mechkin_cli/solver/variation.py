@@ -142,7 +142,9 @@ class Variation:
         self.recorded = problem
         self.values = np.array(recorder.values[: len(recorder.inputs)])
         self.layout = Layout(
-            problem.mechanism, graph_of(problem.solved_mechanism, base.graph), base.layout.length
+            problem.laid_mechanism,
+            graph_of(problem.solved_mechanism, base.graph),
+            base.layout.length,
         )
         self._refuse_other_scale(problem)
         self.constants = flatten(plan_records(self.layout))

@@ -16,6 +16,7 @@ MECHANISM = EXPRESSIONS | {"mechanism"}
 SOLVER = MECHANISM | {"solver"}
 ANALYSIS = SOLVER | {"analysis"}
 BUILDING = SOLVER | {"reading", "schema", "building", "tables.layout"}
+BUILDING |= {"analysis.mobility.held_along"}
 INTERFACE = BUILDING | {"analysis", "tables", "interface"}
 BENCHMARK = INTERFACE | {"benchmark"}
 ALLOWED = {

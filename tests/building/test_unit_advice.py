@@ -151,7 +151,9 @@ def test_bare_torsional_damping_is_per_radian_and_second() -> None:
         assert found["O.effort"][0] == pytest.approx(15.0, rel=1e-14)
 
 
-@pytest.mark.parametrize("length", ["1e-101", "-1e-150", "1e-320", "1e-400", "1e-98 mm", "r"])
+@pytest.mark.parametrize(
+    "length", ["1e-101", "-1e-150", "1e-320", "1e-400", "1e-98 mm", "5e-324 mm", "r"]
+)
 @pytest.mark.parametrize("place", ["point: [0, 0, 0]", "center_of_mass: [300 mm, 0, 0]"])
 def test_tiny_lengths_are_refused_in_words(length: str, place: str) -> None:
     key = place.partition(":")[0]

@@ -103,9 +103,9 @@ def mode_name(rank: int) -> str:
 
 def is_cyclic(mechanism: Mechanism, name: str) -> bool:
     """Whether a turn more of a coordinate is the same place: angles but for those of threads."""
-    joint, _, coordinate = name.partition(".")
-    kind = mechanism.joints[joint].type
-    return kind.chain[kind.freedom_of[coordinate]].is_cyclic
+    name, _, coordinate = name.partition(".")
+    joint = mechanism.joints[name]
+    return joint.type.chain[joint.freedom_number(coordinate)].is_cyclic
 
 
 def wrapped(angle: float) -> float:

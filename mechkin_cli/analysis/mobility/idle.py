@@ -28,25 +28,53 @@ def idle_freedoms(
 ) -> tuple[IdleFreedom, ...]:
     """Freedoms that move no input and nothing but a link between two or more joints."""
     found: list[IdleFreedom] = []
-    taken: list[tuple[set[str], Floats]] = []
-    columns = [configuration.body.column(*each) for each in driven]
-    for links, border in _groups(configuration):
-        if any(known <= links for known, _ in taken):
+    body = configuration.body
+    known = np.zeros((body.count, 0))
+    for names, border, motions in group_motions(configuration, driven):
+        new = motions @ _split(motions - known @ (known.T @ motions))[0]
+        if not new.shape[1]:
             continue
-        motions = _common_motions(configuration, links, border)
-        if motions.shape[1] != 1:
-            continue
-        twist = configuration.twists[min(links)] @ motions[:, 0]
-        rates = motions[:, 0] / np.sqrt(twist @ twist)
-        twist = twist / np.sqrt(twist @ twist)
-        if not np.abs(rates[columns]).max(initial=0.0) > tolerances.RANK_ZERO:
-            names = tuple(n for n in configuration.body.links if n in links)
+        known = np.linalg.qr(np.concatenate([known, new], axis=1))[0]
+        for twist in _told(configuration.twists[names[0]] @ new).T:
             verb, how = _words(border, twist)
             verb = f"{verb} together" if len(names) > 1 else f"{verb}s"
-            sentence = f"{' and '.join(names)} {verb} freely {how}"
-            found.append(IdleFreedom(names, sentence))
-            taken.append((links, twist))
+            found.append(IdleFreedom(names, f"{' and '.join(names)} {verb} freely {how}"))
     return tuple(found)
+
+
+def group_motions(
+    configuration: Configuration, driven: Sequence[tuple[str, str]]
+) -> Iterator[tuple[tuple[str, ...], tuple[Joint, ...], Floats]]:
+    """Groups of links, few first, with the joints to others and their motions (freedoms, count) as
+    one body that move no input and leave all others at rest."""
+    body = configuration.body
+    columns = [body.column(*each) for each in driven]
+    for links, border in _groups(configuration):
+        motions = _common_motions(configuration, links, border)
+        names = tuple(name for name in body.links if name in links)
+        yield names, tuple(border), motions @ _split(motions[columns])[1]
+
+
+def _split(matrix: Floats) -> tuple[Floats, Floats]:
+    """Orthonormal bases of what a matrix, with entries of the order of one, does not map to zero,
+    and of what it does."""
+    if not matrix.size:
+        count = matrix.shape[1]
+        return np.zeros((count, 0)), np.eye(count)
+    _, values, right = np.linalg.svd(matrix)
+    rank = int(np.count_nonzero(values > tolerances.SAME_COMMON_MOTION))
+    return right[:rank].T, right[rank:].T
+
+
+def _told(twists: Floats) -> Floats:
+    """Unit twists (6, count) that span the same: turns, then slides."""
+    turning, sliding = _split(twists[:3] / np.linalg.norm(twists, axis=0).max())
+    turns, slides = twists @ turning, twists @ sliding
+    along = np.linalg.qr(slides[3:])[0]
+    turns[3:] -= along @ (along.T @ turns[3:])  # no turn advances where a slide does
+    basis: Floats = np.concatenate([turns, slides], axis=1)
+    basis /= np.linalg.norm(basis, axis=0)
+    return basis
 
 
 def _groups(configuration: Configuration) -> Iterator[tuple[set[str], list[Joint]]]:
@@ -78,7 +106,7 @@ def _common_motions(configuration: Configuration, links: set[str], border: list[
     return found
 
 
-def _words(border: list[Joint], twist: Floats) -> tuple[str, str]:
+def _words(border: Sequence[Joint], twist: Floats) -> tuple[str, str]:
     """Verb, and about or along what."""
     spin, slide = twist[:3], twist[3:]
     names = ", ".join(joint.name for joint in border)

@@ -9,6 +9,7 @@ count is the number of redundant constraints.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -105,8 +106,14 @@ def _idle(motion: Motions, driven: Sequence[tuple[str, str]]) -> tuple[IdleFreed
     """Freedoms that are idle wherever the mechanism goes."""
     found = idle_freedoms(motion.general, driven) if motion.mobility else ()
     for other in motion.others if found else ():
-        there = {frozenset(item.links) for item in idle_freedoms(other, driven)}
-        found = tuple(item for item in found if frozenset(item.links) in there)
+        there = Counter(item.links for item in idle_freedoms(other, driven))
+        here: Counter[tuple[str, ...]] = Counter()
+        kept = []
+        for item in found:
+            here[item.links] += 1
+            if here[item.links] <= there[item.links]:
+                kept.append(item)
+        found = tuple(kept)
     return found
 
 

@@ -46,7 +46,7 @@ def _part(problem: Problem, graph: SolverGraph, left_out: Sequence[int]) -> Prob
     return replace(
         problem,
         mechanism=mechanism,
-        held=tuple(one for one in problem.held if one.coordinate[0] in mechanism.joints),
+        held=tuple(one for one in problem.held if one.is_in(mechanism)),
         assembly=replace(problem.assembly, near=near),
         diagnostics=(*problem.diagnostics, note),
     )

@@ -213,12 +213,13 @@ def _notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
     problem, session, rows = result.problem, result.session, result.row_states
     notes: list[Diagnostic] = []
     if find_legs(problem.mechanism) or problem.held:
-        from mechkin_cli.mechanism.idle import conventional_notes, holding_notes
+        from mechkin_cli.mechanism.idle import conventional_notes, holding_notes, idle_freedoms
 
         notes += conventional_notes(problem, [*asked, *_read_by_loads(result)])
         if problem.hold_idle:
-            moments = {q.name: result.columns[q.name][0] for q in asked if q.kind in HOLDING}
-            notes += holding_notes(problem, moments)
+            named = {idle.holding for idle in idle_freedoms(problem)}
+            found = {q.name: result.columns[q.name] for q in asked if q.name in named}
+            notes += holding_notes(problem, found)
     if (rows.status == Status.rank_unclear).any():
         from mechkin_cli.analysis.sweep.branch_end import input_faults
 
