@@ -395,6 +395,11 @@ HELD_WELL: Final = 0.1
 """The same, for a turn of a ball some turns of which are held already: three turns of one ball are
 never singular together, and turns of two balls may be."""
 
+HELD_ACROSS: Final = 0.5
+"""Cosine of the angle between the line of a held turn and the first axis of its ball up to which
+the axis is taken: the three turns are singular where line and axis meet, so they start 60 deg or
+more away."""
+
 LOOP_RANK: Final = 1e-6
 """Pivot of a loop's screws (moments in sizes) below which they are dependent as drawn: written
 numbers leave 1e-9, and loops that close only by their dimensions are drawn more exactly still."""

@@ -87,7 +87,7 @@ def _held(problem: Problem) -> tuple[Held, ...]:
     held, as_drawn = held_freedoms(problem.mechanism, problem.motion.driven)
     if not as_drawn:
         return held
-    from mechkin_cli.analysis.mobility.held_along import held_along
+    from mechkin_cli.freedoms.held_along import held_along
 
     return held_along(problem, held)
 

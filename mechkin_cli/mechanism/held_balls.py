@@ -17,9 +17,6 @@ from mechkin_cli.mechanism.legs import frame_on
 from mechkin_cli.mechanism.model import Joint, Mechanism
 from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm, scale, unit
 
-STEEP = 0.5
-"""Cosine of the angle between line and axis up to which the axis is taken."""
-
 
 def held_ball(mechanism: Mechanism, joint: Joint, link: str, line: Vector) -> tuple[Joint, int]:
     """A joint whose ball is told as three turns, one of them about a line (a unit vector) on the
@@ -74,7 +71,7 @@ def _axis_of(
         for one in mechanism.joints_of[far]
         if one is not joint and one.type.is_guide
     ]
-    axes = [axis for axis in axes if abs(dot(axis, drawn)) < STEEP]
+    axes = [axis for axis in axes if abs(dot(axis, drawn)) < tolerances.HELD_ACROSS]
     if not axes:
         return perpendicular(drawn)
     return min(axes, key=lambda axis: abs(dot(axis, drawn)))

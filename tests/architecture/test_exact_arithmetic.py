@@ -124,7 +124,7 @@ def findings(path: Path) -> list[tuple[str, str]]:
     return [(name, ast.unparse(node)) for node in ast.walk(tree(path)) if inexact(node)]
 
 
-WORDS_ONLY = ROOT / "analysis" / "mobility"  # whole numbers and words
+WORDS_ONLY = ROOT / "analysis" / "mobility"  # whole numbers and words; `freedoms/` likewise
 CELL_FILES = [path for path in FILES if room(path) in ROOMS and path.parent != WORDS_ONLY]
 
 

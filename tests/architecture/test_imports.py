@@ -14,10 +14,10 @@ TAPE = KERNEL | {"tape"}
 EXPRESSIONS = TAPE | UNITS | {"expressions"}
 MECHANISM = EXPRESSIONS | {"mechanism"}
 SOLVER = MECHANISM | {"solver"}
-ANALYSIS = SOLVER | {"analysis"}
-BUILDING = SOLVER | {"reading", "schema", "building", "tables.layout"}
-BUILDING |= {"analysis.mobility.held_along"}
-INTERFACE = BUILDING | {"analysis", "tables", "interface"}
+FREEDOMS = SOLVER | {"freedoms"}
+ANALYSIS = FREEDOMS | {"analysis"}
+BUILDING = FREEDOMS | {"reading", "schema", "building", "tables.layout"}
+INTERFACE = BUILDING | ANALYSIS | {"tables", "interface"}
 BENCHMARK = INTERFACE | {"benchmark"}
 ALLOWED = {
     **dict.fromkeys(BASE, BASE),
@@ -29,6 +29,7 @@ ALLOWED = {
     "schema": BASE | {"schema"},
     "mechanism": MECHANISM,
     "solver": SOLVER,
+    "freedoms": FREEDOMS,
     "analysis": ANALYSIS,
     "tables": EXPRESSIONS | {"tables"},
     "building": BUILDING,

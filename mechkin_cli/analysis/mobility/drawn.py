@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from mechkin_cli.analysis.mobility.configurations import Body, home
-from mechkin_cli.analysis.mobility.idle import idle_freedoms
 from mechkin_cli.analysis.mobility.inputs import input_notes, undriven_notes
-from mechkin_cli.analysis.mobility.local_dimension import freedom_of
-from mechkin_cli.analysis.mobility.motions import Motions
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.freedoms.configurations import Body, home
+from mechkin_cli.freedoms.idle import idle_freedoms
+from mechkin_cli.freedoms.local_dimension import freedom_of
+from mechkin_cli.freedoms.motions import Motions
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.random_starts import RandomStarts
 

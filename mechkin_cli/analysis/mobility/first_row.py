@@ -9,14 +9,14 @@ import numpy as np
 
 from mechkin_cli.analysis.assembly.probe import Probe
 from mechkin_cli.analysis.assembly.start import choose_start
-from mechkin_cli.analysis.mobility.configurations import (
+from mechkin_cli.freedoms.configurations import (
     Body,
     Configuration,
     home,
     with_links_at,
 )
-from mechkin_cli.analysis.mobility.displacements import quaternion_of
-from mechkin_cli.analysis.mobility.opened import Pose, Poses
+from mechkin_cli.freedoms.displacements import quaternion_of
+from mechkin_cli.freedoms.opened import Pose, Poses
 from mechkin_cli.mechanism.frames import Frame
 
 if TYPE_CHECKING:

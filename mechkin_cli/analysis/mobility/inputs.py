@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.mobility.motions import Motions
 from mechkin_cli.analysis.mobility.words import freedoms as in_words
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.freedoms.motions import Motions
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.graph.errors import listed
 

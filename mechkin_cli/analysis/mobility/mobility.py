@@ -15,15 +15,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.mobility.configurations import Body, assembled, home
 from mechkin_cli.analysis.mobility.first_row import first_row
-from mechkin_cli.analysis.mobility.idle import IdleFreedom, idle_freedoms
 from mechkin_cli.analysis.mobility.inputs import input_notes
-from mechkin_cli.analysis.mobility.local_dimension import Freedom, freedom_of
-from mechkin_cli.analysis.mobility.motions import Motions
 from mechkin_cli.analysis.mobility.redundancy import Redundancy, redundancies
 from mechkin_cli.analysis.mobility.words import verdict
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.freedoms.configurations import Body, assembled, home
+from mechkin_cli.freedoms.idle import IdleFreedom, idle_freedoms
+from mechkin_cli.freedoms.local_dimension import Freedom, freedom_of
+from mechkin_cli.freedoms.motions import Motions
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.random_starts import RandomStarts

@@ -17,8 +17,8 @@ from mechkin_cli import tolerances
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.analysis.mobility.parts import Part
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.freedoms.parts import Part
 
 
 class Sphere(NamedTuple):

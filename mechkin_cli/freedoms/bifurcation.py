@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.mobility.closed import damped_steps
+from mechkin_cli.freedoms.closed import damped_steps
 
 if TYPE_CHECKING:
-    from mechkin_cli.analysis.mobility.parts import Part
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.freedoms.parts import Part
     from mechkin_cli.solver.random_starts import RandomStarts
 
 

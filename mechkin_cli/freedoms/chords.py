@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.mobility.closed import Closed, closed
-from mechkin_cli.analysis.mobility.rank import rank_of
+from mechkin_cli.freedoms.closed import Closed, closed
+from mechkin_cli.freedoms.rank import rank_of
 
 if TYPE_CHECKING:
-    from mechkin_cli.analysis.mobility.parts import Part
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.freedoms.parts import Part
     from mechkin_cli.solver.random_starts import RandomStarts
 
 

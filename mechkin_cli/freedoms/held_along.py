@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.mobility.configurations import Body, Configuration, home
-from mechkin_cli.analysis.mobility.idle import group_motions
-from mechkin_cli.analysis.mobility.local_dimension import freedom_of
-from mechkin_cli.analysis.mobility.motions import Motions
+from mechkin_cli.freedoms.configurations import Body, Configuration, home
+from mechkin_cli.freedoms.idle import group_motions
+from mechkin_cli.freedoms.local_dimension import freedom_of
+from mechkin_cli.freedoms.motions import Motions
 from mechkin_cli.mechanism.common_motions import PLACES, Motion
 from mechkin_cli.mechanism.held import Held
 from mechkin_cli.mechanism.holding import held_groups

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.mobility.closed import closed
-from mechkin_cli.analysis.mobility.displacements import displacement
-from mechkin_cli.analysis.mobility.loops import Closing, Loops
-from mechkin_cli.analysis.mobility.opened import Pose, Poses, opened
-from mechkin_cli.analysis.mobility.parts import Part, parts
+from mechkin_cli.freedoms.closed import closed
+from mechkin_cli.freedoms.displacements import displacement
+from mechkin_cli.freedoms.loops import Closing, Loops
+from mechkin_cli.freedoms.opened import Pose, Poses, opened
+from mechkin_cli.freedoms.parts import Part, parts
 from mechkin_cli.mechanism.elementary import screws_at
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.analysis.mobility.displacements import cross, displacement, turn_between, turned
+from mechkin_cli.freedoms.displacements import cross, displacement, turn_between, turned
 from mechkin_cli.mechanism.elementary import screws_at
 from mechkin_cli.mechanism.model import GROUND_NAME
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.analysis.mobility.opened import Opened, Poses
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.freedoms.opened import Opened, Poses
     from mechkin_cli.solver.layout import Layout
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.mobility.configurations import Configuration
+from mechkin_cli.freedoms.configurations import Configuration
 from mechkin_cli.mechanism.model import Joint
 
 if TYPE_CHECKING:

@@ -17,8 +17,8 @@ from mechkin_cli.mechanism.model import GROUND_NAME
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.analysis.mobility.loops import Loops
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.freedoms.loops import Loops
     from mechkin_cli.mechanism.model import Mechanism
 
 

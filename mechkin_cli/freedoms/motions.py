@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.mobility.chords import Component
-from mechkin_cli.analysis.mobility.configurations import Body, Configuration
-from mechkin_cli.analysis.mobility.local_dimension import Freedom
-from mechkin_cli.analysis.mobility.parts import Part
-from mechkin_cli.analysis.mobility.rank import rank_of
+from mechkin_cli.freedoms.chords import Component
+from mechkin_cli.freedoms.configurations import Body, Configuration
+from mechkin_cli.freedoms.local_dimension import Freedom
+from mechkin_cli.freedoms.parts import Part
+from mechkin_cli.freedoms.rank import rank_of
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats

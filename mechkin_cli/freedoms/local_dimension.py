@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.mobility.bifurcation import apart_numbers, directions, quadratic_forms
-from mechkin_cli.analysis.mobility.chords import (
+from mechkin_cli.freedoms.bifurcation import apart_numbers, directions, quadratic_forms
+from mechkin_cli.freedoms.chords import (
     Component,
     Move,
     Unclear,
@@ -23,12 +23,12 @@ from mechkin_cli.analysis.mobility.chords import (
     lengths,
     scaled,
 )
-from mechkin_cli.analysis.mobility.closed import Closed, Sphere, closed
-from mechkin_cli.analysis.mobility.rank import Rank, rank_of
+from mechkin_cli.freedoms.closed import Closed, Sphere, closed
+from mechkin_cli.freedoms.rank import Rank, rank_of
 
 if TYPE_CHECKING:
-    from mechkin_cli.analysis.mobility.parts import Part
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.freedoms.parts import Part
     from mechkin_cli.solver.random_starts import RandomStarts
 
 
