@@ -64,8 +64,10 @@ def _places(body: Body) -> list[Configuration]:
     if not start.assembled:
         return []
     freedoms = [(p, freedom_of(p, start.state, random)) for p in body.parts]
-    if any(found.doubt for _, found in freedoms):
-        return []
+    if any(
+        found.doubt or found.dimensions != (found.first.motions.shape[1],) for _, found in freedoms
+    ):
+        return []  # at a branch point one way may leave idle what another needs
     motions = Motions(body, start, freedoms)
     found = [motions.general]
     while len(found) < PLACES:

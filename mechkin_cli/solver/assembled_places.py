@@ -20,7 +20,7 @@ from mechkin_cli.mechanism.vectors import ZERO, add, cross, norm, scale, subtrac
 from mechkin_cli.solver.graph.records import SolverGraph, UnsolvableGraph
 from mechkin_cli.solver.home import home_state
 from mechkin_cli.solver.random_starts import RandomStarts
-from mechkin_cli.solver.reduction import HALF
+from mechkin_cli.solver.reduction import whole_link
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -119,4 +119,4 @@ def _closed(session: Session, move: float, off: float) -> Poses | None:
         back = add(add(scale(origin[0], x), scale(origin[1], y)), scale(origin[2], turn.z))
         found[name] = turn._replace(o=subtract(middle, back))
     # the half of a cut link goes with the other
-    return lambda link: found[link.removesuffix(HALF)]
+    return lambda link: found[whole_link(link)]

@@ -1,9 +1,9 @@
 """What the spanning tree is laid through: a mechanism without its legs, every body within reach.
 
 Legs become distance equations (legs.py). A body that only legs hold hangs from ground by a free
-pair of six unknowns. A loop without a joint to close it at is closed through a link: the link is
-cut in two halves that a weld joins (docs/numerics.md,
-Closing joints).
+pair of six unknowns. A loop without a joint to close it at, or whose closing joint has all its
+unknowns, is closed through a link: the link is cut in two halves that a weld joins
+(docs/numerics.md, Closing joints).
 """
 
 from __future__ import annotations
@@ -24,11 +24,12 @@ HALF = " (cut)"
 
 class Reduction(NamedTuple):
     """Joints by name and moving links of the tree and its closing joints, and the legs beside
-    them."""
+    them; joints in loops that are `cut` close none."""
 
     joints: Mapping[str, Joint]
     links: tuple[str, ...]
     legs: tuple[Leg, ...]
+    cut: frozenset[str] = frozenset()
 
     @property
     def loops(self) -> int:
@@ -68,11 +69,20 @@ def cut_link(reduction: Reduction, link: str, loop: Sequence[str]) -> Reduction:
         for name in loop
         if link in (reduction.joints[name].first, reduction.joints[name].second)
     ]
-    half = link + HALF
     joints = dict(reduction.joints)
+    half = link + HALF
+    while half in joints:  # a link may be cut in several loops
+        half += HALF
     joints[own[-1].name] = _moved(own[-1], link, half)
     joints[half] = Joint(half, "W", link, half, GROUND, GROUND, (Part("W", GROUND, GROUND),))
-    return Reduction(joints, (*reduction.links, half), reduction.legs)
+    return Reduction(joints, (*reduction.links, half), reduction.legs, reduction.cut.union(loop))
+
+
+def whole_link(link: str) -> str:
+    """The link of which one is a half, however often it is cut, or itself."""
+    while link.endswith(HALF):
+        link = link.removesuffix(HALF)
+    return link
 
 
 def _moved(joint: Joint, link: str, half: str) -> Joint:

@@ -69,3 +69,62 @@ def test_freedoms_of_a_plane_chain_that_nothing_drives_are_told(inputs: str) -> 
     assert "not driven" in found.message
     assert "add inputs" in (found.hint or "")
     assert result["row.status"][0] == "rank-unclear"
+
+
+def linkage(crank: str, coupler: str, driven: str, far: str = "[3, 0, 0]") -> str:
+    """A plane four-bar with U and S, so that it has as many equations as unknowns."""
+    return f"""
+format: 1
+links: {{a: {{}}, b: {{}}, c: {{}}}}
+joints:
+  A: {{type: R, links: [ground, a], point: [0, 0, 0], axis: [0, 0, 1]}}
+  B: {{type: U, links: [a, b], point: {crank}, axis: [0, 0, 1], axis2: [1, 0.1, 0]}}
+  C: {{type: S, links: [b, c], point: {coupler}}}
+  D: {{type: R, links: [c, ground], point: {far}, axis: [0, 0, 1]}}
+motion: {{inputs: {{{driven}.theta: {{from: 0, to: 10, step: 1}}}}}}
+"""
+
+
+BLAMED = {"input-locked", "inputs-dependent", "undriven-freedom"}
+
+
+@pytest.mark.parametrize(
+    ("place", "text"),
+    [
+        ("dead centre", linkage("[1, 0.5, 0]", "[2, 1, 0]", "D")),
+        ("flat parallelogram", linkage("[1, 0, 0]", "[4, 0, 0]", "A")),
+        ("flat parallelogram", linkage("[1, 0, 0]", "[4, 0, 0]", "D")),
+        ("folded rhombus", linkage("[1, 0, 0]", "[0, 0, 0]", "A", "[1, 0, 0]")),
+        ("folded kite", linkage("[1, 0, 0]", "[3, 0, 0]", "A", "[1, 0, 0]")),
+    ],
+)
+def test_no_input_is_blamed_for_a_special_place_at_the_start(place: str, text: str) -> None:
+    """All of them have one freedom, which the input drives on one way out at least."""
+    result = mk.loads(text).analyze([])
+    codes = {diagnostic.code for diagnostic in result.diagnostics}
+    assert not codes & BLAMED, place
+    assert result["row.status"][0] == "rank-unclear"
+    assert list(result["row.status"])[1:] == ["branch-lost"] * 10
+
+
+PLANES = """
+format: 1
+links: {L1: {}, L2: {}, L3: {}}
+joints:
+  A: {type: R, links: [ground, L1], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: E, links: [L1, L2], point: [1, 0, 0.5], normal: [0, 0, 1], x: [1, 0, 0]}
+  C: {type: E, links: [L2, L3], point: [1, 1, 0.5], normal: [1, 0, 0], x: [0, 1, 0]}
+  D: {type: P, links: [ground, L3], point: [0, 2, 0], axis: [1, 2, 1]}
+motion: {inputs: {A.theta: {from: 0, to: 20, step: 5}}}
+"""
+
+
+def test_a_freedom_hidden_by_special_axes_is_named_undriven() -> None:
+    """As many equations as unknowns, but the axes make some of them depend on others."""
+    model = mk.loads(PLANES)
+    found = model.mobility()
+    assert found.mobility == 2 + len(found.idle)
+    (fault,) = [d for d in model.analyze([]).diagnostics if d.code == "undriven-freedom"]
+    assert fault.severity == "error"
+    assert "not driven" in fault.message
+    assert "add inputs" in (fault.hint or "")

@@ -75,22 +75,28 @@ def crossing_note(session: Session, followed: Followed) -> Diagnostic:
 
 
 def input_faults(session: Session) -> list[Diagnostic]:
-    """What the mobility of an overconstrained mechanism says of inputs that are locked, dependent
-    or too few; by the count of their equations its loops would be driven."""
-    if not session.is_redundant:
-        return []
+    """What mobility says of inputs that are locked, dependent or too few, where by the count of
+    their equations all loops would be driven.
+
+    To be asked where a run is stuck or its rank unclear from its first row on. At a branch point
+    ways of several kinds meet, and inputs that are locked on one drive another: then only freedoms
+    are named that are left undriven on all of them.
+    """
     from mechkin_cli.analysis.mobility import find_mobility
     from mechkin_cli.analysis.mobility.inputs import undriven_notes
 
     found = find_mobility(session.problem, session)
-    if not session.problem.motion.driven:
-        return undriven_notes(found.mobility or 0, len(found.idle), 0)
-    driven, useful = session.problem.motion.driven, found.useful
-    if useful and len(driven) > useful:
+    driven, idle, useful = session.problem.motion.driven, len(found.idle), found.useful
+    codes = ("input-locked", "inputs-dependent", "undriven-freedom")
+    is_at_branch_point = found.first_order != found.mobility and not session.is_redundant
+    if is_at_branch_point:
+        least = min(found.dimensions, default=0)
+        codes = ("undriven-freedom",) if least > len(driven) + idle else ()
+    elif useful and len(driven) > useful:
         # at the first row one of them may stand still by chance; together they cannot move
         return [_too_many(driven, useful)]
-    codes = ("input-locked", "inputs-dependent", "undriven-freedom")
-    return [diagnostic for diagnostic in found.diagnostics if diagnostic.code in codes]
+    notes = found.diagnostics if driven else undriven_notes(found.mobility or 0, idle, 0)
+    return [note._replace(severity="error") for note in notes if note.code in codes]
 
 
 def _too_many(driven: Sequence[tuple[str, str]], useful: int) -> Diagnostic:

@@ -220,7 +220,8 @@ def _notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
             named = {idle.holding for idle in idle_freedoms(problem)}
             found = {q.name: result.columns[q.name] for q in asked if q.name in named}
             notes += holding_notes(problem, found)
-    if (rows.status == Status.rank_unclear).any():
+    unclear = rows.status == Status.rank_unclear
+    if unclear.any() and (session.is_redundant or unclear[rows.reached].all()):
         from mechkin_cli.analysis.sweep.branch_end import input_faults
 
         said = {diagnostic.code for diagnostic in rows.diagnostics}

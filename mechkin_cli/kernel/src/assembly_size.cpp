@@ -2,6 +2,14 @@
 
 #include <cmath>
 
+namespace {
+
+// In parts of the length unit: far below any length of a mechanism and far above the rounding that slides at zero leave
+// between points that coincide.
+constexpr double COINCIDENT = 1e-12;
+
+}  // namespace
+
 SizeMemory::SizeMemory(const Plan& plan, const KernelUnit& unit)
     : workspace(unit.workspace_size(plan)), states(plan.states), points(3 * plan.size_points) {}
 
@@ -33,5 +41,5 @@ double assembly_size(const Plan& plan, const KernelUnit& unit, const double* inp
     extent[i] = most - least;
   }
   const double size = std::sqrt(extent[0] * extent[0] + extent[1] * extent[1] + extent[2] * extent[2]);
-  return size > 0.0 ? size : 1.0;
+  return size > COINCIDENT * plan.length ? size : 1.0;
 }

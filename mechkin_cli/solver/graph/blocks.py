@@ -7,11 +7,26 @@ from heapq import heapify, heappop, heappush
 
 from mechkin_cli.mechanism.model import GROUND_NAME
 from mechkin_cli.solver.graph.assur import Group
-from mechkin_cli.solver.graph.errors import driven_solid
 from mechkin_cli.solver.graph.matching import strong_components
+from mechkin_cli.solver.graph.network import Connection
 from mechkin_cli.solver.graph.records import Block, Closing, TreeEdge
 
 Freedom = tuple[int, int]
+
+
+class NothingSolved(Exception):
+    """Some connections without unknowns beside those of their closing joints.
+
+    `loops` are the names of the joints in their loops, the closing joint first; legs close others.
+    """
+
+    def __init__(
+        self, connections: Sequence[Connection], loops: Sequence[Sequence[str]], equations: int
+    ) -> None:
+        self.connections = tuple(connections)
+        self.loops = loops
+        self.equations = equations
+        super().__init__()
 
 
 def in_order(
@@ -68,7 +83,7 @@ def lay_blocks(
     """Closings in block order, the blocks, and the freedoms that are known in the end.
 
     Raises:
-        UnsolvableGraph: a block has no unknowns.
+        NothingSolved: a block has no unknowns.
     """
     solved = set(driven)
     laid: list[Closing] = []
@@ -84,7 +99,12 @@ def lay_blocks(
         unknowns = tuple(freedom for freedom in freedoms if freedom not in solved)
         equations = sum(closing.equations for closing in some)
         if not unknowns:
-            raise driven_solid(connections, equations)
+            loops = [
+                [closing.joint.name, *(edges[k].joint.name for k, _ in closing.loop)]
+                for closing in some
+                if closing.leg is None
+            ]
+            raise NothingSolved(connections, loops, equations)
         start = len(laid)
         laid.extend(some)
         solved.update(unknowns)

@@ -7,11 +7,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism
 from mechkin_cli.solver.graph import errors
 from mechkin_cli.solver.graph.assur import Group, Undriven, assur_groups
-from mechkin_cli.solver.graph.blocks import in_order, lay_blocks
+from mechkin_cli.solver.graph.blocks import NothingSolved, in_order, lay_blocks
 from mechkin_cli.solver.graph.components import biconnected
 from mechkin_cli.solver.graph.network import Connection, connections_of, distances, incidence
 from mechkin_cli.solver.graph.rates import Rates, unit_of
 from mechkin_cli.solver.graph.records import SolverGraph, TreeEdge, UnsolvableGraph
+from mechkin_cli.solver.graph.regions import order_of
 from mechkin_cli.solver.graph.tree_edges import Ways, spanning_tree
 from mechkin_cli.solver.graph.trees import NothingCloses, closings_of, tree_depths
 from mechkin_cli.solver.reduction import Reduction, cut_link, reduce
@@ -73,10 +74,13 @@ def _built(
         groups = _groups(mechanism, whole, connections, inputs, places)
         try:
             names = _closing_names(whole, groups) if closed_at is None else list(closed_at)
+            return _laid(mechanism, whole, groups, names, inputs)
         except NothingCloses as loop:
             whole = _cut(mechanism, whole, connections, loop.connections)
-            continue
-        return _laid(mechanism, whole, groups, names, inputs)
+        except NothingSolved as block:
+            if closed_at is not None:
+                raise errors.driven_solid(block.connections, block.equations) from None
+            whole = _cut(mechanism, whole, connections, _carried_loop(block, connections))
 
 
 def _groups(
@@ -114,6 +118,27 @@ def _closing_names(whole: Reduction, groups: Sequence[Group]) -> list[str]:
         chosen.update(some)
     written = [name for name in whole.joints if name in chosen]
     return sorted(written, key=chosen.__getitem__)
+
+
+def _carried_loop(block: NothingSolved, connections: Sequence[Connection]) -> list[Connection]:
+    """A loop that its closing joint alone would have to follow, with that joint as an unknown.
+
+    Raises:
+        UnsolvableGraph: a closing joint does not follow the inputs as they are drawn, or there is
+            none.
+    """
+    named = {c.name: c for c in connections}
+    found: list[Connection] = []
+    for names in block.loops:
+        own, *around = loop = [named[name] for name in names]
+        are_inputs = all(c.driven == c.freedoms for c in around)
+        if are_inputs and order_of(loop) > order_of([own]):
+            raise errors.driven_solid(block.connections, block.equations)
+        if not found and own.freedoms:
+            found = loop
+    if not found:
+        raise errors.driven_solid(block.connections, block.equations)
+    return found
 
 
 def _cut(

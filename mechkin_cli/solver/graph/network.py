@@ -58,7 +58,7 @@ def connections_of(
     """The joints in the order written, then the legs.
 
     Inputs stay in the tree, and springs whose angle goes beyond half a turn, which a closing joint
-    does not count; so do H and free pairs, which close no loop.
+    does not count; so do H and free pairs, which close no loop, and joints of loops that are cut.
     """
     driven = Counter(joint for joint, _ in inputs)
     sprung = {
@@ -73,7 +73,7 @@ def connections_of(
             joint.second,
             joint,
             driven[name],
-            name in driven or name in sprung or not joint.type.equations,
+            name in driven or name in sprung or name in whole.cut or not joint.type.equations,
         )
         for name, joint in whole.joints.items()
     ]
