@@ -87,11 +87,11 @@ def input_faults(session: Session) -> list[Diagnostic]:
 
     found = find_mobility(session.problem, session)
     driven, idle, useful = session.problem.motion.driven, len(found.idle), found.useful
-    codes = ("input-locked", "inputs-dependent", "undriven-freedom")
+    codes = {"input-locked", "inputs-dependent", "undriven-freedom"}
     is_at_branch_point = found.first_order != found.mobility and not session.is_redundant
     if is_at_branch_point:
         least = min(found.dimensions, default=0)
-        codes = ("undriven-freedom",) if least > len(driven) + idle else ()
+        codes = {"undriven-freedom"} if least > len(driven) + idle else set()
     elif useful and len(driven) > useful:
         # at the first row one of them may stand still by chance; together they cannot move
         return [_too_many(driven, useful)]
