@@ -649,6 +649,10 @@ that pivots there are well above LOOP_RANK."""
 MOST_SPLIT_LINKS: Final = 40
 """Links of one overconstrained set that is looked through for smaller ones: each costs a rank."""
 
+RANK_WORK: Final = 200_000_000
+"""Products spent on the ranks of one overconstrained component, half a second: what is not told
+apart by then is solved together."""
+
 REFINEMENT_ROUNDS: Final = 12
 """Rounds of telling links apart by their neighbours: each doubles what is seen of the structure."""
 

@@ -19,7 +19,7 @@ from mechkin_cli.mechanism.legs import Leg, frame_on
 from mechkin_cli.mechanism.model import Attached, Joint, Mechanism
 from mechkin_cli.mechanism.vectors import ZERO, Vector, add, cross, norm, scale, subtract
 from mechkin_cli.solver.graph.network import Connection
-from mechkin_cli.tolerances import LOOP_RANK
+from mechkin_cli.tolerances import LOOP_RANK, RANK_WORK
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -63,6 +63,7 @@ class Rates:
         self.poses = poses
         self.driven = driven
         self.unit = unit
+        self.work = 0
         self._screws: dict[str, Floats] = {}
         self._forces: dict[str, tuple[float, ...]] = {}
 
@@ -70,12 +71,18 @@ class Rates:
         self, links: Collection[str], connections: Sequence[Connection], placed: Collection[str]
     ) -> set[str]:
         """Which of some links cannot move against what is placed, by the connections between
-        them and those that lead to it."""
+        them and those that lead to it; none is said to where that would take more than
+        `RANK_WORK`."""
         some = [c for c in connections if joins(c, links, placed)]
         tree, closing = _tree([c for c in some if c.leg is None], placed)
         if not tree:
             return set()
         columns, count = self._columns([*tree.values(), *closing])
+        height = 6 * len(closing) + len(some) - len(tree) - len(closing)
+        work = height * count * min(height, count)
+        if self.work + work > RANK_WORK:
+            return set()
+        self.work += work
         twists = self._twists(tree, columns, count)
         rows = [np.zeros((0, count))]
         for c in closing:

@@ -14,7 +14,7 @@ from math import comb, prod
 
 from mechkin_cli.solver.graph.assur import Group
 from mechkin_cli.solver.graph.network import Connection
-from mechkin_cli.tolerances import MOST_COMPARED_TREES
+from mechkin_cli.tolerances import MOST_COMPARED_TREES, MOST_EQUATIONS
 
 
 class NothingCloses(Exception):
@@ -41,6 +41,8 @@ def closings_of(group: Group, depth: Mapping[str, int]) -> list[Connection]:
     able = sorted((c for c in joints if not c.stays), key=lambda c: c.equations)
     fixed = [c for c in joints if c.stays]
     chosen = _first_choice(group, fixed, able)
+    if sum(c.equations for c in chosen) > MOST_EQUATIONS:
+        return chosen  # too large a block to be solved, however its loops are split
     return _most_even(group, joints, able, chosen, depth)
 
 
