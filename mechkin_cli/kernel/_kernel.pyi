@@ -290,6 +290,7 @@ class Plan:
         shift: int = 0,
         iterations: int = 0,
         tests: tuple[float, float, float],
+        only: int | None = None,
         lanes: int = 0,
         threads: int = 1,
     ) -> None: ...

@@ -66,6 +66,7 @@ def run(
     shift: int = 0,
     iterations: int = tolerances.NEWTON_ITERATIONS,
     tests: tuple[float, float, float] = RESIDUAL_TESTS,
+    only: int | None = None,
     lanes: int = 0,
     threads: int = 0,
 ) -> Batch:
@@ -88,6 +89,8 @@ def run(
         shift: 1 or 2 adds a fixed part of the null space to reactions that are not unique.
         iterations: Newton steps at most.
         tests: residual tests (tight, coarse, accept).
+        only: the one block that is closed; the unknowns of the others stay as guessed and their
+            loops are not looked at. For positions and the condition alone.
         lanes: width of the packs, 0 for the widest; the results do not depend on it.
         threads: how many split the rows, 0 for as many as pay; the results do not depend on it.
 
@@ -128,6 +131,7 @@ def run(
         shift=shift,
         iterations=iterations,
         tests=tests,
+        only=only,
         lanes=width(lanes),
         threads=threads_for(rows, threads),
     )

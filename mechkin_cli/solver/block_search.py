@@ -195,17 +195,19 @@ def search_round(
         clusters = search.clusters
         clusters.closest = min(clusters.closest, float(np.min(residual[part])))
         clusters.tried += share
-        clusters.add(states[:, part][:, good[part]], lambda ended: _isolated(request, ended))
+        clusters.add(
+            states[:, part][:, good[part]], lambda ended: _isolated(request, number, ended)
+        )
 
 
-def _isolated(request: Request, states: Floats) -> tuple[Floats, Bools, int]:
-    """The isolated assemblies among end points of the search, and how many others there were; with
-    several blocks only the last knows."""
+def _isolated(request: Request, number: int, states: Floats) -> tuple[Floats, Bools, int]:
+    """The isolated assemblies of a block among end points of its search, and how many others there
+    were: places where it moves with all else held, or singular ones."""
     count = states.shape[1]
-    if count == 0 or len(request.layout.graph.blocks) > 1:
+    if count == 0:
         return states, np.ones(count, dtype=bool), 0
     values = np.repeat(request.inputs[:, None], count, axis=1)
-    batch = run(request.plan, values, states, demand=Demand.CONDITION, iterations=20)
+    batch = run(request.plan, values, states, demand=Demand.CONDITION, iterations=20, only=number)
     assert batch.condition is not None
     regular = batch.condition < tolerances.SEARCH_CONDITION
     free = int(np.count_nonzero(batch.good & ~regular))

@@ -69,15 +69,22 @@ class Clusters:
         self._take(ended[:, good], keys[:, good], order[unknown[good]])
 
     def _take(self, states: Floats, keys: Floats, order: NDArray[np.int64]) -> None:
-        while keys.shape[1]:
-            left = self._left(keys)
-            states, keys, order = states[:, left], keys[:, left], order[left]
-            # the rest may be met by one of themselves: take in the first, look again
-            self.states = np.concatenate([self.states, states[:, :1]], axis=1)
-            known = keys[:, :0] if self.keys is None else self.keys
-            self.keys = np.concatenate([known, keys[:, :1]], axis=1)
-            self.met = np.append(self.met, np.zeros(states[:, :1].shape[1], dtype=np.int64))
-            self.newest = max(self.newest, *order[:1].tolist(), 0)
+        """Takes in those that are still not known, each after those of them that it is."""
+        rest = self._left(keys)
+        chosen, met = [], []
+        while rest.size:
+            # the others are none of those taken in before
+            same = same_poses(keys[:, rest[:1]], keys[:, rest[1:]])[0]
+            chosen.append(int(rest[0]))
+            met.append(1 + int(np.count_nonzero(same)))
+            rest = rest[1:][~same]
+        if not chosen:
+            return
+        known = keys[:, :0] if self.keys is None else self.keys
+        self.keys = np.concatenate([known, keys[:, chosen]], axis=1)
+        self.states = np.concatenate([self.states, states[:, chosen]], axis=1)
+        self.met = np.append(self.met, np.array(met, dtype=np.int64))
+        self.newest = max(self.newest, int(order[chosen].max()))
 
     def _left(self, keys: Floats) -> NDArray[np.int64]:
         """Which columns are not known; those that are, are counted."""

@@ -155,11 +155,18 @@ void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.iterations = (int)given.integer("iterations", 0, MOST_ITERATIONS, 0);
   const std::vector<double> tests = given.limits("tests", 3);
   r.tight = tests[0], r.coarse = tests[1], r.accept = tests[2];
+  const int only = (int)given.integer("only", 0, p.blocks - 1, -1);
   const KernelUnit& unit = unit_or_throw((int)given.integer("lanes", 0, 8, 0));
   const int threads = threads_for(r.rows, given.integer("threads", 1, MOST_THREADS, 1));
   given.finish();
+  if (only >= 0 && (r.demand & ~DEMAND_CONDITION || r.outputs))
+    throw nb::value_error("one block alone has its closing and its condition");
   if (r.rows == 0) return;
   check_demand(r, outputs, p);
+  std::vector<unsigned char> use((std::size_t)p.blocks, BLOCK_LEFT);
+  Held others = {};
+  others.use = use.data();
+  if (only >= 0) use[(std::size_t)only] = BLOCK_SOLVED, r.held = &others;
   Workspaces memory(unit, p, threads);
   nb::gil_scoped_release released;
   FloatingPointState state;
