@@ -98,6 +98,11 @@ SEARCH_MOST_MODES: Final = 1024
 """More different end points than this are no list of modes but a motion that is left with the
 inputs held; platforms have 40 modes."""
 
+SEARCH_MOST_SINGULAR: Final = 8
+"""More different near singular end points of a block (`CONDITION_NEAR_SINGULAR`) at one place are a
+motion that dimensions only just stop. At a dead centre two assemblies merge, by symmetry some
+pairs."""
+
 SEARCH_MOST_PRODUCTS: Final = 16_384
 """Assemblies of the whole mechanism: blocks that are independent multiply theirs, fourteen loops of
 two modes reach it."""

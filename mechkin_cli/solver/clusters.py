@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from mechkin_cli.arrays import Bools, Floats
 
-    Isolated = Callable[[Floats], tuple[Floats, Bools, int]]
+    Isolated = Callable[[Floats], tuple[Floats, Bools, Bools, int]]
     """From end points (columns) to the points closed as well as possible, which of them are
-    isolated assemblies, and how many are assemblies but not isolated."""
+    isolated assemblies, which are near singular, and how many are assemblies but not isolated."""
 
 
 _IN_CACHE = 1 << 14
@@ -34,6 +34,9 @@ class Clusters:
     a chance u that stays the same until it happens. That the wait for it is longer than w happens
     with chance (1 - u)^w; so with a doubt d / (k (k + 1)) for each k, d for all of them, u is at
     most log(k (k + 1) / d) / w, whenever one looks (`rest`).
+
+    Many different assemblies that are near singular are places on a motion that dimensions only
+    just stop (`SEARCH_MOST_SINGULAR`): they count as free, and so do all that come after.
     """
 
     def __init__(self, layout: Layout, carriers: Sequence[Carrier] | None = None) -> None:
@@ -41,6 +44,8 @@ class Clusters:
         self.states = np.empty((layout.states, 0))
         self.keys: Floats | None = None
         self.met = np.empty(0, dtype=np.int64)
+        self.singular = np.empty(0, dtype=bool)
+        self.folds = False
         self.tried = 0
         self.closed = 0
         self.newest = 0
@@ -58,7 +63,10 @@ class Clusters:
         keys = pose_keys(self.layout, states, self.carriers)
         unknown = self._left(keys)
         given = states[:, unknown]
-        ended, good, free = isolated(given)
+        ended, good, singular, free = isolated(given)
+        if self.folds:
+            free += int(np.count_nonzero(good & singular))
+            good = good & ~singular
         closing = np.ones(keys.shape[1], dtype=bool)
         closing[unknown[~good]] = False
         order = self.closed + np.cumsum(closing)
@@ -66,9 +74,13 @@ class Clusters:
         self.free += free
         moved = ended is not given
         keys = pose_keys(self.layout, ended, self.carriers) if moved else keys[:, unknown]
-        self._take(ended[:, good], keys[:, good], order[unknown[good]])
+        self._take(ended[:, good], keys[:, good], order[unknown[good]], singular[good])
+        if int(np.count_nonzero(self.singular)) > tolerances.SEARCH_MOST_SINGULAR:
+            self._free_singular()
 
-    def _take(self, states: Floats, keys: Floats, order: NDArray[np.int64]) -> None:
+    def _take(
+        self, states: Floats, keys: Floats, order: NDArray[np.int64], singular: Bools
+    ) -> None:
         """Takes in those that are still not known, each after those of them that it is."""
         rest = self._left(keys)
         chosen, met = [], []
@@ -84,7 +96,17 @@ class Clusters:
         self.keys = np.concatenate([known, keys[:, chosen]], axis=1)
         self.states = np.concatenate([self.states, states[:, chosen]], axis=1)
         self.met = np.append(self.met, np.array(met, dtype=np.int64))
+        self.singular = np.append(self.singular, singular[chosen])
         self.newest = max(self.newest, int(order[chosen].max()))
+
+    def _free_singular(self) -> None:
+        """Leaves out those that are near singular; the wait for a new one begins again."""
+        assert self.keys is not None
+        kept, left_out = ~self.singular, int(np.add.reduce(self.met[self.singular]))
+        self.states, self.keys = self.states[:, kept], self.keys[:, kept]
+        self.met, self.singular = self.met[kept], self.singular[kept]
+        self.closed = max(self.closed - left_out, self.number)
+        self.newest, self.free, self.folds = self.closed, self.free + left_out, True
 
     def _left(self, keys: Floats) -> NDArray[np.int64]:
         """Which columns are not known; those that are, are counted."""

@@ -58,7 +58,8 @@ def stages(count: int, legs: int, near: str = "") -> str:
     return f"{HEAD}links: {{{named}}}\njoints:\n{joints}{motion}{near}"
 
 
-def scissors(count: int) -> str:
+def scissors(count: int, off: float = 0.0) -> str:
+    """The first rhomb is `off` its right shape by as much."""
     named = ", ".join(f"a{k}: {{}}, b{k}: {{}}" for k in range(count))
     joints = revolute("A0", "ground, a0", (0, 0, 0), Z)
     joints += "  S: {type: P, links: [ground, shoe], point: [1, 0, 0], axis: [1, 0, 0]}\n"
@@ -66,7 +67,7 @@ def scissors(count: int) -> str:
     for k in range(count):
         joints += revolute(f"M{k}", f"a{k}, b{k}", (0.5, k + 0.5, 0), Z)
     for k in range(1, count):
-        joints += revolute(f"L{k}", f"b{k - 1}, a{k}", (0, k, 0), Z)
+        joints += revolute(f"L{k}", f"b{k - 1}, a{k}", (off if k == 1 else 0, k, 0), Z)
         joints += revolute(f"R{k}", f"a{k - 1}, b{k}", (1, k, 0), Z)
     motion = "motion: {inputs: {A0.theta: {from: 0, to: 30, step: 3}}}\n"
     return f"{HEAD}links: {{{named}, shoe: {{}}}}\njoints:\n{joints}{motion}"
@@ -103,6 +104,23 @@ def test_every_rhomb_stands_up_or_is_folded_down(count: int) -> None:
     assert found.picked is not None
     assert is_told(found.diagnostics)
     assert found.starts < MOST_STARTS
+
+
+@pytest.mark.parametrize("off", [1e-12, 1e-11, 1e-10, 1e-9, 1e-8])
+@pytest.mark.parametrize("count", [2, 5])
+def test_so_does_one_that_rounding_only_just_keeps_from_spinning(count: int, off: float) -> None:
+    found = mk.loads(scissors(count, off)).modes()
+    assert len(found.modes) == 2 ** (count - 1)
+    assert is_told(found.diagnostics)
+    assert found.starts < 4 * MOST_STARTS
+
+
+def test_four_that_are_apart_are_all_listed() -> None:
+    """The shoe's two places, with two of the rhomb each where it does not fold exactly."""
+    found = mk.loads(scissors(2, 1e-5)).modes()
+    assert len(found.modes) == 4
+    assert found.complete
+    assert not found.diagnostics
 
 
 @pytest.mark.parametrize("count", [1, 2])
