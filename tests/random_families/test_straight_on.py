@@ -18,8 +18,6 @@ COUNT = 20 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 SOLVED = ("ok", "near-singular")
 NOT_YET: frozenset[int] = frozenset({1, 2, 37})
 """Branch points that are not passed."""
-WHEELS_NOT_YET: frozenset[int] = frozenset({4})
-"""Double rods on spheres."""
 
 
 def fault(number: int) -> str:
@@ -66,7 +64,7 @@ def test_the_side_changes_at_branch_points_alone() -> None:
 
 
 def test_wheels_turn_together() -> None:
-    wrong = [words for n in range(COUNT) if n not in WHEELS_NOT_YET and (words := uneven(n))]
+    wrong = [words for n in range(COUNT) if (words := uneven(n))]
     assert not wrong, "\n".join(wrong)
 
 
@@ -74,9 +72,3 @@ def test_wheels_turn_together() -> None:
 @pytest.mark.xfail(strict=True, reason="a branch point that is not passed")
 def test_not_yet(number: int) -> None:
     assert not fault(number)
-
-
-@pytest.mark.parametrize("number", sorted(WHEELS_NOT_YET))
-@pytest.mark.xfail(strict=True, raises=mk.InvalidFile, reason="double legs are cut wrongly")
-def test_wheels_not_yet(number: int) -> None:
-    assert not uneven(number)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from mechkin_cli.mechanism.elementary import ELEMENTARY, Part
 from mechkin_cli.mechanism.frames import GROUND, Frame
 from mechkin_cli.mechanism.legs import Leg, frame_on
 from mechkin_cli.mechanism.model import Attached, Joint, Mechanism
@@ -137,7 +138,13 @@ class Rates:
         at = self.unit.place(self._point(joint.point))
         pitch = joint.pitch / self.unit.length
         found = []
-        for step, part in zip(joint.type.steps, joint.parts, strict=True):
+        parts = iter(joint.parts)
+        for step in joint.type.steps:
+            part = next(parts)
+            if ELEMENTARY[step.letter].is_ball and not part.type.is_ball:
+                turns = self._told_turns(joint, (part, next(parts), next(parts)))
+                found += [[*turn, *cross(at, turn)] for turn in turns]
+                continue
             for freedom in part.type.freedoms:
                 if freedom.motion == "ball":
                     direction: Vector = getattr(GROUND, freedom.axis)
@@ -152,6 +159,15 @@ class Rates:
                 along = pitch if freedom.motion == "thread" else 0.0
                 found.append([*direction, *add(cross(at, direction), scale(along, direction))])
         return found
+
+    def _told_turns(self, joint: Joint, parts: tuple[Part, Part, Part]) -> list[Vector]:
+        """The axes of a ball that is told as three turns: on its links, and square to both."""
+        first = self._direction(Attached(joint.first, parts[0].before.z))
+        last = self._direction(Attached(joint.second, parts[2].after.z))
+        across = cross(last, first)
+        length = norm(across)
+        middle = self._direction(Attached(joint.first, parts[1].before.z))
+        return [first, scale(1.0 / length, across) if length > LOOP_RANK else middle, last]
 
     def _force(self, name: str, leg: Leg) -> tuple[float, ...]:
         """The force along a leg: its moment, then itself."""

@@ -44,5 +44,5 @@ WRITTEN_NOT_YET: frozenset[tuple[int, int]] = frozenset()
 CIRCUITS_NOT_YET: frozenset[int] = frozenset()
 """Loops whose ranges or circuits contradict their discriminants."""
 
-CLOSED_NOT_YET: frozenset[int] = frozenset({11})
+CLOSED_NOT_YET: frozenset[int] = frozenset()
 """Numbers of the third series that are lost when they are closed at other joints."""
