@@ -67,6 +67,27 @@ def test_the_nearest_row_lies_beyond_a_fold(drawn: float, first: float, back: bo
         assert abs((off + 180.0) % 360.0 - 180.0) < 1e-9
 
 
+@pytest.mark.parametrize("turns", [1, 3, -1, -2])
+@pytest.mark.parametrize(("first", "last"), [(37.0, 437.0), (-20.0, 300.0), (150.0, 390.0)])
+def test_whole_turns_away_from_rows_of_the_drawing(first: float, last: float, turns: int) -> None:
+    """A sweep some turns on has the rows of the same sweep in the drawing's own turn."""
+
+    def run(turns: int) -> mk.Analysis:
+        ends = first + 360.0 * turns, last + 360.0 * turns
+        return four_bar(-20.0, f"{{from: {ends[0]}, to: {ends[1]}, count: 21}}")
+
+    own, away = run(0), run(turns)
+    assert {"ok", "beyond-dead-centre"} == set(own["row.status"].tolist())
+    # in the other sense of turns the nearest turn is that of the last rows
+    if turns > 0:
+        assert own["row.status"].tolist() == away["row.status"].tolist()
+        assert np.nanmax(np.abs(own["D.theta"] - away["D.theta"])) < 1e-9
+    reached = away["row.status"] == "ok"
+    crank = (away["A.theta"][reached] + 180.0) % 360.0 - 180.0
+    assert reached.any()
+    assert (np.abs(crank - 20.0) < SPAN).all()
+
+
 def test_what_follows_the_crank_says_nothing_of_the_turn() -> None:
     """A shaft at three times the crank's speed is beyond half a turn where the crank is not."""
     result = four_bar(

@@ -86,7 +86,7 @@ CLASSICS = {
     ),
     "three parallel cranks, one too many": (
         Network(["a", "b", "c", "rod"], CRANKS, ["A.theta"]),
-        [(1, 5), (2, 5)],
+        [(3, 10)],
     ),
     "Sarrus": (Network(["a", "b", "plate", "d", "e"], SARRUS, ["A.theta"]), [(4, 5)]),
     "platform on platform": (RIG, [(6, 6), (6, 6)]),

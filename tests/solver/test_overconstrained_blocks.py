@@ -8,6 +8,7 @@ with that of R alone; rods beside equal ones change nothing at all.
 from __future__ import annotations
 
 import math
+import random
 from itertools import product
 from pathlib import Path
 
@@ -127,8 +128,47 @@ def test_nor_does_a_drawing_in_a_dead_centre(driven: str) -> None:
     text += joint("rp", "S", ("c0", "r"), 1, 0, 0) + joint("rq", "S", ("r", "k0"), 3, 0, 0)
     text += dyad("1", "CSR", "c0", ((-0.5, 0.6), (-2, 2), (-3, 0)))
     text += dyad("2", "RRR", "k1", ((-2.5, 1), (-4, 2), (-5, 0)))
-    # the rod r and its equal b0 are one equation each
-    assert sorted(sizes(text + sweep(driven))) == [1, 1, 2, 3]
+    # the rod r and its equal b0 hold k0 together
+    assert sorted(sizes(text + sweep(driven))) == [2, 2, 3]
+
+
+def quartered(kinds: tuple[str, str], order: random.Random) -> str:
+    """Wheels on two equal rods a quarter apart, as on a locomotive, written in any order."""
+    links, joints = ["w", "v"], [joint("D", "R", ("ground", "v"), 3, 0, 0)]
+    for k, (kind, (x, y)) in enumerate(zip(kinds, ((0.92, 0.39), (-0.39, 0.92)), strict=True)):
+        links.append(f"r{k}")
+        joints.append(joint(f"P{k}", kind[0], ("w", f"r{k}"), x, y, 0.3 * k))
+        joints.append(joint(f"Q{k}", kind[1], (f"r{k}", "v"), 3 + x, y, 0.3 * k))
+    order.shuffle(links)
+    order.shuffle(joints)
+    text = head(links) + joint("A", "R", ("ground", "w"), 0, 0, 0) + "".join(joints)
+    return text + "motion: {inputs: {A.theta: {from: 0, to: 720, step: 10}}}\n"
+
+
+@pytest.mark.parametrize("second", ["RR", "RS", "SR", "SS", "RC"])
+@pytest.mark.parametrize("first", ["RR", "RS", "SR", "SS", "RC"])
+def test_one_rod_holds_where_the_other_is_in_line(first: str, second: str) -> None:
+    """The wheels turn alike for ever, though either rod alone has two branch points a turn."""
+    for seed in range(4):
+        found = mk.loads(quartered((first, second), random.Random(seed))).analyze(["D.theta"])
+        assert set(found["row.status"].tolist()) == {"ok"}
+        off = np.remainder(found["D.theta"] - found["A.theta"] + 180.0, 360.0) - 180.0
+        assert np.abs(off).max() < 1e-9
+
+
+def test_a_plate_on_three_cranks() -> None:
+    """Two of its cranks alone are a parallelogram, with branch points where they are in line."""
+    feet = ((0.0, 0.0), (2.0, 0.0), (0.7, 1.5))
+    text = head(["c0", "c1", "c2", "plate"]) + joint("A0", "R", ("ground", "c0"), 0, 0, 0)
+    for k, (x, y) in enumerate(feet):
+        if k:
+            text += joint(f"A{k}", "R", ("ground", f"c{k}"), x, y, 0)
+        text += joint(f"B{k}", "RRS"[k], (f"c{k}", "plate"), x + 0.4, y + 0.3, 0)
+    found = mk.loads(text + sweep("A0", 360)).analyze(["A1.theta", "A2.theta"])
+    assert set(found["row.status"].tolist()) == {"ok"}
+    for name in ("A1.theta", "A2.theta"):
+        off = np.remainder(found[name] - found["A0.theta"] + 180.0, 360.0) - 180.0
+        assert np.abs(off).max() < 1e-9
 
 
 def test_an_equal_dyad_beside_one_of_other_joints() -> None:

@@ -1,8 +1,9 @@
 """The ways from an assembled drawing to the rows: which row it is followed to.
 
 The drawing stands where all inputs are zero, and whole turns away from there. Rows in its own turn
-come first, and of each kind the nearest row before the nearest on the other side of the drawing:
-its branch may end in one direction and reach the rows in the other.
+come first, or in the turn next to it that has any; and of each kind the nearest row before the
+nearest on the other side of the drawing: its branch may end in one direction and reach the rows in
+the other.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from mechkin_cli.analysis.assembly.named_modes import is_cyclic
 from mechkin_cli.solver.follow import TrackEnd
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.solver.follow import Followed
     from mechkin_cli.solver.session import Session
@@ -43,26 +46,27 @@ def ways_from_home(session: Session) -> list[WayFromHome]:
 def _places(session: Session) -> Iterator[tuple[int, Floats, bool]]:
     """Rows to try, their inputs (inputs,), and whether these leave whole turns out."""
     leading, tried = _leading(session), set()
-    values, reduced = session.inputs.values, session.inputs.reduced
-    for path in _paths(session, leading):
-        turned = path is not values and path is not reduced
-        for row in _two_sides(path[leading]):
+    for path, rows, turned in _paths(session, leading):
+        for row in _two_sides(path[leading], rows):
             inputs = np.ascontiguousarray(path[:, row])
             if (row, inputs.tobytes()) not in tried:
                 tried.add((row, inputs.tobytes()))
                 yield row, inputs, turned
 
 
-def _paths(session: Session, leading: Bools) -> Iterator[Floats]:
-    """The inputs of all rows (inputs, rows) as they are, reduced, and without whole turns, one
-    after the other is asked for."""
-    values, reduced = session.inputs.values, session.inputs.reduced
+def _paths(session: Session, leading: Bools) -> Iterator[tuple[Floats, NDArray[np.intp], bool]]:
+    """The inputs of all rows (inputs, rows) and which rows of them are meant: those in the first
+    turn that has any, all rows, and all without whole turns; one after the other is asked for."""
+    inputs = session.inputs
+    turns = np.max(np.abs(inputs.whole[leading]), axis=0, initial=0.0)
+    every = np.arange(turns.size)
     # an assembly is the same whole turns of an input away; in the drawing's own turn what follows
     # others goes all its way
-    if (np.max(np.abs(values[leading]), axis=0, initial=0.0) <= np.pi).any():
-        yield values
-    yield reduced
-    yield without_turns(session, reduced)
+    if turns.size:
+        least = float(turns.min())
+        yield (inputs.reduced if least else inputs.values), np.flatnonzero(turns == least), False
+    yield inputs.reduced, every, False
+    yield without_turns(session, inputs.reduced), every, True
 
 
 def _leading(session: Session) -> Bools:
@@ -73,12 +77,13 @@ def _leading(session: Session) -> Bools:
     return leading
 
 
-def _two_sides(path: Floats) -> list[int]:
-    """The row (of inputs, rows) nearest to the drawing, and the nearest on its other side."""
+def _two_sides(path: Floats, rows: NDArray[np.intp]) -> list[int]:
+    """Of some rows (of inputs, rows) the nearest to the drawing, and of all rows the nearest on its
+    other side."""
     if not path.size:
         return [0]
     distance = np.max(np.abs(path), axis=0)
-    first = int(np.argmin(distance))
+    first = int(rows[np.argmin(distance[rows])])
     along = sum(one * one[first] for one in path)
     other = np.flatnonzero(along < 0.0)
     return [first, int(other[np.argmin(distance[other])])] if other.size else [first]

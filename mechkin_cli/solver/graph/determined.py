@@ -5,6 +5,7 @@ Then a matching cannot tell which equations are new, and proposes groups only. A
 not, the links that cannot move all the same hold the largest determined set within it; two
 determined sets are one together. So whatever is proposed, a group is as soon as it is determined,
 and it is a smallest one if no determined set is left when any one of its links is taken away.
+Smallest sets that hold each other twice are one in the end (`held_twice`).
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
 from mechkin_cli.solver.graph.components import Component
+from mechkin_cli.solver.graph.held_twice import solved_together
 from mechkin_cli.solver.graph.network import Connection, incidence
 from mechkin_cli.solver.graph.rates import Rates, joins
 from mechkin_cli.solver.graph.regions import SPACE
@@ -46,7 +48,7 @@ def determined_sets(
         for part in search.split(some, placed):
             found.append(tuple(part))
             placed.update(part)
-    return Found(found, tuple(waiting))
+    return Found(solved_together(found, search, component.entry), tuple(waiting))
 
 
 class _Search:
@@ -56,11 +58,11 @@ class _Search:
         self.at = incidence(connections)
         self._failed: dict[tuple[str, ...], int] = {}
 
-    def core(self, links: Sequence[str], placed: Collection[str]) -> list[str]:
-        """The largest determined set within some links, in their order."""
+    def core(self, links: Sequence[str], placed: Collection[str], without: str = "") -> list[str]:
+        """The largest determined set within some links, in their order, `without` a connection."""
         members = list(links)
         while members:
-            around = self._around(members)
+            around = [c for c in self.around(members) if c.name != without]
             still = self.rates.still(set(members), around, placed)
             if len(still) == len(members):
                 break
@@ -96,7 +98,7 @@ class _Search:
     def _is_determined(self, links: Sequence[str], placed: Collection[str]) -> bool:
         """Whether some links are determined; tried again only where more of their connections
         lead to what is placed."""
-        inside = [c for c in self._around(links) if joins(c, links, placed)]
+        inside = [c for c in self.around(links) if joins(c, links, placed)]
         joints = [c for c in inside if c.leg is None]
         freedoms = sum(c.freedoms - c.driven for c in joints)
         most = SPACE * (len(joints) - len(links)) + len(inside) - len(joints)
@@ -118,6 +120,6 @@ class _Search:
                     least = own
         return least
 
-    def _around(self, links: Sequence[str]) -> list[Connection]:
+    def around(self, links: Sequence[str]) -> list[Connection]:
         """The connections at some links, in their order."""
         return [self.connections[k] for k in sorted({k for link in links for k in self.at[link]})]
