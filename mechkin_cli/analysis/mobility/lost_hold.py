@@ -29,7 +29,7 @@ def lost_holds(session: Session, inputs: Floats, state: Floats) -> tuple[Held, .
     """What is held and cannot be kept at a place, inputs (inputs,) and states (states,), that is
     regular without it; empty where the mechanism itself is singular or none is found."""
     problem = session.problem
-    if not problem.held:
+    if not problem.held or not np.isfinite(state).all():
         return ()
     body = Body(problem.mechanism)
     place = configuration_at(session, body, inputs, state)
