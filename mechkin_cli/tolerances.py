@@ -667,6 +667,20 @@ MOST_CHANGES: Final = 3
 MOST_IDLE_LINKS: Final = 3
 """Links of one idle group: a leg of S-P-S has two."""
 
+REGULAR_WITHOUT_HOLDS: Final = 1e-4
+"""Singular value, in parts of the largest, below which what is left without the coordinates that
+hold idle freedoms is singular itself: dead centres are located to 1e-8, and their Jacobian has a
+singular value of the order of its root there."""
+
+HELD_INDEPENDENT: Final = 1e-2
+"""Least singular value of the rates of held coordinates, in orthonormal idle motions, above which
+they are independent where a branch ends: at the end it is zero, and next to it of the order of the
+root of what is left."""
+
+HELD_PART: Final = 0.1
+"""Part of a dependence between held coordinates, in parts of the largest, from which one is named
+with it."""
+
 IDLE_MOVE: Final = 0.1
 """Move (rad, parts of the size) between two general configurations at which idle motions are
 compared: as long as those by which mobility is told."""

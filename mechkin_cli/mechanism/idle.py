@@ -27,10 +27,12 @@ from mechkin_cli.mechanism.derived_quantities import (
 )
 from mechkin_cli.mechanism.held import Held, Line
 from mechkin_cli.mechanism.idle_motions import Coordinate
+from mechkin_cli.mechanism.joint_type import Coordinate as NamedCoordinate
 from mechkin_cli.mechanism.legs import Leg, find_legs, frame_on
 from mechkin_cli.mechanism.model import (
     Attached,
     Damper,
+    Joint,
     JointLoad,
     Link,
     LinkLoad,
@@ -214,7 +216,7 @@ def conventional_notes(problem: Problem, wanted: Iterable[Wanted]) -> list[Diagn
     notes: list[Diagnostic] = []
     told: set[tuple[str, str]] = set()
     for idle in idle_freedoms(problem) if wanted else ():
-        names = [q.name for q in wanted if _is_conventional(problem.mechanism, idle, q)]
+        names = [q.name for q in wanted if _is_conventional(problem, idle, q)]
         if names and (idle.words, idle.convention) not in told:
             told.add((idle.words, idle.convention))
             notes.append(
@@ -310,8 +312,8 @@ def _asymmetry(body: Link, line: Vector) -> float:
     return worst / greatest
 
 
-def _is_conventional(mechanism: Mechanism, idle: Idle, quantity: Wanted) -> bool:
-    kind, owner = quantity.kind, quantity.owner
+def _is_conventional(problem: Problem, idle: Idle, quantity: Wanted) -> bool:
+    mechanism, kind, owner = problem.mechanism, quantity.kind, quantity.owner
     if kind == "coordinate":
         return (owner, quantity.coordinate) in idle.moves
     if kind in ("omega", "alpha"):
@@ -328,6 +330,8 @@ def _is_conventional(mechanism: Mechanism, idle: Idle, quantity: Wanted) -> bool
         return _direction_moves(idle, mechanism.directions[owner])
     if kind == "axis":
         return _direction_moves(idle, mechanism.joints[owner].axis)
+    if kind in ("force", "moment") and _works_askew(problem, idle, owner, kind == "force"):
+        return True
     if kind in ("joint_point", "moment"):
         return _point_moves(idle, mechanism.joints[owner].point)
     if kind == "slip":
@@ -335,6 +339,36 @@ def _is_conventional(mechanism: Mechanism, idle: Idle, quantity: Wanted) -> bool
         contact = Attached(joint.second, joint.on_second.o)
         return _point_moves(idle, joint.point) or _point_moves(idle, contact)
     return False
+
+
+def _works_askew(problem: Problem, idle: Idle, owner: str, slides: bool) -> bool:
+    """Whether a drive or a load works along (slides) or about an axis of a joint that turns with an
+    idle motion: what the joint bears is without it, and turns, too."""
+    joint = problem.mechanism.joints.get(owner)
+    if joint is None:  # a pair that holds
+        return False
+    worked = {name for driven, name in problem.motion.driven if driven == owner}
+    worked |= {
+        load.coordinate
+        for load in problem.mechanism.loads
+        if isinstance(load, JointLoad | Spring | Damper) and load.joint == owner and load.coordinate
+    }
+    return any(
+        _axis_moves(idle, joint, known)
+        for known in (joint.type.coordinate[name] for name in sorted(worked))
+        if known.is_angle != slides
+    )
+
+
+def _axis_moves(idle: Idle, joint: Joint, coordinate: NamedCoordinate) -> bool:
+    """Whether an idle motion turns the axis of a coordinate: of two turns either of the axes, and
+    what both links carry only where both turn it."""
+    ends = [Attached(joint.first, joint.on_first.z), Attached(joint.second, joint.on_second.z)]
+    if coordinate.axis is None:
+        return any(_direction_moves(idle, end) for end in ends)
+    if joint.type.is_guide:
+        return all(_direction_moves(idle, end) for end in ends)
+    return _direction_moves(idle, joint.drawn(coordinate.axis))
 
 
 def _point_moves(idle: Idle, at: Attached) -> bool:

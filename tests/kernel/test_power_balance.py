@@ -65,6 +65,48 @@ def test_nothing_is_told_where_nothing_moves() -> None:
     assert np.abs(analysis["A.effort"]).max() > 1.0
 
 
+NOTHING_WORKS = """
+format: 1
+links: {k: {}, c: {}, r: {}}
+joints:
+  P: {type: P, links: [ground, k], point: [0.7, -0.2, 0.1], axis: [0.3, 0.8, 0.3]}
+  R: {type: R, links: [k, c], point: [-0.9, 0.5, 0.1], axis: [-1.3, 0.9, 0.4]}
+  S: {type: S, links: [c, r], point: [-0.3, 0.6, -0.4]}
+  C: {type: C, links: [ground, r], point: [-0.1, -0.7, -0.2], axis: [0.3, 0.8, 0.3]}
+motion: {inputs: {P.s: {from: 0, to: 1, step: 0.1, rate: 1}}}
+loads:
+  - {type: torque, joint: C, value: 3}
+"""
+"""All is carried along by P, parallel to C's axis: C does not turn, and P moves against nothing."""
+
+
+@pytest.mark.parametrize("factor", [1e-6, 1.0, 1e9])
+@pytest.mark.parametrize("rate", ["1", "1e-5", "3000"])
+def test_nothing_is_told_where_nothing_works(factor: float, rate: str) -> None:
+    text = NOTHING_WORKS.replace("value: 3", f"value: {3 * factor!r}")
+    analysis = mk.loads(text.replace("rate: 1}", f"rate: {rate}}}")).analyze(["C.force"])
+    assert np.isnan(analysis["row.power_error"]).all()
+    assert np.abs(analysis["P.s_dot"]).min() > 0.0
+
+
+@pytest.mark.parametrize("part", [1.0, 1e-4, 1e-8])
+def test_what_works_a_little_is_told(part: float) -> None:
+    """A small force along P beside the large torque that does not work."""
+    text = NOTHING_WORKS + f"  - {{type: force, joint: P, value: {part}}}\n"
+    analysis = mk.loads(text).analyze(["P.effort"])
+    assert np.abs(analysis["P.effort"] + part).max() < 1e-13
+    # both powers are the same product but for a rounding of the torque's level
+    assert analysis["row.power_error"].max() < 1e-14 / part
+
+
+@pytest.mark.parametrize("off", [0.0, 3.0, 30.0, 3000.0])
+def test_what_works_is_told_wherever_the_drawing_lies(off: float) -> None:
+    text = NOTHING_WORKS + "  - {type: force, joint: P, value: 1}\n"
+    for old in ("[0.7, ", "[-0.9, ", "[-0.3, ", "[-0.1, "):
+        text = text.replace(f"point: {old}", f"point: [{float(old[1:-2]) + off}, ")
+    assert mk.loads(text).analyze(["P.effort"])["row.power_error"].max() < 1e-10
+
+
 def test_half_the_gravity_in_the_balance_of_forces_shows(tmp_path: Path) -> None:
     if COMPILER is None:
         pytest.skip("no C++ compiler here")

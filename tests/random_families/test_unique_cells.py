@@ -2,13 +2,14 @@
 
 All unknown reactions of the joints and the driving torque stand in the 18 equations of three links;
 a component is arbitrary if a vector of the null space has it. This does not change along a sweep of
-a planar loop, so that no column has empty cells among full ones. `MECHKIN_RANDOM` multiplies the
-number of loops.
+a planar loop, so that no column has empty cells among full ones. Without any load the same cells
+are empty and all others zero. `MECHKIN_RANDOM` multiplies the number of loops.
 """
 
 from __future__ import annotations
 
 import os
+import re
 from typing import NamedTuple
 
 import numpy as np
@@ -136,6 +137,29 @@ def fault(number: int) -> str:
     return ""
 
 
+def unloaded_fault(number: int) -> str:
+    """A cell of the loop without masses and loads that is not empty or zero as the null space
+    has it; "" if none."""
+    found = loop(np.random.default_rng(number))
+    bare = re.sub(r"\{mass: [^}]*\}", "{}", found.text)
+    bare = re.sub(r"loads:\n.*?(?=directions:)", "", bare, flags=re.DOTALL)
+    asked = [f"{j}.{part}" for j in "ABCD" for part in ("force", "moment")]
+    result = mk.loads(bare).analyze([*asked, "ex", "ey", "ez"])
+    there = np.asarray(result["row.status"]) == "ok"
+    free = arbitrary(found)
+    for name in (f"dot({q}, e{x})" for q in asked for x in "xyz"):
+        cells = result[name][there]
+        right = np.isnan(cells) if name in free else cells == 0.0
+        if not right.all():
+            return f"{number} ({found.letters}): {name} is {cells.tolist()}"
+    return ""
+
+
 def test_cells_are_empty_where_a_reaction_is_arbitrary() -> None:
     wrong = [words for n in range(COUNT) if (words := fault(n))]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_without_load_they_are_empty_there_and_zero_elsewhere() -> None:
+    wrong = [words for n in range(COUNT) if (words := unloaded_fault(n))]
     assert not wrong, "\n".join(wrong)

@@ -195,3 +195,37 @@ def test_other_parameters_go_with_what_is_held(text: str, name: str, other: str)
     assert varied["row.status"].tolist() == fresh["row.status"].tolist()
     assert np.abs(varied[name] - fresh[name]).max() < 1e-11
     assert np.abs(fresh[name] - mk.loads(one).analyze([name])[name]).max() > 1e-3
+
+
+TELESCOPE = """
+format: 1
+links: {L1: {}, L2: {}, L3: {}}
+joints:
+  A: {type: R, links: [ground, L1], point: [0, 0, 0], axis: [0, 0, 1]}
+  S1: {type: S, links: [L1, L2], point: [1, 0, 0]}
+  T: {type: P, links: [L2, L3], point: [1.5, 0.4, 0.2], axis: AXIS}
+  S2: {type: S, links: [L3, ground], point: [2, 1, 0.7]}
+motion: {inputs: {A.theta: {from: 0, to: 40, step: 10, rate: 1}}}
+"""
+LOADED = "loads: [{type: force, joint: T, value: 5}]\n"
+SPRUNG = "loads: [{type: spring, joint: T, coordinate: s, stiffness: 5, free: 0.1}]\n"
+
+
+@pytest.mark.parametrize(
+    ("axis", "end", "told"),
+    [
+        ("[0.3, 1, 0.5]", LOADED, True),
+        ("[0.3, 1, 0.5]", SPRUNG, True),
+        ("[0.3, 1, 0.5]", "", False),
+        ("[1, 1, 0.7]", LOADED, False),
+    ],
+)
+def test_what_a_slide_bears_beside_a_load_turns_with_an_idle_leg(
+    axis: str, end: str, told: bool
+) -> None:
+    """The load acts along the axis; both spheres bear along their line, so the rest turns with the
+    axis about that line unless they are parallel."""
+    text = TELESCOPE.replace("AXIS", axis) + end
+    analysis = mk.loads(text).analyze(["T.force", "A.effort"])
+    notes = [d.message for d in analysis.diagnostics if d.code == "conventional"]
+    assert any("T.force" in words.rpartition(": ")[2] for words in notes) == told

@@ -31,11 +31,18 @@ def first_row(session: Session, body: Body) -> Configuration | None:
     start = choose_start(session)
     if start.state is None:
         return None
-    inputs = session.inputs.values[:, start.row]
+    return configuration_at(session, body, session.inputs.values[:, start.row], start.state)
+
+
+def configuration_at(
+    session: Session, body: Body, inputs: Floats, state: Floats
+) -> Configuration | None:
+    """The configuration of the opened mechanism whose links are where a session has them at inputs
+    (inputs,) and a state (states,), kernel units; None if none is found."""
     poses = Poses(session, body.links, body.centre, body.size)
-    turns, places = poses.at(inputs[:, None], start.state[:, None])
+    turns, places = poses.at(inputs[:, None], state[:, None])
     links = poses.named(turns[0], places[0])
-    coordinates, _ = Probe.of(session).read(inputs, start.state[:, None])
+    coordinates, _ = Probe.of(session).read(inputs, state[:, None])
     seed = _seed(body, {name: float(value[0]) for name, value in coordinates.items()}, links)
     found = with_links_at(seed, links)
     return found if found.assembled else None

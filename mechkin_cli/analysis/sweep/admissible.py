@@ -39,15 +39,29 @@ def told_anew(result: Result, name: str, count: int) -> tuple[Result, ...]:
     return tuple(found)
 
 
-def reaction_rounding(result: Result) -> float:
-    """Rounding of reactions in a run: of forces in N, of moments in N by the length unit."""
-    level = result.evaluated([REACTION_LEVEL])[REACTION_LEVEL.name][0]
+def reaction_rounding(result: Result) -> Floats:
+    """Rounding of reactions in each row (rows,): of forces in N, of moments in N by the length
+    unit.
+
+    It goes with the largest reaction of the run. A row without any load has none but those of the
+    null space, whose rounding is what tells its zeros.
+    """
+    level = _level(result, 0)
     largest = float(np.max(level[np.isfinite(level)], initial=0.0))
-    return tolerances.REACTION_ROUNDING * largest
+    rounding = np.full(level.shape, largest)
+    for shift in result.shifts if (level == 0.0).any() else ():
+        rounding[level == 0.0] = np.fmax(rounding, _level(result, shift))[level == 0.0]
+    return np.asarray(tolerances.REACTION_ROUNDING * rounding, dtype=np.float64)
 
 
-def disturbed(columns: Floats, wanted: Wanted, off: float, length: float, number: int) -> Floats:
-    """A reaction (3, rows) whose components are off by rounding; `length` unit in m."""
+def _level(result: Result, shift: int) -> Floats:
+    """The largest reaction of each row (rows,), of those of a `shift`."""
+    level: Floats = result.evaluated([REACTION_LEVEL], shift=shift)[REACTION_LEVEL.name][0]
+    return level
+
+
+def disturbed(columns: Floats, wanted: Wanted, off: Floats, length: float, number: int) -> Floats:
+    """A reaction (3, rows) whose components are `off` by rounding (rows,); `length` unit in m."""
     off = off if wanted.dimension == FORCE else off * length
     found: Floats = columns + off * np.array(DISTURBANCES[number])[:, None]
     return found

@@ -47,6 +47,9 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) 
     limit = find_limit(session, followed) if len(path) else None
     if isinstance(limit, DeadCentre):
         rows.status[missing] = Status.beyond_dead_centre
+    if session.problem.held and (held := _lost_hold_note(session, followed, limit, rows)):
+        rows.diagnostics.append(held)
+    elif isinstance(limit, DeadCentre):
         rows.diagnostics.append(_dead_centre_note(session, followed, limit, path, rows))
     elif isinstance(limit, Runaway):
         rows.diagnostics.append(_runaway_note(session, followed, limit, rows))
@@ -230,6 +233,35 @@ def _branch_point_note(
         measured=", ".join(map(input_text, places)),
         hint="assembly: {at_branch_points: straight} goes on along the smooth continuation; or "
         "begin another sweep beyond it with assembly: {near: ...}",
+        numbers=places,
+    )
+
+
+def _lost_hold_note(
+    session: Session,
+    followed: Followed,
+    limit: DeadCentre | Runaway | BranchPoint | None,
+    rows: Rows,
+) -> Diagnostic | None:
+    """If what holds an idle freedom ends the branch, and not the mechanism, that."""
+    from mechkin_cli.analysis.mobility.lost_hold import lost_holds
+
+    at = limit if isinstance(limit, DeadCentre | BranchPoint) else followed
+    held = lost_holds(session, at.inputs, at.state)
+    if not held:
+        return None
+    places = _place(session, followed, at.inputs)
+    words = "; ".join(dict.fromkeys(one.words for one in held))
+    kept = ", ".join(dict.fromkeys(one.convention for one in held))
+    names = [one.name for one in held if one.cure == f"drive {one.name}"]
+    drive = f"drive it (inputs: {{{names[0]}: ...}}) so that it can go on, or " if names else ""
+    return Diagnostic(
+        "hold-ends",
+        "error",
+        f"{words}; {kept}, and cannot be kept there beyond this place, where the mechanism itself "
+        f"has no dead centre; {_stay_empty(rows)}",
+        measured=", ".join(map(input_text, places)),
+        hint=f"{drive}put the idle links elsewhere, by the drawing or by assembly: {{near: ...}}",
         numbers=places,
     )
 

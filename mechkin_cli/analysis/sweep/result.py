@@ -182,7 +182,7 @@ class Result:
 
     @property
     def power_error(self) -> Floats:
-        """|sum of powers| / sum of |powers| of every row (rows,); nan where nothing moves, or where
+        """|sum of powers| / sum of |powers| of every row (rows,); nan where nothing works, or where
         it was not computed."""
         return self._nothing if self._power_error is None else self._power_error
 
@@ -227,7 +227,7 @@ class Result:
         return told_anew(self, "_disturbance", len(DISTURBANCES) if self.shifts else 0)
 
     @cached_property
-    def _rounding(self) -> float:
+    def _rounding(self) -> Floats:
         return reaction_rounding(self)
 
     def quantity(self, name: str) -> Quantity:

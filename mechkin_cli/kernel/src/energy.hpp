@@ -69,9 +69,24 @@ inline void add_load_power(Powers& powers, const Plan& p, const Workspace& w, co
   }
 }
 
-// |sum of powers| / sum of their magnitudes; nan where nothing moves, for then no balance is told.
+// The largest component of the links' twists.
+inline Pack twist_level(const Plan& p, const Workspace& w) {
+  Pack level = 0.0;
+  for (int k = 0; k < p.links; ++k) {
+    const Twist& t = w.motion[k].velocity;
+    level = component_level(level, {t.angular, t.linear});
+  }
+  return level;
+}
+
+// Powers in parts of the largest wrench by the largest twist up to which nothing works: efforts and rates are off by
+// up to about 1e-12 of those (tolerances.REACTION_ROUNDING), so that smaller powers are rounding alone.
+constexpr double NOTHING_WORKS = 1e-12;
+
+// |sum of powers| / sum of their magnitudes; nan where nothing moves or works, for then no balance is told. `level` is
+// that of the wrenches, see reaction_level.
 template <class RowValue>
-inline Pack power_error(const Plan& p, const Workspace& w, bool accelerating, const RowValue& row_value) {
+inline Pack power_error(const Plan& p, const Workspace& w, bool accelerating, Pack level, const RowValue& row_value) {
   Powers powers = {Pack(0.0), Pack(0.0)};
   const Vec3 g = constant(p.gravity);
   for (int k = 0; k < p.links; ++k) {
@@ -82,7 +97,7 @@ inline Pack power_error(const Plan& p, const Workspace& w, bool accelerating, co
   }
   for (int l = 0; l < p.loads; ++l) add_load_power(powers, p, w, p.load[l], row_value);
   for (int i = 0; i < p.inputs; ++i) powers.add(w.effort[i] * w.rate[p.input_column[i]]);
-  const Mask none = powers.size == Pack(0.0);
+  const Mask none = powers.size <= Pack(NOTHING_WORKS) * level * twist_level(p, w);
   const Pack size = select(none, Pack(1.0), powers.size);
   return select(none, Pack(__builtin_nan("")), abs(powers.sum) / size);
 }

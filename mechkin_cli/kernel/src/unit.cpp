@@ -181,7 +181,8 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     const RowValues row_values = {r, in};
     const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift, row_values);
     if (r.demand & DEMAND_POWER)
-      writer(r.power_error).put(0, velocities ? power_error(p, w, accelerations, row_values) : Pack(__builtin_nan("")));
+      writer(r.power_error)
+          .put(0, velocities ? power_error(p, w, accelerations, balance.level, row_values) : Pack(__builtin_nan("")));
     if (r.outputs) outputs(&balance);
   } else if (r.outputs) {
     outputs(nullptr);
