@@ -25,7 +25,9 @@ def unique_cells(
     """
     if not others:
         return values
-    sizes = [np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in (values, *others)]
+    # a row without any load is zero whatever the others, which are of no size there
+    loaded = values != 0.0
+    sizes = [np.abs(v[np.isfinite(v) & loaded]).max(initial=0.0) for v in (values, *others)]
     limit = np.full(values.shape, UNIQUE_CELL * max(sizes))
     for other in disturbed:
         limit = np.fmax(limit, np.abs(other - values))
