@@ -22,6 +22,7 @@ from mechkin_cli.units import (
     ANGULAR_JERK,
     ANGULAR_RATE,
     DIMENSIONLESS,
+    ENERGY,
     FORCE,
     JERK,
     LENGTH,
@@ -53,6 +54,11 @@ Kind = Literal[
     "residual",
     "condition",
     "power_error",
+    "kinetic_energy",
+    "potential_energy",
+    "work",
+    "dissipated",
+    "energy_error",
     "time",
     "quaternion",
     "turn",
@@ -85,6 +91,9 @@ class Wanted(NamedTuple):
     order: int = 0
 
 
+TIME_OF_ROW = Wanted("time", "time", "row", TIME, False)
+"""The moment of a row."""
+
 REACTION_LEVEL = Wanted("reaction level", "reaction_level", GROUND_NAME, FORCE, False)
 """The largest component of force, or moment in length units, of all joints."""
 
@@ -97,6 +106,13 @@ _GROUND: dict[str, tuple[Kind, Dimension]] = {
     "inertia_moment": ("inertia_moment", MOMENT),
 }
 _ROW: tuple[Kind, ...] = ("residual", "condition", "power_error")
+_ENERGIES: dict[Kind, Dimension] = {
+    "kinetic_energy": ENERGY,
+    "potential_energy": ENERGY,
+    "work": ENERGY,
+    "dissipated": ENERGY,
+    "energy_error": DIMENSIONLESS,
+}
 _JOINT_WRENCH: dict[str, tuple[Kind, Dimension]] = {
     "force": ("force", FORCE),
     "moment": ("moment", MOMENT),
@@ -124,7 +140,7 @@ def catalogue(
     ):
         found[wanted.name] = wanted
     if timed:
-        found["time"] = Wanted("time", "time", "row", TIME, False)
+        found["time"] = TIME_OF_ROW
     return found
 
 
@@ -203,3 +219,13 @@ def _of_ground() -> Iterator[Wanted]:
         yield Wanted(f"ground.{word}", kind, GROUND_NAME, dimension, True)
     for word in _ROW:
         yield Wanted(f"row.{word}", word, "row", DIMENSIONLESS, False)
+
+
+def response_quantities() -> dict[str, Wanted]:
+    """What rows of a response have beside a sweep's, by name: energies of gravity, springs and
+    motion, the work of efforts, drives and other loads since the first row, what dampers and
+    friction took, and what is missing of their balance in parts of the largest of them."""
+    return {
+        f"row.{kind}": Wanted(f"row.{kind}", kind, "row", dimension, False)
+        for kind, dimension in _ENERGIES.items()
+    }
