@@ -22,7 +22,7 @@ inline void add_kinetic_power(Powers& powers, const LinkInertia& m, const Pose& 
   const Vec3 centre = pose.point(m.centre);
   powers.add(Pack(-m.mass) * motion.velocity.at(centre), motion.point_acceleration(centre));
   const Vec3 omega = pose.components(motion.velocity.angular), alpha = pose.components(motion.acceleration.angular);
-  const double* t = m.tensor;
+  const auto* t = m.tensor;
   const Vec3 x = {Pack(t[0]), Pack(t[3]), Pack(t[4])}, y = {Pack(t[3]), Pack(t[1]), Pack(t[5])},
              z = {Pack(t[4]), Pack(t[5]), Pack(t[2])};
   powers.add(-omega, {dot(x, alpha), dot(y, alpha), dot(z, alpha)});
