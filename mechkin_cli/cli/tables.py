@@ -50,7 +50,8 @@ def tables(
 
         if check:
             raise UsageError("--against and --check are two questions; ask them one by one")
-        return list_disagreements(files, json, quiet)
+        list_disagreements(files, json, quiet)
+        return
     code = ExitCode.OK
     records: list[Record] = []
     rows: list[OverviewRow] = []

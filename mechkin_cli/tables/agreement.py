@@ -99,9 +99,7 @@ class TableAgreement:
         return len(self.cells) - self.agreeing - self.one_off
 
 
-def agreement(
-    table: Columns, printed: PrintedValues, rows_by: str | None = None
-) -> TableAgreement:
+def agreement(table: Columns, printed: PrintedValues, rows_by: str | None = None) -> TableAgreement:
     """The printed cells beside the computed ones.
 
     Rows are found by the values of the column `rows_by`, None for the first printed one, or one
@@ -135,7 +133,7 @@ def _paired(
     """Of each printed row what finds it, the computed row, and its cells by label."""
     rows = [dict(zip(printed.labels, row, strict=True)) for row in printed.rows]
     if key == ROW_NUMBER:
-        count = len(table.columns[0].values)
+        count = table.columns[0].rows
         for number, row in enumerate(rows):
             yield Decimal(number + 1), number if number < count else None, row
         return

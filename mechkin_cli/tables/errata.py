@@ -15,7 +15,7 @@ from decimal import Decimal
 from mechkin_cli.legible import whole
 from mechkin_cli.tables.agreement import PrintedCell, TableAgreement
 from mechkin_cli.tables.columns import Columns
-from mechkin_cli.tables.layout import PublishedValues
+from mechkin_cli.tables.layout import ROW_NUMBER, PublishedValues
 from mechkin_cli.tables.neutral import link_target, markdown_line, markdown_text
 
 PAGE = "errata.md"
@@ -134,7 +134,8 @@ def _column_rows(one: PrintedTable) -> list[list[str]]:
 def _worst_cells(one: PrintedTable) -> list[str]:
     off = one.agreement.off
     shown = sorted(off, key=lambda cell: -abs(cell.units))[:WORST_CELLS]
-    first = markdown_text(one.agreement.rows_by)
+    rows_by = one.agreement.rows_by
+    first = "row" if rows_by == ROW_NUMBER else markdown_text(rows_by)
     rows = [
         [
             str(c.key),
