@@ -29,7 +29,7 @@ from mechkin_cli.reading.parser import in_order
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import demand_of
+from mechkin_cli.solver.demand import demand_of, needs_all_links
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
 from mechkin_cli.tables.layout import TableLayout
 from mechkin_cli.units import LENGTH
@@ -148,16 +148,20 @@ def _directions(
 
 
 def check_spins(fields: Fields, problem: Problem, tables: Sequence[TableLayout]) -> None:
-    """Where forces are wanted, what spins freely must have no cause to spin."""
-    if needs_forces(problem, tables):
+    """Where forces or energies are wanted, what spins freely must have no cause to spin."""
+    if needs_all_links(problem.mechanism, _used(problem, tables)):
         note_spins(fields, problem)
 
 
 def needs_forces(problem: Problem, tables: Sequence[TableLayout]) -> bool:
     """Whether some column reads a force."""
+    return bool(demand_of(problem.mechanism, _used(problem, tables)) & Demand.FORCES)
+
+
+def _used(problem: Problem, tables: Sequence[TableLayout]) -> list[Wanted]:
+    """The quantities that some tables read."""
     quantities = problem.quantities()
-    wanted = [quantities[name] for name in used_quantities(tables, quantities)]
-    return bool(demand_of(problem.mechanism, wanted) & Demand.FORCES)
+    return [quantities[name] for name in used_quantities(tables, quantities)]
 
 
 def _place_of(file: MechanismFile, joints: Sequence[str]) -> Path:

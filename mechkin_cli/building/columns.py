@@ -104,8 +104,8 @@ def _refuse_taken(fields: Fields, file: MechanismFile, run: str) -> None:
 def _published(section: written.PublishedValues | None) -> PublishedValues | None:
     if section is None:
         return None
-    remarks = tuple(PrintedRemark(r.text, r.columns or ()) for r in section.remarks)
-    return PublishedValues(section.file, remarks)
+    remarks = tuple(PrintedRemark(r.text, r.columns or (), r.data or ()) for r in section.remarks)
+    return PublishedValues(section.file, remarks, section.rows_by)
 
 
 def _column(

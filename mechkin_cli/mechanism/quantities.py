@@ -54,8 +54,6 @@ Kind = Literal[
     "residual",
     "condition",
     "power_error",
-    "kinetic_energy",
-    "potential_energy",
     "work",
     "dissipated",
     "energy_error",
@@ -71,11 +69,14 @@ Kind = Literal[
     "finite_slide",
     "mechanical_advantage",
     "transmission_angle",
+    "kinetic_energy",
+    "potential_energy",
     "link_direction",
     "link_point",
     "reaction_level",
+    "load_power",
 ]
-"""The last three are of no use to users: what derived quantities are computed from, and what cells
+"""The last four are of no use to users: what derived quantities are computed from, and what cells
 are judged by."""
 
 
@@ -105,10 +106,9 @@ _GROUND: dict[str, tuple[Kind, Dimension]] = {
     "inertia_force": ("inertia_force", FORCE),
     "inertia_moment": ("inertia_moment", MOMENT),
 }
+_ENERGIES: tuple[Kind, ...] = ("kinetic_energy", "potential_energy")
 _ROW: tuple[Kind, ...] = ("residual", "condition", "power_error")
-_ENERGIES: dict[Kind, Dimension] = {
-    "kinetic_energy": ENERGY,
-    "potential_energy": ENERGY,
+_OF_RESPONSES: dict[Kind, Dimension] = {
     "work": ENERGY,
     "dissipated": ENERGY,
     "energy_error": DIMENSIONLESS,
@@ -217,15 +217,17 @@ def _of_held(held: Sequence[Held]) -> Iterator[Wanted]:
 def _of_ground() -> Iterator[Wanted]:
     for word, (kind, dimension) in _GROUND.items():
         yield Wanted(f"ground.{word}", kind, GROUND_NAME, dimension, True)
+    for word in _ENERGIES:
+        yield Wanted(f"row.{word}", word, GROUND_NAME, ENERGY, False)
     for word in _ROW:
         yield Wanted(f"row.{word}", word, "row", DIMENSIONLESS, False)
 
 
 def response_quantities() -> dict[str, Wanted]:
-    """What rows of a response have beside a sweep's, by name: energies of gravity, springs and
-    motion, the work of efforts, drives and other loads since the first row, what dampers and
-    friction took, and what is missing of their balance in parts of the largest of them."""
+    """What rows of a response have beside a sweep's, by name: the work of efforts, drives and other
+    loads since the first row, what dampers and friction took, and what is missing of their balance
+    with the energies of motion, gravity and springs in parts of the largest of them."""
     return {
         f"row.{kind}": Wanted(f"row.{kind}", kind, "row", dimension, False)
-        for kind, dimension in _ENERGIES.items()
+        for kind, dimension in _OF_RESPONSES.items()
     }

@@ -3,6 +3,9 @@
 // Lengths are scaled by a power of two near the mechanism's size and measured from the kernel's
 // origin; angles are radians, masses kg, times s. Moving links are numbered in tree order and link k is
 // carried by tree joint k; ground is -1. Link frames: the frame of the link's tree joint, moved.
+//
+// The constants that parameters reach are of the type `Number`: a double, or a pack where each lane has a plan of its
+// own with the same structure (wide_plan.hpp). `Plan`, `Frame` ... are those of the constants of this compiled unit.
 #pragma once
 
 // Displacements that carry links in the tree; other pairs are chains of these (joint_table.py).
@@ -23,25 +26,28 @@ enum TreeCode : int {
 enum PairCode : int { PAIR_LEG = 0 };
 
 // Axes (columns of the rotation) and origin of a frame, in a link's frame or in ground axes.
-struct Frame {
-  double x[3], y[3], z[3], o[3];
+template <class Number>
+struct FrameOf {
+  Number x[3], y[3], z[3], o[3];
 };
 
-struct TreeJoint {
+template <class Number>
+struct TreeJointOf {
   int type;
   int parent;  // link, -1: ground
   int state;   // first entry of the state vector
   int column;  // first column (freedom)
-  double pitch;  // H: slide per radian
+  Number pitch;  // H: slide per radian
   int leg;       // TREE_L: into Plan::leg
-  Frame at;    // the joint's frame in the parent link
+  FrameOf<Number> at;    // the joint's frame in the parent link
 };
 
-struct ClosingJoint {
+template <class Number>
+struct ClosingJointOf {
   int type;
   int first, second;        // links, -1: ground
-  Frame on_first, on_second;
-  double parameter;         // U: cosine of the angle between its axes; Sc: of axis and pin at home, where the two
+  FrameOf<Number> on_first, on_second;
+  Number parameter;         // U: cosine of the angle between its axes; Sc: of axis and pin at home, where the two
                             // frames coincide in x; leg: its length, the slide at zero
   int slide;                // leg: tree joint of its slide, -1 without one
   double slide_sign;        // leg: rate of its length by the slide
@@ -57,12 +63,13 @@ struct LoopEntry {
 
 // A leg: a body from a point of `first` (the origin of its tree joint) to a point of `second`, where it has a rod that
 // slides along the leg, too. It turns with its line and does not spin about it.
-struct Leg {
+template <class Number>
+struct LegOf {
   int body, rod;      // links; rod -1: one rigid body
   int first, second;  // links, -1: ground
   int closing;
-  double point[3];    // on `second`
-  double line[3];     // from point to point in the body's frame, unit vector
+  Number point[3];    // on `second`
+  Number line[3];     // from point to point in the body's frame, unit vector
 };
 
 // A smallest set of closing equations and unknowns that is solved together: `rows` equations, `size` unknowns.
@@ -73,11 +80,12 @@ struct Block {
   int rows, size;                // rows > size: overconstrained
 };
 
-struct LinkInertia {
+template <class Number>
+struct LinkInertiaOf {
   int present;
-  double mass;
-  double centre[3];  // in the link's frame
-  double tensor[6];  // xx yy zz xy xz yz about the mass centre, link axes, divided by length unit^2
+  Number mass;
+  Number centre[3];  // in the link's frame
+  Number tensor[6];  // xx yy zz xy xz yz about the mass centre, link axes, divided by length unit^2
 };
 
 enum LoadCode : int {
@@ -92,12 +100,13 @@ enum LoadCode : int {
   LOAD_COORDINATE_DAMPER = 8
 };
 
-struct Load {
+template <class Number>
+struct LoadOf {
   int type;
   int link, other;    // LOAD_COORDINATE*: link = axis, other = joint reference of the coordinate
   int freedom;        // of the coordinate in that joint
-  double point[3], other_point[3];
-  double vector[3];   // force, torque, or the data of springs and dampers
+  Number point[3], other_point[3];
+  Number vector[3];   // force, torque, or the data of springs and dampers
   int varying;        // first of its values in Request::loads instead of `vector`, -1: constant
   int turn;           // LOAD_COORDINATE_SPRING on an angle: its slot in Request::turned; of an input -2 - its number in
                       // Request::whole; -1: turns do not matter
@@ -123,7 +132,10 @@ enum OutputCode : int {
   OUT_INERTIA_MOMENT = 16,
   OUT_HOLDING_MOMENT = 17,  // index: leg; about its line, on its body
   OUT_JERK = 18,            // index: column
-  OUT_REACTION_LEVEL = 19   // largest component of force or moment (in length units) of all joints
+  OUT_REACTION_LEVEL = 19,  // largest component of force or moment (in length units) of all joints
+  OUT_KINETIC_ENERGY = 20,
+  OUT_POTENTIAL_ENERGY = 21,  // of gravity from the ground's origin, of springs from their free length or angle
+  OUT_LOAD_POWER = 22         // index: load, -1: gravity; what it puts in
 };
 
 // One quantity that a run writes; outputs are no part of the plan (OutputsView).
@@ -158,11 +170,12 @@ enum Demand : unsigned {
 };
 
 // A joint as its user knows it: where its wrench is read off, and where its point rides.
-struct JointPlace {
+template <class Number>
+struct JointPlaceOf {
   int reference;        // tree joint k >= 0 (of a chain of parts, any), or closing joint c as -1-c
   int first, second;    // links
   int point_on;         // link that carries the point (a sphere's centre rides on the first link)
-  double point[3];
+  Number point[3];
   double sign;          // -1: the tree or the leg passes the joint from its second link to its first
   int drive_begin, drive_end;  // into Plan::drive
   int free_begin, free_end;    // into Plan::free
@@ -177,39 +190,43 @@ enum FreeCode : int {
 
 // Directions of slides, or of turns through its point, that a joint leaves free whatever its coordinates are: it
 // transmits no force along, and no moment about, them.
-struct FreeMotion {
+template <class Number>
+struct FreeMotionOf {
   int place, slide, code;
   int link;  // that carries the direction
-  double vector[3];
+  Number vector[3];
 };
 
 // The unit wrench on the second link that does work on one coordinate of a joint and none on its others: a couple or,
 // for a slide, a force through the joint's point, along the sum of two vectors carried by two links.
-struct CoordinateAxis {
+template <class Number>
+struct CoordinateAxisOf {
   int place;
   int slide;
   int link[2];
-  double vector[2][3];
+  Number vector[2][3];
 };
 
 // A drive: input and the axis it works on, -1 for a coordinate that no user knows; an H driven along s has
 // force = effort / pitch.
-struct Drive {
+template <class Number>
+struct DriveOf {
   int input, axis;
-  double scale;
+  Number scale;
 };
 
-struct Plan {
+template <class Number>
+struct PlanOf {
   int links, states, columns, closings, legs, blocks, inputs, loads, load_values;
   int places, axes, drives, frees, loop_entries, order_count, unknowns, size_points;
   int largest_block;  // rows
-  const TreeJoint* joints;
-  const ClosingJoint* closing;
-  const Leg* leg;
-  const JointPlace* place;
-  const CoordinateAxis* axis;
-  const Drive* drive;
-  const FreeMotion* free;
+  const TreeJointOf<Number>* joints;
+  const ClosingJointOf<Number>* closing;
+  const LegOf<Number>* leg;
+  const JointPlaceOf<Number>* place;
+  const CoordinateAxisOf<Number>* axis;
+  const DriveOf<Number>* drive;
+  const FreeMotionOf<Number>* free;
   const LoopEntry* loop;
   const Block* block;
   const int* order;
@@ -221,16 +238,30 @@ struct Plan {
   const int* column_joint;   // tree joint of a column
   const int* column_block;   // block that solves for a column, -1: input
   const int* column_place;   // its place among that block's unknowns
-  const double* column_weight;  // scaled-block weight of a column: size / length unit for slides, 1 for angles
-  const LinkInertia* inertia;
-  const Load* load;
+  const Number* column_weight;  // scaled-block weight of a column: size / length unit for slides, 1 for angles
+  const LinkInertiaOf<Number>* inertia;
+  const LoadOf<Number>* load;
   const Output* size_point;  // joint points, whose box at the first assembly tells the size; of ground: in m
-  double gravity[3];         // in length units
-  double length;             // the length unit in m, a power of two
-  double origin[3];          // the kernel's origin in m
-  double size;               // of the mechanism in m: what residual and condition are measured by
-  double row_weight;         // length unit / size: closure lengths to parts of the size
+  Number gravity[3];         // in length units
+  Number length;             // the length unit in m, a power of two
+  Number origin[3];          // the kernel's origin in m
+  Number size;               // of the mechanism in m: what residual and condition are measured by
+  Number row_weight;         // length unit / size: closure lengths to parts of the size
 };
+
+#ifndef MECHKIN_WIDE_PLAN  // else wide_plan.hpp says what they are
+using Frame = FrameOf<double>;
+using TreeJoint = TreeJointOf<double>;
+using ClosingJoint = ClosingJointOf<double>;
+using Leg = LegOf<double>;
+using LinkInertia = LinkInertiaOf<double>;
+using Load = LoadOf<double>;
+using JointPlace = JointPlaceOf<double>;
+using FreeMotion = FreeMotionOf<double>;
+using CoordinateAxis = CoordinateAxisOf<double>;
+using Drive = DriveOf<double>;
+using Plan = PlanOf<double>;
+#endif
 
 // An angle of a closing joint, which is known up to whole turns only, or with freedom < 0 its orientation, the second
 // link against the first, a quaternion that is known up to its sign.

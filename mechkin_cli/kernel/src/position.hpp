@@ -81,10 +81,12 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
 
 MECHKIN_INLINE const Pose* pose_of(const Workspace& w, int link) { return link < 0 ? nullptr : &w.pose[link]; }
 
-MECHKIN_INLINE Vec3 carried_point(const Workspace& w, int link, const double* at) {
+template <class Number>
+MECHKIN_INLINE Vec3 carried_point(const Workspace& w, int link, const Number* at) {
   return link < 0 ? constant(at) : w.pose[link].point(at);
 }
-MECHKIN_INLINE Vec3 carried_vector(const Workspace& w, int link, const double* a) {
+template <class Number>
+MECHKIN_INLINE Vec3 carried_vector(const Workspace& w, int link, const Number* a) {
   return link < 0 ? constant(a) : w.pose[link].vector(a);
 }
 

@@ -35,7 +35,7 @@ inline Wrench inertia_wrench(const LinkInertia& m, const Pose& pose, const Motio
   const Vec3 force = Pack(m.mass) * motion.point_acceleration(centre);
   const Vec3 omega = pose.components(motion.velocity.angular);
   const Vec3 alpha = pose.components(motion.acceleration.angular);
-  const double* t = m.tensor;
+  const auto* t = m.tensor;
   const auto tensor = [&](Vec3 a) -> Vec3 {
     return {Pack(t[0]) * a.x + Pack(t[3]) * a.y + Pack(t[4]) * a.z,
             Pack(t[3]) * a.x + Pack(t[1]) * a.y + Pack(t[5]) * a.z,

@@ -23,7 +23,11 @@ MECHKIN_INLINE Pack dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b
 MECHKIN_INLINE Vec3 cross(Vec3 a, Vec3 b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-MECHKIN_INLINE Vec3 constant(const double* c) { return {Pack(c[0]), Pack(c[1]), Pack(c[2])}; }
+// Constants of a plan: doubles that all lanes share, or packs.
+template <class Number>
+MECHKIN_INLINE Vec3 constant(const Number* c) {
+  return {Pack(c[0]), Pack(c[1]), Pack(c[2])};
+}
 MECHKIN_INLINE Vec3 zero3() { return {Pack(0.0), Pack(0.0), Pack(0.0)}; }
 MECHKIN_INLINE Vec3 select(Mask m, Vec3 a, Vec3 b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
@@ -33,12 +37,14 @@ MECHKIN_INLINE Vec3 select(Mask m, Vec3 a, Vec3 b) {
 struct Pose {
   Vec3 X, Y, Z, o;
   // A constant vector given in this frame, in ground axes.
-  MECHKIN_INLINE Vec3 vector(const double* c) const {
+  template <class Number>
+  MECHKIN_INLINE Vec3 vector(const Number* c) const {
     return Pack(c[0]) * X + Pack(c[1]) * Y + Pack(c[2]) * Z;
   }
   MECHKIN_INLINE Vec3 vector(Vec3 c) const { return c.x * X + c.y * Y + c.z * Z; }
   // A constant point given in this frame, in ground axes.
-  MECHKIN_INLINE Vec3 point(const double* c) const { return o + vector(c); }
+  template <class Number>
+  MECHKIN_INLINE Vec3 point(const Number* c) const { return o + vector(c); }
   // Components in this frame of a vector given in ground axes.
   MECHKIN_INLINE Vec3 components(Vec3 a) const { return {dot(X, a), dot(Y, a), dot(Z, a)}; }
 };
