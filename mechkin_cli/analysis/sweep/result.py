@@ -106,6 +106,11 @@ class Result:
         return self.start.how
 
     @property
+    def events(self) -> Sequence[str]:
+        """No row of a sweep has one."""
+        return ()
+
+    @property
     def nodes(self) -> int:
         """Steps with which the branch was followed."""
         return self.row_states.nodes
