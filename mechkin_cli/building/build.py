@@ -25,10 +25,11 @@ from mechkin_cli.mechanism.holding import held_freedoms
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.model import Attached, Link, Mechanism
 from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.reading.parser import in_order
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import demand_of
+from mechkin_cli.solver.demand import demand_of, needs_all_links
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
 from mechkin_cli.tables.layout import TableLayout, default_table
 from mechkin_cli.units import LENGTH
@@ -134,9 +135,9 @@ def _directions(
 
 
 def check_spins(fields: Fields, problem: Problem, tables: Sequence[TableLayout]) -> None:
-    """Where forces are wanted, what spins freely must have no cause to spin."""
+    """Where forces or energies are wanted, what spins freely must have no cause to spin."""
     idle = find_legs(problem.mechanism) or problem.held
-    if not (idle and needs_forces(problem, tables)):
+    if not (idle and needs_all_links(problem.mechanism, _used(problem, tables))):
         return
     from mechkin_cli.mechanism.idle import spin_errors
 
@@ -147,9 +148,13 @@ def check_spins(fields: Fields, problem: Problem, tables: Sequence[TableLayout])
 
 def needs_forces(problem: Problem, tables: Sequence[TableLayout]) -> bool:
     """Whether some column reads a force."""
+    return bool(demand_of(problem.mechanism, _used(problem, tables)) & Demand.FORCES)
+
+
+def _used(problem: Problem, tables: Sequence[TableLayout]) -> list[Wanted]:
+    """The quantities that some tables read."""
     quantities = problem.quantities()
-    wanted = [quantities[name] for name in used_quantities(tables, quantities)]
-    return bool(demand_of(problem.mechanism, wanted) & Demand.FORCES)
+    return [quantities[name] for name in used_quantities(tables, quantities)]
 
 
 def _place_of(file: MechanismFile, joints: Sequence[str]) -> Path:

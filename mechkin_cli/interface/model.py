@@ -19,8 +19,7 @@ from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.nearest import nearest_hint
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import demand_of
+from mechkin_cli.solver.demand import needs_all_links
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph
 from mechkin_cli.solver.session import Packing, Session
 from mechkin_cli.tables.layout import ROW_TEXTS, TableLayout
@@ -176,11 +175,11 @@ class Model:
             raise UsageError(f"{why}; {cure}") from None
 
     def _refuse_loaded_spin(self, problem: Problem, names: Sequence[str]) -> None:
-        """Forces need what spins freely to have no cause to spin."""
+        """Forces and energies need what spins freely to have no cause to spin."""
         if not (find_legs(problem.mechanism) or problem.held):
             return
         known = problem.quantities() if names else {}
-        if demand_of(problem.mechanism, [known[name] for name in names]) & Demand.FORCES:
+        if needs_all_links(problem.mechanism, [known[name] for name in names]):
             from mechkin_cli.mechanism.idle import spin_errors
 
             for _, diagnostic in spin_errors(problem):

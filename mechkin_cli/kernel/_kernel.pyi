@@ -70,6 +70,9 @@ class OutputCode(IntEnum):
     INERTIA_MOMENT = 16
     HOLDING_MOMENT = 17
     REACTION_LEVEL = ...
+    KINETIC_ENERGY = 20
+    POTENTIAL_ENERGY = 21
+    LOAD_POWER = 22
     JERK = 18
 
 class Demand(IntFlag):

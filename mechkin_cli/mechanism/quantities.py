@@ -22,6 +22,7 @@ from mechkin_cli.units import (
     ANGULAR_JERK,
     ANGULAR_RATE,
     DIMENSIONLESS,
+    ENERGY,
     FORCE,
     JERK,
     LENGTH,
@@ -65,11 +66,14 @@ Kind = Literal[
     "finite_slide",
     "mechanical_advantage",
     "transmission_angle",
+    "kinetic_energy",
+    "potential_energy",
     "link_direction",
     "link_point",
     "reaction_level",
+    "load_power",
 ]
-"""The last three are of no use to users: what derived quantities are computed from, and what cells
+"""The last four are of no use to users: what derived quantities are computed from, and what cells
 are judged by."""
 
 
@@ -96,6 +100,7 @@ _GROUND: dict[str, tuple[Kind, Dimension]] = {
     "inertia_force": ("inertia_force", FORCE),
     "inertia_moment": ("inertia_moment", MOMENT),
 }
+_ENERGIES: tuple[Kind, ...] = ("kinetic_energy", "potential_energy")
 _ROW: tuple[Kind, ...] = ("residual", "condition", "power_error")
 _JOINT_WRENCH: dict[str, tuple[Kind, Dimension]] = {
     "force": ("force", FORCE),
@@ -201,5 +206,7 @@ def _of_held(held: Sequence[Held]) -> Iterator[Wanted]:
 def _of_ground() -> Iterator[Wanted]:
     for word, (kind, dimension) in _GROUND.items():
         yield Wanted(f"ground.{word}", kind, GROUND_NAME, dimension, True)
+    for word in _ENERGIES:
+        yield Wanted(f"row.{word}", word, GROUND_NAME, ENERGY, False)
     for word in _ROW:
         yield Wanted(f"row.{word}", word, "row", DIMENSIONLESS, False)

@@ -30,6 +30,7 @@ _HOLDING_KINDS = {"holding_moment", "holding_force"}
 _FORCE_KINDS = (
     WRENCH_KINDS | _SHAKING_KINDS | _INERTIA_KINDS | _HOLDING_KINDS | {"effort", "reaction_level"}
 )
+_ENERGY_KINDS = {"kinetic_energy", "potential_energy"}
 
 
 def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
@@ -44,6 +45,10 @@ def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
             demand |= Demand.VELOCITY | Demand.ACCELERATION | Demand.JERK
         elif quantity.kind in _FORCE_KINDS:
             demand |= forces_demand(mechanism)
+        elif quantity.kind == "kinetic_energy":
+            demand |= Demand.VELOCITY
+        elif quantity.kind == "load_power":
+            demand |= forces_demand(mechanism) | Demand.VELOCITY
         elif quantity.kind == "condition":
             demand |= Demand.CONDITION
         elif quantity.kind == "power_error":
@@ -60,6 +65,13 @@ def forces_demand(mechanism: Mechanism) -> Demand:
     elif any(isinstance(load, Damper) or _reads_rates(load) for load in mechanism.loads):
         demand |= Demand.VELOCITY
     return demand
+
+
+def needs_all_links(mechanism: Mechanism, wanted: Iterable[Wanted]) -> bool:
+    """Whether some quantities are of the mechanism as a whole: forces and energies."""
+    wanted = list(wanted)
+    energies = any(quantity.kind in _ENERGY_KINDS for quantity in wanted)
+    return energies or bool(demand_of(mechanism, wanted) & Demand.FORCES)
 
 
 def _reads_rates(load: Load) -> bool:
@@ -179,6 +191,10 @@ class OutputPlan:
             return self._output(OutputCode.HOLDING_MOMENT, number, length * length)
         if kind == "reaction_level":
             return self._output(OutputCode.REACTION_LEVEL, 0, length)
+        if kind in _ENERGY_KINDS:
+            return self._output(OutputCode[kind.upper()], 0, length * length)
+        if kind == "load_power":
+            return self._output(OutputCode.LOAD_POWER, int(wanted.coordinate), length * length)
         code = OutputCode[kind.upper()]
         return self._output(code, 0, length if kind.endswith("force") else length * length)
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from oracle import Mechanism, Reactions, Solution
 from oracle.forces import unit_effort
-from oracle.vectors import add, apply, cross, product, scale, subtract, transpose
+from oracle.vectors import add, apply, cross, dot, product, scale, subtract, transpose
 
 _COORDINATE_OF = {"torque": "theta", "force": "s"}
 
@@ -40,7 +40,31 @@ def expected(mechanism: Mechanism, solution: Solution, loads: Reactions) -> dict
     inertia = _inertia(mechanism, solution)
     found |= {"ground.shaking_force": shaking[:3], "ground.shaking_moment": shaking[3:]}
     found |= {"ground.inertia_force": inertia[:3], "ground.inertia_moment": inertia[3:]}
+    found["row.kinetic_energy"] = _kinetic_energy(mechanism, solution)
+    found["row.potential_energy"] = _potential_energy(mechanism, solution)
     return {name: np.array(value, dtype=object, ndmin=1) for name, value in found.items()}
+
+
+def _kinetic_energy(mechanism: Mechanism, solution: Solution) -> Any:
+    """Half of m v.v + omega.I omega in ground axes."""
+    twice = 0
+    for name, link in mechanism.links.items():
+        velocity, omega = solution.motion(name, link.mass_centre)[1], solution.omega(name)
+        rotation = solution.rotation(name)[0]
+        tensor = product(rotation, link.inertia, transpose(rotation))
+        twice += link.mass * dot(velocity, velocity) + dot(omega, apply(tensor, omega))
+    return twice / 2
+
+
+def _potential_energy(mechanism: Mechanism, solution: Solution) -> Any:
+    """Of gravity alone, from the ground origin."""
+    total = 0
+    for load in mechanism.loads:
+        if load.type == "gravity":
+            for name, link in mechanism.links.items():
+                place = solution.motion(name, link.mass_centre)[0]
+                total -= link.mass * dot(load.vector, place)
+    return total
 
 
 def _on_ground(mechanism: Mechanism, solution: Solution, loads: Reactions) -> list[Any]:

@@ -15,8 +15,7 @@ from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import demand_of
+from mechkin_cli.solver.demand import needs_all_links
 from mechkin_cli.solver.graph import SolverGraph
 
 if TYPE_CHECKING:
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 def followed_session(session: Session, wanted: Iterable[Wanted]) -> Session:
     """The session of the loops that are followed; the same one if that is all of them."""
     problem, wanted = session.problem, list(wanted)
-    if problem.follow is None or demand_of(problem.mechanism, wanted) & Demand.FORCES:
+    if problem.follow is None or needs_all_links(problem.mechanism, wanted):
         return session
     needed = _needed_blocks(problem, session.graph, wanted)
     left_out = tuple(b for b in range(len(session.graph.blocks)) if b not in needed)

@@ -375,8 +375,8 @@ class Result:
             accelerations=inputs.accelerations if demand & Demand.ACCELERATION else None,
             jerks=inputs.jerks if demand & Demand.JERK else None,
             loads=loads,
-            turned=turned if demand & Demand.FORCES else None,
-            whole=whole if demand & Demand.FORCES else None,
+            turned=turned,
+            whole=whole,
             shift=shift,
             iterations=iterations,
         )

@@ -8,6 +8,8 @@ struct KernelUnit;
 
 // TreeCode, LoadCode, OutputCode, Demand, RowFlag, TrackEnd, Operation.
 void bind_codes(nanobind::module_& m);
+// Integration of a motion that is a tape.
+void bind_integrator(nanobind::module_& m);
 // PlanBuilder, Plan, Outputs.
 void bind_plan(nanobind::module_& m);
 

@@ -49,7 +49,10 @@ void bind_plan_codes(nb::module_& m) {
       .value("INERTIA_MOMENT", OUT_INERTIA_MOMENT)
       .value("HOLDING_MOMENT", OUT_HOLDING_MOMENT)
       .value("JERK", OUT_JERK)
-      .value("REACTION_LEVEL", OUT_REACTION_LEVEL);
+      .value("REACTION_LEVEL", OUT_REACTION_LEVEL)
+      .value("KINETIC_ENERGY", OUT_KINETIC_ENERGY)
+      .value("POTENTIAL_ENERGY", OUT_POTENTIAL_ENERGY)
+      .value("LOAD_POWER", OUT_LOAD_POWER);
   nb::enum_<FreeCode>(m, "FreeCode", nb::is_arithmetic(), "Kinds of free motions.")
       .value("ALONG", FREE_ALONG)
       .value("SQUARE", FREE_SQUARE)

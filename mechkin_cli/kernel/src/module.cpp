@@ -89,4 +89,5 @@ NB_MODULE(_kernel, m) {
   bind_stepper(m);
   bind_variants(m);
   bind_positions(m);
+  bind_integrator(m);
 }

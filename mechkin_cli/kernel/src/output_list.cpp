@@ -39,13 +39,14 @@ void check(const Plan& p, const OutputRecord& r) {
     case OUT_JOINT_MOMENT_ORIGIN: return check_index(r.index, 0, p.places, "place");
     case OUT_HOLDING_MOMENT: return check_index(r.index, 0, p.legs, "leg");
     case OUT_EFFORT: return check_index(r.index, 0, p.inputs, "input");
+    case OUT_LOAD_POWER: return check_index(r.index, -1, p.loads, "load");
     default: return require(r.index == 0, "an output of the whole mechanism has index 0");
   }
 }
 
 }  // namespace
 
-bool is_output(int type) { return type >= 0 && type <= OUT_REACTION_LEVEL; }
+bool is_output(int type) { return type >= 0 && type <= OUT_LOAD_POWER; }
 
 int output_width(int type) {
   switch (type) {
@@ -56,6 +57,9 @@ int output_width(int type) {
     case OUT_CLOSING:
     case OUT_HOLDING_MOMENT:
     case OUT_REACTION_LEVEL:
+    case OUT_KINETIC_ENERGY:
+    case OUT_POTENTIAL_ENERGY:
+    case OUT_LOAD_POWER:
     case OUT_EFFORT: return 1;
     default: return 3;
   }
@@ -67,7 +71,9 @@ unsigned output_demand(int type, int order) {
   switch (type) {
     case OUT_JERK: return to_order[3];
     case OUT_RATE:
+    case OUT_KINETIC_ENERGY:
     case OUT_OMEGA: return to_order[1];
+    case OUT_LOAD_POWER: return to_order[1] | DEMAND_FORCES;
     case OUT_ACCELERATION:
     case OUT_ALPHA: return to_order[2];
     case OUT_JOINT_FORCE:

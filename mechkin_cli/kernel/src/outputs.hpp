@@ -1,7 +1,7 @@
 // The quantities that were asked for, from the workspace into the output columns.
 #pragma once
 
-#include "reactions.hpp"
+#include "energy.hpp"
 
 namespace {
 
@@ -56,8 +56,10 @@ inline Pack output_closing(const Plan& p, const Workspace& w, const Output& o) {
   return k[o.order];
 }
 
-inline void write_output(const Plan& p, const Workspace& w, const Balance* balance, const Output& o,
-                         const Writer& out) {
+// `row_value` as in apply_load.
+template <class RowValue>
+inline void write_output(const Plan& p, const Workspace& w, const Balance* balance, const RowValue& row_value,
+                         const Output& o, const Writer& out) {
   const Pack factor = o.factor;
   switch (o.type) {
     case OUT_STATE: return out.put(o.slot, factor * w.q[o.index]);
@@ -81,6 +83,9 @@ inline void write_output(const Plan& p, const Workspace& w, const Balance* balan
       return out.put(o.slot, factor * ground_moment(p, balance->outside - balance->inertia));
     case OUT_INERTIA_FORCE: return out.put(o.slot, (-factor) * balance->inertia.force);
     case OUT_INERTIA_MOMENT: return out.put(o.slot, (-factor) * ground_moment(p, balance->inertia));
+    case OUT_KINETIC_ENERGY: return out.put(o.slot, factor * kinetic_energy(p, w));
+    case OUT_POTENTIAL_ENERGY: return out.put(o.slot, factor * potential_energy(p, w, row_value));
+    case OUT_LOAD_POWER: return out.put(o.slot, factor * load_power(p, w, o.index, row_value));
   }
 }
 

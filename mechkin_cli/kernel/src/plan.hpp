@@ -133,7 +133,10 @@ enum OutputCode : int {
   OUT_INERTIA_MOMENT = 16,
   OUT_HOLDING_MOMENT = 17,  // index: leg; about its line, on its body
   OUT_JERK = 18,            // index: column
-  OUT_REACTION_LEVEL = 19   // largest component of force or moment (in length units) of all joints
+  OUT_REACTION_LEVEL = 19,  // largest component of force or moment (in length units) of all joints
+  OUT_KINETIC_ENERGY = 20,
+  OUT_POTENTIAL_ENERGY = 21,  // of gravity from the ground's origin, of springs from their free length or angle
+  OUT_LOAD_POWER = 22         // index: load, -1: gravity; what it puts in
 };
 
 // One quantity that a run writes; outputs are no part of the plan (OutputsView).

@@ -176,12 +176,12 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
   if (r.turn_count) write_turns(p, w, r, in);
   if (r.demand & DEMAND_CONDITION) writer(r.condition).put(0, condition);
 
+  const RowValues row_values = {r, in};
   const auto outputs = [&](const Balance* balance) {
     const Writer out = writer(r.outputs);
-    for (int o = 0; o < r.wanted.count; ++o) write_output(p, w, balance, r.wanted.output[o], out);
+    for (int o = 0; o < r.wanted.count; ++o) write_output(p, w, balance, row_values, r.wanted.output[o], out);
   };
   if (r.demand & DEMAND_FORCES) {
-    const RowValues row_values = {r, in};
     const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift, row_values);
     if (r.demand & DEMAND_POWER)
       writer(r.power_error)

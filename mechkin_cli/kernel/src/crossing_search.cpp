@@ -1,0 +1,186 @@
+#include "crossing_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+constexpr int SCAN = 8;                         // parts in which a step is looked into
+constexpr double EARLY[] = {1e-3, 1e-6, 1e-9};  // of the step: where a switch is asked that begins at a zero
+constexpr double ZERO = 1e-12;                  // in parts of the value at the other end
+constexpr int MOST_TRIES = 80;
+constexpr double FOUND = 1e-10;                 // of the step; what is left is done by steps
+constexpr int BISECT_EVERY = 3;
+
+bool is_bad(const std::vector<double>& values) {
+  for (double v : values)
+    if (v < 0.0) return true;
+  return false;
+}
+
+}  // namespace
+
+CrossingSearch::CrossingSearch(LaneStates& states, Method& method, const Flags& ignored)
+    : states_(states), method_(method), ignored_(ignored), bracket_(states.lanes), found_(states.lanes),
+      seen_(states.lanes), open_(states.lanes), part_(states.lanes), at_(states.lanes), place_(states.entries),
+      slope_(states.entries), switches_(states.kinds.size() * states.lanes) {}
+
+// The bad switch whose zero is the first by the secant, and where that is.
+int CrossingSearch::Bracket::first(double* where) const {
+  int which = -1;
+  for (std::size_t s = 0; s < at_high.size(); ++s) {
+    if (!(at_high[s] < 0.0)) continue;
+    const double a = std::max(at_low[s], 0.0) * low_weight, b = at_high[s] * high_weight;
+    const double x = low + (high - low) * (a / (a - b));
+    if (which >= 0 && !(x < *where)) continue;
+    *where = x;
+    which = (int)s;
+  }
+  return which;
+}
+
+std::vector<double> CrossingSearch::values(const std::vector<double>& switches, int lane) const {
+  std::vector<double> own(states_.kinds.size());
+  for (std::size_t s = 0; s < own.size(); ++s) {
+    const std::size_t k = s * states_.lanes + lane;
+    own[s] = ignored_[k] ? 0.0 : states_.side[k] * switches[k];
+  }
+  return own;
+}
+
+void CrossingSearch::look() {
+  for (int i = 0; i < states_.lanes; ++i) {
+    if (!open_[i]) part_[i] = 0.0;
+    at_[i] = states_.time[i] + part_[i] * states_.step[i];
+  }
+  const Flags asked = open_;
+  method_.dense(states_, open_, part_.data(), place_.data());
+  states_.evaluate(at_.data(), place_.data(), false, &open_, slope_.data(), switches_.data());
+  for (int i = 0; i < states_.lanes; ++i) {
+    if (open_[i]) {
+      seen_[i] = values(switches_, i);
+    } else if (asked[i]) {
+      states_.reached[i] = part_[i];
+      found_[i].kind = Crossing::FAULT;
+    }
+  }
+}
+
+void CrossingSearch::end(int lane, Crossing::Kind kind) {
+  const Bracket& b = bracket_[lane];
+  Crossing& c = found_[lane];
+  open_[lane] = 0;
+  c.kind = kind;
+  if (kind == Crossing::NONE) return;
+  c.which = b.first(&c.part);
+  if (c.part < EARLY[2]) c.kind = Crossing::AT_ONCE;
+  c.slope = (b.at_high[c.which] - b.at_low[c.which]) / (b.high - b.low);
+}
+
+// The bracket of a lane becomes the side of part_ where the first zero is.
+void CrossingSearch::move(int lane, bool bad) {
+  Bracket& b = bracket_[lane];
+  (bad ? b.high : b.low) = part_[lane];
+  (bad ? b.at_high : b.at_low) = seen_[lane];
+}
+
+std::vector<Crossing> CrossingSearch::run(const Flags& crossed, const Flags& suspected) {
+  for (int i = 0; i < states_.lanes; ++i) {
+    open_[i] = crossed[i] || suspected[i];
+    if (!open_[i]) continue;
+    bracket_[i].at_low = values(states_.switch_value, i);
+    bracket_[i].at_high = values(states_.switch_end, i);
+  }
+  const Flags asked = open_;
+  method_.prepare_dense(states_, &open_);
+  for (int i = 0; i < states_.lanes; ++i)
+    if (asked[i] && !open_[i]) found_[i].kind = Crossing::FAULT;
+  scan(suspected);
+  look_early();
+  close_in();
+  return found_;
+}
+
+// Narrows the suspected lanes to the first part that is bad at its end, if there is one.
+void CrossingSearch::scan(const Flags& suspected) {
+  Flags waiting(states_.lanes, 0);
+  for (int i = 0; i < states_.lanes; ++i)
+    if (!suspected[i]) std::swap(open_[i], waiting[i]);
+  for (int k = 1; k < SCAN && any(open_); ++k) {
+    std::fill(part_.begin(), part_.end(), (double)k / SCAN);
+    look();
+    for (int i = 0; i < states_.lanes; ++i) {
+      if (!open_[i]) continue;
+      const bool bad = is_bad(seen_[i]);
+      move(i, bad);
+      if (bad) {
+        waiting[i] = 1;
+        open_[i] = 0;
+      }
+    }
+  }
+  for (int i = 0; i < states_.lanes; ++i) {
+    if (open_[i]) end(i, Crossing::NONE);
+    open_[i] = waiting[i];
+  }
+}
+
+// Where a switch begins at a zero its value there is rounding: whether it is good a moment later tells a step that comes
+// back from one that leaves the wrong way.
+void CrossingSearch::look_early() {
+  Flags waiting(states_.lanes, 0);
+  for (int i = 0; i < states_.lanes; ++i) {
+    if (!open_[i]) continue;
+    const Bracket& b = bracket_[i];
+    bool begins = false;
+    for (std::size_t s = 0; s < b.at_high.size(); ++s)
+      begins = begins || (b.at_high[s] < 0.0 && b.at_low[s] <= -ZERO * b.at_high[s]);
+    if (begins && b.low == 0.0) continue;
+    waiting[i] = 1;
+    open_[i] = 0;
+  }
+  for (double early : EARLY) {
+    if (!any(open_)) break;
+    std::fill(part_.begin(), part_.end(), early);
+    look();
+    for (int i = 0; i < states_.lanes; ++i) {
+      if (!open_[i]) continue;
+      const bool bad = is_bad(seen_[i]);
+      move(i, bad);
+      if (bad) continue;
+      waiting[i] = 1;
+      open_[i] = 0;
+    }
+  }
+  for (int i = 0; i < states_.lanes; ++i) {
+    if (open_[i]) end(i, Crossing::AT_ONCE);
+    open_[i] = waiting[i];
+  }
+}
+
+void CrossingSearch::close_in() {
+  for (int k = 1; k <= MOST_TRIES && any(open_); ++k) {
+    for (int i = 0; i < states_.lanes; ++i) {
+      if (!open_[i]) continue;
+      Bracket& b = bracket_[i];
+      b.first(&part_[i]);
+      const bool is_near = std::fabs(part_[i] - b.tried) <= FOUND || b.high - b.low <= FOUND;
+      if (is_near) end(i, Crossing::WITHIN);
+      b.tried = part_[i];
+      if (k % BISECT_EVERY == 0) part_[i] = 0.5 * (b.low + b.high);
+    }
+    if (!any(open_)) return;
+    look();
+    for (int i = 0; i < states_.lanes; ++i) {
+      if (!open_[i]) continue;
+      Bracket& b = bracket_[i];
+      const bool bad = is_bad(seen_[i]);
+      // an end that stays twice weighs half
+      (bad ? b.high_weight : b.low_weight) = 1.0;
+      (bad ? b.low_weight : b.high_weight) *= 0.5;
+      move(i, bad);
+    }
+  }
+  for (int i = 0; i < states_.lanes; ++i)
+    if (open_[i]) end(i, Crossing::WITHIN);
+}

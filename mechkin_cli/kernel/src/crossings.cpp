@@ -1,0 +1,175 @@
+// Zeros of switches: noticed at the ends of steps and within them, met exactly by steps that end there, and passed.
+//
+// Values here are taken times the side: good where they are not negative. Of several zeros in one step the first counts.
+#include <algorithm>
+#include <cmath>
+
+#include "crossing_search.hpp"
+#include "march.hpp"
+
+namespace {
+
+constexpr double ROUNDING = 2.220446049250313e-16;
+constexpr double SMALL = 1e-12;         // of the values at the ends: what is no dip
+constexpr int LANDINGS = 5;             // corrections of a step that shall end at a zero
+constexpr int SEARCHES = 6;             // new searches, as something else came first in it
+constexpr double MOST_CHANGE = 0.1;     // of the step, in one correction
+constexpr int RETURNS = 3;              // passes at one place that hold a motion
+
+// The least of the parabola through three places, of rising x; y1 where it does not turn between them.
+double least_of_parabola(const double* x, const double* y) {
+  const double left = (y[1] - y[0]) / (x[1] - x[0]), right = (y[2] - y[1]) / (x[2] - x[1]);
+  const double bend = (right - left) / (x[2] - x[0]);
+  if (!(bend > 0.0)) return y[1];
+  const double slope = left + bend * (x[1] - x[0]), shift = -0.5 * slope / bend;  // at x1; from it to the least
+  return x[1] + shift > x[0] && x[1] + shift < x[2] ? y[1] + 0.5 * slope * shift : y[1];
+}
+
+}  // namespace
+
+// An event that is met again and again at one place is let alone there: it rests at its zero.
+bool March::is_ignored(int lane, int which) const {
+  return !states_.kinds[which].kink && control_[lane].passed[which] >= RETURNS;
+}
+
+bool March::is_crossed(int lane, int but) const {
+  for (int s = 0; s < (int)states_.kinds.size(); ++s) {
+    const std::size_t k = (std::size_t)s * states_.lanes + lane;
+    if (s != but && states_.side[k] * states_.switch_end[k] < 0.0 && !is_ignored(lane, s)) return true;
+  }
+  return false;
+}
+
+// Whether a switch may be bad within the step although both ends are good. Of one at whose zero the step shall end
+// (`landing`) only the stages' own values count.
+bool March::may_dip(int lane, int landing) const {
+  for (int s = 0; s < (int)states_.kinds.size(); ++s) {
+    if (is_ignored(lane, s)) continue;
+    const std::size_t k = (std::size_t)s * states_.lanes + lane;
+    const double side = states_.side[k];
+    const double x[4] = {0.0, states_.inner[0], states_.inner[1], 1.0};
+    const double y[4] = {side * states_.switch_value[k], side * states_.switch_inner[0][k],
+                         side * states_.switch_inner[1][k], side * states_.switch_end[k]};
+    double least = states_.switch_least[k];
+    if (s != landing) least = std::min({least, least_of_parabola(x, y), least_of_parabola(x + 1, y + 1)});
+    if (least < -SMALL * std::max(std::fabs(y[0]), std::fabs(y[3]))) return true;
+  }
+  return false;
+}
+
+void March::look_for_crossings(Method& method, Flags* mask) {
+  Flags crossed(states_.lanes, 0), suspected(states_.lanes, 0);
+  for (int i = 0; i < states_.lanes; ++i) {
+    if (!(*mask)[i]) continue;
+    LaneControl& c = control_[i];
+    if (c.landing >= 0) {
+      const bool is_first = !is_crossed(i, c.landing) && !may_dip(i, c.landing);
+      if (is_first || c.landing_searches >= SEARCHES) {
+        land(i, mask);
+        continue;
+      }
+    }
+    crossed[i] = is_crossed(i, -1);
+    suspected[i] = !crossed[i] && may_dip(i, -1);
+    if (!crossed[i] && !suspected[i]) c.landing = -1;
+  }
+  if (any(crossed) || any(suspected)) search(method, crossed, suspected, mask);
+}
+
+// A step that shall end at a zero is taken where no better end is known, else tried again.
+void March::land(int lane, Flags* mask) {
+  LaneControl& c = control_[lane];
+  const std::size_t at = (std::size_t)c.landing * states_.lanes + lane;
+  const double value = states_.side[at] * states_.switch_end[at], step = states_.step[lane];
+  const double change = step - c.landing_before;
+  if (c.landing_tries > 0 && std::fabs(change) > 1e-9 * step) {
+    const double slope = (value - c.landing_value) / change;
+    if (slope < 0.0) c.landing_slope = slope;
+  }
+  const double wanted = c.landing_slope < 0.0 ? -value / c.landing_slope : 0.0;
+  const double rounding = 4.0 * ROUNDING * std::max(std::fabs(states_.until[lane]), step);
+  if (std::fabs(wanted) <= rounding || c.landing_tries >= LANDINGS) {
+    c.landed = true;
+    return;
+  }
+  ++c.landing_tries;
+  c.landing_value = value;
+  c.landing_before = step;
+  c.landing_step = step + std::max(-MOST_CHANGE * step, std::min(MOST_CHANGE * step, wanted));
+  (*mask)[lane] = 0;
+}
+
+void March::search(Method& method, const Flags& crossed, const Flags& suspected, Flags* mask) {
+  Flags ignored(states_.side.size());
+  for (std::size_t k = 0; k < ignored.size(); ++k)
+    ignored[k] = is_ignored((int)(k % states_.lanes), (int)(k / states_.lanes));
+  const std::vector<Crossing> found = CrossingSearch(states_, method, ignored).run(crossed, suspected);
+  Flags here(states_.lanes, 0);
+  std::vector<int> which(states_.lanes, -1);
+  for (int i = 0; i < states_.lanes; ++i) {
+    LaneControl& c = control_[i];
+    if (!crossed[i] && !suspected[i]) continue;
+    if (found[i].kind == Crossing::NONE) {
+      c.landing = -1;
+      continue;
+    }
+    (*mask)[i] = 0;
+    if (found[i].kind == Crossing::FAULT) {
+      shorten_for_fault(i);
+    } else if (found[i].kind == Crossing::AT_ONCE) {
+      c.landing = -1;
+      which[i] = found[i].which;
+      here[i] = 1;
+    } else {
+      const double step = states_.step[i];
+      c.landing_searches = c.landing < 0 ? 0 : c.landing_searches + 1;
+      c.landing = found[i].which;
+      c.landing_tries = 0;
+      c.landing_step = c.landing_before = found[i].part * step;
+      c.landing_slope = found[i].slope / step;
+    }
+  }
+  if (any(here)) pass(here, which);
+  for (int i = 0; i < states_.lanes; ++i)
+    if (here[i] && control_[i].running) tell(i, which[i]);
+}
+
+// Switches are passed where the lanes stand: the side changes, and the rates of a kink with it.
+void March::pass(const Flags& mask, const std::vector<int>& which) {
+  const int lanes = states_.lanes;
+  Flags anew(lanes, 0);
+  for (int i = 0; i < lanes; ++i) {
+    if (!mask[i]) continue;
+    const std::size_t k = (std::size_t)which[i] * lanes + i;
+    states_.side[k] = (std::int8_t)-states_.side[k];
+    const bool is_kink = states_.kinds[which[i]].kink;
+    if (++control_[i].passed[which[i]] >= RETURNS && is_kink) finish(i, LaneEnd::HELD, which[i]);
+    anew[i] = is_kink && control_[i].running;
+  }
+  if (!any(anew)) return;
+  const Flags asked = anew;
+  std::vector<double> slope(states_.entries);
+  states_.evaluate(states_.time.data(), states_.y.data(), false, &anew, slope.data(), values_.data());
+  for (int i = 0; i < lanes; ++i) {
+    if (anew[i])
+      for (long k = i; k < states_.entries; k += lanes) states_.slope[k] = slope[k];
+    else if (asked[i])
+      finish(i, LaneEnd::STUCK);
+  }
+}
+
+void March::pass_landed(const Flags& mask) {
+  Flags landed(states_.lanes);
+  std::vector<int> which(states_.lanes, -1);
+  for (int i = 0; i < states_.lanes; ++i) {
+    landed[i] = mask[i] && control_[i].landed;
+    which[i] = control_[i].landing;
+  }
+  pass(landed, which);
+}
+
+// Tells the motion of a switch that was passed; it may end the lane.
+void March::tell(int lane, int which) {
+  const bool rising = states_.side[(std::size_t)which * states_.lanes + lane] > 0;
+  if (states_.motion.event(lane, which, rising, states_.time[lane])) finish(lane, LaneEnd::STOPPED, which);
+}

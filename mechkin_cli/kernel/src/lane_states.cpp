@@ -1,0 +1,79 @@
+#include "lane_states.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+bool any(const Flags& flags) {
+  for (unsigned char f : flags)
+    if (f) return true;
+  return false;
+}
+
+LaneStates::LaneStates(Motion& m, const IntegratorSettings& s)
+    : motion(m), settings(s), lanes(m.lanes()), freedoms(m.freedoms()), quadratures(m.quadratures()),
+      size(2 * freedoms + quadratures), kinds(m.switches()), entries((long)size * lanes) {
+  const std::size_t switches = kinds.size() * lanes;
+  for (auto* a : {&time, &speed, &step, &until, &error, &factor, &reached}) a->assign(lanes, 0.0);
+  for (auto* a : {&y, &slope, &y_end, &slope_end}) a->assign(entries, 0.0);
+  for (auto* a : {&switch_value, &switch_end, &switch_inner[0], &switch_inner[1], &switch_least})
+    a->assign(switches, 0.0);
+  side.assign(switches, 1);
+  work.assign((std::size_t)quadratures * lanes, 0.0);
+  fault.assign(lanes, 0);
+  fresh_fault_.assign(lanes, 0);
+  finite_.assign(lanes, 0.0);
+  report.resize(lanes);
+}
+
+bool LaneStates::evaluate(const double* at, const double* place, bool is_end, Flags* mask, double* slope_there,
+                          double* switches) {
+  const long moved = (long)freedoms * lanes, rest = entries - moved;
+  double* const rates = slope_there + moved;
+  std::memset(fresh_fault_.data(), 0, lanes);
+  motion.rates({at, place, mask->data(), side.data(), is_end}, {rates, switches, fresh_fault_.data()});
+  std::memcpy(slope_there, place + moved, sizeof(double) * moved);
+  // 0 x is 0 unless x is infinite or no number
+  std::fill(finite_.begin(), finite_.end(), 0.0);
+  for (long k = 0; k < rest; k += lanes)
+    for (int i = 0; i < lanes; ++i) finite_[i] += 0.0 * rates[k + i];
+  bool left = false;
+  for (int i = 0; i < lanes; ++i) {
+    if (!(*mask)[i]) continue;
+    ++report[i].evaluations;
+    if (!fresh_fault_[i] && !(finite_[i] == 0.0)) fresh_fault_[i] = NOT_FINITE;
+    if (fresh_fault_[i]) {
+      fault[i] = fresh_fault_[i];
+      (*mask)[i] = 0;
+    } else {
+      left = true;
+    }
+  }
+  return left;
+}
+
+double LaneStates::speed_in(const double* place, int lane) const {
+  double largest = 0.0;
+  for (int k = freedoms; k < 2 * freedoms; ++k) largest = std::max(largest, std::fabs(place[(long)k * lanes + lane]));
+  return largest;
+}
+
+void LaneStates::error_scales(const double* a, const double* b, double* scale) const {
+  const double tolerance = settings.tolerance;
+  const long moved = (long)freedoms * lanes;
+  std::fill_n(scale, moved, tolerance);
+  double* const of_v = scale + moved;
+  std::copy(speed.begin(), speed.end(), of_v);
+  for (long k = moved; k < 2 * moved; k += lanes)
+    for (int i = 0; i < lanes; ++i) {
+      const double larger = std::fabs(a[k + i]) > std::fabs(b[k + i]) ? std::fabs(a[k + i]) : std::fabs(b[k + i]);
+      of_v[i] = larger > of_v[i] ? larger : of_v[i];
+    }
+  for (int i = 0; i < lanes && freedoms; ++i) of_v[i] *= tolerance;
+  for (int f = 1; f < freedoms; ++f) std::copy_n(of_v, lanes, of_v + (long)f * lanes);
+  for (long k = 2 * moved; k < entries; ++k) {
+    const double larger = std::fabs(a[k]) > std::fabs(b[k]) ? std::fabs(a[k]) : std::fabs(b[k]);
+    const double known = work[k - 2 * moved];
+    scale[k] = tolerance * (larger > known ? larger : known);
+  }
+}

@@ -1,0 +1,81 @@
+// The march of the lanes: steps are planned, tried, judged and taken, lane by lane but all lanes at once.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "dop853.hpp"
+#include "lane_states.hpp"
+
+// How a lane goes on.
+struct LaneControl {
+  bool running = true;
+  bool implicit = false;
+  double wanted = 0.0;                   // the step that errors want
+  double room = __builtin_inf();         // the step that faults leave, wider again with each step taken
+  double longest = __builtin_inf();      // the step that the chart bears, as the motion says
+  bool is_cut = false;                   // the step was made shorter for a row
+  bool was_refused = false;
+  long next_row = 0;
+  long attempts = 0;
+  // The way to end a step at a zero of a switch: number, derivative of side * value by time, the step to try,
+  // the one tried before and its value.
+  int landing = -1;
+  int landing_tries = 0, landing_searches = 0;
+  double landing_slope = 0.0, landing_step = 0.0, landing_before = 0.0, landing_value = 0.0;
+  bool landed = false;
+  std::vector<int> passed;               // switches: how often they were passed at this place
+};
+
+class March {
+ public:
+  March(Motion& motion, const IntegratorSettings& settings, const double* time, const std::vector<double>& y,
+        const RowTimes& rows);
+  std::vector<LaneReport> run();
+
+ private:
+  // march.cpp: steps
+  void plan(int lane);
+  void round(Method& method, Flags mask);
+  void judge(Method& method, Flags* mask);
+  void shorten_for_fault(int lane);
+  void refuse(int lane, double step);
+  void take(Method& method, Flags mask);
+  void move_on(const Flags& mask);
+  void settle_ignored(int lane);
+  void rewiden(int lane);
+  void finish(int lane, LaneEnd end, int which = -1);
+  double least(int lane) const;
+
+  // march_start.cpp
+  void start(const double* time, const std::vector<double>& y);
+  void first_sides(const Flags& mask);
+  void first_steps(const Flags& mask);
+  void size_up(const Flags& mask);
+
+  // march_rows.cpp
+  double row_time(int lane, long row) const { return rows_.time[lane * rows_.stride + row]; }
+  bool has_row(const LaneControl& c) const { return c.next_row < rows_.count; }
+  double cut_for_rows(int lane, double step);
+  void rows_inside(Method& method, Flags* mask);
+  void rows_here(const Flags& mask);
+
+  // crossings.cpp
+  bool is_ignored(int lane, int which) const;
+  bool is_crossed(int lane, int but) const;
+  bool may_dip(int lane, int landing) const;
+  void look_for_crossings(Method& method, Flags* mask);
+  void land(int lane, Flags* mask);
+  void search(Method& method, const Flags& crossed, const Flags& suspected, Flags* mask);
+  void pass(const Flags& mask, const std::vector<int>& which);
+  void pass_landed(const Flags& mask);
+  void tell(int lane, int which);
+
+  LaneStates states_;
+  const RowTimes rows_;
+  Dop853 explicit_;
+  std::unique_ptr<Method> implicit_;
+  std::vector<LaneControl> control_;
+  std::vector<double> duration_, size_, place_, values_, part_, at_;
+  std::vector<long> row_;
+};

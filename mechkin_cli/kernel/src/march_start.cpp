@@ -1,0 +1,108 @@
+// The start of a march: sides, sizes and first steps.
+#include <algorithm>
+#include <cmath>
+
+#include "march.hpp"
+
+namespace {
+
+constexpr double LOOK_AHEAD = 1e-6;  // of the duration: where a switch that begins at zero is asked for its side
+
+double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
+
+}  // namespace
+
+void March::start(const double* time, const std::vector<double>& y) {
+  const int lanes = states_.lanes;
+  std::copy_n(time, lanes, states_.time.begin());
+  states_.y = y;
+  Flags mask(lanes, 1);
+  for (int i = 0; i < lanes; ++i) {
+    duration_[i] = rows_.count ? row_time(i, rows_.count - 1) - time[i] : 0.0;
+    states_.speed[i] = states_.speed_in(y.data(), i);
+  }
+  states_.evaluate(time, y.data(), true, &mask, states_.slope.data(), states_.switch_value.data());
+  for (int i = 0; i < lanes; ++i)
+    if (!mask[i]) finish(i, LaneEnd::STUCK);
+  size_up(mask);
+  first_sides(mask);
+  for (int i = 0; i < lanes; ++i) mask[i] = control_[i].running;
+  rows_here(mask);
+  for (int i = 0; i < lanes; ++i) {
+    if (mask[i] && !has_row(control_[i])) finish(i, LaneEnd::DONE);
+    mask[i] = control_[i].running;
+  }
+  if (any(mask) && states_.settings.fixed_step == 0.0) first_steps(mask);
+}
+
+// A switch begins on the side that its value tells, or that it has a moment later where it is zero. Rates that were
+// taken on another side are taken anew.
+void March::first_sides(const Flags& mask) {
+  const int lanes = states_.lanes;
+  const std::size_t switches = states_.kinds.size();
+  if (!switches || !any(mask)) return;
+  const long moved = (long)states_.freedoms * lanes;
+  for (int i = 0; i < lanes; ++i) at_[i] = states_.time[i] + LOOK_AHEAD * duration_[i];
+  for (long k = 0; k < states_.entries; ++k) {
+    const double h = LOOK_AHEAD * duration_[k % lanes];
+    const double bend = k < moved ? 0.5 * h * h * states_.slope[k + moved] : 0.0;
+    place_[k] = states_.y[k] + (h * states_.slope[k] + bend);
+  }
+  std::vector<double> slope(states_.entries);
+  Flags ahead = mask;
+  states_.evaluate(at_.data(), place_.data(), false, &ahead, slope.data(), values_.data());
+  for (std::size_t k = 0; k < states_.side.size(); ++k) {
+    const double here = states_.switch_value[k];
+    const double value = here != 0.0 || !ahead[k % lanes] ? here : values_[k];
+    states_.side[k] = value < 0.0 ? -1 : 1;
+  }
+  Flags again = mask;
+  states_.evaluate(states_.time.data(), states_.y.data(), true, &again, states_.slope.data(),
+                   states_.switch_value.data());
+  for (int i = 0; i < lanes; ++i)
+    if (mask[i] && !again[i]) finish(i, LaneEnd::STUCK);
+}
+
+void March::size_up(const Flags& mask) {
+  const int lanes = states_.lanes;
+  for (int i = 0; i < lanes; ++i) size_[i] = duration_[i] > 0.0 ? SLOWEST / duration_[i] : 0.0;
+  std::fill(size_.begin() + lanes, size_.end(), 0.0);
+  states_.motion.sizes(mask.data(), size_.data());
+  for (int i = 0; i < lanes; ++i) {
+    if (!mask[i]) continue;
+    states_.speed[i] = std::max(states_.speed[i], size_[i]);
+    for (long k = i; k < (long)states_.work.size(); k += lanes)
+      states_.work[k] = std::max(states_.work[k], size_[lanes + k]);
+  }
+}
+
+// Hairer's first step (Hairer, Norsett, Wanner I, II.4, p. 169), from y and its first two derivatives.
+void March::first_steps(const Flags& mask) {
+  const int lanes = states_.lanes;
+  std::vector<double> scale(states_.entries), slope(states_.entries), first(lanes, 0.0), second(lanes, 0.0);
+  states_.error_scales(states_.y.data(), states_.y.data(), scale.data());
+  std::vector<double> of_y(lanes, 0.0);
+  const auto part = [&](double x, long k) { return x == 0.0 ? 0.0 : std::fabs(x) / scale[k]; };
+  const long moving = 2L * states_.freedoms * lanes;
+  for (long k = 0; k < moving; ++k) {
+    of_y[k % lanes] = std::max(of_y[k % lanes], part(states_.y[k], k));
+    first[k % lanes] = std::max(first[k % lanes], part(states_.slope[k], k));
+  }
+  for (int i = 0; i < lanes; ++i) {
+    const bool is_told = of_y[i] > 1e-5 && first[i] > 1e-5;
+    part_[i] = std::min(is_told ? 0.01 * of_y[i] / first[i] : 1e-6 * duration_[i], duration_[i]);
+    at_[i] = states_.time[i] + part_[i];
+  }
+  for (long k = 0; k < states_.entries; ++k) place_[k] = states_.y[k] + part_[k % lanes] * states_.slope[k];
+  Flags ahead = mask;
+  states_.evaluate(at_.data(), place_.data(), false, &ahead, slope.data(), values_.data());
+  for (long k = 0; k < moving; ++k)
+    second[k % lanes] = std::max(second[k % lanes], part(slope[k] - states_.slope[k], k));
+  for (int i = 0; i < lanes; ++i) {
+    if (!mask[i]) continue;
+    const double most = ahead[i] ? std::max(first[i], second[i] / part_[i]) : 0.0;
+    const double told = most > 1e-15 ? eighth_root(0.01 / most) : std::max(1e-6 * duration_[i], 1e-3 * part_[i]);
+    control_[i].wanted = std::min({100.0 * part_[i], told, duration_[i]});
+    states_.fault[i] = 0;
+  }
+}
