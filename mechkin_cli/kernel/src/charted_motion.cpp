@@ -184,6 +184,7 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
 
 void ChartedMotion::write_row(int lane, long row, const Stage& at_row, const double* done) {
   const MotionRows& out = rows_[lane];
+  if (!out.rows) return;
   const int n = plan_.charts, columns = plan_.columns;
   const auto put = [&](double* to, long column, double x) { to[column * out.rows + row] = x; };
   for (int k = 0; k < plan_.states; ++k) put(out.state, k, at(at_row.state, k, lane));

@@ -27,7 +27,7 @@ struct MotionLimits {
   int iterations;
 };
 
-// Rows of a lane, column after column; rows that are not reached stay as they are.
+// Rows of a lane, column after column; rows that are not reached stay as they are. Without rows nothing is written.
 struct MotionRows {
   long rows;
   double* state;          // states
