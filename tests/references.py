@@ -32,6 +32,12 @@ def published(name: str) -> dict[str, list[str]]:
     return _columns(path)
 
 
+def committed(stem: str, table: str) -> list[dict[str, str]]:
+    """The rows of a table kept beside its mechanism, by label."""
+    with (MECHANISMS / stem / f"{table}.csv").open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
 def published_names() -> list[str]:
     return sorted(path.stem for path in MECHANISMS.glob("*/published/*.csv"))
 

@@ -43,8 +43,8 @@ def build_tables(
 def _published(section: written.PublishedValues | None) -> PublishedValues | None:
     if section is None:
         return None
-    remarks = tuple(PrintedRemark(r.text, r.columns or ()) for r in section.remarks)
-    return PublishedValues(section.file, remarks)
+    remarks = tuple(PrintedRemark(r.text, r.columns or (), r.data or ()) for r in section.remarks)
+    return PublishedValues(section.file, remarks, section.rows_by)
 
 
 def _column(

@@ -30,16 +30,28 @@ def tables(
     check: Annotated[
         bool, typer.Option("--check", help="Compare with the tables on disk, write nothing.")
     ] = False,
+    against: Annotated[
+        bool,
+        typer.Option("--against", help="List printed cells that do not agree, write nothing."),
+    ] = False,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """Regenerate the tables kept beside mechanism files.
 
     FOLDER/STEM.yaml has its tables in FOLDER/STEM/TABLE.csv and .md; where tables name printed
-    values, FOLDER/STEM/errata.md compares them. For a folder, FOLDER/README.md is an overview of
+    values, FOLDER/STEM/errata.md compares them, and disagreements.csv has every printed cell that
+    does not agree. For a folder, FOLDER/README.md is an overview of
     its mechanisms; a README.md of your own is left alone.
     """
     files = _mechanism_files(path)
+    if against:
+        from mechkin_cli.cli.against import list_disagreements
+
+        if check:
+            raise UsageError("--against and --check are two questions; ask them one by one")
+        list_disagreements(files, json, quiet)
+        return
     code = ExitCode.OK
     records: list[Record] = []
     rows: list[OverviewRow] = []
@@ -127,6 +139,7 @@ def _made(
 def _fresh_files(analysis: Analysis, printed: Sequence[PrintedTable]) -> dict[str, bytes]:
     """All that stands beside a mechanism file, by name: tables, and the errata page."""
     from mechkin_cli.tables.csv_writer import COMMITTED_DIGITS, csv_bytes
+    from mechkin_cli.tables.disagreements import NAME, disagreements_csv
     from mechkin_cli.tables.errata import PAGE, errata_page
     from mechkin_cli.tables.markdown import markdown_bytes
 
@@ -137,6 +150,8 @@ def _fresh_files(analysis: Analysis, printed: Sequence[PrintedTable]) -> dict[st
     if printed:
         model = analysis.model
         fresh[PAGE] = errata_page(model.name, model.source, printed).encode()
+        if listed := disagreements_csv(printed):
+            fresh[NAME] = listed
     return fresh
 
 

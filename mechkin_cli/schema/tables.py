@@ -22,10 +22,11 @@ TableName = Annotated[
 ]
 
 
+ROW_NUMBER = "row.number"
 _DEVICE = re.compile("con|prn|aux|nul|com[0-9]|lpt[0-9]", re.IGNORECASE)
 # JSON Schema has no flag for ignoring case
 _TAKEN_FOR_EDITORS = (
-    "^([Rr][Oo][Ww][Ss]|[Ee][Rr][Rr][Aa][Tt][Aa]|[Cc][Oo][Nn]|[Pp][Rr][Nn]|[Aa][Uu][Xx]|[Nn][Uu][Ll]"
+    "^([Rr][Oo][Ww][Ss]|[Ee][Rr][Rr][Aa][Tt][Aa]|[Dd][Ii][Ss][Aa][Gg][Rr][Ee][Ee][Mm][Ee][Nn][Tt][Ss]|[Cc][Oo][Nn]|[Pp][Rr][Nn]|[Aa][Uu][Xx]|[Nn][Uu][Ll]"
     "|[Cc][Oo][Mm][0-9]|[Ll][Pp][Tt][0-9])$"
 )
 
@@ -55,6 +56,8 @@ class PrintedRemark(Section):
 
     columns: Annotated[tuple[Text, ...], Limits(min_length=1)] | None = None
     """Labels of the columns it holds for; left out, all."""
+    data: Annotated[tuple[Text, ...], Limits(min_length=1)] | None = None
+    """Numbers that the source does not give, where the remark says how they were found."""
     text: Text
     """The reason in words."""
 
@@ -64,6 +67,8 @@ class PublishedValues(Section):
 
     file: CsvPath
     """The values as printed: a CSV file with the labels of the table, the first one in front."""
+    rows_by: Text | None = None
+    """Label of the column that finds the rows, or `row.number`; left out, the first one printed."""
     remarks: tuple[PrintedRemark, ...] = ()
     """Why values differ, in words."""
 
@@ -80,6 +85,7 @@ PathOrPublishedValues = Annotated[
 _TAKEN = {
     "rows": "every run writes a table rows of its own",
     "errata": "the comparison with printed values is written to the page errata",
+    "disagreements": "printed cells that do not agree are written to a table disagreements",
 }
 
 
@@ -116,8 +122,13 @@ class Table(Section):
     """Values printed in the source, as a CSV file with the same labels."""
 
     def check(self) -> None:
-        """Remarks name columns of the table."""
+        """What is published names columns of the table."""
         labels = [column.label for column in self.columns]
+        rows_by = self.published.rows_by if self.published else None
+        if rows_by not in (None, ROW_NUMBER, *labels):
+            text = f"the table has no column {rows_by!r} to find its rows by"
+            hint = f"labels are {', '.join(labels)}; or write {ROW_NUMBER}"
+            raise refuse("unknown-label", text, hint, "published", "rows_by")
         for index, remark in enumerate(self.published.remarks if self.published else ()):
             for place, label in enumerate(remark.columns or ()):
                 if label not in labels:

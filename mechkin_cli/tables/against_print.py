@@ -29,7 +29,7 @@ def against_print(
             continue
         place = file.parent / layout.published.file
         try:
-            compared = agreement(table, read_printed(place))
+            compared = agreement(table, read_printed(place), layout.published.rows_by)
         except ValueError as error:
             raise UsageError(f"{place}: {error}") from error
         link = posixpath.relpath(layout.published.file, file.stem)

@@ -9,13 +9,14 @@ tables, which the last bits of a double do not reach, so that a tie is a tie.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Context, Decimal
 
 from mechkin_cli.tables.columns import Column, Columns, Words
 from mechkin_cli.tables.csv_writer import COMMITTED_DIGITS
-from mechkin_cli.tables.printed import PrintedValues
+from mechkin_cli.tables.layout import ROW_NUMBER
+from mechkin_cli.tables.printed import Cell, PrintedValues
 
 HALF = Decimal("0.5")
 ONE_OFF = Decimal("1.5")
@@ -26,8 +27,12 @@ _WIDE = Context(prec=700)
 
 @dataclass(frozen=True, slots=True)
 class PrintedCell:
-    """One printed number beside the computed one; `key` is the row's printed first cell."""
+    """One printed number beside the computed one.
 
+    `key` is what found the row, the printed number or its count; `row` counts computed rows from 1.
+    """
+
+    row: int
     key: Decimal
     label: str
     printed: Decimal
@@ -61,7 +66,7 @@ class PrintedCell:
 
 @dataclass(frozen=True, slots=True)
 class TableAgreement:
-    """All printed cells of a table but those of its first column.
+    """All printed cells of a table but those that find its rows, `rows_by` a label or the count.
 
     `without_row` counts printed rows that the table does not have, `without_value` printed cells
     whose computed cell is empty; `other_labels` are printed columns that the table does not have.
@@ -71,6 +76,12 @@ class TableAgreement:
     without_row: int = 0
     without_value: int = 0
     other_labels: tuple[str, ...] = ()
+    rows_by: str = ""
+
+    @property
+    def off(self) -> tuple[PrintedCell, ...]:
+        """The cells that do not agree."""
+        return tuple(cell for cell in self.cells if not cell.agrees)
 
     @property
     def agreeing(self) -> int:
@@ -88,37 +99,53 @@ class TableAgreement:
         return len(self.cells) - self.agreeing - self.one_off
 
 
-def agreement(table: Columns, printed: PrintedValues) -> TableAgreement:
-    """The printed cells beside the computed ones; rows are found by their first printed cell.
+def agreement(table: Columns, printed: PrintedValues, rows_by: str | None = None) -> TableAgreement:
+    """The printed cells beside the computed ones.
+
+    Rows are found by the values of the column `rows_by`, None for the first printed one, or one
+    after the other where it is `ROW_NUMBER`.
 
     Raises:
-        ValueError: the table has no column of numbers with the first printed label.
+        ValueError: the table or the print has no column of numbers with that label.
     """
     columns = {c.label: c for c in table.columns if not isinstance(c.values, Words)}
-    first, *labels = printed.labels
-    if first not in columns:
-        raise ValueError(
-            f"the first printed column {first!r} finds the rows, and table {table.name} has no "
-            f"such column of numbers; its labels are {', '.join(columns)}"
-        )
+    key = printed.labels[0] if rows_by is None else rows_by
+    labels = [label for label in printed.labels if label != key]
     computed = {label: _decimals(columns[label]) for label in labels if label in columns}
-    rows = _Rows(_decimals(columns[first]))
     cells, without_row, without_value = [], 0, 0
-    for key, *texts in printed.rows:
-        row = rows.take(key)
-        if key is None or row is None:
+    for found, row, texts in _paired(table, columns, printed, key):
+        if row is None or found is None:
             without_row += 1
             continue
-        for label, text in zip(labels, texts, strict=True):
-            if text is None or label not in computed:
-                continue
-            value = computed[label][row]
-            if value is None:
+        for label in computed:
+            text, value = texts[label], computed[label][row]
+            if text is not None and value is None:
                 without_value += 1
-            else:
-                cells.append(PrintedCell(key, label, text, value))
+            elif text is not None and value is not None:
+                cells.append(PrintedCell(row + 1, found, label, text, value))
     others = tuple(label for label in labels if label not in computed)
-    return TableAgreement(tuple(cells), without_row, without_value, others)
+    return TableAgreement(tuple(cells), without_row, without_value, others, key)
+
+
+def _paired(
+    table: Columns, columns: Mapping[str, Column], printed: PrintedValues, key: str
+) -> Iterator[tuple[Cell, int | None, Mapping[str, Cell]]]:
+    """Of each printed row what finds it, the computed row, and its cells by label."""
+    rows = [dict(zip(printed.labels, row, strict=True)) for row in printed.rows]
+    if key == ROW_NUMBER:
+        count = table.columns[0].rows
+        for number, row in enumerate(rows):
+            yield Decimal(number + 1), number if number < count else None, row
+        return
+    for labels, who in ((columns, f"table {table.name}"), (printed.labels, "the print")):
+        if key not in labels:
+            raise ValueError(
+                f"the column {key!r} finds the rows, and {who} has no "
+                f"such column of numbers; its labels are {', '.join(labels)}"
+            )
+    places = _Rows(_decimals(columns[key]))
+    for row in rows:
+        yield row[key], places.take(row[key]), row
 
 
 def _decimals(column: Column) -> list[Decimal | None]:
@@ -129,7 +156,7 @@ def _decimals(column: Column) -> list[Decimal | None]:
 
 
 class _Rows:
-    """Row numbers by a printed value of the first column; each row is found once."""
+    """Row numbers by a printed value of one column; each row is found once."""
 
     def __init__(self, values: list[Decimal | None]) -> None:
         self._values = values

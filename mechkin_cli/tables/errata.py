@@ -1,8 +1,9 @@
 """The errata page of a mechanism: its tables against print, in Markdown.
 
-Per table: how many printed cells agree, are one off in the last digit, differ; the columns that do
-not agree throughout with their largest difference; the worst cells; the reasons in words, as the
-mechanism file gives them.
+First the numbers that the source does not give, and what speaks for them. Per table: how many
+printed cells agree, are one off in the last digit, differ; the columns that do not agree throughout
+with their largest difference; the worst cells; the reasons in words, as the mechanism file gives
+them.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from decimal import Decimal
 from mechkin_cli.legible import whole
 from mechkin_cli.tables.agreement import PrintedCell, TableAgreement
 from mechkin_cli.tables.columns import Columns
-from mechkin_cli.tables.layout import PublishedValues
+from mechkin_cli.tables.layout import ROW_NUMBER, PublishedValues
 from mechkin_cli.tables.neutral import link_target, markdown_line, markdown_text
 
 PAGE = "errata.md"
@@ -46,7 +47,7 @@ def errata_page(name: str, source: str, tables: Sequence[PrintedTable]) -> str:
     parts = [f"# {markdown_text(whole(name))}: printed and computed values"]
     if source:
         parts.append(f"Source: {markdown_text(source)}.")
-    parts += [_HEAD, _overview(tables)]
+    parts += [_HEAD, _overview(tables), *_data(tables)]
     for table in tables:
         parts += _table_parts(table)
     return "\n\n".join(parts) + "\n"
@@ -69,6 +70,15 @@ def _overview(tables: Sequence[PrintedTable]) -> str:
     rows = [_table_row(one.table.name, one.agreement) for one in tables]
     labels = ["table", "cells", "agree", "one off", "differ", "largest, units"]
     return _markdown(labels, rows)
+
+
+def _data(tables: Sequence[PrintedTable]) -> list[str]:
+    """The numbers that are not in the source's text, and what speaks for them."""
+    remarks = [remark for one in tables for remark in one.published.remarks if remark.data]
+    if not remarks:
+        return []
+    lines = [f"- {markdown_line(', '.join(r.data) + ': ' + r.text)}" for r in remarks]
+    return ["## Data that the source does not give, or gives otherwise", "\n".join(lines)]
 
 
 def _table_row(name: str, agreement: TableAgreement) -> list[str]:
@@ -122,9 +132,10 @@ def _column_rows(one: PrintedTable) -> list[list[str]]:
 
 
 def _worst_cells(one: PrintedTable) -> list[str]:
-    off = [cell for cell in one.agreement.cells if not cell.agrees]
+    off = one.agreement.off
     shown = sorted(off, key=lambda cell: -abs(cell.units))[:WORST_CELLS]
-    first = markdown_text(one.table.columns[0].label)
+    rows_by = one.agreement.rows_by
+    first = "row" if rows_by == ROW_NUMBER else markdown_text(rows_by)
     rows = [
         [
             str(c.key),
@@ -137,11 +148,12 @@ def _worst_cells(one: PrintedTable) -> list[str]:
     ]
     parts = [_markdown([first, "column", "printed", "computed", "units"], rows)]
     rest = len(off) - len(shown)
-    return [*parts, f"and {_counted(rest, 'more cell')} that do not agree."] if rest else parts
+    more = f"and {_counted(rest, 'more cell')} that do not agree ([all](disagreements.csv))."
+    return [*parts, more] if rest else parts
 
 
 def _reasons(one: PrintedTable) -> list[str]:
-    remarks = one.published.remarks
+    remarks = [remark for remark in one.published.remarks if not remark.data]
     lines = []
     for remark in remarks:
         where = f"{', '.join(remark.labels)}: " if remark.labels else ""

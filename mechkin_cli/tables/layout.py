@@ -12,6 +12,9 @@ if TYPE_CHECKING:
 ROW_TEXTS = ("row.mode", "row.status")
 """Quantities of a row that are texts: each can only be a column of its own."""
 
+ROW_NUMBER = "row.number"
+"""Stands for the number of a printed row, counted from 1, where no column can find it."""
+
 ROW_NUMBERS = ("row.residual", "row.condition", "row.power_error")
 """Quantities of a row that are dimensionless numbers."""
 
@@ -25,17 +28,27 @@ class ColumnLayout(NamedTuple):
 
 
 class PrintedRemark(NamedTuple):
-    """Why printed values differ, in words; `labels` of the columns meant, () for all."""
+    """Why printed values differ, in words; `labels` of the columns meant, () for all.
+
+    A remark with `data` is about these numbers instead: they are not in the source's text, and the
+    words say where they are from.
+    """
 
     text: str
     labels: tuple[str, ...] = ()
+    data: tuple[str, ...] = ()
 
 
 class PublishedValues(NamedTuple):
-    """Where the printed values of a table stand: a path relative to the mechanism file."""
+    """Where the printed values of a table stand: a path relative to the mechanism file.
+
+    `rows_by` is the label by whose values printed rows are found, `ROW_NUMBER` where the n-th
+    printed row is the n-th computed one, and None for the first printed column.
+    """
 
     file: str
     remarks: tuple[PrintedRemark, ...] = ()
+    rows_by: str | None = None
 
 
 class TableLayout(NamedTuple):

@@ -60,7 +60,8 @@ def committed(folder: Path) -> Path:
 def test_tables_as_committed(mechkin, committed) -> None:
     run = mechkin("tables", "--check")
     assert (run.code, run.out) == (0, "")
-    assert run.err == "mechanisms/rcsr: 23 files as committed\n"
+    count = sum(path.is_file() for path in committed.iterdir())
+    assert run.err == f"mechanisms/rcsr: {count} files as committed\n"
     assert mechkin("tables", "--check", "--quiet").err == ""
 
 
@@ -114,7 +115,23 @@ def test_tables_with_a_printed_digit_changed(mechkin, committed) -> None:
     path = committed / "published/table_09.csv"
     path.write_text(path.read_text(encoding="utf-8").replace("-0.288", "-0.289"), encoding="utf-8")
     record = mechkin("tables", "--check", "--json").json["files"][0]
-    assert [t["name"] for t in record["tables"] if t["verdict"] != "equal"] == ["errata.md"]
+    changed = [t["name"] for t in record["tables"] if t["verdict"] != "equal"]
+    assert changed == ["errata.md", "disagreements.csv"]
+
+
+def test_every_disagreeing_cell_can_be_listed(mechkin, committed) -> None:
+    before = {path: path.read_bytes() for path in committed.iterdir() if path.is_file()}
+    run = mechkin("tables", "mechanisms", "--against")
+    assert run.code == 0
+    assert run.out == (committed / "disagreements.csv").read_text(encoding="utf-8")
+    assert "mechanisms/rcsr.yaml: 1479 of 2106 cells agree, 25 one off, 602 differ" in run.err
+    (record,) = mechkin("tables", "mechanisms/rcsr.yaml", "--against", "--json").json["files"]
+    listed = sum(len(table["disagreements"]) for table in record["tables"])
+    assert listed == len(run.out.splitlines()) - 1 == 627
+    found = [(c["at"], c["column"], c["printed"]) for c in record["tables"][0]["disagreements"]]
+    assert ("202", "theta4", "-103.842") in found
+    assert {path: path.read_bytes() for path in before} == before
+    assert "two questions" in mechkin("tables", "--against", "--check").err
 
 
 def test_tables_without_the_printed_values(mechkin, committed) -> None:
@@ -132,7 +149,7 @@ def test_tables_with_wrong_printed_values(mechkin, committed) -> None:
     (committed / "published/table_09.csv").write_text("theta,a_o2_x\n150,0.1\n", encoding="utf-8")
     run = mechkin("tables")
     assert run.code == 2
-    assert "the first printed column 'theta' finds the rows" in run.err
+    assert "the column 'theta' finds the rows, and table table_09 has no" in run.err
 
 
 def test_tables_finds_a_changed_digit(mechkin, committed) -> None:
@@ -147,7 +164,8 @@ def test_tables_finds_a_changed_digit(mechkin, committed) -> None:
     assert run.code == 1
     assert "table_03.csv: different, 1 cell; largest relative change " in run.out
     assert f"row 2, theta4: committed {cells[3]}, fresh 36.85" in run.out
-    assert "23 table files: 22 equal, 1 different" in run.out
+    count = sum(path.is_file() for path in committed.iterdir())
+    assert f"{count} table files: {count - 1} equal, 1 different" in run.out
     assert path.read_bytes() == before
     (record,) = mechkin("tables", "--check", "--json").json["files"]
     verdicts = {table["name"]: table["verdict"] for table in record["tables"]}
@@ -168,7 +186,11 @@ def test_tables_regenerates_what_is_committed(mechkin, committed) -> None:
     for path in written:
         path.unlink()
     run = mechkin("tables")
-    assert (run.code, run.out, run.err) == (0, "", "mechanisms/rcsr: 23 files written\n")
+    assert (run.code, run.out, run.err) == (
+        0,
+        "",
+        f"mechanisms/rcsr: {len(written)} files written\n",
+    )
     assert {name: (committed / name).read_bytes() for name in expected} == expected
 
 

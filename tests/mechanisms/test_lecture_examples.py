@@ -1,8 +1,9 @@
 """Examples of lecture notes on spatial mechanisms: one position each, solved at 50 digits.
 
-Open chains with all coordinates driven, plane loops (overconstrained in space), a crank with a
-slider through a ball; those with an idle freedom are left out. The mechanism files call a joint
-`joint_A` and a point `point_A`, since the notes give both the same name.
+Open chains with all coordinates driven, plane loops (overconstrained in space), cranks with a
+slider or a second crank through balls; where a coupler spins freely its rates have no spin. The
+mechanism files call a joint `joint_A` and a point `point_A`, since the notes give both the same
+name.
 """
 
 from __future__ import annotations
@@ -13,17 +14,22 @@ from typing import Any
 import numpy as np
 import pytest
 from mechanisms.runs import LECTURES, run
-from references import FOLDER
+from references import FOLDER, committed
 
 import mechkin_cli as mk
 
 LIMIT = 1e-13
 
 _DATA = json.loads((FOLDER / "exact" / "lecture_examples.json").read_text(encoding="utf-8"))
-EXAMPLES = {e["name"]: e for e in _DATA["examples"] if not e["passive_freedoms"]}
+EXAMPLES = {e["name"]: e for e in _DATA["examples"]}
 
 _OF_POINTS = {"position": "position", "velocity": "velocity", "acceleration": "acceleration"}
-_OF_LINKS = {"angular_velocity": "omega", "angular_acceleration": "alpha"}
+_OF_LINKS = {
+    "angular_velocity": "omega",
+    "angular_acceleration": "alpha",
+    "angular_velocity_zero_spin": "omega",
+    "angular_acceleration_zero_spin": "alpha",
+}
 _OF_JOINTS = {"joint_displacement": "", "joint_velocity": "_dot", "joint_acceleration": "_ddot"}
 
 
@@ -39,7 +45,8 @@ def computed(example: dict[str, Any], wanted: dict[str, Any], analysis: mk.Analy
     if quantity in _OF_JOINTS:
         kind = next(j["type"] for j in example["joints"] if j["name"] == wanted["joint"])
         name = f"joint_{wanted['joint']}.{'theta' if kind == 'R' else 's'}{_OF_JOINTS[quantity]}"
-        return analysis[name][0]
+        found = analysis[name][0]
+        return np.radians(found) if name.endswith(".theta") else found
     raise ValueError(f"no quantity for {wanted}")
 
 
@@ -61,3 +68,14 @@ def test_expected_values(example, wanted):
     assert not analysis.result.status.any()
     found, expected = np.asarray(computed(example, wanted, analysis)), np.array(wanted["value"])
     assert np.max(np.abs(found - expected)) <= LIMIT * max(1.0, np.max(np.abs(expected)))
+
+
+@pytest.mark.parametrize("branch", ["plus", "minus"])
+def test_equation_50_lacks_the_rate_of_the_input(branch):
+    """As printed it is omega_o; it is the ratio of the rates."""
+    (row,) = committed(f"lecture_rssr_eq50_{branch}", "result")
+    expected = EXAMPLES[f"rssr_eq50_{branch}"]["expected"]
+    psi = next(wanted["value"] for wanted in expected if wanted.get("name") == "psi [rad]")
+    assert abs(float(row["psi"]) - np.degrees(psi)) <= 1e-9
+    assert abs(float(row["eq_50"]) - float(row["ratio"])) <= 1e-11
+    assert abs(float(row["Bo_theta_dot"]) - 4 * float(row["eq_50"])) <= 1e-11

@@ -85,6 +85,41 @@ def test_a_value_that_comes_twice_is_found_twice():
     assert found.without_row == 1
 
 
+def test_rows_are_found_by_a_named_column():
+    """A first column that repeats when rounded would pair the second row with the first."""
+    computed = table(x=[20.0, 20.004, 20.03], y=[1, 2, 3], t=[0.0, 0.1, 0.2])
+    text = "x,y,t\n20.00,2,0.1\n20.03,3,0.2\n20.00,1,0.0"
+    found = agreement(computed, printed(text), "t")
+    assert [(cell.row, str(cell.key), cell.label, cell.agrees) for cell in found.cells] == [
+        (2, "0.1", "x", True),
+        (2, "0.1", "y", True),
+        (3, "0.2", "x", True),
+        (3, "0.2", "y", True),
+        (1, "0.0", "x", True),
+        (1, "0.0", "y", True),
+    ]
+    assert not agreement(computed, printed(text)).cells[0].agrees
+
+
+def test_rows_are_found_by_their_number():
+    computed = table(x=[20.0, 20.004], y=[1, 2])
+    found = agreement(computed, printed("x,y\n20.00,1\n20.00,2\n20.03,3"), "row.number")
+    assert [(cell.row, str(cell.key), cell.label) for cell in found.off] == []
+    assert [(cell.row, cell.label) for cell in found.cells] == [
+        (1, "x"),
+        (1, "y"),
+        (2, "x"),
+        (2, "y"),
+    ]
+    assert found.without_row == 1
+
+
+@pytest.mark.parametrize(("rows_by", "who"), [("q", "table t"), ("y", "the print")])
+def test_the_column_that_finds_rows_must_be_on_both_sides(rows_by, who):
+    with pytest.raises(ValueError, match=f"'{rows_by}' finds the rows, and {who} has no"):
+        agreement(table(x=[1], y=[1]), printed("x,z\n1,1"), rows_by)
+
+
 def test_columns_that_one_side_lacks():
     found = agreement(table(x=[1], y=[2], z=[3]), printed("x,w,z,v\n1,7,3,8"))
     assert [cell.label for cell in found.cells] == ["z"]

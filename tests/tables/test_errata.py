@@ -6,6 +6,7 @@ import numpy as np
 
 from mechkin_cli.tables.agreement import agreement
 from mechkin_cli.tables.columns import Column, Columns
+from mechkin_cli.tables.disagreements import against_print_record, disagreements_csv
 from mechkin_cli.tables.errata import PrintedTable, counts, errata_page
 from mechkin_cli.tables.layout import PrintedRemark, PublishedValues
 from mechkin_cli.tables.printed import PrintedValues
@@ -63,7 +64,7 @@ printed less computed; a *unit* is one unit of the last printed digit.
 | 5   |      y |     6.5 |    6.000 |  +5.00 |
 | 4   |      y |     5.4 |    5.000 |  +4.00 |
 
-and 3 more cells that do not agree.
+and 3 more cells that do not agree ([all](disagreements.csv)).
 
 - y: a slip
 - and another
@@ -83,3 +84,34 @@ def test_a_difference_without_a_reason_says_so():
     page = errata_page("M", "", [printed_table("t", [1.0], ["2.0"])])
     assert page.endswith("- The reason is not known.\n")
     assert "Source" not in page
+
+
+def test_data_that_the_source_does_not_give():
+    remark = PrintedRemark("a fit gives 5", data=("s1", "s4"))
+    page = errata_page("M", "", [printed_table("t", [1.0], ["2.0"], remark)])
+    data = page.index("## Data that the source does not give, or gives otherwise")
+    assert page.index("- s1, s4: a fit gives 5\n") > data
+    assert data < page.index("## t: Table t")
+    assert page.endswith("- The reason is not known.\n")
+
+
+def test_every_disagreement_is_listed():
+    lines = disagreements_csv([RIGHT, WRONG]).decode().splitlines()
+    assert lines[0] == "table,row,found by,at,column,printed,computed,units"
+    assert lines[1] == "two,2,x,1,y,2.1,2,1"
+    assert len(lines) == 1 + len(WRONG.agreement.off) == 9
+    assert disagreements_csv([RIGHT]) == b""
+
+
+def test_disagreements_as_data():
+    one, two = against_print_record([RIGHT, WRONG])
+    assert (one["agree"], one["disagreements"]) == (2, [])
+    assert (two["cells"], two["agree"], two["one_off"], two["differ"]) == (9, 1, 1, 7)
+    assert two["disagreements"][0] == {
+        "row": 2,
+        "at": "1",
+        "column": "y",
+        "printed": "2.1",
+        "computed": 2.0,
+        "units": 1.0,
+    }
