@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar, cast
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.solver.batch import RESIDUAL_TESTS, Batch
+from mechkin_cli.solver.batch import RESIDUAL_TESTS, Batch, Chart
 from mechkin_cli.solver.batch import run as run_kernel
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import OutputPlan
@@ -284,6 +284,7 @@ class Session:
         loads: Floats | None = None,
         turned: Floats | None = None,
         whole: Floats | None = None,
+        chart: Chart | None = None,
         derivatives: bool = False,
         shift: int = 0,
         iterations: int = tolerances.NEWTON_ITERATIONS,
@@ -301,6 +302,7 @@ class Session:
             loads=loads,
             turned=turned,
             whole=whole,
+            chart=chart,
             demand=demand,
             outputs=None if readout is None else readout.outputs,
             derivatives=derivatives,
