@@ -689,5 +689,13 @@ IDLE_DECIMALS: Final = 9
 """Decimals of a line (parts of the size) that an idle freedom is held about: what depends on it is
 conventional, and as many are written; errors of the configurations found are far smaller."""
 
+RESPONSE_TOLERANCE: Final = 1e-10
+"""Relative error of a step of a response where its file says none: seconds of motion then keep nine
+digits, at twice the work of 1e-7."""
+
+RESPONSE_TOLERANCES: Final = (1e-14, 1e-2)
+"""Least and largest tolerance of a response: below, rounding of the accelerations decides; above,
+error estimates mean nothing."""
+
 MOST_THREADS: Final = 1024
 """As many threads as may be asked for."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from mechkin_cli.building.coordinates import dimension_of, is_coordinate
-from mechkin_cli.building.fields import Fields
+from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.mechanism.model import Joint
 from mechkin_cli.mechanism.motion import Assembly
 from mechkin_cli.nearest import nearest_hint
@@ -18,13 +18,21 @@ def build_assembly(
     """The assembly that the section means, with its coordinates in SI."""
     if section is None:
         return Assembly()
-    near = {}
-    for name, text in section.near.items():
-        path = ("assembly", "near", name)
-        if is_coordinate(fields, path, name, joints):
-            near[name] = fields.number(path, text, dimension_of(name.partition(".")[2]))
+    near = near_values(fields, ("assembly", "near"), section.near, joints)
     straight = section.at_branch_points is not None
     return Assembly(near, section.mode, section.turns, straight)
+
+
+def near_values(
+    fields: Fields, path: Path, texts: Mapping[str, str], joints: Mapping[str, Joint]
+) -> dict[str, float]:
+    """The coordinates (rad, m) of the section `near` at `path`."""
+    near = {}
+    for name, text in texts.items():
+        place = (*path, name)
+        if is_coordinate(fields, place, name, joints):
+            near[name] = fields.number(place, text, dimension_of(name.partition(".")[2]))
+    return near
 
 
 def build_follow(

@@ -11,35 +11,37 @@ from typing import NamedTuple
 from mechkin_cli.building.assembly import build_assembly, build_follow
 from mechkin_cli.building.columns import build_tables, used_quantities
 from mechkin_cli.building.fields import Fields, Path, read_parameters
+from mechkin_cli.building.idle import held_of, note_spins, settled
 from mechkin_cli.building.linkage import build_linkage, is_link
 from mechkin_cli.building.loads import LoadBuilder
 from mechkin_cli.building.memory import row_limit
 from mechkin_cli.building.motion import build_motion
+from mechkin_cli.building.run_names import runs_of
 from mechkin_cli.building.sizes import check_blocks, check_size
 from mechkin_cli.building.source import Source
 from mechkin_cli.building.unit_system import note_force_unit, read_units
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
-from mechkin_cli.mechanism.held import Held
-from mechkin_cli.mechanism.holding import held_freedoms
-from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.model import Attached, Link, Mechanism
 from mechkin_cli.mechanism.problem import Problem
-from mechkin_cli.mechanism.quantities import Wanted
+from mechkin_cli.mechanism.quantities import TIME_OF_ROW, Wanted
 from mechkin_cli.reading.parser import in_order
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of, needs_all_links
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
-from mechkin_cli.tables.layout import TableLayout, default_table
+from mechkin_cli.tables.layout import TableLayout
 from mechkin_cli.units import LENGTH
 
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})
+_NO_GRAPHS: Mapping[str, SolverGraph | Diagnostic] = MappingProxyType({})
 
 
 class Built(NamedTuple):
     """The problem of a file, its solver graph (or why it cannot be solved as it is driven), its
-    tables, the source it names, and what was read."""
+    tables, the source it names, what was read, its runs by name and the solver graphs at the starts
+    of its responses."""
 
     problem: Problem
     graph: SolverGraph | Diagnostic
@@ -47,6 +49,12 @@ class Built(NamedTuple):
     own_tables: bool
     source: str
     read: Source
+    runs: tuple[str, ...] = (SWEEP,)
+    response_graphs: Mapping[str, SolverGraph | Diagnostic] = _NO_GRAPHS
+
+    def tables_of(self, run: str) -> tuple[TableLayout, ...]:
+        """The tables that read a run."""
+        return tuple(table for table in self.tables if table.run == run)
 
 
 def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
@@ -58,39 +66,29 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
     file = source.file
     fields = read_fields(source, given)
     problem = build_problem(fields, file)
-    tables = build_tables(fields, file.tables, problem.quantities())
-    if not file.tables:
-        timed = problem.motion.time is not None
-        names = [driven.name for driven in problem.motion.inputs]
-        tables = (default_table(problem.mechanism.coordinates, names, timed=timed),)
-    if file.loads or needs_forces(problem, tables):
+    tables = build_tables(fields, file, problem)
+    own = [table for table in tables if table.run == SWEEP]
+    if file.loads or file.responses or needs_forces(problem, own):
         note_force_unit(fields)
     follow = build_follow(fields, file.follow, problem.mechanism.joints)
     problem = replace(problem, hold_idle=file.idle == "hold", follow=follow)
     if not fields.error_count:
-        problem = replace(problem, held=_held(problem))
+        problem = replace(problem, held=held_of(problem))
     graph = _graph(fields, file, problem)
     if isinstance(graph, SolverGraph):
-        check_spins(fields, problem, tables)
-        if problem.held:
-            from mechkin_cli.mechanism.idle import without_spin
+        check_spins(fields, problem, own)
+        problem = settled(problem)
+    graphs: dict[str, SolverGraph | Diagnostic] = {}
+    if problem.responses and graph is not None:
+        from mechkin_cli.building.response_graphs import with_graphs
 
-            problem = without_spin(problem)
+        problem, graphs = with_graphs(fields, problem)
     errors = [d for d in fields.diagnostics if d.severity == "error"]
     if errors or graph is None:
         raise InvalidFile(in_order(fields.diagnostics))
     problem = replace(problem, diagnostics=tuple(in_order(fields.diagnostics)))
-    return Built(problem, graph, tables, bool(file.tables), file.source or "", source)
-
-
-def _held(problem: Problem) -> tuple[Held, ...]:
-    """What holds the idle freedoms."""
-    held, as_drawn = held_freedoms(problem.mechanism, problem.motion.driven)
-    if not as_drawn:
-        return held
-    from mechkin_cli.freedoms.held_along import held_along
-
-    return held_along(problem, held)
+    own_tables, names = bool(file.tables), runs_of(file)
+    return Built(problem, graph, tables, own_tables, file.source or "", source, names, graphs)
 
 
 def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fields:
@@ -101,19 +99,34 @@ def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fie
     return fields
 
 
-def build_problem(fields: Fields, file: MechanismFile) -> Problem:
-    """The mechanism with its loads, its motion and assembly."""
+def build_problem(fields: Fields, file: MechanismFile, *, responses: bool = True) -> Problem:
+    """The mechanism with its loads, its motion and assembly, and the file's `responses`."""
     links, joints = build_linkage(fields, file)
     points, directions = _points(fields, file, links), _directions(fields, file, links)
-    motion = build_motion(fields, file.motion, joints, row_limit(file, joints))
+    limit = row_limit(file, joints)
+    motion = build_motion(fields, file.motion, joints, limit)
     assembly = build_assembly(fields, file.assembly, joints)
     name = file.name or fields.document.file
     mechanism = Mechanism(name, links, joints, points, directions)
     problem = Problem(mechanism, motion, assembly, fields.units, dict(fields.parameters))
-    loads = LoadBuilder(fields, links, joints, points, problem.quantities())
+    loads = LoadBuilder(fields, links, joints, points, _quantities_of_runs(file, problem))
     loads.add_all(file.loads)
-    mechanism = replace(mechanism, loads=tuple(loads.loads), gravity=loads.gravity)
-    return replace(problem, mechanism=mechanism, load_laws=loads.laws)
+    acting = loads.of_run(SWEEP)
+    mechanism = replace(mechanism, loads=acting.loads, gravity=acting.gravity)
+    problem = replace(problem, mechanism=mechanism, load_laws=acting.laws)
+    if not (file.responses and responses):
+        return problem
+    from mechkin_cli.building.responses import build_responses
+
+    found = build_responses(fields, file.responses, problem, loads, limit)
+    return replace(problem, responses=found)
+
+
+def _quantities_of_runs(file: MechanismFile, problem: Problem) -> dict[str, Mapping[str, Wanted]]:
+    """What loads may read in each run, by its name: rows of responses have a time."""
+    swept = problem.quantities()
+    timed = swept if "time" in swept or not file.responses else {**swept, "time": TIME_OF_ROW}
+    return {name: swept if name == SWEEP else timed for name in runs_of(file)}
 
 
 def _points(fields: Fields, file: MechanismFile, links: Mapping[str, Link]) -> dict[str, Attached]:
@@ -136,14 +149,8 @@ def _directions(
 
 def check_spins(fields: Fields, problem: Problem, tables: Sequence[TableLayout]) -> None:
     """Where forces or energies are wanted, what spins freely must have no cause to spin."""
-    idle = find_legs(problem.mechanism) or problem.held
-    if not (idle and needs_all_links(problem.mechanism, _used(problem, tables))):
-        return
-    from mechkin_cli.mechanism.idle import spin_errors
-
-    for link, diagnostic in spin_errors(problem):
-        place = fields.document.place(("links", link))
-        fields.diagnostics.append(diagnostic._replace(place=place))
+    if needs_all_links(problem.mechanism, _used(problem, tables)):
+        note_spins(fields, problem)
 
 
 def needs_forces(problem: Problem, tables: Sequence[TableLayout]) -> bool:

@@ -7,37 +7,98 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
+from mechkin_cli.building.run_names import runs_of, unknown_run
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector, parse
 from mechkin_cli.mechanism.derived_quantities import hint_of
-from mechkin_cli.mechanism.quantities import Wanted
+from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.mechanism.quantities import Wanted, response_quantities
+from mechkin_cli.mechanism.response import response_problem
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.schema import tables as written
+from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.tables.layout import (
-    ROW_TEXTS,
+    ROW_EVENT,
     ColumnLayout,
     PrintedRemark,
     PublishedValues,
     TableLayout,
+    default_table,
+    row_texts,
 )
 
 
-def build_tables(
-    fields: Fields, sections: Sequence[written.Table], quantities: Mapping[str, Wanted]
-) -> tuple[TableLayout, ...]:
-    """The tables' layouts; what is wrong with a column is noted in `fields`."""
+def build_tables(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[TableLayout, ...]:
+    """The tables' layouts, and one for each run that has none; what is wrong with a column is noted
+    in `fields`."""
+    runs = runs_of(file)
+    known = {run: quantities_of(problem, run) for run in runs}
     tables = []
-    for i, section in enumerate(sections):
-        columns = []
-        for k, column in enumerate(section.columns):
-            path: Path = ("tables", i, "columns", k)
-            if fields.document.node((*path, "value")) is not None:
-                path = (*path, "value")
-            layout = _column(fields, path, column, quantities)
-            if layout is not None:
-                columns.append(layout)
-        title = section.title or section.name
-        printed = _published(section.published)
-        tables.append(TableLayout(section.name, title, tuple(columns), printed))
+    for i, section in enumerate(file.tables):
+        run = _run_of(fields, ("tables", i), section, runs)
+        if run is not None:
+            tables.append(_table(fields, ("tables", i), section, run, known[run]))
+    read = {table.run for table in tables}
+    named = {section.run for section in file.tables}
+    for run in runs:
+        if run not in read and run not in named:
+            tables.append(_default(problem, run))
+            _refuse_taken(fields, file, run)
     return tuple(tables)
+
+
+def quantities_of(problem: Problem, run: str) -> Mapping[str, Wanted]:
+    """The quantities that the rows of a run have, by name."""
+    if run == SWEEP:
+        return problem.quantities()
+    return response_problem(problem, problem.responses[run]).quantities()
+
+
+def _run_of(fields: Fields, path: Path, section: written.Table, runs: Sequence[str]) -> str | None:
+    """The run that a table reads; None where an error was noted."""
+    if section.run is None and runs[0] != SWEEP and len(runs) > 1:
+        text = f"{section.name} does not say which run it reads"
+        fields.error("unknown-run", path, text, f"add run: one of {', '.join(runs)}")
+        return None
+    run = section.run or runs[0]
+    if run in runs:
+        return run
+    unknown_run(fields, (*path, "run"), run, runs)
+    return None
+
+
+def _table(
+    fields: Fields, path: Path, section: written.Table, run: str, known: Mapping[str, Wanted]
+) -> TableLayout:
+    columns = []
+    for k, column in enumerate(section.columns):
+        place: Path = (*path, "columns", k)
+        if fields.document.node((*place, "value")) is not None:
+            place = (*place, "value")
+        layout = _column(fields, place, column, _Sample(fields, known, run))
+        if layout is not None:
+            columns.append(layout)
+    title = section.title or section.name
+    return TableLayout(section.name, title, tuple(columns), _published(section.published), run)
+
+
+def _default(problem: Problem, run: str) -> TableLayout:
+    """The table of a run that has none."""
+    if run == SWEEP:
+        timed = problem.motion.time is not None
+        efforts = [driven.name for driven in problem.motion.inputs]
+    else:
+        timed = True
+        efforts = [f"{joint}.{name}" for joint, name in problem.responses[run].efforts_of]
+    return default_table(problem.mechanism.coordinates, efforts, run=run, timed=timed)
+
+
+def _refuse_taken(fields: Fields, file: MechanismFile, run: str) -> None:
+    """A run without tables writes one of its own name."""
+    for i, section in enumerate(file.tables):
+        if section.name.casefold() == run.casefold():
+            text = f"the run {run} has no table and writes one called {run} itself"
+            hint = f"rename this one, or give the other: run: {run}"
+            fields.error("table-clash", ("tables", i, "name"), text, hint)
 
 
 def _published(section: written.PublishedValues | None) -> PublishedValues | None:
@@ -48,12 +109,12 @@ def _published(section: written.PublishedValues | None) -> PublishedValues | Non
 
 
 def _column(
-    fields: Fields, path: Path, column: written.Column, quantities: Mapping[str, Wanted]
+    fields: Fields, path: Path, column: written.Column, sample: _Sample
 ) -> ColumnLayout | None:
     try:
         expression = parse(column.value)
-        if column.value.strip() not in ROW_TEXTS:
-            found = expression.evaluate(_Sample(fields, quantities), fields.units)
+        if column.value.strip() not in sample.texts:
+            found = expression.evaluate(sample, fields.units)
             if isinstance(found.value, Vector):
                 raise ExpressionError(
                     "a column holds one number per row, this is a vector",
@@ -69,7 +130,8 @@ def _column(
 class _Sample:
     """Resolves names to one-row stand-ins of the right dimension."""
 
-    def __init__(self, fields: Fields, quantities: Mapping[str, Wanted]) -> None:
+    def __init__(self, fields: Fields, quantities: Mapping[str, Wanted], run: str) -> None:
+        self.texts = row_texts(run)
         self.fields = fields
         self.parameters = fields.parameters
         self.quantities = quantities
@@ -77,17 +139,24 @@ class _Sample:
     def __call__(self, name: str) -> Quantity:
         if name in self.parameters:
             return self.parameters[name]
-        if name in ROW_TEXTS:
+        if name in self.texts:
             raise ExpressionError(f"{name} is a text, no number", 0, "make it a column of its own")
         if self.fields.is_refused(name):
             raise AlreadyRefused(name)
         wanted = self.quantities.get(name)
         if wanted is None:
-            known = [*self.parameters, *self.quantities, *ROW_TEXTS]
-            raise UnknownName(name, known, hint_of(name))
+            known = [*self.parameters, *self.quantities, *self.texts]
+            raise UnknownName(name, known, hint_of(name) or _of_responses(name))
         one = np.ones(1)
         value = Vector(one, one, one) if wanted.vector else one
         return Quantity(value, wanted.dimension)
+
+
+def _of_responses(name: str) -> str | None:
+    """What to do where a table of the sweep reads what responses have."""
+    if name == ROW_EVENT or name in response_quantities():
+        return f"{name} is told of a response: add run: and its name to the table"
+    return None
 
 
 def used_quantities(tables: Sequence[TableLayout], quantities: Mapping[str, Wanted]) -> list[str]:

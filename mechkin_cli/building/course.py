@@ -8,7 +8,7 @@ they bend, jump or rest is found on that tape (`solver.cells`).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from mechkin_cli.arrays import Floats
 from mechkin_cli.building.coordinates import dimension_of
 from mechkin_cli.building.fields import Fields
 from mechkin_cli.building.law_pieces import LawPieces, law_pieces
-from mechkin_cli.building.laws import Clock
 from mechkin_cli.expressions import Expression, Quantity
 from mechkin_cli.expressions.fields import scalar
 from mechkin_cli.mechanism.course import Course, Parameter
@@ -25,9 +24,9 @@ from mechkin_cli.schema.motion import (
     FollowingInput,
     HeldInput,
     ListedInput,
-    MotionSection,
     SweptInput,
 )
+from mechkin_cli.schema.responses import HeldCoordinate
 from mechkin_cli.solver.cells import Formula, cells_of
 from mechkin_cli.solver.places import places_of
 from mechkin_cli.tape.recorder import Recorder
@@ -36,32 +35,35 @@ from mechkin_cli.tape.tape import Tape
 from mechkin_cli.tape.traced import Traced, TraceLost, register
 from mechkin_cli.units import TIME
 
+if TYPE_CHECKING:
+    from mechkin_cli.building.motion import Written
+
+_NO_LAWS = (SweptInput, ListedInput, HeldInput, FollowingInput, HeldCoordinate)
+
 
 def build_course(
     fields: Fields,
-    section: MotionSection,
+    written: Written,
     inputs: Sequence[DrivenInput],
     expressions: Mapping[str, Expression],
-    time: Moments | None,
 ) -> Course | None:
     """The course of inputs without errors; None where they only run straight from row to row.
 
     Args:
         fields: knows units and parameters.
-        section: the inputs as written.
+        written: the inputs as written, and the moments of the rows.
         inputs: with their values in all rows, in the order of the file.
         expressions: of the inputs that follow, in an order in which they can be evaluated.
-        time: the moments of the rows.
 
     Raises:
         TraceLost: the inputs depend on a parameter that is recorded.
     """
     rows = inputs[0].values.size if inputs else 0
-    if rows < 2 or not (expressions or time is not None):
+    if rows < 2 or not (expressions or written.time is not None):
         return None
     if any(is_traced(item.values) for item in inputs):
         raise TraceLost("the course of inputs depends on a varied parameter")
-    sources = _sources(fields, section, inputs, expressions, time)
+    sources = _sources(fields, written, inputs, expressions)
     if sources is None:
         return None
     formula = _recorded(fields, inputs, expressions, sources)
@@ -80,20 +82,16 @@ class _Sources(NamedTuple):
 
 def _sources(
     fields: Fields,
-    section: MotionSection,
+    written: Written,
     inputs: Sequence[DrivenInput],
     expressions: Mapping[str, Expression],
-    time: Moments | None,
 ) -> _Sources | None:
-    if time is not None:
-        last = fields.written(("motion", "time", "to"), section.time.last, TIME)  # type: ignore[union-attr]
-        clock = Clock(time.written, float(time.written[0]), last)
+    time, clock = written.time, written.clock
+    if time is not None and clock is not None:
         laws = {
-            name: law_pieces(
-                fields, ("motion", "inputs", name), item, name.partition(".")[2], clock
-            )
-            for name, item in section.inputs.items()
-            if not isinstance(item, SweptInput | ListedInput | HeldInput | FollowingInput)
+            name: law_pieces(fields, (*written.path, name), item, name.partition(".")[2], clock)
+            for name, item in written.inputs.items()
+            if not isinstance(item, _NO_LAWS)
         }
         return _Sources(Parameter("time", TIME), time.written, laws)
     moving = [i for i in inputs if i.name not in expressions and (i.written != i.written[0]).any()]
@@ -108,7 +106,7 @@ def _sources(
         return _Sources(Parameter(name, dimension), moving[0].written, {name: itself})
     numbers = np.arange(moving[0].written.size, dtype=np.float64)
     chords = {
-        i.name: _chords(i.written, isinstance(section.inputs[i.name], SweptInput)) for i in moving
+        i.name: _chords(i.written, isinstance(written.inputs[i.name], SweptInput)) for i in moving
     }
     return _Sources(Parameter("row"), numbers, chords)
 

@@ -33,17 +33,23 @@ class Following:
     """Evaluates the inputs that follow, one after another.
 
     `orders` holds value, rate, acceleration and jerk (4, rows) in the file's units of the inputs
-    that are known, by name; `expressions` gets those of inputs that follow, in the order in which
-    they are evaluated.
+    that are known, by name, and `path` leads to their section; `expressions` gets those of inputs
+    that follow, in the order in which they are evaluated.
     """
 
     def __init__(
-        self, fields: Fields, orders: dict[str, Floats], rows: int, time: Moments | None
+        self,
+        fields: Fields,
+        orders: dict[str, Floats],
+        rows: int,
+        time: Moments | None,
+        path: Path,
     ) -> None:
         self.fields = fields
         self.orders = orders
         self.rows = rows
         self.time = time
+        self.path = path
         self.expressions: dict[str, Expression] = {}
 
     def add_all(self, sections: Mapping[str, FollowingInput], coordinates: frozenset[str]) -> None:
@@ -69,7 +75,7 @@ class Following:
                 self._follow(name, waiting.pop(name))
 
     def _hold(self, name: str, text: str) -> None:
-        value = self.fields.written(_path(name), text, dimension_of(name.partition(".")[2]))
+        value = self.fields.written(self._path(name), text, dimension_of(name.partition(".")[2]))
         self.orders[name] = np.zeros((4, self.rows))
         self.orders[name][0] = value
 
@@ -93,7 +99,7 @@ class Following:
         return expression
 
     def _refuse(self, name: str, error: ExpressionError) -> None:
-        self.fields.expression_error(_path(name), error)
+        self.fields.expression_error(self._path(name), error)
         self.fields.refused.add(name)
 
     def _note_cycle(self, waiting: Mapping[str, Expression]) -> None:
@@ -137,7 +143,7 @@ class Following:
         order = int(np.argmax(~np.isfinite(in_si[:, row])))
         self.fields.error(
             "undefined-rate" if order else "undefined-value",
-            _path(name),
+            self._path(name),
             f"{name} has no finite {words[order]} in row {row + 1}",
             "write an expression that is smooth over all rows, or move the rows",
             measured=", ".join(self._place(used, row) for used in sorted(expression.names)),
@@ -176,6 +182,5 @@ class Following:
             return self.fields.resolve(name)
         raise UnknownName(name, [*self.fields.parameters, *self.orders])
 
-
-def _path(name: str) -> Path:
-    return ("motion", "inputs", name, "with")
+    def _path(self, name: str) -> Path:
+        return (*self.path, name, "with")

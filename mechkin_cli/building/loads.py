@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from mechkin_cli.building.coordinates import CODE, without
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.gravity import gravity_of
+from mechkin_cli.building.run_names import unknown_run
 from mechkin_cli.expressions import ExpressionError, parse
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.model import (
@@ -22,6 +23,8 @@ from mechkin_cli.mechanism.model import (
     LinkLoad,
     Load,
     Spring,
+    renumbered,
+    varying,
 )
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO, Vector, add
@@ -56,8 +59,22 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.load_laws import LoadLaw
 
 
+class RunLoads(NamedTuple):
+    """What acts in one run: loads, gravity, and the laws of the loads that vary."""
+
+    loads: tuple[Load, ...]
+    gravity: Vector
+    laws: tuple[LoadLaw, ...]
+
+
 class LoadBuilder:
-    """Turns load sections into loads; what is wrong is noted in `fields`."""
+    """Turns load sections into loads; what is wrong is noted in `fields`.
+
+    Args:
+        fields: knows units and parameters.
+        links, joints, points: of the mechanism, by name.
+        runs: quantities that loads may read in each run, by the run's name.
+    """
 
     def __init__(
         self,
@@ -65,35 +82,68 @@ class LoadBuilder:
         links: Mapping[str, Link],
         joints: Mapping[str, Joint],
         points: Mapping[str, Attached],
-        quantities: Mapping[str, Wanted],
+        runs: Mapping[str, Mapping[str, Wanted]],
     ) -> None:
         self.fields = fields
         self.links = links
         self.joints = joints
         self.points = points
-        self.quantities = quantities
-        self.gravity: Vector = ZERO
-        self.loads: list[Load] = []
+        self.runs = runs
+        self._acting: Collection[str] = runs.keys()
+        self._of_runs: list[tuple[Collection[str], Load | Vector]] = []
 
     @cached_property
     def _laws(self) -> LoadLaws:
         from mechkin_cli.building.load_laws import LoadLaws
 
-        return LoadLaws(self.fields, self.quantities)
-
-    @property
-    def laws(self) -> tuple[LoadLaw, ...]:
-        """The laws of the loads that vary."""
-        return tuple(self._laws.laws) if "_laws" in self.__dict__ else ()
+        return LoadLaws(self.fields, self.runs)
 
     def add_all(self, sections: Sequence[AnyLoad]) -> None:
         """Reads every load of the file."""
         for i, section in enumerate(sections):
-            self._add(("loads", i), section)
+            path: Path = ("loads", i)
+            self._acting = self._runs_of(path, section.runs)
+            self._add(path, section)
+
+    def add_effort(self, path: Path, name: str, value: str | TableValue, run: str) -> Amount:
+        """The effort along a coordinate that exists, in one run."""
+        self._acting = (run,)
+        joint, _, coordinate = name.partition(".")
+        dimension = MOMENT if is_angle(coordinate) else FORCE
+        amount = self._value(path, value, dimension, name)
+        self._put(JointLoad(joint, coordinate, amount))
+        return amount
+
+    def of_run(self, run: str) -> RunLoads:
+        """What acts in a run; its laws are numbered in the order of its loads."""
+        loads: list[Load] = []
+        gravity, numbers = ZERO, dict[int, int]()
+        for runs, item in self._of_runs:
+            if run not in runs:
+                continue
+            if not isinstance(item, Load):
+                gravity = add(gravity, item)
+                continue
+            for amount in varying(item):
+                numbers.setdefault(amount.number, len(numbers))
+            loads.append(renumbered(item, numbers))
+        known = [] if self.fields.error_count else numbers
+        laws = tuple(self._laws.laws[number] for number in known)
+        return RunLoads(tuple(loads), gravity, laws)
+
+    def _runs_of(self, path: Path, names: Sequence[str] | None) -> Collection[str]:
+        """The runs in which a load acts; unknown ones are noted."""
+        for i, name in enumerate(names or ()):
+            if name not in self.runs and not self.fields.is_refused(name):
+                unknown_run(self.fields, (*path, "runs", i), name, self.runs)
+        return self.runs.keys() if names is None else names
+
+    def _put(self, load: Load | Vector) -> None:
+        self._of_runs.append((self._acting, load))
 
     def _add(self, path: Path, section: AnyLoad) -> None:
         if isinstance(section, Gravity):
-            self.gravity = add(self.gravity, gravity_of(self.fields, path, section))
+            self._put(gravity_of(self.fields, path, section))
         elif isinstance(section, (ForceOnJoint, TorqueOnJoint)):
             self._add_to_joint(path, section)
         elif isinstance(section, (ForceOnLink, TorqueOnLink)):
@@ -116,7 +166,7 @@ class LoadBuilder:
             self._value((*path, section.type, i), text, dimension, "time")
             for i, text in enumerate(texts)
         )
-        self.loads.append(LinkLoad(section.type, section.link, (x, y, z), section.axes, point))
+        self._put(LinkLoad(section.type, section.link, (x, y, z), section.axes, point))
 
     def _add_to_joint(self, path: Path, section: ForceOnJoint | TorqueOnJoint) -> None:
         coordinate: Literal["theta", "s"] = "theta" if isinstance(section, TorqueOnJoint) else "s"
@@ -125,7 +175,7 @@ class LoadBuilder:
         dimension = MOMENT if is_angle(coordinate) else FORCE
         name = f"{section.joint}.{coordinate}"
         value = self._value((*path, "value"), section.value, dimension, name)
-        self.loads.append(JointLoad(section.joint, coordinate, value))
+        self._put(JointLoad(section.joint, coordinate, value))
 
     def _add_between(self, path: Path, section: SpringBetweenPoints | DamperBetweenPoints) -> None:
         first, second = section.between
@@ -147,10 +197,10 @@ class LoadBuilder:
             stiffness = number((*path, "stiffness"), section.stiffness, STIFFNESS)
             free = number((*path, "free"), section.free, LENGTH)
             preload = number((*path, "preload"), section.preload, FORCE)
-            self.loads.append(Spring((ends[0], ends[1]), None, None, stiffness, free, preload))
+            self._put(Spring((ends[0], ends[1]), None, None, stiffness, free, preload))
         else:
             damping = number((*path, "damping"), section.damping, DAMPING)
-            self.loads.append(Damper((ends[0], ends[1]), None, None, damping))
+            self._put(Damper((ends[0], ends[1]), None, None, damping))
 
     def _add_at_joint(self, path: Path, section: SpringAtJoint | DamperAtJoint) -> None:
         joint, coordinate = section.joint, section.coordinate
@@ -163,16 +213,17 @@ class LoadBuilder:
             stiffness = number((*path, "stiffness"), section.stiffness, stiffness_of)
             free = number((*path, "free"), section.free, ANGLE if turning else LENGTH)
             preload = number((*path, "preload"), section.preload, MOMENT if turning else FORCE)
-            self.loads.append(Spring(None, joint, coordinate, stiffness, free, preload))
+            self._put(Spring(None, joint, coordinate, stiffness, free, preload))
         else:
             damping_of = TORSIONAL_DAMPING if turning else DAMPING
             damping = number((*path, "damping"), section.damping, damping_of)
-            self.loads.append(Damper(None, joint, coordinate, damping))
+            self._put(Damper(None, joint, coordinate, damping))
 
     def _value(self, path: Path, text: str | TableValue, dimension: Dimension, over: str) -> Amount:
         """A number, or a law where the value varies; a table runs over the quantity `over`."""
         if not isinstance(text, str):
-            return self._laws.by_table((*path, "table"), text.table, over, dimension)
+            self._laws.acting(self._acting)
+            return self._laws.by_table(path, text, over, dimension)
         try:
             expression = parse(text)
         except ExpressionError as error:
@@ -180,6 +231,7 @@ class LoadBuilder:
             return 0.0
         if expression.names <= self.fields.parameters.keys():
             return self.fields.number(path, text, dimension)
+        self._laws.acting(self._acting)
         return self._laws.by_expression(path, expression, dimension)
 
     def _known(self, path: Path, key: str | int, name: str, known: Mapping[str, object]) -> bool:

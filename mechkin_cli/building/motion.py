@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,19 +15,34 @@ from mechkin_cli.building.spacing import spaced
 from mechkin_cli.expressions import Expression
 from mechkin_cli.mechanism.model import Joint
 from mechkin_cli.mechanism.motion import DrivenInput, Moments, Motion
-from mechkin_cli.schema.laws import Law
 from mechkin_cli.schema.motion import (
     FollowingInput,
     HeldInput,
+    InputMotion,
     ListedInput,
     MotionSection,
     SweptInput,
     TimeSection,
     WithRates,
 )
+from mechkin_cli.schema.responses import HeldCoordinate
 from mechkin_cli.tape.rows import of_numbers, with_rates, within
 from mechkin_cli.tolerances import LARGEST_NUMBER
 from mechkin_cli.units import TIME
+
+if TYPE_CHECKING:
+    from mechkin_cli.building.laws import Clock
+
+
+class Written(NamedTuple):
+    """Driven coordinates as some section writes them, its place, and the moments of their laws with
+    the clock that these laws go by."""
+
+    inputs: Mapping[str, InputMotion | HeldCoordinate]
+    path: Path
+    time: Moments | None = None
+    clock: Clock | None = None
+
 
 _RATES = ("rate", "acceleration", "jerk")
 _ORDERS = ("value", *_RATES)
@@ -36,41 +52,56 @@ def build_motion(
     fields: Fields, section: MotionSection | None, joints: Mapping[str, Joint], limit: RowLimit
 ) -> Motion:
     """Inputs with their values; without inputs the motion has one row, or those of `time`."""
-    nothing = Motion((), 1)
     if section is None:
-        return nothing
+        return Motion((), 1)
     errors = fields.error_count
-    time = _moments(fields, section.time, limit)
+    written = Written(section.inputs, ("motion", "inputs"))
+    if section.time is not None:
+        written = _timed(fields, written, ("motion", "time"), section.time, limit)
+    motion = build_inputs(fields, written, joints, limit)
+    if motion is not None and fields.error_count == errors:
+        return motion
+    fields.refused.add("time")
+    for joint in joints.values():
+        fields.refused.update(f"{name}.effort" for name in (joint.name, *joint.coordinates))
+    return Motion((), 1)
+
+
+def build_inputs(
+    fields: Fields, written: Written, joints: Mapping[str, Joint], limit: RowLimit
+) -> Motion | None:
+    """Driven coordinates over the rows and between them; None where an error was noted."""
+    errors = fields.error_count
+    time = written.time
     with np.errstate(all="ignore"):
-        orders, following = _orders(fields, section, joints, time, limit)
+        orders, following = _orders(fields, written, joints, limit)
     rows = time.written.size if time else _row_count(fields, orders)
     if fields.error_count == errors:
-        limit.is_exceeded(fields, ("motion", "inputs"), rows)
+        limit.is_exceeded(fields, written.path, rows)
     expressions: dict[str, Expression] = {}
     if fields.error_count == errors and following:
         from mechkin_cli.building.following import Following
 
         coordinates = frozenset(c for joint in joints.values() for c in joint.coordinates)
-        tied = Following(fields, orders, rows, time)
+        tied = Following(fields, orders, rows, time, written.path)
         tied.add_all(following, coordinates)
         expressions = tied.expressions
-    if fields.error_count == errors:
-        names = [name for name in section.inputs if name in orders]
-        inputs = [
-            _driven(fields, name, orders[name], rows)._replace(follows=name in following)
-            for name in names
-        ]
-        if fields.error_count == errors:
-            moving = Motion(tuple(inputs), rows, time)
-            return _with_course(fields, section, moving, expressions)
-    fields.refused.add("time")
-    for joint in joints.values():
-        fields.refused.update(f"{name}.effort" for name in (joint.name, *joint.coordinates))
-    return nothing
+    if fields.error_count > errors:
+        return None
+    inputs = [
+        _driven(fields, (*written.path, name), orders[name], rows)._replace(
+            follows=name in following
+        )
+        for name in written.inputs
+        if name in orders
+    ]
+    if fields.error_count > errors:
+        return None
+    return _with_course(fields, written, Motion(tuple(inputs), rows, time), expressions)
 
 
 def _with_course(
-    fields: Fields, section: MotionSection, motion: Motion, expressions: dict[str, Expression]
+    fields: Fields, written: Written, motion: Motion, expressions: dict[str, Expression]
 ) -> Motion:
     """A motion with its inputs between the rows, where they do not simply run from one to the
     next."""
@@ -79,15 +110,25 @@ def _with_course(
         return motion
     from mechkin_cli.building.course import build_course, build_ties
 
-    course = build_course(fields, section, inputs, expressions, time)
+    course = build_course(fields, written, inputs, expressions)
     ties = build_ties(fields, inputs, expressions, time) if expressions else motion.ties
     return motion._replace(course=course, ties=ties)
 
 
-def _moments(fields: Fields, section: TimeSection | None, limit: RowLimit) -> Moments | None:
-    if section is None:
-        return None
-    path: Path = ("motion", "time")
+def _timed(
+    fields: Fields, written: Written, path: Path, section: TimeSection, limit: RowLimit
+) -> Written:
+    """With the moments of a section at `path`."""
+    from mechkin_cli.building.laws import Clock
+
+    moments = spaced_moments(fields, path, section, limit)
+    last = fields.written((*path, "to"), section.last, TIME)
+    clock = Clock(moments.written, float(moments.written[0]), last)
+    return written._replace(time=moments, clock=clock)
+
+
+def spaced_moments(fields: Fields, path: Path, section: TimeSection, limit: RowLimit) -> Moments:
+    """The moments of a section, which run forwards."""
     written = spaced(fields, path, section, TIME, limit)
     if written[-1] < written[0]:
         fields.error("time-backwards", path, "time runs backwards", "exchange from and to")
@@ -95,46 +136,31 @@ def _moments(fields: Fields, section: TimeSection | None, limit: RowLimit) -> Mo
 
 
 def _orders(
-    fields: Fields,
-    section: MotionSection,
-    joints: Mapping[str, Joint],
-    time: Moments | None,
-    limit: RowLimit,
+    fields: Fields, written: Written, joints: Mapping[str, Joint], limit: RowLimit
 ) -> tuple[dict[str, Floats], dict[str, FollowingInput]]:
     """Value, rate, acceleration, jerk (4, rows) in the file's units of the inputs that follow none,
     and the sections of those that follow."""
     found: dict[str, Floats] = {}
     following: dict[str, FollowingInput] = {}
-    for name, item in section.inputs.items():
-        path: Path = ("motion", "inputs", name)
-        if not is_coordinate(fields, path, name, joints) or _driven_twice(fields, name, joints):
+    for name, item in written.inputs.items():
+        path: Path = (*written.path, name)
+        if not is_coordinate(fields, path, name, joints) or _driven_twice(fields, path, joints):
             continue
         coordinate = name.partition(".")[2]
         if isinstance(item, FollowingInput):
             following[name] = item
+        elif isinstance(item, HeldCoordinate):
+            at = fields.written((*path, "at"), item.at, dimension_of(coordinate))
+            found[name] = with_rates(of_numbers([at]), [0.0, 0.0, 0.0])
         elif isinstance(item, (SweptInput, ListedInput, HeldInput)):
             values = _values(fields, path, item, coordinate, limit)
-            found[name] = _constant_rates(fields, path, item, values, coordinate, time)
+            found[name] = _constant_rates(fields, path, item, values, coordinate, written.time)
         else:
-            found[name] = _by_law(fields, path, item, coordinate, section.time, time)
+            from mechkin_cli.building.laws import law_values
+
+            assert written.clock is not None  # the schema lets no law stand without time
+            found[name] = law_values(fields, path, item, coordinate, written.clock)
     return found, following
-
-
-def _by_law(
-    fields: Fields,
-    path: Path,
-    law: Law,
-    coordinate: str,
-    section: TimeSection | None,
-    time: Moments | None,
-) -> Floats:
-    from mechkin_cli.building.laws import Clock, law_values
-
-    assert section is not None  # the schema lets no law stand without time
-    assert time is not None
-    last = fields.written(("motion", "time", "to"), section.last, TIME)
-    clock = Clock(time.written, float(time.written[0]), last)
-    return law_values(fields, path, law, coordinate, clock)
 
 
 def _constant_rates(
@@ -157,18 +183,18 @@ def _constant_rates(
     return with_rates(values, rates)
 
 
-def _driven_twice(fields: Fields, name: str, joints: Mapping[str, Joint]) -> bool:
-    """Whether `name` is the s of a helical joint whose theta is an input as well."""
+def _driven_twice(fields: Fields, path: Path, joints: Mapping[str, Joint]) -> bool:
+    """Whether the key at `path` is the s of a helical joint whose theta is an input as well."""
+    name = str(path[-1])
     joint = joints[name.partition(".")[0]]
     turn = f"{joint.name}.theta"
-    path: Path = ("motion", "inputs")
     twice = (
         joint.type.coordinate[name.partition(".")[2]].on_thread
-        and fields.document.node((*path, turn)) is not None
+        and fields.document.node((*path[:-1], turn)) is not None
     )
     if twice:
         text = f"{turn} and {name} are one freedom"
-        fields.key_error("driven-twice", (*path, name), text, "drive one of them")
+        fields.key_error("driven-twice", path, text, "drive one of them")
     return twice
 
 
@@ -204,8 +230,10 @@ def _row_count(fields: Fields, columns: Mapping[str, Floats]) -> int:
     return max(lengths.values(), default=1)
 
 
-def _driven(fields: Fields, name: str, orders: Floats, rows: int) -> DrivenInput:
-    """An input in SI and as written; numbers too large to compute with are noted."""
+def _driven(fields: Fields, path: Path, orders: Floats, rows: int) -> DrivenInput:
+    """The input of the key at `path`, in SI and as written; numbers too large to compute with are
+    noted."""
+    name = str(path[-1])
     joint, _, coordinate = name.partition(".")
     written = np.broadcast_to(orders, (4, rows)).copy()
     in_si = [
@@ -217,7 +245,7 @@ def _driven(fields: Fields, name: str, orders: Floats, rows: int) -> DrivenInput
             largest = float(np.abs(values).max())
             fields.error(
                 "too-large",
-                ("motion", "inputs", name),
+                path,
                 f"the {word} of {name} grows too large to compute with",
                 "check the law and its units",
                 measured=f"{largest:.4g} in SI units",

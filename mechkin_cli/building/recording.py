@@ -12,8 +12,10 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from mechkin_cli.building.build import Built, build_problem, check_spins, read_fields
+from mechkin_cli.building.idle import settled
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.tape.recorder import Recorder
 from mechkin_cli.tape.scalars import Recorded
 from mechkin_cli.tape.traced import Traced, TraceLost
@@ -40,7 +42,7 @@ def record(built: Built, names: Sequence[str]) -> Recording:
         for number, (name, quantity) in enumerate(zip(names, quantities, strict=True))
     }
     fields = read_fields(built.read, given)
-    problem = build_problem(fields, built.read.file)
+    problem = build_problem(fields, built.read.file, responses=False)
     problem = replace(
         problem,
         hold_idle=base.hold_idle,
@@ -49,14 +51,10 @@ def record(built: Built, names: Sequence[str]) -> Recording:
         diagnostics=base.diagnostics,
     )
     _refuse_varied_lines(problem)
-    check_spins(fields, problem, built.tables)
+    check_spins(fields, problem, built.tables_of(SWEEP))
     if fields.error_count:
         raise TraceLost("the recording came to an error that the file does not have")
-    if problem.held:
-        from mechkin_cli.mechanism.idle import without_spin
-
-        problem = without_spin(problem)
-    return Recording(recorder, problem)
+    return Recording(recorder, settled(problem))
 
 
 def _refuse_varied_lines(problem: Problem) -> None:

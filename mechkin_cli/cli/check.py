@@ -12,9 +12,11 @@ from mechkin_cli.cli.messages import Record, put, put_json, refusal, say_diagnos
 from mechkin_cli.cli.options import Files, Json, Quiet, Set
 from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
+from mechkin_cli.runs import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.interface import Model
+    from mechkin_cli.solver.graph import SolverGraph
 
 
 def check(files: Files, set_: Set = None, json: Json = False, quiet: Quiet = False) -> None:
@@ -51,20 +53,37 @@ def _one(path: Path, settings: dict[str, str], silent: bool) -> tuple[ExitCode, 
 def _input_faults(model: Model) -> list[Diagnostic]:
     """What the drawing of an overconstrained mechanism tells of its inputs; by the count of their
     equations its loops would be driven."""
+    from mechkin_cli.mechanism.response import response_problem
     from mechkin_cli.solver.graph import is_redundant
 
-    if not is_redundant(model.graph):
-        return []
-    from mechkin_cli.analysis.mobility.drawn import drawn_faults
+    faults = []
+    for run in model.runs:
+        if run == SWEEP:
+            problem = model.problem
+            path: tuple[str, ...] = ("motion", "inputs") if problem.motion.inputs else ("joints",)
+        else:
+            path = ("responses", run, "start")
+            problem = response_problem(model.problem, model.problem.responses[run])
+        if is_redundant(_graph(model, run)):
+            from mechkin_cli.analysis.mobility.drawn import drawn_faults
 
-    path = ("motion", "inputs") if model.problem.motion.inputs else ("joints",)
-    place = model.built.read.document.place(path)
-    return [fault._replace(place=place) for fault in drawn_faults(model.problem)]
+            place = model.built.read.document.place(path)
+            faults += [fault._replace(place=place) for fault in drawn_faults(problem)]
+    return faults
 
 
 def _sentence(model: Model) -> str:
-    counts = (len(model.graph.closings), model.problem.motion.rows, len(model.tables))
-    nouns = ("loop", "row", "table")
-    return ", ".join(
-        f"{count} {noun}{'s' * (count != 1)}" for count, noun in zip(counts, nouns, strict=True)
-    )
+    graphs = [_graph(model, run) for run in model.runs]
+    rows = sum(_rows(model, run) for run in model.runs)
+    counts = {"loop": max(len(graph.closings) for graph in graphs), "row": rows}
+    counts |= {"response": len(model.problem.responses)} if model.problem.responses else {}
+    counts |= {"table": len(model.tables)}
+    return ", ".join(f"{n} {noun}{'s' * (n != 1)}" for noun, n in counts.items())
+
+
+def _graph(model: Model, run: str) -> SolverGraph:
+    return model.graph if run == SWEEP else model.response_graph(run)
+
+
+def _rows(model: Model, run: str) -> int:
+    return model.problem.motion.rows if run == SWEEP else model.problem.responses[run].rows

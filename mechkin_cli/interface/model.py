@@ -19,6 +19,7 @@ from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.nearest import nearest_hint
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.demand import needs_all_links
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph
 from mechkin_cli.solver.session import Packing, Session
@@ -78,7 +79,17 @@ class Model:
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
         """
-        graph = self.built.graph
+        return self._sound(self.built.graph)
+
+    def response_graph(self, name: str) -> SolverGraph:
+        """Tree, closing joints and blocks at the start of a response.
+
+        Raises:
+            InvalidFile: its start names too few coordinates or too many.
+        """
+        return self._sound(self.built.response_graphs[name])
+
+    def _sound(self, graph: SolverGraph | Diagnostic) -> SolverGraph:
         if isinstance(graph, Diagnostic):
             raise InvalidFile([*self.diagnostics, graph])
         return graph
@@ -94,8 +105,13 @@ class Model:
 
     @property
     def tables(self) -> tuple[TableLayout, ...]:
-        """Layouts of the file's tables; without any, the one table `sweep`."""
+        """Layouts of the file's tables; a run without any has one of its own name."""
         return self.built.tables
+
+    @property
+    def runs(self) -> tuple[str, ...]:
+        """The file's runs by name: `sweep`, unless it has responses alone, then its responses."""
+        return self.built.runs
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
@@ -141,7 +157,7 @@ class Model:
         if mode is not None:
             a_text("mode", mode, '"A"')
             session = session.assembled(replace(problem.assembly, mode=mode))
-        layouts = self._chosen_tables(tables)
+        layouts = self._chosen_tables(tables, SWEEP)
         asked = () if quantities is None else texts("quantities", quantities, '["O4.theta"]')
         asked = tuple(name for name in asked if name not in ROW_TEXTS)  # always there
         used = used_quantities(layouts, problem.quantities()) if layouts else []
@@ -356,10 +372,11 @@ class Model:
         solvable = not isinstance(self.built.graph, Diagnostic)
         return find_mobility(self.problem, self.session if solvable else None)
 
-    def _chosen_tables(self, names: Sequence[str] | None) -> tuple[TableLayout, ...]:
+    def _chosen_tables(self, names: Sequence[str] | None, run: str) -> tuple[TableLayout, ...]:
+        own = self.built.tables_of(run)
         if names is None:
-            return self.tables
-        known = {table.name: table for table in self.tables}
+            return own
+        known = {table.name: table for table in own}
         names = texts("tables", names, '["table_03"]')
         for name in names:
             if name not in known:

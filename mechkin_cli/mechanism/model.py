@@ -223,6 +223,22 @@ def varying(load: Load) -> tuple[Varying, ...]:
     return tuple(amount for amount in amounts if isinstance(amount, Varying))
 
 
+def renumbered(load: Load, numbers: Mapping[int, int]) -> Load:
+    """The load with the laws of its values under other numbers."""
+    if isinstance(load, JointLoad):
+        return load._replace(value=_renumbered(load.value, numbers))
+    if isinstance(load, LinkLoad):
+        x, y, z = (_renumbered(amount, numbers) for amount in load.value)
+        return load._replace(value=(x, y, z))
+    return load
+
+
+def _renumbered(amount: Amount, numbers: Mapping[int, int]) -> Amount:
+    if isinstance(amount, Varying):
+        return amount._replace(number=numbers[amount.number])
+    return amount
+
+
 @dataclass(frozen=True)
 class Mechanism:
     """Links and joints by name in the order written; gravity in m/s^2."""

@@ -12,17 +12,22 @@ from mechkin_cli.mechanism.derived_quantities import derived_catalogue
 from mechkin_cli.mechanism.held import Held
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
-from mechkin_cli.mechanism.quantities import Wanted, catalogue
+from mechkin_cli.mechanism.quantities import Wanted, catalogue, response_quantities
 
 if TYPE_CHECKING:
     from mechkin_cli.expressions import Quantity
     from mechkin_cli.mechanism.load_laws import LoadLaw
+    from mechkin_cli.mechanism.response import Response
     from mechkin_cli.units import UnitSystem
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A mechanism, how it moves, how it is assembled, and the units of its file."""
+    """A mechanism, how it moves, how it is assembled, and the units of its file.
+
+    Mechanism, motion and laws are those of the sweep; `responses` are the file's other runs, and
+    `response` is the one whose first moment this is (`mechanism.response.response_problem`).
+    """
 
     mechanism: Mechanism
     motion: Motion
@@ -34,6 +39,8 @@ class Problem:
     hold_idle: bool = False
     held: tuple[Held, ...] = ()
     follow: tuple[str, ...] | None = None
+    responses: Mapping[str, Response] = field(default_factory=dict)
+    response: Response | None = None
 
     @property
     def driven(self) -> list[tuple[str, str]]:
@@ -70,6 +77,10 @@ class Problem:
     @cached_property
     def _quantities(self) -> Mapping[str, Wanted]:
         mechanism, motion = self.mechanism, self.motion
+        if self.response is not None:
+            efforts = self.response.efforts_of
+            found = catalogue(mechanism, efforts, timed=True, held=self.held)
+            return found | response_quantities() | derived_catalogue(mechanism, (), None)
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
         found = catalogue(mechanism, motion.driven, timed=motion.time is not None, held=self.held)
         return found | derived_catalogue(mechanism, motion.driven, leading)

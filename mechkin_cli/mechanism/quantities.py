@@ -54,6 +54,9 @@ Kind = Literal[
     "residual",
     "condition",
     "power_error",
+    "work",
+    "dissipated",
+    "energy_error",
     "time",
     "quaternion",
     "turn",
@@ -89,6 +92,9 @@ class Wanted(NamedTuple):
     order: int = 0
 
 
+TIME_OF_ROW = Wanted("time", "time", "row", TIME, False)
+"""The moment of a row."""
+
 REACTION_LEVEL = Wanted("reaction level", "reaction_level", GROUND_NAME, FORCE, False)
 """The largest component of force, or moment in length units, of all joints."""
 
@@ -102,6 +108,11 @@ _GROUND: dict[str, tuple[Kind, Dimension]] = {
 }
 _ENERGIES: tuple[Kind, ...] = ("kinetic_energy", "potential_energy")
 _ROW: tuple[Kind, ...] = ("residual", "condition", "power_error")
+_OF_RESPONSES: dict[Kind, Dimension] = {
+    "work": ENERGY,
+    "dissipated": ENERGY,
+    "energy_error": DIMENSIONLESS,
+}
 _JOINT_WRENCH: dict[str, tuple[Kind, Dimension]] = {
     "force": ("force", FORCE),
     "moment": ("moment", MOMENT),
@@ -129,7 +140,7 @@ def catalogue(
     ):
         found[wanted.name] = wanted
     if timed:
-        found["time"] = Wanted("time", "time", "row", TIME, False)
+        found["time"] = TIME_OF_ROW
     return found
 
 
@@ -210,3 +221,13 @@ def _of_ground() -> Iterator[Wanted]:
         yield Wanted(f"row.{word}", word, GROUND_NAME, ENERGY, False)
     for word in _ROW:
         yield Wanted(f"row.{word}", word, "row", DIMENSIONLESS, False)
+
+
+def response_quantities() -> dict[str, Wanted]:
+    """What rows of a response have beside a sweep's, by name: the work of efforts, drives and other
+    loads since the first row, what dampers and friction took, and what is missing of their balance
+    with the energies of motion, gravity and springs in parts of the largest of them."""
+    return {
+        f"row.{kind}": Wanted(f"row.{kind}", kind, "row", dimension, False)
+        for kind, dimension in _OF_RESPONSES.items()
+    }

@@ -86,7 +86,8 @@ def _unknown_word(
             words = wording.missing_key(key, {"purpose": f"one of {', '.join(known)}"})
             return _told(words, path, document.place(path))
         path = (*path, key)
-    return _told(wording.unknown_word(document.node(path), known), path, document.place(path))
+    words = wording.unknown_word(document.node(path), known, context.get("advice"))
+    return _told(words, path, document.place(path))
 
 
 def _is_mapping(path: KeyPath, document: Document) -> bool:

@@ -38,12 +38,12 @@ def unknown_key(key: str, context: dict[str, Any]) -> Wording:
     return Wording("unknown-key", f"there is no key {shown(key)} here", hint)
 
 
-def unknown_word(found: Node | None, known: list[str]) -> Wording:
-    """A value is none of the words possible at its place."""
+def unknown_word(found: Node | None, known: list[str], advice: str | None = None) -> Wording:
+    """A value is none of the words possible at its place; `advice` says what to do instead."""
     if not isinstance(found, Scalar):
         text = f"expected one of the words {', '.join(known)}, found {kind(found)}"
         return Wording("unknown-word", text, None)
-    hint = choice_hint(found.text, known, "words")
+    hint = advice or choice_hint(found.text, known, "words")
     return Wording("unknown-word", f"{shown(found.text)} is none of the words possible here", hint)
 
 

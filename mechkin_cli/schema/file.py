@@ -10,7 +10,9 @@ from mechkin_cli.schema.links import Link
 from mechkin_cli.schema.loads import Load
 from mechkin_cli.schema.motion import MotionSection
 from mechkin_cli.schema.points import DirectionOfLink, PointOfLink
+from mechkin_cli.schema.responses import Response
 from mechkin_cli.schema.rules import After, Before
+from mechkin_cli.schema.runs import free_run_names
 from mechkin_cli.schema.scalars import AnyDimension, Name, Text
 from mechkin_cli.schema.tables import Table, differing_names
 from mechkin_cli.schema.units_section import METRIC, UnitsSection
@@ -54,6 +56,8 @@ class MechanismFile(Section):
     """The driven coordinates and their values."""
     assembly: AssemblySection | None = None
     """Which way of assembling the mechanism is meant."""
+    responses: Annotated[dict[Name, Response], After(free_run_names)] = NOTHING
+    """Motions under forces, by name."""
     loads: tuple[Load, ...] = ()
     """Gravity, forces, torques, springs and dampers."""
     tables: Annotated[tuple[Table, ...], After(differing_names)] = ()

@@ -17,6 +17,7 @@ from mechkin_cli.schema.descriptions import field_descriptions
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.schema.names import RESERVED
 from mechkin_cli.schema.rules import Barred, Dimension, Limits, Named, ShortForm, Shown
+from mechkin_cli.schema.runs import TAKEN_FOR_EDITORS
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 _FIRST_KEYS = ("$schema", "title", "description", "$ref", "type", "const", "enum", "required")
@@ -41,6 +42,8 @@ def json_schema() -> Schema:
     for name in _NAMED_SECTIONS:
         reserved = {"not": {"$ref": "#/$defs/ReservedName"}}
         top["properties"][name]["propertyNames"] = reserved
+    barred = {"not": {"pattern": TAKEN_FOR_EDITORS}}
+    top["properties"]["responses"]["propertyNames"] = barred
     top["anyOf"] = [_non_empty("joints", "minProperties"), _non_empty("chain", "minItems")]
     return dict(_ordered(top)) | {"$defs": _ordered(dict(sorted(definitions.items())), True)}
 

@@ -15,10 +15,12 @@ from mechkin_cli.schema.descriptions import field_descriptions
 
 
 class KnownKeys(NamedTuple):
-    """The keys of one kind of mapping: what each is for, and answers for keys it doesn't have."""
+    """The keys of one kind of mapping: what each is for, answers for keys it doesn't have, and the
+    name of its class."""
 
     descriptions: dict[str, str]
     advice: dict[str, str]
+    section: str
 
 
 def known_keys(top: type[Section], location: tuple[str | int, ...]) -> KnownKeys | None:
@@ -36,7 +38,7 @@ def known_keys(top: type[Section], location: tuple[str | int, ...]) -> KnownKeys
         return None
     texts = field_descriptions(section)
     descriptions = {key: texts.get(field.name, "") for key, field in fields_of(section).items()}
-    return KnownKeys(descriptions, section.advice)
+    return KnownKeys(descriptions, section.advice, section.__name__)
 
 
 def _step_into(annotation: Any, step: str | int) -> Any:

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from mechkin_cli.schema.alternatives import Choice, Tag, by_word
 from mechkin_cli.schema.base import Section, refuse
 from mechkin_cli.schema.rules import Limits, Named
+from mechkin_cli.schema.runs import RunNames
 from mechkin_cli.schema.scalars import (
     AccelerationVector,
     AngleOrLength,
@@ -20,6 +21,7 @@ from mechkin_cli.schema.scalars import (
     LengthVector,
     Name,
     Stiffness,
+    Text,
     Torque,
 )
 
@@ -28,21 +30,25 @@ class TableValue(Section):
     """A value read from a CSV file."""
 
     table: CsvPath
-    """CSV file with a header and two columns: coordinate or time, value."""
+    """CSV file with a header and two columns: what it runs over, and the value."""
+    over: Text | None = None
+    """The quantity of the first column, for example O1.theta_dot or time; left out, the coordinate
+    of a load on a joint, and time for a load on a link."""
 
 
-def _expression_or_table(value: Any) -> str:
+def expression_or_table(value: Any) -> str:
+    """The form of a load's value."""
     return "(table)" if isinstance(value, (dict, TableValue)) else "(expression)"
 
 
 ForceValue = Annotated[
     Annotated[Force, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
-    Choice(_expression_or_table),
+    Choice(expression_or_table),
     Named("ForceValue"),
 ]
 TorqueValue = Annotated[
     Annotated[Torque, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
-    Choice(_expression_or_table),
+    Choice(expression_or_table),
     Named("TorqueValue"),
 ]
 Axes = Literal["ground", "link"]
@@ -62,7 +68,14 @@ FreeFall = Annotated[
 ]
 
 
-class Gravity(Section):
+class _InRuns(Section):
+    """What all loads have."""
+
+    runs: RunNames | None = None
+    """The runs it acts in, `sweep` or names of responses; left out, all."""
+
+
+class Gravity(_InRuns):
     """Acts at the mass centre of every link with mass."""
 
     type: Literal["gravity"]
@@ -78,7 +91,7 @@ class Gravity(Section):
             raise refuse("two-choices", text, "write g: standard, or no direction", "direction")
 
 
-class ForceOnLink(Section):
+class ForceOnLink(_InRuns):
     """A force at a point of a link."""
 
     type: Literal["force"]
@@ -92,7 +105,7 @@ class ForceOnLink(Section):
     """Whether the components are in ground axes or turn with the link (its axes in the drawing)."""
 
 
-class TorqueOnLink(Section):
+class TorqueOnLink(_InRuns):
     """A couple on a link."""
 
     type: Literal["torque"]
@@ -104,7 +117,7 @@ class TorqueOnLink(Section):
     """Whether the components are in ground axes or turn with the link (its axes in the drawing)."""
 
 
-class ForceOnJoint(Section):
+class ForceOnJoint(_InRuns):
     """A force on the coordinate s of a joint: it acts on the second link, against the first."""
 
     type: Literal["force"]
@@ -114,7 +127,7 @@ class ForceOnJoint(Section):
     """The force, positive in the direction of s."""
 
 
-class TorqueOnJoint(Section):
+class TorqueOnJoint(_InRuns):
     """A torque on the coordinate theta of a joint: on the second link, against the first."""
 
     type: Literal["torque"]
@@ -124,7 +137,7 @@ class TorqueOnJoint(Section):
     """The torque, positive in the direction of theta."""
 
 
-class SpringBetweenPoints(Section):
+class SpringBetweenPoints(_InRuns):
     """A straight spring; its pull is preload + stiffness * (distance - free)."""
 
     type: Literal["spring"]
@@ -138,7 +151,7 @@ class SpringBetweenPoints(Section):
     """Pull at the free length."""
 
 
-class SpringAtJoint(Section):
+class SpringAtJoint(_InRuns):
     """A spring on a coordinate; it resists with preload + stiffness * (coordinate - free)."""
 
     type: Literal["spring"]
@@ -154,7 +167,7 @@ class SpringAtJoint(Section):
     """Force or moment at the free coordinate."""
 
 
-class DamperBetweenPoints(Section):
+class DamperBetweenPoints(_InRuns):
     """A straight damper; it resists the rate of the distance."""
 
     type: Literal["damper"]
@@ -164,7 +177,7 @@ class DamperBetweenPoints(Section):
     """Force per speed."""
 
 
-class DamperAtJoint(Section):
+class DamperAtJoint(_InRuns):
     """A damper on a coordinate; it resists the rate of the coordinate."""
 
     type: Literal["damper"]

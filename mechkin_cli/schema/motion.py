@@ -5,7 +5,7 @@ others are held (`at`), follow (`with`) or run in step through equally many valu
 moments of `time`, and inputs move by laws.
 """
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Final
 
 from mechkin_cli.schema.alternatives import Tag, by_word
 from mechkin_cli.schema.base import NOTHING, Key, Section, refuse
@@ -108,7 +108,7 @@ class TimeSection(Section):
             raise refuse("step-or-count", text, "give exactly one of them")
 
 
-_LAWS = {
+LAWS: Final = {
     "constant-rate": ConstantRate,
     "constant-acceleration": ConstantAcceleration,
     "polynomial": Polynomial,
@@ -116,12 +116,13 @@ _LAWS = {
     "cycloidal": Cycloidal,
     "table": TableLaw,
 }
+"""The laws of motion by their words."""
 
 
 def _tag(mapping: dict[str, Any]) -> str | None:
     if "law" in mapping:
         word = mapping["law"]
-        return f"({word})" if isinstance(word, str) and word in _LAWS else None
+        return f"({word})" if isinstance(word, str) and word in LAWS else None
     if {"from", "to", "step", "count"} & mapping.keys():
         return "(swept)"
     for key, tag in (("values", "(listed)"), ("with", "(following)"), ("at", "(held)")):
@@ -141,7 +142,7 @@ InputMotion = Annotated[
     | Annotated[Harmonic, Tag("(harmonic)")]
     | Annotated[Cycloidal, Tag("(cycloidal)")]
     | Annotated[TableLaw, Tag("(table)")],
-    by_word("law", _tag, ", ".join(_LAWS)),
+    by_word("law", _tag, ", ".join(LAWS)),
 ]
 
 
@@ -156,7 +157,7 @@ class MotionSection(Section):
     def check(self) -> None:
         """Laws go with `time`, rows of an input's own do not."""
         for name, motion in self.inputs.items():
-            has_law = isinstance(motion, tuple(_LAWS.values()))
+            has_law = isinstance(motion, tuple(LAWS.values()))
             if has_law and self.time is None:
                 text = f"the law of {name} needs the moments of the rows"
                 raise refuse("law-without-time", text, "add time: {from, to, step}", "inputs", name)

@@ -13,12 +13,17 @@ from mechkin_cli.schema.rules import Before, Dimension, Limits, Named, Shown
 
 NAME_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*$"
 COORDINATE_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*\.[a-z][a-z0-9]*$"
+START_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*\.[a-z][a-z0-9]*(_dot)?$"
 TABLE_NAME_PATTERN: Final = r"^[A-Za-z0-9_-]{1,100}$"
 CSV_PATH_PATTERN: Final = r"^[A-Za-z0-9_-][A-Za-z0-9_. -]*(/[A-Za-z0-9_-][A-Za-z0-9_. -]*)*\.csv$"
 
 FORMS: Final = {
     NAME_PATTERN: ("a name", "use letters, digits and _, and no digit at the start"),
     COORDINATE_PATTERN: ("a joint coordinate", "write joint.coordinate, for example O1.theta"),
+    START_PATTERN: (
+        "a joint coordinate or its rate",
+        "write joint.coordinate or joint.coordinate_dot, for example O1.theta_dot",
+    ),
     TABLE_NAME_PATTERN: ("a name for a file", "use letters, digits, - and _, at most 100"),
     CSV_PATH_PATTERN: (
         "a CSV file beside or below the mechanism file",

@@ -1,10 +1,10 @@
 """`tables:` - the layouts a run writes, one file each: columns are expressions over quantities."""
 
-import re
 from typing import Annotated, Any
 
 from mechkin_cli.schema.base import Section, refuse
 from mechkin_cli.schema.rules import After, Barred, Before, Limits, Named, ShortForm, Shown
+from mechkin_cli.schema.runs import DEVICE, RunName
 from mechkin_cli.schema.scalars import (
     CSV_PATH_PATTERN,
     TABLE_NAME_PATTERN,
@@ -23,7 +23,6 @@ TableName = Annotated[
 
 
 ROW_NUMBER = "row.number"
-_DEVICE = re.compile("con|prn|aux|nul|com[0-9]|lpt[0-9]", re.IGNORECASE)
 # JSON Schema has no flag for ignoring case
 _TAKEN_FOR_EDITORS = (
     "^([Rr][Oo][Ww][Ss]|[Ee][Rr][Rr][Aa][Tt][Aa]|[Dd][Ii][Ss][Aa][Gg][Rr][Ee][Ee][Mm][Ee][Nn][Tt][Ss]|[Cc][Oo][Nn]|[Pp][Rr][Nn]|[Aa][Uu][Xx]|[Nn][Uu][Ll]"
@@ -92,7 +91,7 @@ _TAKEN = {
 def _free_name(name: str) -> str:
     if name.casefold() in _TAKEN:
         raise refuse("reserved-name", _TAKEN[name.casefold()], "rename it")
-    if _DEVICE.fullmatch(name):
+    if DEVICE.fullmatch(name):
         raise refuse("reserved-name", f"{name} is a device on Windows, no file", "rename it")
     return name
 
@@ -114,6 +113,9 @@ class Table(Section):
     """Name of the files written, without ending."""
     title: Text | None = None
     """Heading in Markdown; left out, the name."""
+    run: RunName | None = None
+    """The run it reads, `sweep` or the name of a response; left out, the sweep if there is one,
+    else the only response."""
     columns: Annotated[
         tuple[ColumnOrText, ...], Limits(min_length=1, max_length=1000), After(_differing_labels)
     ]

@@ -32,20 +32,23 @@ def validate(data: object) -> MechanismFile:
         file = validated(MechanismFile, data)
     except ValidationError as failure:
         found = failure.errors(include_url=False, include_input=False)
-        errors = [_completed(dict(error)) for error in found] + errors
+        errors = [_completed(dict(error), data) for error in found] + errors
     if errors:
         raise InvalidDataError(errors)
     return file
 
 
-def _completed(error: dict[str, Any]) -> dict[str, Any]:
+def _completed(error: dict[str, Any], data: object) -> dict[str, Any]:
     """The record with what a message needs beyond pydantic's own context."""
     if error["type"] == "string_pattern_mismatch":
         expected, hint = FORMS[error["ctx"]["pattern"]]
         return error | {"ctx": {"expected": expected, "hint": hint}}
+    if error["type"] == "unknown-word":
+        return _with_advice(error, data)
     if error["type"] not in ("missing", "extra_forbidden"):
         return error
     from mechkin_cli.schema.known_keys import known_keys  # reads sources: only for messages
+    from mechkin_cli.schema.other_words import advice_for_key
 
     *mapping, key = error["loc"]
     known = known_keys(MechanismFile, tuple(mapping))
@@ -53,7 +56,22 @@ def _completed(error: dict[str, Any]) -> dict[str, Any]:
         return error
     context = {
         "known": list(known.descriptions),
-        "advice": known.advice.get(str(key)),
+        "advice": known.advice.get(str(key)) or advice_for_key(known.section, str(key)),
         "purpose": known.descriptions.get(str(key)),
     }
     return error | {"ctx": context}
+
+
+def _with_advice(error: dict[str, Any], data: object) -> dict[str, Any]:
+    """The record of an unknown type, with what to write instead where that is known."""
+    from mechkin_cli.schema.other_words import advice_for_type
+
+    found: Any = data
+    try:
+        for step in error["loc"]:
+            found = found[step]
+        word = found[error["ctx"]["key"]]
+    except (KeyError, IndexError, TypeError):
+        return error
+    advice = advice_for_type(str(error["loc"][0]), str(word))
+    return error | {"ctx": error["ctx"] | {"advice": advice}}

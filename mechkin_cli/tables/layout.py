@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from mechkin_cli.runs import SWEEP
+
 if TYPE_CHECKING:
     from mechkin_cli.expressions import Expression
 
-
 ROW_TEXTS = ("row.mode", "row.status")
 """Quantities of a row that are texts: each can only be a column of its own."""
+
+ROW_EVENT = "row.event"
+"""A text of the rows of a response: what ended it there."""
 
 ROW_NUMBER = "row.number"
 """Stands for the number of a printed row, counted from 1, where no column can find it."""
@@ -52,28 +56,38 @@ class PublishedValues(NamedTuple):
 
 
 class TableLayout(NamedTuple):
-    """One table; `name` is the stem of its files, `title` its heading in Markdown."""
+    """One table; `name` is the stem of its files, `title` its heading in Markdown, `run` the run
+    whose rows it has."""
 
     name: str
     title: str
     columns: tuple[ColumnLayout, ...]
     published: PublishedValues | None = None
+    run: str = SWEEP
+
+
+def row_texts(run: str) -> tuple[str, ...]:
+    """The quantities that are texts in the rows of a run."""
+    return ROW_TEXTS if run == SWEEP else (*ROW_TEXTS, ROW_EVENT)
 
 
 def default_table(
-    coordinates: Sequence[str], inputs: Collection[str], *, timed: bool = False
+    coordinates: Sequence[str], efforts: Collection[str], *, run: str = SWEEP, timed: bool = False
 ) -> TableLayout:
-    """The table `sweep` of a file without tables: all coordinates, their rates, the efforts.
+    """The table of a run that has none, called after it: all coordinates, their rates, the efforts;
+    of a response what ended it, too.
 
-    `coordinates` are the dotted names in joint order, `inputs` the driven ones among them; `timed`
-    puts the time of the rows first. Each column is labelled with the name of its quantity.
+    `coordinates` are the dotted names in joint order, `efforts` those of them whose efforts are
+    told; `timed` puts the time of the rows first. Each column is labelled with the name of its
+    quantity.
     """
     from mechkin_cli.expressions import parse
 
     rates = [f"{name}_dot" for name in coordinates]
-    names = [*(["time"] if timed else []), *coordinates, *rates, *effort_names(inputs)]
+    names = [*(["time"] if timed else []), *coordinates, *rates, *effort_names(efforts)]
+    names += [ROW_EVENT] if run != SWEEP else []
     columns = tuple(ColumnLayout(name, parse(name)) for name in names)
-    return TableLayout("sweep", "Coordinates, rates and efforts", columns)
+    return TableLayout(run, "Coordinates, rates and efforts", columns, run=run)
 
 
 def effort_names(inputs: Collection[str]) -> list[str]:

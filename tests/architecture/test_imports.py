@@ -7,7 +7,16 @@ from pathlib import Path
 import pytest
 from architecture.package import FILES, NAMES, ROOT, imports, room
 
-BASE = {"arrays", "diagnostics", "legible", "nearest", "regular_file", "status", "tolerances"}
+BASE = {
+    "arrays",
+    "diagnostics",
+    "legible",
+    "nearest",
+    "regular_file",
+    "runs",
+    "status",
+    "tolerances",
+}
 KERNEL = BASE | {"kernel"}
 UNITS = BASE | {"units"}
 TAPE = KERNEL | {"tape"}

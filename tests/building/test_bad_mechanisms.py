@@ -2,6 +2,7 @@
 
 import pytest
 from building.bad_parts import BAD_PARTS
+from building.bad_responses import BAD_RESPONSES
 from building.bad_uses import BAD_USES
 from building.sound import SOUND, BadMechanism
 
@@ -24,7 +25,7 @@ def test_the_file_they_are_made_from_is_sound() -> None:
 
 
 @pytest.mark.parametrize(
-    "bad", [*BAD_PARTS, *BAD_USES], ids=lambda bad: f"{bad.code} {bad.new.strip()}"
+    "bad", [*BAD_PARTS, *BAD_USES, *BAD_RESPONSES], ids=lambda bad: f"{bad.code} {bad.new.strip()}"
 )
 def test_one_error_at_the_place_of_the_mistake(bad: BadMechanism) -> None:
     (error,) = errors(bad.text)

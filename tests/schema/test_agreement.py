@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from building.bad_parts import BAD_PARTS
+from building.bad_responses import BAD_RESPONSES
 from building.bad_uses import BAD_USES
 from building.sound import SOUND
 from reading.bad_files import BAD_FILES
@@ -54,12 +55,22 @@ EDITORS_ACCEPT = {
     "disconnected-link": CROSSING,
     "load-on-ground": CROSSING,
     "load-table": CROSSING,
+    "unknown-run": CROSSING,
+    "named-twice": CROSSING,
+    "start-rates": CROSSING,
+    "start-and-drive": CROSSING,
+    "effort-and-drive": CROSSING,
     "block-too-large": CROSSING,
     "too-many-numbers": CROSSING,
     "csv-table": "it is a property of another file",
     "too-large": VALUE,
     "too-small": VALUE,
     "negative-mass": VALUE,
+    "one-moment": VALUE,
+    "time-backwards": VALUE,
+    "no-duration": VALUE,
+    "no-angle": "to a schema theta and s are both names",
+    "out-of-range": "a tolerance may be an expression; its value is the reader's",
     "zero-step": VALUE,
     "zero-lead": VALUE,
     "zero-direction": VALUE,
@@ -92,7 +103,7 @@ MORE_BAD = [
     "    point: {ground: [0, 0, 0], a: [1e-200, 0, 0]}\n    axis: [0, 0, 1]\n"
     "motion: {inputs: {A.theta: {at: 0}}}\n",
 ]
-BAD = [*(bad.text for bad in (*BAD_FILES, *BAD_PARTS, *BAD_USES)), *MORE_BAD]
+BAD = [*(bad.text for bad in (*BAD_FILES, *BAD_PARTS, *BAD_USES, *BAD_RESPONSES)), *MORE_BAD]
 
 
 def codes(text: str) -> set[str]:

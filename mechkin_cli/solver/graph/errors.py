@@ -94,7 +94,8 @@ def undriven(
         measured=f"{missing} more unknowns than closing equations",
         hint="add inputs under motion",
     )
-    return UnsolvableGraph(diagnostic, tuple(joint.name for joint in joints))
+    around = tuple(joint.name for joint in joints)
+    return UnsolvableGraph(diagnostic, around, missing, tuple(names))
 
 
 def _joints(c: Connection) -> tuple[str, ...]:

@@ -11,11 +11,20 @@ from mechkin_cli.mechanism.model import Joint
 
 class UnsolvableGraph(MechkinError):
     """The mechanism's graph cannot be solved as it is driven; `diagnostic` says why, `joints`
-    where."""
+    where. Where too little is driven, `missing` counts the freedoms left and `candidates` are
+    coordinates that could be driven."""
 
-    def __init__(self, diagnostic: Diagnostic, joints: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self,
+        diagnostic: Diagnostic,
+        joints: tuple[str, ...] = (),
+        missing: int = 0,
+        candidates: tuple[str, ...] = (),
+    ) -> None:
         self.diagnostic = diagnostic
         self.joints = joints
+        self.missing = missing
+        self.candidates = candidates
         super().__init__(str(diagnostic))
 
 

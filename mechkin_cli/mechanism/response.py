@@ -1,0 +1,207 @@
+"""A response: what one motion under forces asks for, in SI and checked.
+
+At its first moment the mechanism is assembled with the start's coordinates and the driven ones at
+their values; from there on loads and efforts move what is not driven, up to a stop or the last
+moment.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.mechanism.joint_table import dimension_of
+from mechkin_cli.mechanism.motion import DrivenInput, Moments, Motion
+from mechkin_cli.units import TIME
+
+if TYPE_CHECKING:
+    from mechkin_cli.diagnostics import Place
+    from mechkin_cli.mechanism.course import Course
+    from mechkin_cli.mechanism.held import Held
+    from mechkin_cli.mechanism.load_laws import LoadLaw
+    from mechkin_cli.mechanism.model import Amount, Mechanism
+    from mechkin_cli.mechanism.motion import Assembly
+    from mechkin_cli.mechanism.problem import Problem
+    from mechkin_cli.units import UnitSystem
+
+Direction = Literal["up", "down", "any"]
+
+
+class Start(NamedTuple):
+    """A coordinate at the first moment: its value (rad, m) where it is one of the independent ones,
+    and its rate (rad/s, m/s) where that is one of the rates given; None for what follows."""
+
+    joint: str
+    coordinate: str
+    value: float | None
+    rate: float | None
+
+    @property
+    def name(self) -> str:
+        """The coordinate's full name, `O1.theta`."""
+        return f"{self.joint}.{self.coordinate}"
+
+
+class Effort(NamedTuple):
+    """A force (N) or torque (N m) along a coordinate, beside the loads: on the second link, against
+    the first. A varying amount is law `amount.number` of the response's laws."""
+
+    joint: str
+    coordinate: str
+    amount: Amount
+
+    @property
+    def name(self) -> str:
+        """The coordinate's full name, `O1.theta`."""
+        return f"{self.joint}.{self.coordinate}"
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Ends a response where the value of `law` passes `at` (SI), rising (`up`), falling or either.
+
+    `words` are what a row says of it: `O1.theta = 45 deg`.
+    """
+
+    words: str
+    place: Place
+    law: LoadLaw
+    at: float
+    direction: Direction
+
+
+@dataclass(frozen=True)
+class DeadCentre:
+    """Ends a response at the dead centre number `count` of a coordinate, where its rate changes its
+    sign."""
+
+    words: str
+    place: Place
+    joint: str
+    coordinate: str
+    count: int
+
+
+@dataclass(frozen=True)
+class Turns:
+    """Ends a response where an angle lies `count` turns from its start, to either side."""
+
+    words: str
+    place: Place
+    joint: str
+    coordinate: str
+    count: int
+
+
+Stop = Crossing | DeadCentre | Turns
+
+
+@dataclass(frozen=True)
+class Response:
+    """One of the file's responses.
+
+    Attributes:
+        name: of the run.
+        place: where the file says it.
+        start: coordinates and rates at the first moment; those with a value are the independent
+            coordinates there, and as many have a rate.
+        assembly: which assembly is meant at the first moment.
+        efforts: as given; they stand among the mechanism's loads, too.
+        driven: coordinates that move by laws, with their orders at all moments.
+        course: the driven coordinates between the moments, over the time in the file's units; None
+            where nothing is driven.
+        moments: of the rows.
+        stops: what ends the response.
+        tolerance: relative error of a step.
+        fixed_step: in s, instead of a tolerance.
+        mechanism: with the loads of this run alone, its efforts the last of them.
+        load_laws: of the loads of this run.
+        held: what holds its idle freedoms.
+    """
+
+    name: str
+    place: Place
+    start: tuple[Start, ...]
+    assembly: Assembly
+    efforts: tuple[Effort, ...]
+    driven: tuple[DrivenInput, ...]
+    course: Course | None
+    moments: Moments
+    stops: tuple[Stop, ...]
+    tolerance: float
+    fixed_step: float | None
+    mechanism: Mechanism
+    load_laws: tuple[LoadLaw, ...]
+    held: tuple[Held, ...] = ()
+
+    @property
+    def rows(self) -> int:
+        """Number of rows asked for."""
+        return int(self.moments.values.size)
+
+    @property
+    def independent(self) -> list[tuple[str, str]]:
+        """(joint, coordinate) of the start's values."""
+        return [(one.joint, one.coordinate) for one in self.start if one.value is not None]
+
+    @property
+    def efforts_of(self) -> list[tuple[str, str]]:
+        """(joint, coordinate) whose effort is told: those with efforts, then the driven ones."""
+        given = [(one.joint, one.coordinate) for one in self.efforts]
+        return list(dict.fromkeys([*given, *((d.joint, d.coordinate) for d in self.driven)]))
+
+
+def first_motion(response: Response, units: UnitSystem) -> Motion:
+    """The first moment as a motion of one row: the start's coordinates, then the driven ones.
+
+    A start's coordinate without a rate of its own stands there with rate 0; accelerations are those
+    of laws, and 0 of what is free.
+    """
+    still = [_started(one, units) for one in response.start if one.value is not None]
+    moving = [_at_first(item) for item in response.driven]
+    moments = Moments(response.moments.values[:1], response.moments.written[:1])
+    return Motion((*still, *moving), 1, moments)
+
+
+def _started(one: Start, units: UnitSystem) -> DrivenInput:
+    orders = np.array([[one.value or 0.0], [one.rate or 0.0], [0.0], [0.0]])
+    dimension = dimension_of(one.coordinate)
+    written = []
+    for order in orders:
+        written.append(units.from_si(order.copy(), dimension))
+        dimension /= TIME
+    value, rate, acceleration, jerk = orders
+    return DrivenInput(
+        one.joint, one.coordinate, value, rate, acceleration, jerk, np.array(written)
+    )
+
+
+def _at_first(item: DrivenInput) -> DrivenInput:
+    return item._replace(
+        values=item.values[:1],
+        rates=item.rates[:1],
+        accelerations=item.accelerations[:1],
+        jerks=item.jerks[:1],
+        written_orders=item.written_orders[:, :1],
+        follows=False,
+    )
+
+
+def response_problem(problem: Problem, response: Response) -> Problem:
+    """The problem at the first moment of a response, with its loads, laws and quantities.
+
+    Its motion has one row, in which the start's coordinates are inputs; a solver graph of its
+    `driven` is that of the assembly at the start.
+    """
+    return replace(
+        problem,
+        mechanism=response.mechanism,
+        motion=first_motion(response, problem.units),
+        assembly=response.assembly,
+        load_laws=response.load_laws,
+        held=response.held,
+        follow=None,
+        response=response,
+    )

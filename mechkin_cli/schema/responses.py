@@ -1,0 +1,197 @@
+"""`responses:` - motions under forces, by name: where they start, what drives and what ends them.
+
+The motion follows from loads and efforts; `motion.inputs` belongs to the sweep and holds nothing
+here.
+"""
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from mechkin_cli.schema.alternatives import Choice, Tag, by_word
+from mechkin_cli.schema.base import NOTHING, Section, refuse
+from mechkin_cli.schema.laws import (
+    ConstantAcceleration,
+    ConstantRate,
+    Cycloidal,
+    Harmonic,
+    Polynomial,
+    TableLaw,
+)
+from mechkin_cli.schema.loads import TableValue, expression_or_table
+from mechkin_cli.schema.motion import LAWS, FollowingInput, TimeSection
+from mechkin_cli.schema.rules import Limits, Named, Shown
+from mechkin_cli.schema.scalars import (
+    START_PATTERN,
+    AngleOrLength,
+    AnyDimension,
+    Coordinate,
+    Dimensionless,
+    Duration,
+    ForceOrTorque,
+    Text,
+    WholeNumber,
+)
+
+StartName = Annotated[
+    str,
+    Limits(pattern=START_PATTERN),
+    Shown(
+        ("string",),
+        "a joint coordinate or its rate",
+        ("O1.theta", "O1.theta_dot"),
+    ),
+    Named("StartName"),
+]
+Effort = Annotated[
+    Annotated[ForceOrTorque, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
+    Choice(expression_or_table),
+    Named("Effort"),
+]
+
+
+class HeldCoordinate(Section):
+    """A coordinate that stays where it is."""
+
+    at: AngleOrLength
+    """The value."""
+
+
+def _law(mapping: dict[str, Any]) -> str | None:
+    if "law" in mapping:
+        word = mapping["law"]
+        return f"({word})" if isinstance(word, str) and word in LAWS else None
+    return "(following)" if "with" in mapping else "(held)"
+
+
+DrivenLaw = Annotated[
+    Annotated[HeldCoordinate, Tag("(held)")]
+    | Annotated[FollowingInput, Tag("(following)")]
+    | Annotated[ConstantRate, Tag("(constant-rate)")]
+    | Annotated[ConstantAcceleration, Tag("(constant-acceleration)")]
+    | Annotated[Polynomial, Tag("(polynomial)")]
+    | Annotated[Harmonic, Tag("(harmonic)")]
+    | Annotated[Cycloidal, Tag("(cycloidal)")]
+    | Annotated[TableLaw, Tag("(table)")],
+    by_word("law", _law, ", ".join(LAWS)),
+]
+
+
+class ListedTime(Section):
+    """The moments of the rows one by one."""
+
+    values: Annotated[tuple[Duration, ...], Limits(min_length=2)]
+    """Rising moments, of which the first is that of `start`."""
+
+
+def _spaced_or_listed(value: Any) -> str:
+    return "(listed)" if isinstance(value, dict) and "values" in value else "(spaced)"
+
+
+ResponseTime = Annotated[
+    Annotated[TimeSection, Tag("(spaced)")] | Annotated[ListedTime, Tag("(listed)")],
+    Choice(_spaced_or_listed),
+    Named("ResponseTime"),
+]
+_OTHER_STOPS = {
+    "contact": "a stop is a value: {value: O2.s, at: 0, direction: down}",
+    "time": "the last moment is that of time: {from, to, step}",
+    "event": "write value, dead_centre or turns",
+    "condition": "write value: an expression, and at: the value at which it ends",
+}
+
+
+class Crossing(Section):
+    """Ends the response where a value passes another."""
+
+    advice: ClassVar[dict[str, str]] = _OTHER_STOPS
+
+    value: AnyDimension
+    """An expression of coordinates, rates, positions, velocities, parameters and time."""
+    at: AnyDimension = "0"
+    """The value at which the response ends; a bare number is in the file's units."""
+    direction: Literal["up", "down", "any"] = "any"
+    """Whether it ends only where the value rises or falls."""
+
+
+class DeadCentre(Section):
+    """Ends the response at a dead centre of a coordinate: where its rate changes its sign."""
+
+    advice: ClassVar[dict[str, str]] = _OTHER_STOPS
+
+    dead_centre: Coordinate
+    """The coordinate, for example O4.theta."""
+    count: Annotated[WholeNumber, Limits(ge=1, le=1_000_000)] = 1
+    """The how manieth dead centre ends it."""
+
+
+class Turns(Section):
+    """Ends the response where an angle has turned by whole turns from its start, to either side."""
+
+    advice: ClassVar[dict[str, str]] = _OTHER_STOPS
+
+    turns: Coordinate
+    """The angle, for example O1.theta."""
+    count: Annotated[WholeNumber, Limits(ge=1, le=1_000_000)] = 1
+    """Number of turns."""
+
+
+def _stop(value: Any) -> str:
+    keys = value.keys() if isinstance(value, dict) else ()
+    return next((f"({key})" for key in ("dead_centre", "turns") if key in keys), "(value)")
+
+
+Stop = Annotated[
+    Annotated[Crossing, Tag("(value)")]
+    | Annotated[DeadCentre, Tag("(dead_centre)")]
+    | Annotated[Turns, Tag("(turns)")],
+    Choice(_stop),
+]
+
+
+class Response(Section):
+    """A motion under forces: gravity, springs, dampers, loads and efforts move what is free."""
+
+    editors: ClassVar[dict[str, Any]] = {
+        "allOf": [
+            {"not": {"required": ["near", "mode"]}},
+            {"not": {"required": ["tolerance", "fixed_step"]}},
+        ]
+    }
+    advice: ClassVar[dict[str, str]] = {
+        "inputs": "coordinates that move by laws stand under driven:",
+        "initial": "write start: {O1.theta: 20, O1.theta_dot: 0 rad/s}",
+        "loads": "loads stand in the file's loads:, with runs: [NAME] for this response alone",
+        "events": "write stop: [{value: O1.theta, at: 45}]",
+        "step": "rows stand under time: {from, to, step}, the integrator's own under fixed_step",
+        "tables": "tables stand in the file's tables:, with run: NAME",
+    }
+
+    start: dict[StartName, AnyDimension] = NOTHING
+    """As many independent coordinates as there are free freedoms, by value, and their rates; rates
+    left out are zero, and a rate of another coordinate may stand for one of theirs."""
+    near: dict[Coordinate, AngleOrLength] = NOTHING
+    """Take the assembly nearest to these coordinates; left out, the file's choice."""
+    mode: Text | None = None
+    """Take the assembly mode of this letter at the start."""
+    efforts: dict[Coordinate, Effort] = NOTHING
+    """Force or torque on coordinates: a number, an expression, or a table over the coordinate; they
+    add to the loads."""
+    driven: dict[Coordinate, DrivenLaw] = NOTHING
+    """Coordinates whose motion is prescribed: by a law of time, by others (`with`), or held
+    (`at`)."""
+    time: ResponseTime
+    """The moments of the rows."""
+    stop: tuple[Stop, ...] = ()
+    """What ends the response before its last moment."""
+    tolerance: Dimensionless | None = None
+    """Relative error of a step, 1e-10 if it is left out."""
+    fixed_step: Duration | None = None
+    """A step of its own for the integrator instead of a tolerance."""
+
+    def check(self) -> None:
+        """One of near and mode at most, one of tolerance and fixed_step at most."""
+        if self.near and self.mode is not None:
+            text = "near and mode both choose the assembly mode"
+            raise refuse("two-choices", text, "keep one of them", "mode")
+        if self.tolerance is not None and self.fixed_step is not None:
+            text = "tolerance and fixed_step both choose the steps"
+            raise refuse("two-choices", text, "keep one of them", "fixed_step")

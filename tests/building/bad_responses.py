@@ -1,0 +1,153 @@
+"""Mistakes in responses, in what names their runs, and words that the format does not have."""
+
+from building.sound import BadMechanism, added, between, column, joint, load
+
+TIME = "time: {from: 0, to: 1, step: 0.1}"
+
+
+def response(keys: str, code: str, *words: str) -> BadMechanism:
+    """The sound file with a response of some keys; `TIME` stands for its moments."""
+    return added(f"responses: {{go: {{{keys.replace('TIME', TIME)}}}}}", code, *words)
+
+
+def started(keys: str, code: str, *words: str) -> BadMechanism:
+    """The sound file with a response that starts at 20 deg, and some more keys."""
+    return response(f"start: {{O.theta: 20}}, TIME, {keys}", code, *words)
+
+
+def stopped(stop: str, code: str, *words: str) -> BadMechanism:
+    """The sound file with a response that has a stop."""
+    return started(f"stop: [{stop}]", code, *words)
+
+
+START = [
+    response("start: {»O.s: 1}, TIME", "unknown-coordinate", "no coordinate s", "theta"),
+    response("start: {»Q.theta_dot: 1}, TIME", "unknown-coordinate", "Q.theta is no coord"),
+    response("start: {»O.theta_ddot: 1}, TIME", "wrong-form", "O1.theta_dot"),
+    response("start: {O.theta: »20 mm}, TIME", "expression", "expected an angle", "length"),
+    response("start: {O.theta: 2, O.theta_dot: »2 mm}, TIME", "expression", "an angular rate"),
+    response(
+        "start: {O.theta: 2, O.theta_dot: 1, »D.s_dot: 1}, TIME",
+        "start-rates",
+        "2 rates for 1 coordinates",
+        "remove a rate",
+    ),
+    response(
+        "start: {O.theta: 2, D.theta: 1, »D.s_dot: 1}, TIME",
+        "start-rates",
+        "1 rates for 2 coordinates",
+        "add O.theta_dot or D.theta_dot",
+    ),
+    response(
+        "start: {»O.theta: 2}, driven: {O.theta: {at: 3}}, TIME",
+        "start-and-drive",
+        "O.theta is driven",
+        "remove it",
+    ),
+]
+"""What starts a response."""
+
+DRIVES = [
+    started("efforts: {»D.q: 1}", "unknown-coordinate", "no coordinate q", "theta, s"),
+    started("efforts: {D.s: »3 mm}", "expression", "expected a force", "length"),
+    started("efforts: {D.s: »-2*D.s}", "expression", "expected a force", "length"),
+    started("efforts: {O.theta: 1 N*mm*»row.mode}", "expression", "cannot read row.mode"),
+    started("efforts: {O.theta: »O.moment.z}", "expression", "it follows from the loads"),
+    started("efforts: {D.s: {table: f.csv, over: »D.s + 1 mm}}", "expression", "one quantity"),
+    started("efforts: {D.s: {table: f.csv, over: »p.position}}", "expression", "is a vector"),
+    started("efforts: {D.s: {table: f.csv, over: »r}}", "load-table", "r is a parameter"),
+    started("efforts: {D.s: {table: f.csv, over: »D.z}}", "expression", "D.z"),
+    started("efforts: {D.s: {table: »f.csv, over: time}}", "csv-table", "comes from no file"),
+    started(
+        "driven: {D.s: {at: 1}}, efforts: {»D.s: 1}", "effort-and-drive", "D.s is driven", "remove"
+    ),
+    started("driven: {»D.q: {at: 1}}", "unknown-coordinate", "no coordinate q"),
+    started("driven: {D.s: {at: »1 deg}}", "expression", "expected a length"),
+    started("driven: {D.s: {law: »jump, at: 1}}", "unknown-word", "constant-rate"),
+    started("driven: {D.s: {with: »O.theta*1 mm/rad}}", "expression", "O.theta is no input"),
+    started(
+        "driven: {D.s: {law: harmonic, from: 0, to: 1, duration: »0}}", "no-duration", "positive"
+    ),
+    started("near: {»D.q: 1}", "unknown-coordinate", "no coordinate q"),
+    started("near: {D.s: »1 deg}", "expression", "expected a length"),
+    started("near: {D.s: 1}, mode: »A", "two-choices", "near and mode", "keep one"),
+]
+"""What drives it and how it is assembled."""
+
+ROWS = [
+    added("responses: {go: »{start: {O.theta: 2}}}", "missing-key", "the key time is missing"),
+    response("start: {O.theta: 2}, time: »{from: 0, to: 1, step: 2}", "one-moment", "two moments"),
+    response("start: {O.theta: 2}, time: {from: 0, to: 1, step: »0}", "zero-step", "zero"),
+    response("start: {O.theta: 2}, time: {from: 0, to: 1, step: »1e-9}", "too-many-numbers"),
+    response(
+        "start: {O.theta: 2}, time: »{from: 1, to: 0, step: 0.1}", "time-backwards", "backwards"
+    ),
+    response("start: {O.theta: 2}, time: {values: [0, 1, »0.5]}", "time-backwards", "not later"),
+    response("start: {O.theta: 2}, time: {values: »[0]}", "wrong-length", "at least 2"),
+    started("tolerance: »1e-20", "out-of-range", "1e-14 to 0.01", "such as 1e-10"),
+    started("tolerance: »1 mm", "expression", "dimensionless"),
+    started("fixed_step: »0 s", "zero-step", "positive time"),
+    started("tolerance: 1e-6, fixed_step: »1e-3", "two-choices", "keep one"),
+]
+"""Its rows and steps."""
+
+STOPS = [
+    stopped("{value: »O.q}", "expression", "O.q"),
+    stopped("{value: »r}", "expression", "never changes"),
+    stopped("{value: »p.position}", "expression", "write one component"),
+    stopped("{value: »O.effort}", "expression", "O.effort"),
+    stopped("{value: »O.theta_ddot}", "expression", "a stop cannot read", "acceleration"),
+    stopped("{value: O.theta, at: »3 mm}", "expression", "expected an angle"),
+    stopped("{value: O.theta, direction: »left}", "unknown-word", "up, down, any"),
+    stopped("{dead_centre: »O.q}", "unknown-coordinate", "no coordinate q"),
+    stopped("{dead_centre: »Z.theta}", "unknown-coordinate", "Z.theta is no coordinate"),
+    stopped("{dead_centre: O.theta, count: »0}", "out-of-range", "below the limit 1"),
+    stopped("{turns: »D.s}", "no-angle", "slide", "write value:"),
+    stopped("{value: O.theta, »contact: D}", "unknown-key", "a stop is a value"),
+]
+"""What ends it."""
+
+RUNS = [
+    load("{type: gravity, g: [0, -9810, 0], runs: [»go]}", "unknown-run", "sweep"),
+    load("{type: gravity, g: [0, -9810, 0], runs: »[]}", "wrong-length", "at least 1"),
+    load("{type: gravity, g: [0, 1, 0], runs: [sweep, »sweep]}", "named-twice", "once"),
+    added(f"responses: {{»sweep: {{{TIME}}}}}", "reserved-name", "the run along the inputs"),
+    added(f"responses: {{»aux: {{{TIME}}}}}", "reserved-name", "device"),
+    added(f"responses: {{»{'n' * 101}: {{{TIME}}}}}", "reserved-name", "limit 100"),
+    added(
+        f"responses: {{go: {{start: {{O.theta: 2}}, {TIME}}}, »GO: {{{TIME}}}}}",
+        "name-clash",
+        "case",
+    ),
+    column("O.theta, »row.event", "expression", "row.event is told of a response"),
+    column("O.theta, »row.work", "expression", "row.work is told of a response"),
+    BadMechanism("name: t,", "name: t, run: »go,", "unknown-run", ("there is no run go", "sweep")),
+    BadMechanism("name: t,", "name: t, run: »a b,", "wrong-form", ("a b",)),
+]
+"""Who names runs."""
+
+OTHER_WORDS = [
+    added("»studies: {}", "unknown-key", "no key 'studies'", "--set NAME=VALUE", "vary"),
+    added("»study: {}", "unknown-key", "vary"),
+    added("»contact: {}", "unknown-key", "no contact", "Sp", "Sg"),
+    added("»gears: {}", "unknown-key", "with: -2*A.theta"),
+    added("»cam: {}", "unknown-key", "law: table"),
+    added("»flexible: {}", "unknown-key", "links are rigid", "spring"),
+    added("»Control: {}", "unknown-key", "an effort may be an expression"),
+    added("»motors: {}", "unknown-key", "efforts"),
+    added("»friction: 0.1", "unknown-key", "friction is a load"),
+    added("»simulation: {}", "unknown-key", "responses:"),
+    added("»gravity: 9.81", "unknown-key", "loads:"),
+    load("{type: »motor, joint: O}", "unknown-word", "efforts"),
+    load("{type: »contact, joint: O}", "unknown-word", "no contact"),
+    load("{type: »moment, link: rod}", "unknown-word", "torque"),
+    joint("{type: »gear, LINKS}", "unknown-word", "with: -2*A.theta"),
+    joint("{type: »Revolute, LINKS}", "unknown-word", "a hinge is R"),
+    between("{type: »cam, LINKS}", "unknown-word", "law: table"),
+    joint("{type: R, LINKS, point: [0, 0, 0], axis: [0, 0, 1], »friction: 1}", "unknown-key", "is"),
+    started("»inputs: {}", "unknown-key", "driven:"),
+    started("»loads: []", "unknown-key", "runs: [NAME]"),
+]
+"""Words of other programs, each with what to write instead."""
+
+BAD_RESPONSES = [*START, *DRIVES, *ROWS, *STOPS, *RUNS, *OTHER_WORDS]
