@@ -26,6 +26,9 @@ class Status(IntEnum):
     not_converged = 4
     not_assembled = 5
     rank_unclear = 6
+    singular_inertia = 7
+    step_limit = 8
+    friction_undecided = 9
 
     @property
     def label(self) -> str:
@@ -58,6 +61,13 @@ _SENTENCES = {
     Status.not_assembled: "no start of the first row led to an assembled position.",
     Status.rank_unclear: (
         "the rank of the constraints could not be decided, so no reactions are given."
+    ),
+    Status.singular_inertia: (
+        "a freedom has no inertia there, so that forces do not tell how it moves on."
+    ),
+    Status.step_limit: "the integration did not come this far within its steps.",
+    Status.friction_undecided: (
+        "friction does not tell which way it goes on; no choice is made."
     ),
 }
 

@@ -699,3 +699,7 @@ error estimates mean nothing."""
 
 MOST_THREADS: Final = 1024
 """As many threads as may be asked for."""
+
+MOST_RESPONSE_STEPS: Final = 1_000_000
+"""Attempted steps of one response: minutes of work for one mechanism, and far more than any of the
+kept ones needs (8 to 600)."""

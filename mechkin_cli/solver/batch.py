@@ -31,6 +31,10 @@ class Chart(NamedTuple):
     rates: Floats
     accelerations: Floats
 
+    def at(self, rows: NDArray[np.intp] | slice) -> Chart:
+        """Some of the rows."""
+        return Chart(*(array[:, rows] for array in self))
+
     def arguments(self, demand: Demand) -> dict[str, Floats | None]:
         """As `Plan.run` takes them."""
         return {

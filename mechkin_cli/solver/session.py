@@ -167,6 +167,14 @@ class Session:
         """The same session with another choice of the first assembly."""
         return self._changed(problem=replace(self.problem, assembly=assembly), continued=None)
 
+    def moved(self, problem: Problem) -> Session:
+        """The same session with other values of its inputs: of a problem that differs in its motion
+        alone."""
+        other = self._changed(problem=problem)
+        other.__dict__.pop("inputs", None)
+        other.__dict__.pop("route", None)
+        return other
+
     def _changed(self, **changes: object) -> Session:
         """A session that shares graph, layout, plan, inputs and what was found."""
         _ = self.plan  # made before it is shared: outputs belong to one structure

@@ -42,13 +42,13 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
     const MotionStart& s = starts_[l];
     for (int k = 0; k < plan_.states; ++k) origin_[k * lanes_ + l] = s.state[k];
     for (int k = 0; k < plan_.columns; ++k) origin_first_[k * lanes_ + l] = s.first[k];
-    for (int k = 0; k < plan_.charts * plan_.columns; ++k) direction_[k * lanes_ + l] = s.direction[k];
-    for (int k = 0; k < turn_slots_; ++k) turn_[k * lanes_ + l] = s.turn[k];
+    for (int k = 0; k < plan_.charts * plan_.columns; ++k) end_.tangent[k * lanes_ + l] = s.tangent[k];
+    lay_chart(l);
   }
   const std::vector<double> y = start();
   std::copy(y.begin() + (long)plan_.charts * lanes_, y.begin() + 2L * plan_.charts * lanes_, rate_.begin());
   evaluate(place_.data(), rate_.data(), &found_);
-  jacobian_ = found_.jacobian, origin_second_ = found_.second;
+  jacobian_ = found_.jacobian, origin_second_ = found_.second, turn_ = found_.turned;
 }
 
 ChartedMotion::Stage ChartedMotion::make_stage() const {

@@ -18,8 +18,7 @@ struct MotionStart {
   const Plan* plan;         // with a chart, valid as long as the motion
   const double* state;      // states, closed
   const double* first;      // columns: their rates
-  const double* direction;  // charts x columns: orthonormal in the columns in parts of their weights
-  const double* turn;       // turn slots: continuous angles and orientations of the closing joints
+  const double* tangent;    // charts x columns: rates that the loops allow, as many as freedoms, independent
 };
 
 struct MotionLimits {

@@ -42,7 +42,7 @@ void check_plans(const std::vector<const FrozenPlan*>& plans) {
 }
 
 nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, const Table& first,
-              const Table& direction, const Table& turn, double begin, const Numbers& times, double tolerance,
+              const Table& tangent, double begin, const Numbers& times, double tolerance,
               double fixed_step, long most_steps, int method, const std::vector<double>& tests, int iterations,
               double jump, double radius, int lanes, int threads) {
   check_plans(plans);
@@ -54,9 +54,8 @@ nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, c
   int slots = 0;
   for (const ClosingTurn& t : closing_turns(p, *kernel_unit(2))) slots += t.width;
   const std::size_t wide = (std::size_t)p.charts * p.columns;
-  const double* const given[4] = {checked(state, count, p.states, "state"), checked(first, count, p.columns, "first"),
-                                  checked(direction, count, (long)wide, "direction"),
-                                  checked(turn, count, slots, "turn")};
+  const double* const given[3] = {checked(state, count, p.states, "state"), checked(first, count, p.columns, "first"),
+                                  checked(tangent, count, (long)wide, "tangent")};
   ResponseTask task;
   task.times = times.data(), task.begin = begin;
   task.limits = {tests[0], tests[1], tests[2], jump, radius, iterations};
@@ -71,8 +70,8 @@ nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, c
   auto work = new_array<double>(&all.work, {count, 2, rows});
   auto flags = new_array<unsigned char>(&all.flags, {count, rows});
   for (std::size_t v = 0; v < count; ++v) {
-    task.starts.push_back({&plans[v]->view(), given[0] + v * p.states, given[1] + v * p.columns, given[2] + v * wide,
-                           given[3] + v * slots});
+    task.starts.push_back(
+        {&plans[v]->view(), given[0] + v * p.states, given[1] + v * p.columns, given[2] + v * wide});
     task.rows.push_back({(long)rows, all.state + v * p.states * rows, all.direction + v * wide * rows,
                          all.chart_rate + v * p.charts * rows, all.chart_second + v * p.charts * rows,
                          all.turn + v * slots * rows, all.work + v * 2 * rows, all.flags + v * rows});
@@ -93,7 +92,7 @@ nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, c
 void bind_response(nb::module_& m) {
   // Reports, then arrays (variants, columns, rows): states, chart directions, rates and accelerations of the chart,
   // turns, work put in and lost; flags (variants, rows). Rows that were not reached hold nan.
-  m.def("respond", &run, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "direction"_a, "turn"_a, "begin"_a, "times"_a,
+  m.def("respond", &run, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "tangent"_a, "begin"_a, "times"_a,
         "tolerance"_a, "fixed_step"_a, "most_steps"_a, "method"_a, "tests"_a, "iterations"_a, "jump"_a, "radius"_a,
         "lanes"_a, "threads"_a);
 }
