@@ -26,9 +26,9 @@ class Status(IntEnum):
     not_converged = 4
     not_assembled = 5
     rank_unclear = 6
-    singular_inertia = 7
-    step_limit = 8
-    friction_undecided = 9
+    friction_undecided = 7
+    singular_inertia = 8
+    step_limit = 9
 
     @property
     def label(self) -> str:
@@ -46,7 +46,9 @@ class Status(IntEnum):
         return self in _SOLVED
 
 
-_SOLVED = frozenset({Status.ok, Status.near_singular, Status.rank_unclear})
+_SOLVED = frozenset(
+    {Status.ok, Status.near_singular, Status.rank_unclear, Status.friction_undecided}
+)
 
 _SENTENCES = {
     Status.ok: "solved to full accuracy.",
@@ -62,12 +64,15 @@ _SENTENCES = {
     Status.rank_unclear: (
         "the rank of the constraints could not be decided, so no reactions are given."
     ),
-    Status.singular_inertia: (
-        "a freedom has no inertia there, so that forces do not tell how it moves on."
-    ),
-    Status.step_limit: "the integration did not come this far within its steps.",
     Status.friction_undecided: (
-        "friction does not tell which way it goes on; no choice is made."
+        "the friction of a joint has no direction, or not one value alone; what depends on it is "
+        "empty."
+    ),
+    Status.singular_inertia: (
+        "the response ended before this row: a freedom has no inertia that could be moved."
+    ),
+    Status.step_limit: (
+        "the response ended before this row: its steps became too short, or too many."
     ),
 }
 

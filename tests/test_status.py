@@ -12,6 +12,9 @@ LABELS = {
     "not-converged": 4,
     "not-assembled": 5,
     "rank-unclear": 6,
+    "friction-undecided": 7,
+    "singular-inertia": 8,
+    "step-limit": 9,
 }
 
 
@@ -28,4 +31,4 @@ def test_every_status_has_a_sentence(status):
 
 def test_rows_with_a_position_have_a_solution():
     solved = {status.label for status in Status if status.has_solution}
-    assert solved == {"ok", "near-singular", "rank-unclear"}
+    assert solved == {"ok", "near-singular", "rank-unclear", "friction-undecided"}

@@ -515,3 +515,29 @@ def follow_rows(
     inputs and states beyond); the branch points that were passed (first row behind, inputs); on the
     course its piece, else -1, and parameter there.
     """
+
+def integrate_tape(
+    tape: Tape,
+    freedoms: int,
+    quadratures: int,
+    switches: Sequence[tuple[bool, bool]],
+    time: Floats,
+    state: Floats,
+    parameters: Floats,
+    rows: Floats,
+    scales: Sequence[float],
+    tolerance: float,
+    fixed_step: float,
+    least_step: float,
+    most_steps: int,
+    dense_rows: int,
+    method: int,
+) -> tuple[Floats, list[dict[str, object]], list[tuple[int, int, bool, float, list[float]]], int]:
+    """Integrates x'' = f, w' = g in lanes, see `tape_motion.hpp` for what the tape takes and gives.
+
+    `switches`: whether each is a kink, and whether it ends a lane. `state` (x, v, w) and
+    `parameters` are (components, lanes); `scales` are those of the charts, one step each.
+    Returns the states (rows, components, lanes), a report for each lane (`LaneReport`), the events
+    (lane, switch, rising, time, state) and how many rows were interpolated. ValueError for what
+    fits no motion.
+    """

@@ -125,6 +125,7 @@ def integrate(
         tolerance=tolerance,
         fixed_step=fixed_step or 0.0,
         most_steps=tolerances.MOST_RESPONSE_STEPS,
+        dense_rows=tolerances.DENSE_ROWS,
         method=method,
         tests=list(RESIDUAL_TESTS),
         iterations=tolerances.NEWTON_ITERATIONS,

@@ -108,9 +108,7 @@ def _rows(
     )
 
 
-def _nothing(
-    chosen: Session, free: Session, start: Start, response: Response
-) -> ResponseResult:
+def _nothing(chosen: Session, free: Session, start: Start, response: Response) -> ResponseResult:
     """Rows without a place: there is no first assembly."""
     count, charts = response.rows, len(response.independent)
     slots = turn_slots(free.plan)
@@ -158,5 +156,3 @@ def _read(result: ResponseResult, quantities: Iterable[str]) -> None:
         result.keep(batch, wanted, demand)
         result.read(asked)
     result.row_states.diagnostics += row_notes(result, asked)
-
-

@@ -6,6 +6,10 @@
 namespace {
 
 constexpr int SCAN = 8;                         // parts in which a step is looked into
+<<<<<<< HEAD
+=======
+constexpr int DEEPER = 5;                       // more places where values are least
+>>>>>>> main
 constexpr double EARLY[] = {1e-3, 1e-6, 1e-9};  // of the step: where a switch is asked that begins at a zero
 constexpr double ZERO = 1e-12;                  // in parts of the value at the other end
 constexpr int MOST_TRIES = 80;
@@ -25,6 +29,34 @@ CrossingSearch::CrossingSearch(LaneStates& states, Method& method, const Flags& 
       seen_(states.lanes), open_(states.lanes), part_(states.lanes), at_(states.lanes), place_(states.entries),
       slope_(states.entries), switches_(states.kinds.size() * states.lanes) {}
 
+<<<<<<< HEAD
+=======
+std::size_t CrossingSearch::Samples::insert(double at, const std::vector<double>& seen) {
+  const std::size_t k = std::lower_bound(part.begin(), part.end(), at) - part.begin();
+  part.insert(part.begin() + (long)k, at);
+  values.insert(values.begin() + (long)k, seen);
+  return k;
+}
+
+// Where the least of all parabolas through a local minimum and its neighbours is; false where it was looked at before.
+bool CrossingSearch::Samples::deepest(double* at) const {
+  double least = __builtin_inf();
+  for (std::size_t k = 1; k + 1 < part.size(); ++k)
+    for (std::size_t s = 0; s < values[k].size(); ++s) {
+      const double a = values[k - 1][s], b = values[k][s], c = values[k + 1][s];
+      if (b > a || b > c) continue;
+      const double left = part[k] - part[k - 1], right = part[k + 1] - part[k];
+      const double fall = (b - a) / left, rise = (c - b) / right, bend = (rise - fall) / (left + right);
+      if (!(bend > 0.0)) continue;
+      const double slope = fall + bend * left, shift = -0.5 * slope / bend;
+      if (!(b + 0.5 * slope * shift < least)) continue;
+      least = b + 0.5 * slope * shift;
+      *at = part[k] + shift;
+    }
+  return least < __builtin_inf() && !std::binary_search(part.begin(), part.end(), *at);
+}
+
+>>>>>>> main
 // The bad switch whose zero is the first by the secant, and where that is.
 int CrossingSearch::Bracket::first(double* where) const {
   int which = -1;
@@ -101,6 +133,7 @@ std::vector<Crossing> CrossingSearch::run(const Flags& crossed, const Flags& sus
   return found_;
 }
 
+<<<<<<< HEAD
 // Narrows the suspected lanes to the first part that is bad at its end, if there is one.
 void CrossingSearch::scan(const Flags& suspected) {
   Flags waiting(states_.lanes, 0);
@@ -117,6 +150,35 @@ void CrossingSearch::scan(const Flags& suspected) {
         waiting[i] = 1;
         open_[i] = 0;
       }
+=======
+// Looks into the suspected lanes at equal parts, then where their values are likely to be least, and narrows them to the
+// first bad place that it meets.
+void CrossingSearch::scan(const Flags& suspected) {
+  Flags waiting(states_.lanes, 0);
+  std::vector<Samples> samples(states_.lanes);
+  for (int i = 0; i < states_.lanes; ++i) {
+    if (!suspected[i]) std::swap(open_[i], waiting[i]);
+    samples[i].insert(0.0, bracket_[i].at_low);
+    samples[i].insert(1.0, bracket_[i].at_high);
+  }
+  for (int k = 1; k < SCAN + DEEPER && any(open_); ++k) {
+    for (int i = 0; i < states_.lanes; ++i) {
+      part_[i] = (double)k / SCAN;
+      if (open_[i] && k >= SCAN && !samples[i].deepest(&part_[i])) end(i, Crossing::NONE);
+    }
+    look();
+    for (int i = 0; i < states_.lanes; ++i) {
+      if (!open_[i]) continue;
+      const std::size_t at = samples[i].insert(part_[i], seen_[i]);
+      if (!is_bad(seen_[i])) continue;
+      Bracket& b = bracket_[i];
+      b.low = samples[i].part[at - 1];
+      b.at_low = samples[i].values[at - 1];
+      b.high = part_[i];
+      b.at_high = seen_[i];
+      waiting[i] = 1;
+      open_[i] = 0;
+>>>>>>> main
     }
   }
   for (int i = 0; i < states_.lanes; ++i) {

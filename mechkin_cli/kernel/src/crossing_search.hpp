@@ -35,6 +35,16 @@ class CrossingSearch {
     double tried = -1.0;
     int first(double* where) const;
   };
+<<<<<<< HEAD
+=======
+  // Places that were looked at, in order.
+  struct Samples {
+    std::vector<double> part;
+    std::vector<std::vector<double>> values;
+    std::size_t insert(double at, const std::vector<double>& seen);
+    bool deepest(double* at) const;
+  };
+>>>>>>> main
 
   std::vector<double> values(const std::vector<double>& switches, int lane) const;
   // Asks the open lanes at part_; lanes with a fault are closed.

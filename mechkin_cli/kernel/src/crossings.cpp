@@ -11,11 +11,16 @@ namespace {
 
 constexpr double ROUNDING = 2.220446049250313e-16;
 constexpr double SMALL = 1e-12;         // of the values at the ends: what is no dip
+<<<<<<< HEAD
+=======
+constexpr double DOUBT = 0.1;           // about the largest product of three distances within a step
+>>>>>>> main
 constexpr int LANDINGS = 5;             // corrections of a step that shall end at a zero
 constexpr int SEARCHES = 6;             // new searches, as something else came first in it
 constexpr double MOST_CHANGE = 0.1;     // of the step, in one correction
 constexpr int RETURNS = 3;              // passes at one place that hold a motion
 
+<<<<<<< HEAD
 // The least of the parabola through three places, of rising x; y1 where it does not turn between them.
 double least_of_parabola(const double* x, const double* y) {
   const double left = (y[1] - y[0]) / (x[1] - x[0]), right = (y[2] - y[1]) / (x[2] - x[1]);
@@ -23,6 +28,22 @@ double least_of_parabola(const double* x, const double* y) {
   if (!(bend > 0.0)) return y[1];
   const double slope = left + bend * (x[1] - x[0]), shift = -0.5 * slope / bend;  // at x1; from it to the least
   return x[1] + shift > x[0] && x[1] + shift < x[2] ? y[1] + 0.5 * slope * shift : y[1];
+=======
+// The least that the values at four places may have between them: of the parabolas through three of them, less what the
+// cubic through all has beside these.
+double least_between(const double* x, const double* y) {
+  const double d01 = (y[1] - y[0]) / (x[1] - x[0]), d12 = (y[2] - y[1]) / (x[2] - x[1]),
+               d23 = (y[3] - y[2]) / (x[3] - x[2]);
+  const double bend[2] = {(d12 - d01) / (x[2] - x[0]), (d23 - d12) / (x[3] - x[1])};
+  const double third = std::fabs((bend[1] - bend[0]) / (x[3] - x[0]));
+  double least = std::min(y[1], y[2]);
+  for (int k = 0; k < 2; ++k) {
+    const double slope = k ? d12 + bend[1] * (x[2] - x[1]) : d01 + bend[0] * (x[1] - x[0]);  // at the middle one
+    const double shift = bend[k] > 0.0 ? -0.5 * slope / bend[k] : 0.0, place = x[k + 1] + shift;
+    if (place > x[k] && place < x[k + 2]) least = std::min(least, y[k + 1] + 0.5 * slope * shift - DOUBT * third);
+  }
+  return least;
+>>>>>>> main
 }
 
 }  // namespace
@@ -51,7 +72,11 @@ bool March::may_dip(int lane, int landing) const {
     const double y[4] = {side * states_.switch_value[k], side * states_.switch_inner[0][k],
                          side * states_.switch_inner[1][k], side * states_.switch_end[k]};
     double least = states_.switch_least[k];
+<<<<<<< HEAD
     if (s != landing) least = std::min({least, least_of_parabola(x, y), least_of_parabola(x + 1, y + 1)});
+=======
+    if (s != landing) least = std::min(least, least_between(x, y));
+>>>>>>> main
     if (least < -SMALL * std::max(std::fabs(y[0]), std::fabs(y[3]))) return true;
   }
   return false;

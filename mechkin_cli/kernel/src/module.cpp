@@ -90,5 +90,8 @@ NB_MODULE(_kernel, m) {
   bind_variants(m);
   bind_positions(m);
   bind_integrator(m);
+<<<<<<< HEAD
   bind_response(m);
+=======
+>>>>>>> main
 }

@@ -43,7 +43,7 @@ void check_plans(const std::vector<const FrozenPlan*>& plans) {
 
 nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, const Table& first,
               const Table& tangent, double begin, const Numbers& times, double tolerance,
-              double fixed_step, long most_steps, int method, const std::vector<double>& tests, int iterations,
+              double fixed_step, long most_steps, int dense_rows, int method, const std::vector<double>& tests, int iterations,
               double jump, double radius, int lanes, int threads) {
   check_plans(plans);
   if (!motion_unit(lanes)) throw nb::value_error("lanes: this width is not available on this machine");
@@ -60,7 +60,7 @@ nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, c
   task.times = times.data(), task.begin = begin;
   task.limits = {tests[0], tests[1], tests[2], jump, radius, iterations};
   task.settings.tolerance = tolerance, task.settings.fixed_step = fixed_step;
-  task.settings.most_steps = most_steps, task.settings.method = (MethodChoice)method;
+  task.settings.dense_rows = dense_rows, task.settings.most_steps = most_steps, task.settings.method = (MethodChoice)method;
   MotionRows all = {};
   auto states = new_array<double>(&all.state, {count, (std::size_t)p.states, rows});
   auto directions = new_array<double>(&all.direction, {count, wide, rows});
@@ -93,6 +93,6 @@ void bind_response(nb::module_& m) {
   // Reports, then arrays (variants, columns, rows): states, chart directions, rates and accelerations of the chart,
   // turns, work put in and lost; flags (variants, rows). Rows that were not reached hold nan.
   m.def("respond", &run, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "tangent"_a, "begin"_a, "times"_a,
-        "tolerance"_a, "fixed_step"_a, "most_steps"_a, "method"_a, "tests"_a, "iterations"_a, "jump"_a, "radius"_a,
+        "tolerance"_a, "fixed_step"_a, "most_steps"_a, "dense_rows"_a, "method"_a, "tests"_a, "iterations"_a, "jump"_a, "radius"_a,
         "lanes"_a, "threads"_a);
 }
