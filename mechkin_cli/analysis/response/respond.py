@@ -25,17 +25,19 @@ from mechkin_cli.status import Status
 if TYPE_CHECKING:
     from mechkin_cli.analysis.assembly.start import Start
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.mechanism.response import Response
+
+ANY_PACKING = Packing()
+"""As many lanes and threads as pay."""
 
 
 def respond(
     problem: Problem,
     response: Response,
     quantities: Iterable[str] = (),
-    packing: Packing = Packing(),
+    packing: Packing = ANY_PACKING,
 ) -> ResponseResult:
     """Integrates a response and reads the quantities asked for.
 

@@ -16,7 +16,7 @@ from mechkin_cli.mechanism.quantities import response_quantities
 if TYPE_CHECKING:
     from mechkin_cli.analysis.assembly.start import Start
     from mechkin_cli.analysis.sweep.rows import Rows
-    from mechkin_cli.arrays import Floats
+    from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.mechanism.model import Amount
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.mechanism.response import Response
@@ -62,6 +62,11 @@ class ResponseResult(Result):
         self.events = tuple(events)
         self.response = response
         self.report = report
+
+    @cached_property
+    def solved(self) -> Bools:
+        """Rows that were reached and have a position (rows,)."""
+        return self.row_states.reached & super().solved
 
     @cached_property
     def mode(self) -> str:

@@ -6,10 +6,7 @@
 namespace {
 
 constexpr int SCAN = 8;                         // parts in which a step is looked into
-<<<<<<< HEAD
-=======
 constexpr int DEEPER = 5;                       // more places where values are least
->>>>>>> main
 constexpr double EARLY[] = {1e-3, 1e-6, 1e-9};  // of the step: where a switch is asked that begins at a zero
 constexpr double ZERO = 1e-12;                  // in parts of the value at the other end
 constexpr int MOST_TRIES = 80;
@@ -29,8 +26,6 @@ CrossingSearch::CrossingSearch(LaneStates& states, Method& method, const Flags& 
       seen_(states.lanes), open_(states.lanes), part_(states.lanes), at_(states.lanes), place_(states.entries),
       slope_(states.entries), switches_(states.kinds.size() * states.lanes) {}
 
-<<<<<<< HEAD
-=======
 std::size_t CrossingSearch::Samples::insert(double at, const std::vector<double>& seen) {
   const std::size_t k = std::lower_bound(part.begin(), part.end(), at) - part.begin();
   part.insert(part.begin() + (long)k, at);
@@ -56,7 +51,6 @@ bool CrossingSearch::Samples::deepest(double* at) const {
   return least < __builtin_inf() && !std::binary_search(part.begin(), part.end(), *at);
 }
 
->>>>>>> main
 // The bad switch whose zero is the first by the secant, and where that is.
 int CrossingSearch::Bracket::first(double* where) const {
   int which = -1;
@@ -133,24 +127,6 @@ std::vector<Crossing> CrossingSearch::run(const Flags& crossed, const Flags& sus
   return found_;
 }
 
-<<<<<<< HEAD
-// Narrows the suspected lanes to the first part that is bad at its end, if there is one.
-void CrossingSearch::scan(const Flags& suspected) {
-  Flags waiting(states_.lanes, 0);
-  for (int i = 0; i < states_.lanes; ++i)
-    if (!suspected[i]) std::swap(open_[i], waiting[i]);
-  for (int k = 1; k < SCAN && any(open_); ++k) {
-    std::fill(part_.begin(), part_.end(), (double)k / SCAN);
-    look();
-    for (int i = 0; i < states_.lanes; ++i) {
-      if (!open_[i]) continue;
-      const bool bad = is_bad(seen_[i]);
-      move(i, bad);
-      if (bad) {
-        waiting[i] = 1;
-        open_[i] = 0;
-      }
-=======
 // Looks into the suspected lanes at equal parts, then where their values are likely to be least, and narrows them to the
 // first bad place that it meets.
 void CrossingSearch::scan(const Flags& suspected) {
@@ -178,7 +154,6 @@ void CrossingSearch::scan(const Flags& suspected) {
       b.at_high = seen_[i];
       waiting[i] = 1;
       open_[i] = 0;
->>>>>>> main
     }
   }
   for (int i = 0; i < states_.lanes; ++i) {

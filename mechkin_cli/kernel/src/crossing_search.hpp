@@ -35,8 +35,6 @@ class CrossingSearch {
     double tried = -1.0;
     int first(double* where) const;
   };
-<<<<<<< HEAD
-=======
   // Places that were looked at, in order.
   struct Samples {
     std::vector<double> part;
@@ -44,7 +42,6 @@ class CrossingSearch {
     std::size_t insert(double at, const std::vector<double>& seen);
     bool deepest(double* at) const;
   };
->>>>>>> main
 
   std::vector<double> values(const std::vector<double>& switches, int lane) const;
   // Asks the open lanes at part_; lanes with a fault are closed.

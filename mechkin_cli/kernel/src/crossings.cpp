@@ -11,24 +11,12 @@ namespace {
 
 constexpr double ROUNDING = 2.220446049250313e-16;
 constexpr double SMALL = 1e-12;         // of the values at the ends: what is no dip
-<<<<<<< HEAD
-=======
 constexpr double DOUBT = 0.1;           // about the largest product of three distances within a step
->>>>>>> main
 constexpr int LANDINGS = 5;             // corrections of a step that shall end at a zero
 constexpr int SEARCHES = 6;             // new searches, as something else came first in it
 constexpr double MOST_CHANGE = 0.1;     // of the step, in one correction
 constexpr int RETURNS = 3;              // passes at one place that hold a motion
 
-<<<<<<< HEAD
-// The least of the parabola through three places, of rising x; y1 where it does not turn between them.
-double least_of_parabola(const double* x, const double* y) {
-  const double left = (y[1] - y[0]) / (x[1] - x[0]), right = (y[2] - y[1]) / (x[2] - x[1]);
-  const double bend = (right - left) / (x[2] - x[0]);
-  if (!(bend > 0.0)) return y[1];
-  const double slope = left + bend * (x[1] - x[0]), shift = -0.5 * slope / bend;  // at x1; from it to the least
-  return x[1] + shift > x[0] && x[1] + shift < x[2] ? y[1] + 0.5 * slope * shift : y[1];
-=======
 // The least that the values at four places may have between them: of the parabolas through three of them, less what the
 // cubic through all has beside these.
 double least_between(const double* x, const double* y) {
@@ -43,7 +31,6 @@ double least_between(const double* x, const double* y) {
     if (place > x[k] && place < x[k + 2]) least = std::min(least, y[k + 1] + 0.5 * slope * shift - DOUBT * third);
   }
   return least;
->>>>>>> main
 }
 
 }  // namespace
@@ -72,11 +59,7 @@ bool March::may_dip(int lane, int landing) const {
     const double y[4] = {side * states_.switch_value[k], side * states_.switch_inner[0][k],
                          side * states_.switch_inner[1][k], side * states_.switch_end[k]};
     double least = states_.switch_least[k];
-<<<<<<< HEAD
-    if (s != landing) least = std::min({least, least_of_parabola(x, y), least_of_parabola(x + 1, y + 1)});
-=======
     if (s != landing) least = std::min(least, least_between(x, y));
->>>>>>> main
     if (least < -SMALL * std::max(std::fabs(y[0]), std::fabs(y[3]))) return true;
   }
   return false;

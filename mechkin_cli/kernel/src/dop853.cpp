@@ -92,11 +92,7 @@ void Dop853::attempt(LaneStates& s, const Flags& asked) {
     const bool left =
         s.evaluate(stage_time_.data(), place, is_end, &mask, slopes_.data() + stage * entries, switches);
     if (!left) return;
-<<<<<<< HEAD
-    if (!is_end && !s.kinds.empty()) note_switches(s, stage);
-=======
     if (dop853::C[stage] < 1.0 && !s.kinds.empty()) note_switches(s, stage);
->>>>>>> main
   }
   std::copy_n(slopes_.data() + dop853::STAGES * entries, entries, s.slope_end.data());
   estimate(s, mask);
