@@ -147,6 +147,12 @@ class Session:
         """A session of another problem with the same choices."""
         return Session(problem, graph, closed_at=self.closed_at, packing=self.packing)
 
+    def loaded(self, problem: Problem) -> Session:
+        """A session of a problem that differs in masses and loads alone: the same states serve."""
+        other = self.of(problem, self.graph)
+        other.__dict__["layout"] = Layout(problem.laid_mechanism, self.graph, self.layout.length)
+        return other
+
     def derived(self, make: Callable[[Session], Problem]) -> Session:
         """The session of a problem that follows from this session's."""
         return self.of(make(self))

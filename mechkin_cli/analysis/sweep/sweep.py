@@ -18,7 +18,12 @@ from mechkin_cli.analysis.sweep.notes import (
     redundancy_note,
 )
 from mechkin_cli.analysis.sweep.result import Result
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
+from mechkin_cli.mechanism.coefficient_quantities import (
+    COEFFICIENT_KINDS,
+    base_name,
+    base_quantity,
+)
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, TRANSMISSION_KINDS
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.load_laws import quantities_read
 from mechkin_cli.solver.batch import assembly_size
@@ -208,6 +213,13 @@ def _read_by_loads(result: Result) -> list[Wanted]:
     return [known[name] for name in quantities_read(result.problem)]
 
 
+def _rests_on_reactions(problem: Problem, quantity: Wanted) -> bool:
+    """Whether a quantity is not unique where reactions are not."""
+    if quantity.kind in COEFFICIENT_KINDS:
+        quantity = base_quantity(problem.quantities(), base_name(quantity))
+    return quantity.kind in WRENCH_KINDS or quantity.kind in TRANSMISSION_KINDS
+
+
 def row_notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
     """What is conventional, left open by a full turn, held, or not unique."""
     problem, session, rows = result.problem, result.session, result.row_states
@@ -228,7 +240,10 @@ def row_notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
         notes += [fault for fault in input_faults(session) if fault.code not in said]
     note = open_turn_note(session, rows.states, rows.reached)
     notes += [note] if note else []
-    unsure = any(q.kind in WRENCH_KINDS or q.kind == "transmission_angle" for q in asked)
-    if unsure and session.is_redundant and rows.reached.any():
+    if (
+        any(_rests_on_reactions(problem, q) for q in asked)
+        and session.is_redundant
+        and rows.reached.any()
+    ):
         notes.append(redundancy_note(session.graph))
     return notes
