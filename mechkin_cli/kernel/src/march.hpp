@@ -6,6 +6,7 @@
 
 #include "dop853.hpp"
 #include "lane_states.hpp"
+#include "radau.hpp"
 
 // How a lane goes on.
 struct LaneControl {
@@ -74,8 +75,8 @@ class March {
   LaneStates states_;
   const RowTimes rows_;
   Dop853 explicit_;
-  std::unique_ptr<Method> implicit_;
+  std::unique_ptr<Radau> implicit_;  // made when it is first needed
   std::vector<LaneControl> control_;
-  std::vector<double> duration_, size_, place_, values_, part_, at_;
+  std::vector<double> size_, place_, values_, part_, at_;
   std::vector<long> row_;
 };
