@@ -7,9 +7,9 @@
 
 namespace {
 
-constexpr double FAULT_FACTOR = 0.5;   // of the step, where its inside holds a fault
-constexpr double FAULT_MARGIN = 0.8;   // of the way to the fault
-constexpr double ROOM_GROWTH = 1.3;
+constexpr double FAULT_MARGIN = 0.85;  // of the way to a fault, for the next try
+constexpr double FAULT_FACTOR = 0.5;   // of it where that failed, too
+constexpr double ROOM_GROWTH = 0.02;   // of the room after a fault, doubled with each step taken since
 
 void check(const Motion& motion, const IntegratorSettings& s, const double* time, const RowTimes& rows) {
   require(motion.lanes() > 0, "at least one lane");
@@ -140,7 +140,8 @@ void March::judge(Method& method, Flags* mask) {
 
 void March::shorten_for_fault(int lane) {
   const double step = states_.step[lane];
-  control_[lane].room = std::min(FAULT_FACTOR * step, FAULT_MARGIN * states_.reached[lane] * step);
+  control_[lane].room = (control_[lane].was_refused ? FAULT_FACTOR : FAULT_MARGIN) * states_.reached[lane] * step;
+  control_[lane].room_growth = ROOM_GROWTH;
   if (states_.settings.fixed_step > 0.0) return finish(lane, LaneEnd::STUCK);
   refuse(lane, control_[lane].room);
 }
@@ -219,7 +220,8 @@ void March::rewiden(int lane) {
   // a step that a row or a crossing cut says little of the next one
   const bool is_short = (c.is_cut || states_.step[lane] < c.wanted) && !c.was_refused;
   c.wanted = is_short ? std::max(c.wanted, wanted) : wanted;
-  c.room *= ROOM_GROWTH;
+  c.room *= 1.0 + c.room_growth;
+  c.room_growth *= 2.0;
   c.was_refused = false;
   if (c.implicit || states_.settings.method != MethodChoice::AUTOMATIC || !explicit_.is_stiff(lane)) return;
   c.implicit = true;

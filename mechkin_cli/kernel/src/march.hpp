@@ -14,6 +14,7 @@ struct LaneControl {
   bool implicit = false;
   double wanted = 0.0;                   // the step that errors want
   double room = __builtin_inf();         // the step that faults leave, wider again with each step taken
+  double room_growth = 1.0;
   double longest = __builtin_inf();      // the step that the chart bears, as the motion says
   bool is_cut = false;                   // the step was made shorter for a row
   bool was_refused = false;
