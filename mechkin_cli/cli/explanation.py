@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mechkin_cli.kernel.width import INSTRUCTIONS, width, widths
+from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS, accelerated
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, POWER_KINDS
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.codes import Demand
@@ -104,11 +105,15 @@ def _width_line() -> str:
 
 def _derived_lines(asked: list[Wanted]) -> list[str]:
     lines = []
-    simple = [quantity.name for quantity in asked if quantity.kind in DERIVED_KINDS - POWER_KINDS]
+    plain = DERIVED_KINDS - POWER_KINDS - COEFFICIENT_KINDS
+    simple = [quantity.name for quantity in asked if quantity.kind in plain]
     if simple:
         lines.append(f"derived from positions and rates: {', '.join(simple)}")
     if any(quantity.kind == "mechanical_advantage" for quantity in asked):
         lines.append("mechanical advantages: one more run, with unit rate of one input")
+    linear = {accelerated(quantity) for quantity in asked if quantity.kind in COEFFICIENT_KINDS}
+    if linear:
+        lines.append(f"coefficients of accelerations: one more run for each input, {len(linear)}")
     angles = sum(quantity.kind == "transmission_angle" for quantity in asked)
     if angles:
         lines.append(f"transmission angles: static runs with a unit load, {angles} in all")

@@ -3,7 +3,7 @@ float64."""
 
 from collections.abc import Callable, Sequence
 from enum import IntEnum, IntFlag
-from typing import Final, TypedDict
+from typing import Any, Final, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -208,7 +208,11 @@ class PlanBuilder:
         self, place: int, slide: bool, code: int, link: int, vector: Triple
     ) -> None: ...
     def add_block(
-        self, closing_joints: int, joints: Sequence[int], unknown: Sequence[int]
+        self,
+        closing_joints: int,
+        joints: Sequence[int],
+        unknown: Sequence[int],
+        charts: int = 0,
     ) -> None: ...
     def set_rest(self, joints: Sequence[int]) -> None: ...
     def add_input(self, column: int, axis: int, scale: float) -> None: ...
@@ -247,6 +251,8 @@ class Plan:
     def states(self) -> int: ...
     @property
     def columns(self) -> int: ...
+    @property
+    def charts(self) -> int: ...
     @property
     def inputs(self) -> int: ...
     @property
@@ -520,12 +526,13 @@ def integrate_tape(
     tape: Tape,
     freedoms: int,
     quadratures: int,
-    switches: Sequence[tuple[bool, bool]],
+    switches: Sequence[tuple[bool, bool, bool]],
     time: Floats,
     state: Floats,
     parameters: Floats,
     rows: Floats,
     scales: Sequence[float],
+    reach: float,
     tolerance: float,
     fixed_step: float,
     least_step: float,
@@ -535,9 +542,31 @@ def integrate_tape(
 ) -> tuple[Floats, list[dict[str, object]], list[tuple[int, int, bool, float, list[float]]], int]:
     """Integrates x'' = f, w' = g in lanes, see `tape_motion.hpp` for what the tape takes and gives.
 
-    `switches`: whether each is a kink, and whether it ends a lane. `state` (x, v, w) and
-    `parameters` are (components, lanes); `scales` are those of the charts, one step each.
+    `switches`: whether each is a kink, whether it moves, and whether it ends a lane. `state`
+    (x, v, w) and `parameters` are (components, lanes); `scales` are those of the charts, one step
+    each, which go no farther than `reach`.
     Returns the states (rows, components, lanes), a report for each lane (`LaneReport`), the events
     (lane, switch, rising, time, state) and how many rows were interpolated. ValueError for what
     fits no motion.
     """
+
+def respond(
+    *,
+    plans: Sequence[Plan],
+    state: Floats,
+    first: Floats,
+    tangent: Floats,
+    begin: float,
+    times: Floats,
+    tolerance: float,
+    fixed_step: float,
+    most_steps: int,
+    dense_rows: int,
+    method: int,
+    tests: Sequence[float],
+    iterations: int,
+    jump: float,
+    radius: float,
+    lanes: int,
+    threads: int,
+) -> tuple[Any, ...]: ...

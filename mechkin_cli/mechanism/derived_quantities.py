@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
 from mechkin_cli.mechanism.joint_table import JOINT_TYPES, dimension_of
 from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism
 from mechkin_cli.mechanism.quantities import Kind, Wanted
@@ -21,8 +22,9 @@ QUATERNION = ("q0", "q1", "q2", "q3")
 ORIENTATION_KINDS = {"quaternion", "turn"}
 INSTANT_KINDS = {"screw_axis", "screw_point", "screw_pitch"}
 FINITE_KINDS = {"finite_axis", "finite_point", "finite_angle", "finite_slide"}
-POWER_KINDS = {"mechanical_advantage", "transmission_angle"}
-DERIVED_KINDS = ORIENTATION_KINDS | INSTANT_KINDS | FINITE_KINDS | POWER_KINDS
+TRANSMISSION_KINDS: tuple[Kind, ...] = ("transmission_angle", "dynamic_transmission_angle")
+POWER_KINDS = {"mechanical_advantage", *TRANSMISSION_KINDS}
+DERIVED_KINDS = ORIENTATION_KINDS | INSTANT_KINDS | FINITE_KINDS | POWER_KINDS | COEFFICIENT_KINDS
 
 _ORIENTED = [kind.letter for kind in JOINT_TYPES.values() if kind.is_oriented]
 _GUIDES = [kind.letter for kind in JOINT_TYPES.values() if kind.is_guide]
@@ -42,9 +44,19 @@ _SCREWS: tuple[tuple[Kind, Dimension, bool, int], ...] = (
     ("finite_slide", LENGTH, False, 0),
 )
 _HINTS = {
-    "transmission_angle": (
+    **dict.fromkeys(
+        TRANSMISSION_KINDS,
         f"a transmission angle has theta or s, unless an input, of an {_either(_GUIDES)} between "
-        f"ground and a link with exactly one other joint, of type {_either(_ORIENTED)}"
+        f"ground and a link with exactly one other joint, of type {_either(_ORIENTED)}",
+    ),
+    "reduced_inertia": "inputs have a reduced inertia: A.theta.reduced_inertia; of two inputs "
+    "it is A.theta.effort.per.B.theta_ddot",
+    "per": "accelerations, reactions and efforts have coefficients of the acceleration of each of "
+    "several inputs, such as A.theta.effort.per.B.theta_ddot",
+    **dict.fromkeys(
+        sorted(COEFFICIENT_KINDS),
+        "accelerations, reactions and efforts have these coefficients, such as "
+        "A.theta_ddot.per_acceleration, where there is an input",
     ),
     "mechanical_advantage": (
         "a mechanical advantage has every coordinate that is no input (J.theta, J.s, ...), where "
@@ -74,7 +86,8 @@ def hint_of(name: str) -> str | None:
     >>> hint_of("A.turn")
     'joints of type S, Sp, Sg have an orientation'
     """
-    return _HINTS.get(name.rpartition(".")[2]) if "." in name else None
+    words = name.split(".")[1:]
+    return next((_HINTS[word] for word in reversed(words) if word in _HINTS), None)
 
 
 def driving_joint(mechanism: Mechanism, joint: Joint) -> Joint | None:
@@ -130,7 +143,6 @@ def _of_transmissions(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -
     for joint in mechanism.joints.values():
         if driving_joint(mechanism, joint) is not None:
             for coordinate in joint.type.coordinates:
-                if (joint.name, coordinate) not in inputs:
-                    name = f"{joint.name}.{coordinate}.transmission_angle"
-                    kind: Kind = "transmission_angle"
+                for kind in TRANSMISSION_KINDS if (joint.name, coordinate) not in inputs else ():
+                    name = f"{joint.name}.{coordinate}.{kind}"
                     yield Wanted(name, kind, joint.name, ANGLE, False, coordinate)

@@ -20,6 +20,11 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.coefficient_quantities import (
+    COEFFICIENT_KINDS,
+    base_name,
+    base_quantity,
+)
 from mechkin_cli.mechanism.derived_quantities import (
     FINITE_KINDS,
     INSTANT_KINDS,
@@ -313,6 +318,8 @@ def _asymmetry(body: Link, line: Vector) -> float:
 
 
 def _is_conventional(problem: Problem, idle: Idle, quantity: Wanted) -> bool:
+    if quantity.kind in COEFFICIENT_KINDS:
+        quantity = base_quantity(problem.quantities(), base_name(quantity))
     mechanism, kind, owner = problem.mechanism, quantity.kind, quantity.owner
     if kind == "coordinate":
         return (owner, quantity.coordinate) in idle.moves

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.coefficient_quantities import coefficient_catalogue
 from mechkin_cli.mechanism.derived_quantities import derived_catalogue
 from mechkin_cli.mechanism.held import Held
 from mechkin_cli.mechanism.model import Mechanism
@@ -80,7 +81,13 @@ class Problem:
         if self.response is not None:
             efforts = self.response.efforts_of
             found = catalogue(mechanism, efforts, timed=True, held=self.held)
+            # efforts are given here, and linear in nothing
+            linear = {name: known for name, known in found.items() if known.kind != "effort"}
+            if motion.driven:
+                found |= coefficient_catalogue(linear, motion.driven, motion.driven[0])
             return found | response_quantities() | derived_catalogue(mechanism, (), None)
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
         found = catalogue(mechanism, motion.driven, timed=motion.time is not None, held=self.held)
+        if leading is not None:
+            found |= coefficient_catalogue(found, motion.driven, leading)
         return found | derived_catalogue(mechanism, motion.driven, leading)

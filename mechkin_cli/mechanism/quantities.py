@@ -69,6 +69,9 @@ Kind = Literal[
     "finite_slide",
     "mechanical_advantage",
     "transmission_angle",
+    "per_acceleration",
+    "without_acceleration",
+    "dynamic_transmission_angle",
     "kinetic_energy",
     "potential_energy",
     "link_direction",
@@ -171,13 +174,19 @@ def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
             yield Wanted(f"{joint.name}.{word}", kind, joint.name, dimension, True)
 
 
+def effort_quantity(joint: str, coordinate: str) -> Wanted:
+    """The effort at a coordinate, by its long name."""
+    dimension = MOMENT if is_angle(coordinate) else FORCE
+    return Wanted(f"{joint}.{coordinate}.effort", "effort", joint, dimension, False, coordinate)
+
+
 def _of_efforts(inputs: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
     joints = [joint for joint, _ in inputs]
     for joint, coordinate in inputs:
-        dimension = MOMENT if is_angle(coordinate) else FORCE
+        effort = effort_quantity(joint, coordinate)
         if joints.count(joint) == 1:
-            yield Wanted(f"{joint}.effort", "effort", joint, dimension, False, coordinate)
-        yield Wanted(f"{joint}.{coordinate}.effort", "effort", joint, dimension, False, coordinate)
+            yield effort._replace(name=f"{joint}.effort")
+        yield effort
 
 
 def _of_points(mechanism: Mechanism) -> Iterator[Wanted]:

@@ -23,6 +23,29 @@ RESIDUAL_TESTS = (
 )
 
 
+class Chart(NamedTuple):
+    """Directions (charts * columns, rows) of a chart about each row's guess, and the rates and
+    accelerations (charts, rows) of its coordinates."""
+
+    direction: Floats
+    rates: Floats
+    accelerations: Floats
+
+    def at(self, rows: NDArray[np.intp] | slice) -> Chart:
+        """Some of the rows."""
+        return Chart(*(array[:, rows] for array in self))
+
+    def arguments(self, demand: Demand) -> dict[str, Floats | None]:
+        """As `Plan.run` takes them."""
+        return {
+            "chart": _contiguous(self.direction),
+            "chart_rates": _contiguous(self.rates) if demand & Demand.VELOCITY else None,
+            "chart_accelerations": (
+                _contiguous(self.accelerations) if demand & Demand.ACCELERATION else None
+            ),
+        }
+
+
 class Batch(NamedTuple):
     """What the kernel found, row by row; arrays over rows, or (columns, rows).
 
@@ -63,6 +86,7 @@ def run(
     demand: Demand = Demand.POSITION,
     outputs: Outputs | None = None,
     derivatives: bool = False,
+    chart: Chart | None = None,
     shift: int = 0,
     iterations: int = tolerances.NEWTON_ITERATIONS,
     tests: tuple[float, float, float] = RESIDUAL_TESTS,
@@ -83,6 +107,7 @@ def run(
             needed for forces where there are any.
         turned: (turn slots, rows) as `solver.closing_turns` has them; springs on angles go by them.
         whole: (inputs, rows) whole turns that the inputs are without, likewise.
+        chart: of a plan with one.
         demand: what to compute beyond positions.
         outputs: quantities to write, of a plan of the same structure.
         derivatives: return the columns' first and second derivatives, as far as they are demanded.
@@ -116,6 +141,7 @@ def run(
         loads=_contiguous(loads),
         turned=_contiguous(turned),
         whole=_contiguous(whole),
+        **({} if chart is None else chart.arguments(demand)),
         outputs=outputs,
         states=states,
         values=values,

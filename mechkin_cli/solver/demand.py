@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, reference_point
 from mechkin_cli.mechanism.frames import GROUND
 from mechkin_cli.mechanism.model import Attached, Damper, Load, Mechanism, varying
@@ -28,7 +29,12 @@ _SHAKING_KINDS = {"shaking_force", "shaking_moment"}
 _INERTIA_KINDS = {"inertia_force", "inertia_moment"}
 _HOLDING_KINDS = {"holding_moment", "holding_force"}
 _FORCE_KINDS = (
-    WRENCH_KINDS | _SHAKING_KINDS | _INERTIA_KINDS | _HOLDING_KINDS | {"effort", "reaction_level"}
+    WRENCH_KINDS
+    | _SHAKING_KINDS
+    | _INERTIA_KINDS
+    | _HOLDING_KINDS
+    | COEFFICIENT_KINDS
+    | {"effort", "reaction_level", "dynamic_transmission_angle"}
 )
 _ENERGY_KINDS = {"kinetic_energy", "potential_energy"}
 

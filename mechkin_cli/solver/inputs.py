@@ -61,6 +61,17 @@ class KernelInputs(NamedTuple):
         still = np.zeros_like(rates)
         return self._replace(rates=rates, accelerations=still, jerks=still)
 
+    def at_unit_acceleration(self, number: int) -> KernelInputs:
+        """The same places at rest, where input `number` has unit acceleration and no other has."""
+        accelerations, still = np.zeros_like(self.rates), np.zeros_like(self.rates)
+        accelerations[number] = 1.0
+        return self._replace(rates=still, accelerations=accelerations, jerks=still)
+
+    def without_accelerations(self) -> KernelInputs:
+        """The same places and rates, with no acceleration."""
+        still = np.zeros_like(self.rates)
+        return self._replace(accelerations=still, jerks=still)
+
     def part(self, rows: slice | Floats) -> KernelInputs:
         """Some of the rows."""
         return KernelInputs(*(np.ascontiguousarray(array[:, rows]) for array in self))

@@ -161,8 +161,10 @@ def _blocks(layout: Layout) -> Iterator[Block | Rest]:
     for block in layout.graph.blocks:
         joints = [layout.graph.closings[c].joint for c in block.closings]
         needed = _new_on_ways(layout, joints, placed)
+        if block.charts:
+            needed |= _new_carrying(layout, block.unknowns, placed | needed)
         unknown = [layout.column(k, f) for k, f in block.unknowns]
-        yield Block(len(block.closings), sorted(needed), unknown)
+        yield Block(len(block.closings), sorted(needed), unknown, block.charts)
         placed |= needed
     yield Rest([k for k in range(len(layout.carriers)) if k not in placed])
 
@@ -175,6 +177,19 @@ def _new_on_ways(layout: Layout, joints: Iterable[Joint], placed: set[int]) -> s
     found: set[int] = set()
     for link in (link for joint in joints for link in (joint.first, joint.second)):
         k = layout.link_number[link]
+        while k >= 0 and k not in placed and k not in found:
+            found.add(k)
+            k = layout.carriers[k].parent
+    return found
+
+
+def _new_carrying(
+    layout: Layout, unknowns: Iterable[tuple[int, int]], placed: set[int]
+) -> set[int]:
+    """Kernel joints with some freedoms, and what carries them, that are not placed yet."""
+    found: set[int] = set()
+    for edge, freedom in unknowns:
+        k, _ = layout.carrier_of(edge, freedom)
         while k >= 0 and k not in placed and k not in found:
             found.add(k)
             k = layout.carriers[k].parent

@@ -106,11 +106,12 @@ class FreeMotion(NamedTuple):
 
 class Block(NamedTuple):
     """The next closing joints, the tree joints that they place and the columns that they solve
-    for."""
+    for, with the equations of a chart beside theirs."""
 
     closing_joints: int
     joints: Sequence[int]
     unknown: Sequence[int]
+    charts: int = 0
 
 
 class Rest(NamedTuple):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar, cast
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.solver.batch import RESIDUAL_TESTS, Batch
+from mechkin_cli.solver.batch import RESIDUAL_TESTS, Batch, Chart
 from mechkin_cli.solver.batch import run as run_kernel
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import OutputPlan
@@ -147,6 +147,12 @@ class Session:
         """A session of another problem with the same choices."""
         return Session(problem, graph, closed_at=self.closed_at, packing=self.packing)
 
+    def loaded(self, problem: Problem) -> Session:
+        """A session of a problem that differs in masses and loads alone: the same states serve."""
+        other = self.of(problem, self.graph)
+        other.__dict__["layout"] = Layout(problem.laid_mechanism, self.graph, self.layout.length)
+        return other
+
     def derived(self, make: Callable[[Session], Problem]) -> Session:
         """The session of a problem that follows from this session's."""
         return self.of(make(self))
@@ -166,6 +172,14 @@ class Session:
     def assembled(self, assembly: Assembly) -> Session:
         """The same session with another choice of the first assembly."""
         return self._changed(problem=replace(self.problem, assembly=assembly), continued=None)
+
+    def moved(self, problem: Problem) -> Session:
+        """The same session with other values of its inputs: of a problem that differs in its motion
+        alone."""
+        other = self._changed(problem=problem)
+        other.__dict__.pop("inputs", None)
+        other.__dict__.pop("route", None)
+        return other
 
     def _changed(self, **changes: object) -> Session:
         """A session that shares graph, layout, plan, inputs and what was found."""
@@ -284,6 +298,7 @@ class Session:
         loads: Floats | None = None,
         turned: Floats | None = None,
         whole: Floats | None = None,
+        chart: Chart | None = None,
         derivatives: bool = False,
         shift: int = 0,
         iterations: int = tolerances.NEWTON_ITERATIONS,
@@ -301,6 +316,7 @@ class Session:
             loads=loads,
             turned=turned,
             whole=whole,
+            chart=chart,
             demand=demand,
             outputs=None if readout is None else readout.outputs,
             derivatives=derivatives,

@@ -244,3 +244,41 @@ def test_nothing_is_loaded_where_nothing_is_asked_for():
         [sys.executable, "-P", "-c", code, path], capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "False"
+
+
+MASSES = {
+    "crank: {}": "crank: {mass: 3, center_of_mass: [1, 0, 0]}",
+    "slider: {}": "slider: {mass: 2, center_of_mass: [7, 0, 0]}",
+}
+TURNING = "step: 30, rate: 9 rad/s, acceleration: 4 rad/s^2"
+
+
+def moving_slider(masses):
+    text = SLIDER.replace("step: 30", TURNING)
+    for old, new in masses.items():
+        text = text.replace(old, new)
+    names = ["dynamic_transmission_angle", "transmission_angle"]
+    reactions = ["C.force", "D.axis"]
+    return mk.loads(text).analyze([*(f"D.s.{name}" for name in names), *reactions], tables=[])
+
+
+def test_a_rod_without_mass_transmits_along_its_line():
+    """The slider's inertia alone: the force is along the rod as in statics."""
+    found = moving_slider(MASSES)
+    still = found["D.s.transmission_angle"]
+    assert np.abs(found["D.s.dynamic_transmission_angle"] - still).max() <= 1e-10
+
+
+def test_the_rod_s_mass_turns_the_force():
+    rod = {"rod: {}": "rod: {mass: 1, center_of_mass: [4, 0, 0], inertia: {yy: 2, zz: 2}}"}
+    found = moving_slider(MASSES | rod)
+    wanted = angle_of(found["C.force"], found["D.axis"])
+    dynamic = found["D.s.dynamic_transmission_angle"]
+    assert np.abs(dynamic - wanted).max() <= 1e-10
+    assert np.abs(dynamic - found["D.s.transmission_angle"]).max() > 1.0
+
+
+def test_where_nothing_is_transmitted_there_is_no_angle():
+    found = moving_slider({"crank: {}": MASSES["crank: {}"]})
+    assert np.isnan(found["D.s.dynamic_transmission_angle"]).all()
+    assert np.isfinite(found["D.s.transmission_angle"]).all()

@@ -95,6 +95,7 @@ WITHIN_ANALYSIS = {
     "mobility": {"assembly"},
     "modes": {"assembly"},
     "ranges": {"assembly"},
+    "response": {"assembly", "sweep"},
     "sweep": {"assembly", "derived", "mobility"},
 }
 """What each room of `analysis/` knows of the others: no circles."""

@@ -6,6 +6,10 @@ The angle is asin(|F.v|/(|F||v|)), 90 degrees less the angle between their lines
 the force does nothing but drive, 0 at the link's dead centre (Sutherland and Roth, A transmission
 index for spatial mechanisms, J. Eng. Industry 95, 1973). In a plane four-bar it is the angle
 between coupler and rocker.
+
+With the force that the joint really transmits, masses in motion and all loads, the same angle is
+the dynamic transmission angle: the static one says nothing of forces that arise between input and
+coordinate (Balli and Chand, Transmission angle in mechanisms, Mech. Mach. Theory 37, 2002).
 """
 
 from __future__ import annotations
@@ -29,34 +33,48 @@ from mechkin_cli.analysis.derived.row_vectors import (
 from mechkin_cli.kernel.functions import atan2
 from mechkin_cli.mechanism.derived_quantities import driving_joint
 from mechkin_cli.mechanism.model import Joint, JointLoad, Link, Mechanism
-from mechkin_cli.mechanism.quantities import Wanted
+from mechkin_cli.mechanism.quantities import REACTION_LEVEL, Wanted
 from mechkin_cli.mechanism.vectors import ZERO
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.derived.row_vectors import RowVector
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.solver.session import Session
 
 
 def transmission_angle(run: Reading, quantity: Wanted) -> Floats:
     """The angle (rad, 0 to pi/2) of one coordinate over the rows; nan where the force is not
     unique, or where the driving joint's point does not move with the coordinate."""
     problem = run.session.problem
-    mechanism = problem.mechanism
-    guide = mechanism.joints[quantity.owner]
-    driver = driving_joint(mechanism, guide)
+    mechanism = _with_unit_load(problem.mechanism, quantity)
+    session = run.session.loaded(replace(problem, mechanism=mechanism, load_laws=()))
+    return _angle(run, quantity, session)
+
+
+def dynamic_transmission_angle(run: Reading, quantity: Wanted) -> Floats:
+    """The same angle of the force that the joint transmits in the row, with all masses, loads,
+    rates and accelerations; nan, too, where it transmits none."""
+    return _angle(run, quantity, None)
+
+
+def _angle(run: Reading, quantity: Wanted, session: Session | None) -> Floats:
+    """Of the driving joint's force in the run, or in a session that differs in loads."""
+    problem = run.session.problem
+    guide = problem.mechanism.joints[quantity.owner]
+    driver = driving_joint(problem.mechanism, guide)
     assert driver is not None
-    loaded = replace(problem, mechanism=_with_unit_load(mechanism, quantity), load_laws=())
-    session = run.session.of(loaded, run.session.graph)
-    known = problem.quantities()
+    known, unit = problem.quantities(), run.session.layout.length
     names = (f"{driver.name}.force", f"{driver.name}.point", f"{guide.name}.point")
-    wanted = [known[name] for name in (*names, f"{guide.name}.axis")]
+    wanted = [*(known[name] for name in (*names, f"{guide.name}.axis")), REACTION_LEVEL]
 
     def angle(shift: int) -> Floats:
         columns = run.result.evaluated(wanted, session=session, shift=shift)
         force, point, centre = (vector_of(columns[name]) for name in names)
         axis = vector_of(columns[f"{guide.name}.axis"])
-        arm, unit = subtract(point, centre), session.layout.length
+        pushes = length(force) > tolerances.REACTION_ROUNDING * columns[REACTION_LEVEL.name][0]
+        force = choose(pushes, force, 0.0)
+        arm = subtract(point, centre)
         return _between(force, _velocity(guide, quantity.coordinate, axis, arm, unit))
 
     found, rows = angle(0), run.result.row_states

@@ -16,8 +16,10 @@ if TYPE_CHECKING:
 
 
 class RowLoads(NamedTuple):
-    """Loads as the kernel takes them (columns, rows), rows (rows,) that lack one, and why."""
+    """Values of the laws (laws, rows) in SI, loads as the kernel takes them (columns, rows), rows
+    (rows,) that lack one, and why."""
 
+    values: Floats
     columns: Floats
     lost: Bools
     diagnostics: list[Diagnostic]
@@ -30,4 +32,6 @@ def row_loads(result: Result) -> RowLoads:
     result.read([known[name] for name in quantities_read(problem)])
     found = law_values(problem, result.quantity, reached)
     lost = reached & np.isnan(found.values).any(axis=0)
-    return RowLoads(kernel_loads(result.session.layout, found.values), lost, found.diagnostics)
+    return RowLoads(
+        found.values, kernel_loads(result.session.layout, found.values), lost, found.diagnostics
+    )

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
-    from mechkin_cli.solver.batch import Batch
+    from mechkin_cli.solver.batch import Batch, Chart
     from mechkin_cli.solver.graph import SolverGraph
     from mechkin_cli.solver.inputs import KernelInputs
     from mechkin_cli.solver.session import Session
@@ -358,6 +358,7 @@ class Result:
         loads: Floats | None = None,
         shift: int = 0,
         iterations: int = 0,
+        chart: Chart | None = None,
     ) -> Batch:
         """One call of the kernel over all rows on their states; rows without a state repeat
         another's."""
@@ -371,6 +372,8 @@ class Result:
             stand_in = np.where(rows.reached, np.arange(rows.reached.size), first)
             values, states = values[:, stand_in], states[:, stand_in]
             turned, whole = turned[:, stand_in], whole[:, stand_in]
+            if chart is not None:
+                chart = chart.at(stand_in)
         return session.run(
             values,
             states,
@@ -382,6 +385,7 @@ class Result:
             loads=loads,
             turned=turned,
             whole=whole,
+            chart=chart,
             shift=shift,
             iterations=iterations,
         )

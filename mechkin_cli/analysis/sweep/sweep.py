@@ -18,7 +18,12 @@ from mechkin_cli.analysis.sweep.notes import (
     redundancy_note,
 )
 from mechkin_cli.analysis.sweep.result import Result
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
+from mechkin_cli.mechanism.coefficient_quantities import (
+    COEFFICIENT_KINDS,
+    base_name,
+    base_quantity,
+)
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, TRANSMISSION_KINDS
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.load_laws import quantities_read
 from mechkin_cli.solver.batch import assembly_size
@@ -61,13 +66,13 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
         from mechkin_cli.analysis.sweep.branch_end import input_faults
 
         start = replace(start, diagnostics=input_faults(session) or start.diagnostics)
-    asked += _held(session.problem, asked)
+    asked += held_moments(session.problem, asked)
     result = _closed(session, start, asked, verdicts=verdicts)
     if result.row_states.has_failed:
         # a filled-in row ended away from its guess: take every row as a careful step
         result = _closed(session, start, asked, verdicts=verdicts, every_row=True)
     result.read(asked)
-    result.row_states.diagnostics += _notes(result, asked)
+    result.row_states.diagnostics += row_notes(result, asked)
     return result
 
 
@@ -89,7 +94,7 @@ def _followed_part(session: Session, asked: list[Wanted]) -> Session:
     return followed_session(session, asked)
 
 
-def _held(problem: Problem, asked: list[Wanted]) -> list[Wanted]:
+def held_moments(problem: Problem, asked: list[Wanted]) -> list[Wanted]:
     """The moments that hold idle legs, where forces are computed and they are not asked for."""
     if not (problem.hold_idle and demand_of(problem.mechanism, asked) & Demand.FORCES):
         return []
@@ -114,7 +119,7 @@ def _closed(
     result = Result(session, start, rows)
     if not rows.reached.any():
         return result
-    wanted, demand = _at_once(session, asked, verdicts)
+    wanted, demand = at_once(session, asked, verdicts)
     batch = result.run(wanted, demand, iterations=tolerances.NEWTON_ITERATIONS)
     failed = _failed(batch, rows)
     if failed.any():
@@ -126,13 +131,13 @@ def _closed(
             rows.states = batch.states
         else:
             rows.states[:, rows.reached] = batch.states[:, rows.reached]
-        _judge_condition(rows, batch)
+        judge_condition(rows, batch)
         _judge_inputs(session, rows)
     result.keep(batch, wanted, demand)
     return result
 
 
-def _at_once(session: Session, asked: list[Wanted], verdicts: bool) -> tuple[list[Wanted], Demand]:
+def at_once(session: Session, asked: list[Wanted], verdicts: bool) -> tuple[list[Wanted], Demand]:
     """What the run that closes the rows reads off, and its demand: no derived quantities, and no
     forces where loads vary, but what those loads read."""
     problem, mechanism = session.problem, session.problem.mechanism
@@ -172,7 +177,7 @@ def _failed(batch: Batch, rows: Rows) -> Bools:
     return rows.reached & failed
 
 
-def _judge_condition(rows: Rows, batch: Batch) -> None:
+def judge_condition(rows: Rows, batch: Batch) -> None:
     """Verdicts by condition."""
     condition = batch.condition
     if condition is None:
@@ -208,7 +213,14 @@ def _read_by_loads(result: Result) -> list[Wanted]:
     return [known[name] for name in quantities_read(result.problem)]
 
 
-def _notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
+def _rests_on_reactions(problem: Problem, quantity: Wanted) -> bool:
+    """Whether a quantity is not unique where reactions are not."""
+    if quantity.kind in COEFFICIENT_KINDS:
+        quantity = base_quantity(problem.quantities(), base_name(quantity))
+    return quantity.kind in WRENCH_KINDS or quantity.kind in TRANSMISSION_KINDS
+
+
+def row_notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
     """What is conventional, left open by a full turn, held, or not unique."""
     problem, session, rows = result.problem, result.session, result.row_states
     notes: list[Diagnostic] = []
@@ -228,7 +240,10 @@ def _notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
         notes += [fault for fault in input_faults(session) if fault.code not in said]
     note = open_turn_note(session, rows.states, rows.reached)
     notes += [note] if note else []
-    unsure = any(q.kind in WRENCH_KINDS or q.kind == "transmission_angle" for q in asked)
-    if unsure and session.is_redundant and rows.reached.any():
+    if (
+        any(_rests_on_reactions(problem, q) for q in asked)
+        and session.is_redundant
+        and rows.reached.any()
+    ):
         notes.append(redundancy_note(session.graph))
     return notes

@@ -10,6 +10,8 @@ struct KernelUnit;
 void bind_codes(nanobind::module_& m);
 // Integration of a motion that is a tape.
 void bind_integrator(nanobind::module_& m);
+// Responses of plans with a chart; needs the class Plan bound before.
+void bind_response(nanobind::module_& m);
 // PlanBuilder, Plan, Outputs.
 void bind_plan(nanobind::module_& m);
 

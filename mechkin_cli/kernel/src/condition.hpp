@@ -25,6 +25,7 @@ inline void per_row(const Plan& p, const Block& b, double length, Pack* weight) 
       for (int i = 0; i < entry.equations; ++i) weight[j.row + i] = i < entry.lengths ? length : 1.0;
     });
   }
+  for (int i = b.rows - b.charts; i < b.rows; ++i) weight[i] = 1.0;
 }
 
 // To 1 % from the block's factors.

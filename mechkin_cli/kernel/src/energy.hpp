@@ -78,7 +78,7 @@ inline void add_kinetic_power(Powers& powers, const LinkInertia& m, const Pose& 
 }
 
 // The power that a spring or damper between two points puts in: its tension by the rate at which they come nearer.
-inline void add_power_between_points(Powers& powers, const Plan& p, const Workspace& w, const Load& l) {
+inline void add_power_between_points(Powers& powers, const Workspace& w, const Load& l) {
   const Vec3 a = carried_point(w, l.link, l.point), b = carried_point(w, l.other, l.other_point), d = b - a;
   const Vec3 apart = motion_of(w, l.other).velocity.at(b) - motion_of(w, l.link).velocity.at(a);
   const Pack length = sqrt(dot(d, d));
@@ -104,7 +104,7 @@ inline void add_load_power(Powers& powers, const Plan& p, const Workspace& w, co
     case LOAD_TORQUE_LINK:
       return powers.add(load_vector(l, row_value), w.pose[l.link].components(w.motion[l.link].velocity.angular));
     case LOAD_SPRING:
-    case LOAD_DAMPER: return add_power_between_points(powers, p, w, l);
+    case LOAD_DAMPER: return add_power_between_points(powers, w, l);
     case LOAD_COORDINATE:
       joint_coordinate(p, w, l, true, &value, &rate);
       return powers.add((l.varying < 0 ? Pack(l.vector[0]) : row_value(l.varying)) * rate);

@@ -90,4 +90,5 @@ NB_MODULE(_kernel, m) {
   bind_variants(m);
   bind_positions(m);
   bind_integrator(m);
+  bind_response(m);
 }

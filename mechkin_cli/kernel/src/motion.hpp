@@ -59,6 +59,7 @@ inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* righ
       for (int i = 0; i < entry.equations; ++i) right[j.row + i] = -r[i];
     });
   }
+  for (int i = 0; i < b.charts; ++i) right[b.rows - b.charts + i] = w.place_rate[i];
 }
 
 inline void block_velocities(const Plan& p, Workspace& w, int index) {
@@ -81,6 +82,7 @@ inline void second_of_equations(const Plan& p, Workspace& w, const Block& b) {
     });
     if (j.slide >= 0) w.right[j.row] += Pack(j.slide_sign) * w.acceleration[p.joints[j.slide].column];
   }
+  if (b.charts) chart_second(p, b, w.chart(), w.q, w.rate, w.right + b.rows - b.charts);
 }
 
 // First with the block's unknown second derivatives at zero, which leaves the convective part of the

@@ -78,6 +78,7 @@ struct Block {
   int closing_begin, closing_end;  // closing joints
   int column_begin, column_end;  // into Plan::unknown
   int rows, size;                // rows > size: overconstrained
+  int charts;                    // the last of its rows are those of a chart (chart.hpp)
 };
 
 template <class Number>
@@ -215,18 +216,12 @@ struct DriveOf {
   Number scale;
 };
 
-template <class Number>
-struct PlanOf {
+// What plans of one structure share.
+struct PlanShape {
   int links, states, columns, closings, legs, blocks, inputs, loads, load_values;
   int places, axes, drives, frees, loop_entries, order_count, unknowns, size_points;
   int largest_block;  // rows
-  const TreeJointOf<Number>* joints;
-  const ClosingJointOf<Number>* closing;
-  const LegOf<Number>* leg;
-  const JointPlaceOf<Number>* place;
-  const CoordinateAxisOf<Number>* axis;
-  const DriveOf<Number>* drive;
-  const FreeMotionOf<Number>* free;
+  int charts;         // coordinates of the one block's chart, whose unknowns they determine; 0: inputs do
   const LoopEntry* loop;
   const Block* block;
   const int* order;
@@ -238,6 +233,17 @@ struct PlanOf {
   const int* column_joint;   // tree joint of a column
   const int* column_block;   // block that solves for a column, -1: input
   const int* column_place;   // its place among that block's unknowns
+};
+
+template <class Number>
+struct PlanOf : PlanShape {
+  const TreeJointOf<Number>* joints;
+  const ClosingJointOf<Number>* closing;
+  const LegOf<Number>* leg;
+  const JointPlaceOf<Number>* place;
+  const CoordinateAxisOf<Number>* axis;
+  const DriveOf<Number>* drive;
+  const FreeMotionOf<Number>* free;
   const Number* column_weight;  // scaled-block weight of a column: size / length unit for slides, 1 for angles
   const LinkInertiaOf<Number>* inertia;
   const LoadOf<Number>* load;
@@ -324,6 +330,11 @@ struct Request {
   int iterations;               // at most
   double tight, coarse, accept;  // residual, step, residual: see tolerances.py
   const Held* held;             // null: every block is solved
+  const double* chart;          // charts x columns x rows: the chart's directions, see chart.hpp; null without charts
+  const double* chart_origin;   // states x rows; null: the guess
+  const double* chart_place;    // charts x rows; null: zero
+  const double* chart_rates;    // charts x rows, may be null without DEMAND_VELOCITY
+  const double* chart_accelerations;  // charts x rows, likewise
 };
 
 enum RowFlag : unsigned char {

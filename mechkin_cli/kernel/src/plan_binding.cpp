@@ -82,6 +82,10 @@ void check_demand(const Request& r, const OutputList* outputs, const Plan& p) {
   refuse(r.demand && p.columns && !p.blocks && !p.inputs, "a tree without inputs and blocks has poses only");
   refuse(!outputs != !r.outputs, "outputs and values are given together");
   refuse(outputs && (outputs->demand() & ~r.demand), "the outputs need more than is demanded");
+  refuse(p.charts && !r.chart, "a plan with a chart needs its directions");
+  refuse(p.charts && velocity && !r.chart_rates, "velocities need rates of the chart");
+  refuse(p.charts && acceleration && !r.chart_accelerations, "accelerations need accelerations of the chart");
+  refuse(p.charts && r.demand & DEMAND_JERK, "a chart has no jerks");
   refuse(velocity && !r.rates, "velocities need rates of the inputs");
   refuse(acceleration && (!velocity || !r.accelerations),
          "accelerations need rates and accelerations of the inputs");
@@ -132,6 +136,9 @@ void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
   const KernelUnit& narrow = *kernel_unit(2);
   r.turned = given.read("turned", turn_slots(p, narrow));
   r.whole = given.read("whole", p.inputs);
+  r.chart = given.read("chart", p.charts * p.columns);
+  r.chart_rates = given.read("chart_rates", p.charts);
+  r.chart_accelerations = given.read("chart_accelerations", p.charts);
   const OutputList* outputs = nullptr;
   nb::object list = given.other("outputs");
   if (!list.is_none()) {
@@ -214,7 +221,8 @@ void bind_builder(nb::module_& m) {
       .def("add_axis", &PlanBuilder::add_axis, "place"_a, "slide"_a, "link"_a, "vector"_a, "other"_a,
            "other_vector"_a)
       .def("add_free_motion", &PlanBuilder::add_free_motion, "place"_a, "slide"_a, "code"_a, "link"_a, "vector"_a)
-      .def("add_block", &PlanBuilder::add_block, "closing_joints"_a, "joints"_a, "unknown"_a)
+      .def("add_block", &PlanBuilder::add_block, "closing_joints"_a, "joints"_a, "unknown"_a,
+           "charts"_a = 0)
       .def("set_rest", &PlanBuilder::set_rest, "joints"_a)
       .def("add_input", &PlanBuilder::add_input, "column"_a, "axis"_a, "scale"_a)
       .def("set_inertia", &PlanBuilder::set_inertia, "link"_a, "mass"_a, "centre"_a, "tensor"_a)
@@ -262,6 +270,7 @@ void bind_plan(nb::module_& m) {
       .def_prop_ro("states", [](const FrozenPlan& p) { return p.view().states; })
       .def_prop_ro("columns", [](const FrozenPlan& p) { return p.view().columns; })
       .def_prop_ro("inputs", [](const FrozenPlan& p) { return p.view().inputs; })
+      .def_prop_ro("charts", [](const FrozenPlan& p) { return p.view().charts; })
       .def_prop_ro("load_values", [](const FrozenPlan& p) { return p.view().load_values; })
       .def_prop_ro("blocks", [](const FrozenPlan& p) { return p.view().blocks; })
       .def_prop_ro("size", [](const FrozenPlan& p) { return p.view().size; })

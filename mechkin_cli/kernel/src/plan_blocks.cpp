@@ -28,14 +28,17 @@ void PlanBuilder::place_joints(int block, const std::vector<int>& joints) {
   }
 }
 
-void PlanBuilder::add_block(int closing_joints, const std::vector<int>& joints, const std::vector<int>& unknown) {
+void PlanBuilder::add_block(int closing_joints, const std::vector<int>& joints, const std::vector<int>& unknown,
+                            int charts) {
   open();
   const int index = (int)block_.size();
   const int closing_begin = block_.empty() ? 0 : block_.back().closing_end;
-  require(closing_joints > 0 && closing_joints <= (int)closing_.size() - closing_begin, "block of unknown joints");
+  require(charts >= 0 && (charts == 0 || plan_.charts == 0), "one block has a chart");
+  require(closing_joints + charts > 0 && closing_joints >= 0 &&
+              closing_joints <= (int)closing_.size() - closing_begin, "block of unknown joints");
   require(!rest_set_, "blocks come before the rest");
-  Block b = {(int)order_.size(), 0, closing_begin, closing_begin + closing_joints, (int)unknown_.size(), 0, 0, 0};
-  long rows = 0;
+  Block b = {(int)order_.size(), 0, closing_begin, closing_begin + closing_joints, (int)unknown_.size(), 0, 0, 0, charts};
+  long rows = charts;
   for (int c = b.closing_begin; c < b.closing_end; ++c)
     rows += equations(closing_[c]);
   require(rows <= MOST_BLOCK_ROWS, "a block has at most 4096 equations");
@@ -66,6 +69,7 @@ void PlanBuilder::add_block(int closing_joints, const std::vector<int>& joints, 
   b.joint_end = (int)order_.size();
   b.column_end = (int)unknown_.size();
   b.rows = (int)rows;
+  plan_.charts += charts;
   b.size = (int)unknown.size();
   block_.push_back(b);
 }

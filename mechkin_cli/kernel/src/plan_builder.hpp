@@ -32,7 +32,8 @@ class PlanBuilder {
   // The next free motion of a joint, see FreeMotion; those of one joint in a row.
   void add_free_motion(int place, bool slide, int code, int link, const Triple& vector);
   // The next closing joints, the tree joints that they place, parents first, and the columns that they solve for.
-  void add_block(int closing_joints, const std::vector<int>& joints, const std::vector<int>& unknown);
+  // `charts`: coordinates of a chart that take the place of inputs; of one block, which may then close no joint.
+  void add_block(int closing_joints, const std::vector<int>& joints, const std::vector<int>& unknown, int charts);
   // The tree joints that no block places, parents first.
   void set_rest(const std::vector<int>& joints);
   // `axis` -1: a coordinate that no user knows; `scale`: effort along the axis per generalised force of the column.

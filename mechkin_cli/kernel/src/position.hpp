@@ -5,6 +5,7 @@
 // frozen, so its bits do not depend on its neighbours.
 #pragma once
 
+#include "chart.hpp"
 #include "factors.hpp"
 #include "legs.hpp"
 #include "pairs.hpp"
@@ -36,6 +37,10 @@ struct Workspace {
   Pack* kept;                     // largest block squared: factors of lanes that are done
   Mask* kept_swap;
   bool* moves;                    // links: whether Newton on the link's block moves it (find_moving)
+  Pack *direction, *origin;       // charts x columns, states: the chart's, see Chart
+  Pack *place, *place_rate, *place_acceleration;  // charts
+
+  MECHKIN_INLINE Chart chart() const { return {direction, origin, place, place_rate, place_acceleration}; }
 };
 
 // Gives the arrays of a workspace their places from `at` on; returns the bytes used.
@@ -76,6 +81,11 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->across = (Vec3*)take((p.legs + 1) * sizeof(Vec3));
   w->holding = (Pack*)take((p.legs + 1) * pack);
   w->saved = (Pack*)take(p.states * pack);
+  w->direction = (Pack*)take(p.charts * p.columns * pack);
+  w->origin = (Pack*)take((p.charts ? p.states : 0) * pack);
+  w->place = (Pack*)take(p.charts * pack);
+  w->place_rate = (Pack*)take(p.charts * pack);
+  w->place_acceleration = (Pack*)take(p.charts * pack);
   return used;
 }
 
@@ -156,6 +166,10 @@ inline Residual block_residual(const Plan& p, Workspace& w, const Block& b) {
         worst.test = select(test <= worst.test, worst.test, test);
       }
     });
+  }
+  if (b.charts) {
+    const Pack off = chart_residual(p, b, w.chart(), w.q, w.right + b.rows - b.charts);
+    worst.test = select(off <= worst.test, worst.test, off);
   }
   return worst;
 }
@@ -241,6 +255,13 @@ inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
       }
     }
   }
+  if (!b.charts) return;
+  Pack* const rows = a + (b.rows - b.charts) * n;
+  for (int e = 0; e < b.charts * n; ++e) rows[e] = 0.0;
+  chart_rows(p, b, w.chart(), w.q, [&](int i, int column, Pack x) {
+    const int u = unknown_index(p, index, column);
+    if (u >= 0) rows[i * n + u] = x;
+  });
 }
 
 inline void place_block(const Plan& p, Workspace& w, const Block& b) {

@@ -86,6 +86,27 @@ inline void closing_coordinate(const Plan& p, const Workspace& w, int c, int fre
   });
 }
 
+// The value of a closing joint's angle or orientation (ClosingTurn) and its derivatives up to `order`, 0 or 2.
+inline void closing_turn(const Plan& p, const Workspace& w, const ClosingTurn& turn, int order, Pack (*out)[4]) {
+  if (turn.freedom >= 0) {
+    Pack k[4];
+    closing_coordinate(p, w, turn.closing, turn.freedom, order, k);
+    for (int n = 0; n <= order; ++n) out[n][0] = k[n];
+    return;
+  }
+  const ClosingJoint& j = p.closing[turn.closing];
+  const Pose &A = w.closure[turn.closing].A, &B = w.closure[turn.closing].B;
+  const Quaternion q = quaternion_of(A.components(B.X), A.components(B.Y), A.components(B.Z));
+  out[0][0] = q.w, out[0][1] = q.x, out[0][2] = q.y, out[0][3] = q.z;
+  if (order < 2) return;
+  const Motion a = motion_of(w, j.first), b = motion_of(w, j.second);
+  const Vec3 omega = b.velocity.angular - a.velocity.angular;
+  const Vec3 alpha = b.acceleration.angular - a.acceleration.angular - cross(a.velocity.angular, omega);
+  const Vec3 first = A.components(omega), second = A.components(alpha);
+  out[1][0] = first.x, out[1][1] = first.y, out[1][2] = first.z, out[1][3] = 0.0;
+  out[2][0] = second.x, out[2][1] = second.y, out[2][2] = second.z, out[2][3] = 0.0;
+}
+
 // Value and rate of the coordinate that a spring or damper works on.
 inline void joint_coordinate(const Plan& p, const Workspace& w, const Load& l, bool moving, Pack* value, Pack* rate) {
   *rate = 0.0;

@@ -54,29 +54,32 @@ void write_turns(const Plan& p, const Workspace& w, const Request& r, const Read
   const Writer value = {r.turn, in.rows, in.row, in.count}, first = {r.turn_first, in.rows, in.row, in.count},
                second = {r.turn_second, in.rows, in.row, in.count};
   for (int t = 0; t < r.turn_count; ++t) {
-    const ClosingTurn& turn = r.turns[t];
-    if (turn.freedom >= 0) {
-      Pack k[4];
-      closing_coordinate(p, w, turn.closing, turn.freedom, 2, k);
-      value.put(turn.slot, k[0]), first.put(turn.slot, k[1]), second.put(turn.slot, k[2]);
-      continue;
+    Pack found[3][4];
+    closing_turn(p, w, r.turns[t], 2, found);
+    for (int k = 0; k < r.turns[t].width; ++k) {
+      const int slot = r.turns[t].slot + k;
+      value.put(slot, found[0][k]), first.put(slot, found[1][k]), second.put(slot, found[2][k]);
     }
-    const ClosingJoint& j = p.closing[turn.closing];
-    const Pose &A = w.closure[turn.closing].A, &B = w.closure[turn.closing].B;
-    const Quaternion q = quaternion_of(A.components(B.X), A.components(B.Y), A.components(B.Z));
-    const Motion a = motion_of(w, j.first), b = motion_of(w, j.second);
-    const Vec3 omega = b.velocity.angular - a.velocity.angular;
-    const Vec3 alpha = b.acceleration.angular - a.acceleration.angular - cross(a.velocity.angular, omega);
-    value.put(turn.slot, q.w), value.put(turn.slot + 1, Vec3{q.x, q.y, q.z});
-    first.put(turn.slot, A.components(omega)), first.put(turn.slot + 3, Pack(0.0));
-    second.put(turn.slot, A.components(alpha)), second.put(turn.slot + 3, Pack(0.0));
   }
+}
+
+void read_chart(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
+  const auto values = [&](const double* given, int count, Pack* to) {
+    for (int i = 0; i < count; ++i) to[i] = given ? in.get(given, i) : Pack(0.0);
+  };
+  values(r.chart, p.charts * p.columns, w.direction);
+  values(r.chart_origin ? r.chart_origin : r.guess, p.states, w.origin);
+  values(r.chart_place, p.charts, w.place);
+  values(r.chart_rates, p.charts, w.place_rate);
+  values(r.chart_accelerations, p.charts, w.place_acceleration);
 }
 
 void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
   const bool velocities = r.demand & DEMAND_VELOCITY, accelerations = r.demand & DEMAND_ACCELERATION;
   for (int s = 0; s < p.states; ++s) w.q[s] = in.get(r.guess, s);
   for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
+
+  if (p.charts) read_chart(p, r, w, in);
 
   Pack residual = 0.0, correction = 0.0, condition = 0.0;
   Mask converged = all_lanes(true), side = all_lanes(true);

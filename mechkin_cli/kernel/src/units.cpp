@@ -19,6 +19,16 @@ const KernelUnit* widest() {
 
 }  // namespace
 
+const MotionUnit* motion_unit(int lanes) {
+  const KernelUnit* const unit = kernel_unit(lanes);
+  if (!unit) return nullptr;
+#if MECHKIN_WIDE
+  if (unit->lanes == 8) return mechkin_motion_avx512();
+  if (unit->lanes == 4) return mechkin_motion_avx2();
+#endif
+  return mechkin_motion_sse2();
+}
+
 const KernelUnit* kernel_unit(int lanes) {
   static const KernelUnit* const best = widest();
   if (lanes == 0 || lanes == best->lanes) return best;

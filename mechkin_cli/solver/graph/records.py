@@ -71,11 +71,12 @@ class Closing(NamedTuple):
 
 class Block(NamedTuple):
     """Closing joints (by index) that are solved together for unknown coordinates (edge,
-    freedom)."""
+    freedom); the last `charts` of its equations are those of a chart (`charted`)."""
 
     closings: tuple[int, ...]
     unknowns: tuple[tuple[int, int], ...]
     equations: int
+    charts: int = 0
 
 
 class SolverGraph(NamedTuple):

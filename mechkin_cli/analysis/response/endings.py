@@ -1,0 +1,67 @@
+"""Why a response ended before its last row, in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.solver.free_motion import Fault, MotionEnd
+from mechkin_cli.status import Status
+from mechkin_cli.units import TIME
+
+if TYPE_CHECKING:
+    from mechkin_cli.mechanism.response import Response
+    from mechkin_cli.solver.free_motion import MotionReport
+    from mechkin_cli.solver.session import Session
+
+
+def ending(
+    session: Session, response: Response, report: MotionReport
+) -> tuple[Status, list[Diagnostic]]:
+    """The verdict of rows that were not reached, and what is to say about the motion."""
+    notes = []
+    if report.stiff:
+        text = f"from {_moment(session, report.stiff_from)} on the motion is stiff"
+        hint = "an implicit method of order 5 (Radau IIA) has taken over; nothing is to be done"
+        notes.append(Diagnostic("stiff", "note", text, response.place, hint=hint))
+    if report.end in (MotionEnd.DONE, MotionEnd.STOPPED):
+        return Status.ok, notes
+    at = _moment(session, report.time)
+    status, code, text, hint = _reason(report)
+    notes.append(
+        Diagnostic(code, "error", f"the response ends at {at}: {text}", response.place, hint=hint)
+    )
+    return status, notes
+
+
+def _moment(session: Session, time: float) -> str:
+    units = session.problem.units
+    return f"{float(units.from_si(time, TIME)):.6g} {units.label(TIME)}"
+
+
+def _reason(report: MotionReport) -> tuple[Status, str, str, str]:
+    """Verdict, code, words and cure."""
+    if report.end is MotionEnd.STEP_LIMIT:
+        text = f"{report.steps + report.rejections} steps were not enough"
+        hint = "widen the tolerance, shorten the time, or look for what moves so fast"
+        return Status.step_limit, "step-limit", text, hint
+    if report.end is MotionEnd.HELD:
+        text = "on both sides of a jump of a load the motion goes back to it"
+        hint = "write what sticks as {type: friction, ...}, or make the load continuous"
+        return Status.friction_undecided, "held-at-jump", text, hint
+    if report.fault == Fault.NOT_FINITE:
+        text = "a load or a rate has no finite value beyond"
+        return Status.step_limit, "load-undefined", text, "write loads that hold along the motion"
+    if report.fault & Fault.SINGULAR_INERTIA:
+        text = "some freedom has no inertia, so that no acceleration follows from the forces"
+        hint = "give the links that it moves a mass, or drive it"
+        return Status.singular_inertia, "singular-inertia", text, hint
+    if report.fault:
+        text = "no step, however short, is told to stay on the branch"
+        hint = (
+            "there is a branch point or a special position; at_branch_points: straight passes "
+            "branch points along the smooth continuation"
+        )
+        return Status.branch_lost, "branch-lost", text, hint
+    text = "no step, however short, keeps the tolerance"
+    return Status.step_limit, "step-limit", text, "widen the tolerance"

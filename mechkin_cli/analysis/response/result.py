@@ -1,0 +1,191 @@
+"""The rows of a response, read as those of a sweep are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.analysis.sweep.result import Result
+from mechkin_cli.expressions import Quantity
+from mechkin_cli.mechanism.model import Varying
+from mechkin_cli.mechanism.quantities import response_quantities
+
+if TYPE_CHECKING:
+    from mechkin_cli.analysis.assembly.start import Start
+    from mechkin_cli.analysis.sweep.rows import Rows
+    from mechkin_cli.arrays import Bools, Floats
+    from mechkin_cli.mechanism.model import Amount
+    from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.mechanism.response import Response
+    from mechkin_cli.solver.batch import Batch, Chart
+    from mechkin_cli.solver.codes import Demand
+    from mechkin_cli.solver.free_motion import MotionReport
+    from mechkin_cli.solver.inputs import KernelInputs
+    from mechkin_cli.solver.session import Session
+
+ENERGIES = ("row.kinetic_energy", "row.potential_energy")
+
+
+class ResponseResult(Result):
+    """The rows of a response with a position and a verdict each.
+
+    Args:
+        session: of the free motion, with the driven coordinates at the rows' moments.
+        start: the first assembly, of a session `chosen` with the start's coordinates as inputs.
+        rows: the rows.
+        chart: about each row.
+        work: put in and lost up to each row (2, rows), J.
+        events: what each row is reached by, empty for a moment asked for.
+        response: what was asked for.
+        report: how the motion ended.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        chosen: Session,
+        start: Start,
+        rows: Rows,
+        chart: Chart,
+        work: Floats,
+        events: Sequence[str],
+        response: Response,
+        report: MotionReport | None,
+    ) -> None:
+        super().__init__(session, start, rows)
+        self.chosen = chosen
+        self.chart = chart
+        self.exchanged = work
+        self.events = tuple(events)
+        self.response = response
+        self.report = report
+
+    @cached_property
+    def solved(self) -> Bools:
+        """Rows that were reached and have a position (rows,)."""
+        return self.row_states.reached & super().solved
+
+    @cached_property
+    def mode(self) -> str:
+        """The letter of the first assembly where a short search proves it; else `near` or
+        `home`."""
+        from mechkin_cli.analysis.assembly.start import mode_letter
+
+        return mode_letter(self.chosen, self.start, thorough=False)
+
+    @cached_property
+    def letter(self) -> str:
+        """The letter of the first assembly, searched for if it is not known yet."""
+        from mechkin_cli.analysis.assembly.start import mode_letter
+
+        return mode_letter(self.chosen, self.start)
+
+    def run(
+        self,
+        wanted: Sequence[Wanted],
+        demand: Demand,
+        *,
+        session: Session | None = None,
+        inputs: KernelInputs | None = None,
+        loads: Floats | None = None,
+        shift: int = 0,
+        iterations: int = 0,
+        chart: Chart | None = None,
+    ) -> Batch:
+        """As `Result.run`, with the chart about each row."""
+        return super().run(
+            wanted,
+            demand,
+            session=session,
+            inputs=inputs,
+            loads=loads,
+            shift=shift,
+            iterations=iterations,
+            chart=self.chart if chart is None else chart,
+        )
+
+    def quantity(self, name: str) -> Quantity:
+        """A parameter, direction or result by name, in SI.
+
+        Raises:
+            UnknownName: nothing has this name.
+        """
+        of_response = response_quantities().get(name)
+        if of_response is not None:
+            return Quantity(getattr(self, of_response.kind), of_response.dimension)
+        wanted = self.problem.quantities().get(name)
+        if wanted is not None and wanted.kind == "effort":
+            given = self._given_effort(wanted)
+            if given is not None:
+                return Quantity(given, wanted.dimension)
+        return super().quantity(name)
+
+    def read(self, wanted: Iterable[Wanted]) -> None:
+        """Evaluates the quantities that have not been read yet."""
+        own = response_quantities()
+        super().read(
+            quantity
+            for quantity in wanted
+            if quantity.name not in own and not self.is_given(quantity)
+        )
+
+    def is_given(self, quantity: Wanted) -> bool:
+        """Whether a quantity is an effort that the response gives."""
+        return quantity.kind == "effort" and bool(self._amounts(quantity))
+
+    @property
+    def work(self) -> Floats:
+        """Work put in up to each row, J (rows,)."""
+        put: Floats = self.exchanged[0]
+        return put
+
+    @property
+    def dissipated(self) -> Floats:
+        """What was lost up to each row, J (rows,)."""
+        lost: Floats = self.exchanged[1]
+        return lost
+
+    @cached_property
+    def energy_error(self) -> Floats:
+        """|T + V - T0 - V0 - work + dissipated| in parts of the largest of them over all rows
+        (rows,); nan where nothing moves or works."""
+        kinetic, potential = (self._energy(name) for name in ENERGIES)
+        work, lost = self.exchanged
+        solved = np.flatnonzero(self.solved)
+        if not solved.size:
+            return self._nothing
+        first = solved[0]
+        gained = potential - potential[first]
+        parts = np.abs([kinetic, gained, work, lost])[:, solved]
+        largest = float(parts.max())
+        if not largest > 0.0:
+            return self._nothing
+        missing = ((kinetic - kinetic[first]) + gained) - (work - lost)
+        error: Floats = np.abs(missing) / largest
+        return error
+
+    def _energy(self, name: str) -> Floats:
+        value: Floats = np.asarray(super().quantity(name).value, dtype=np.float64)
+        return value
+
+    def _amounts(self, wanted: Wanted) -> list[Amount]:
+        at = (wanted.owner, wanted.coordinate)
+        return [e.amount for e in self.response.efforts if (e.joint, e.coordinate) == at]
+
+    def _given_effort(self, wanted: Wanted) -> Floats | None:
+        """The sum of the response's efforts along a coordinate over the rows; None where it is
+        driven."""
+        given = self._amounts(wanted)
+        if not given:
+            return None
+        total = np.zeros(self.rows)
+        for amount in given:
+            if isinstance(amount, Varying):
+                assert self.loads is not None
+                total = total + self.loads.values[amount.number]
+            else:
+                total = total + amount
+        return np.where(self.solved, total, np.nan)

@@ -1,0 +1,219 @@
+#include "charted_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "units.hpp"
+
+namespace {
+
+constexpr double FULL = 2.0 * 3.14159265358979323846;
+
+std::vector<char, AlignedAllocator<char>> wide_plan(const MotionUnit& unit, const std::vector<MotionStart>& starts) {
+  std::vector<const Plan*> plans;
+  for (const MotionStart& s : starts) plans.push_back(s.plan);
+  std::vector<char, AlignedAllocator<char>> memory((std::size_t)unit.widen(plans.data(), nullptr));
+  unit.widen(plans.data(), memory.data());
+  return memory;
+}
+
+int slots_of(const std::vector<ClosingTurn>& turns) {
+  int slots = 0;
+  for (const ClosingTurn& t : turns) slots += t.width;
+  return slots;
+}
+
+}  // namespace
+
+ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionStart>& starts, const MotionLimits& limits,
+                             const std::vector<MotionRows>& rows)
+    : unit_(unit), starts_(starts), lanes_(unit.lanes), plan_(*starts[0].plan), limits_(limits), rows_(rows),
+      turns_(closing_turns(plan_, *kernel_unit(2))), turn_slots_(slots_of(turns_)), wide_(wide_plan(unit, starts)),
+      workspace_((std::size_t)unit.workspace_size(wide_.data())) {
+  for (int b = 0; b < plan_.blocks; ++b) entries_ += (long)plan_.block[b].rows * plan_.block[b].size;
+  const auto make = [&](Packed& a, long count) { a.assign((std::size_t)(count * lanes_), 0.0); };
+  make(origin_, plan_.states), make(origin_first_, plan_.columns), make(origin_second_, plan_.columns);
+  make(direction_, (long)plan_.charts * plan_.columns), make(jacobian_, entries_), make(turn_, turn_slots_);
+  make(elapsed_, 1), make(origin_time_, 1), make(place_, plan_.charts), make(rate_, plan_.charts);
+  make(inputs_, plan_.inputs), make(input_rates_, plan_.inputs), make(input_seconds_, plan_.inputs);
+  make(loads_, plan_.load_values);
+  found_ = make_stage(), end_ = make_stage();
+  for (int l = 0; l < lanes_; ++l) {
+    const MotionStart& s = starts_[l];
+    for (int k = 0; k < plan_.states; ++k) origin_[k * lanes_ + l] = s.state[k];
+    for (int k = 0; k < plan_.columns; ++k) origin_first_[k * lanes_ + l] = s.first[k];
+    for (int k = 0; k < plan_.charts * plan_.columns; ++k) end_.tangent[k * lanes_ + l] = s.tangent[k];
+    lay_chart(l);
+  }
+  const std::vector<double> y = start();
+  std::copy(y.begin() + (long)plan_.charts * lanes_, y.begin() + 2L * plan_.charts * lanes_, rate_.begin());
+  evaluate(place_.data(), rate_.data(), &found_);
+  jacobian_ = found_.jacobian, origin_second_ = found_.second, turn_ = found_.turned;
+}
+
+ChartedMotion::Stage ChartedMotion::make_stage() const {
+  const auto make = [&](long count) { return Packed((std::size_t)(count * lanes_), 0.0); };
+  const long n = plan_.charts;
+  return {make(plan_.states), make(plan_.columns), make(plan_.columns), make(entries_), make(n * plan_.columns),
+          make(n), make(n * n), make(2), make(turn_slots_), std::vector<unsigned char>((std::size_t)lanes_)};
+}
+
+std::vector<double> ChartedMotion::start() const {
+  const int n = plan_.charts;
+  std::vector<double> y((std::size_t)((2 * n + 2) * lanes_), 0.0);
+  for (int l = 0; l < lanes_; ++l)
+    for (int i = 0; i < n; ++i)
+      for (int c = 0; c < plan_.columns; ++c)
+        y[(n + i) * lanes_ + l] += at(direction_, i * plan_.columns + c, l) * at(origin_first_, c, l);
+  return y;
+}
+
+void ChartedMotion::evaluate(const double* place, const double* rate, Stage* found) {
+  StageGiven given = {};
+  given.origin = origin_.data(), given.origin_rate = origin_first_.data(), given.origin_second = origin_second_.data();
+  given.direction = direction_.data(), given.origin_jacobian = jacobian_.data(), given.elapsed = elapsed_.data();
+  given.place = place, given.rate = rate;
+  given.inputs = inputs_.data(), given.input_rates = input_rates_.data(), given.input_seconds = input_seconds_.data();
+  given.loads = loads_.data(), given.turned = turn_.data();
+  given.turns = turns_.data(), given.turn_count = (int)turns_.size();
+  given.tight = limits_.tight, given.coarse = limits_.coarse, given.accept = limits_.accept;
+  given.iterations = limits_.iterations, given.jump = limits_.jump, given.radius = limits_.radius;
+  const StageFound out = {found->state.data(), found->first.data(), found->second.data(), found->jacobian.data(),
+                          found->tangent.data(), found->chart_second.data(), found->inertia.data(),
+                          found->power.data(), found->turned.data(), found->flags.data()};
+  unit_.evaluate(wide_.data(), given, out, workspace_.data());
+}
+
+// Lanes that are not asked for stand at their origin.
+void ChartedMotion::set_places(const Places& places) {
+  const int n = plan_.charts;
+  for (int l = 0; l < lanes_; ++l) {
+    const bool active = places.active[l];
+    elapsed_[l] = active ? places.time[l] - origin_time_[l] : 0.0;
+    for (int i = 0; i < n; ++i) {
+      place_[i * lanes_ + l] = active ? places.y[i * lanes_ + l] : 0.0;
+      rate_[i * lanes_ + l] = active ? places.y[(n + i) * lanes_ + l] : 0.0;
+    }
+  }
+}
+
+void ChartedMotion::rates(const Places& places, const Rates& rates) {
+  const int n = plan_.charts;
+  set_places(places);
+  Stage* const found = places.is_end ? &end_ : &found_;
+  evaluate(place_.data(), rate_.data(), found);
+  for (int l = 0; l < lanes_; ++l) {
+    if (!places.active[l]) continue;
+    for (int i = 0; i < n; ++i) rates.rates[i * lanes_ + l] = found->chart_second[i * lanes_ + l];
+    for (int k = 0; k < 2; ++k) rates.rates[(n + k) * lanes_ + l] = found->power[k * lanes_ + l];
+    rates.fault[l] = found->flags[l];
+  }
+}
+
+// The tangents of the old chart, made orthonormal in the columns in parts of their weights (Gram-Schmidt, twice).
+void ChartedMotion::lay_chart(int lane) {
+  const int n = plan_.charts, columns = plan_.columns;
+  const double* const weight = starts_[lane].plan->column_weight;
+  const auto entry = [&](int i, int c) -> double& { return direction_[(long)(i * columns + c) * lanes_ + lane]; };
+  for (int i = 0; i < n; ++i) {
+    for (int c = 0; c < columns; ++c)
+      entry(i, c) = plan_.column_block[c] < 0 ? 0.0 : at(end_.tangent, i * columns + c, lane) / weight[c];
+    for (int pass = 0; pass < 2; ++pass) {
+      for (int j = 0; j < i; ++j) {
+        double along = 0.0;
+        for (int c = 0; c < columns; ++c) along += entry(i, c) * entry(j, c);
+        for (int c = 0; c < columns; ++c) entry(i, c) -= along * entry(j, c);
+      }
+      double square = 0.0;
+      for (int c = 0; c < columns; ++c) square += entry(i, c) * entry(i, c);
+      const double size = std::sqrt(square);
+      for (int c = 0; c < columns; ++c) entry(i, c) /= size;
+    }
+  }
+  for (int i = 0; i < n; ++i)
+    for (int c = 0; c < columns; ++c) entry(i, c) /= weight[c];
+  // the chart's rows at the new origin
+  long base = 0;
+  for (int b = 0; b < plan_.blocks; ++b) {
+    const Block& block = plan_.block[b];
+    for (int i = 0; i < block.charts; ++i)
+      for (int u = 0; u < block.size; ++u)
+        jacobian_[(base + (long)(block.rows - block.charts + i) * block.size + u) * lanes_ + lane] =
+            entry(i, plan_.unknown[block.column_begin + u]);
+    base += (long)block.rows * block.size;
+  }
+}
+
+// Angles within half a turn of those before, orientations of their sign.
+void ChartedMotion::continue_turns(int lane, const Packed& found) {
+  for (const ClosingTurn& t : turns_) {
+    const auto now = [&](int k) { return found[(long)(t.slot + k) * lanes_ + lane]; };
+    const auto kept = [&](int k) -> double& { return turn_[(long)(t.slot + k) * lanes_ + lane]; };
+    if (t.freedom >= 0) {
+      kept(0) = now(0) + FULL * std::nearbyint((kept(0) - now(0)) / FULL);
+      continue;
+    }
+    double along = 0.0;
+    for (int k = 0; k < 4; ++k) along += now(k) * kept(k);
+    for (int k = 0; k < 4; ++k) kept(k) = along < 0.0 ? -now(k) : now(k);
+  }
+}
+
+void ChartedMotion::accept(const unsigned char* lanes, const double* time, double* y, double* rates, double*) {
+  const int n = plan_.charts, columns = plan_.columns;
+  for (int l = 0; l < lanes_; ++l) {
+    if (!lanes[l]) continue;
+    const auto take = [&](const Packed& from, long count, Packed& to) {
+      for (long k = 0; k < count; ++k) to[k * lanes_ + l] = from[k * lanes_ + l];
+    };
+    origin_time_[l] = time[l];
+    take(end_.state, plan_.states, origin_), take(end_.first, columns, origin_first_);
+    take(end_.second, columns, origin_second_), take(end_.jacobian, entries_, jacobian_);
+    continue_turns(l, end_.turned);
+    lay_chart(l);
+    for (int i = 0; i < n; ++i) {
+      double first = 0.0, second = 0.0;
+      for (int c = 0; c < columns; ++c) {
+        first += at(direction_, i * columns + c, l) * at(end_.first, c, l);
+        second += at(direction_, i * columns + c, l) * at(end_.second, c, l);
+      }
+      y[i * lanes_ + l] = 0.0, y[(n + i) * lanes_ + l] = first, rates[i * lanes_ + l] = second;
+    }
+  }
+}
+
+void ChartedMotion::write_row(int lane, long row, const Stage& at_row, const double* done) {
+  const MotionRows& out = rows_[lane];
+  if (!out.rows) return;
+  const int n = plan_.charts, columns = plan_.columns;
+  const auto put = [&](double* to, long column, double x) { to[column * out.rows + row] = x; };
+  for (int k = 0; k < plan_.states; ++k) put(out.state, k, at(at_row.state, k, lane));
+  for (int i = 0; i < n; ++i) {
+    double first = 0.0, second = 0.0;
+    for (int c = 0; c < columns; ++c) {
+      const double along = at(direction_, i * columns + c, lane);
+      put(out.direction, i * columns + c, along);
+      first += along * at(at_row.first, c, lane), second += along * at(at_row.second, c, lane);
+    }
+    put(out.chart_rate, i, first), put(out.chart_second, i, second);
+  }
+  for (int k = 0; k < turn_slots_; ++k) put(out.turn, k, at(turn_, k, lane));
+  for (int k = 0; k < 2; ++k) put(out.work, k, done[(long)k * lanes_ + lane]);
+  out.flags[row] = at_row.flags[lane];
+}
+
+void ChartedMotion::row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) {
+  const double* const done = y + 2L * plan_.charts * lanes_;
+  if (inside) {
+    const Places places = {time, y, lanes, nullptr, false};
+    set_places(places);
+    evaluate(place_.data(), rate_.data(), &found_);
+  }
+  for (int l = 0; l < lanes_; ++l) {
+    if (!lanes[l]) continue;
+    if (inside) continue_turns(l, found_.turned);
+    write_row(l, row[l], inside ? found_ : end_, done);
+  }
+}
+
+bool ChartedMotion::event(int, int, bool, double) { return true; }

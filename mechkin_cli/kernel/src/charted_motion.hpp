@@ -1,0 +1,86 @@
+// The motion of mechanisms under forces as the integrator sees it: in the coordinates of a chart (chart.hpp) that is laid
+// anew at the end of each step, with the loops closed at every stage. Lanes are variants with plans of one structure.
+//
+// The origin's tangent space gives the chart's directions, lengths in parts of the size; a stage whose Jacobian is not
+// told to be joined with the origin's by regular ones is a fault, and the step is tried again shorter: the test that
+// steps of a sweep use (judge.cpp).
+#pragma once
+
+#include <vector>
+
+#include "aligned.hpp"
+#include "integrator.hpp"
+#include "motion_unit.hpp"
+#include "stepper.hpp"
+
+// Where a lane begins.
+struct MotionStart {
+  const Plan* plan;         // with a chart, valid as long as the motion
+  const double* state;      // states, closed
+  const double* first;      // columns: their rates
+  const double* tangent;    // charts x columns: rates that the loops allow, as many as freedoms, independent
+};
+
+struct MotionLimits {
+  double tight, coarse, accept, jump, radius;
+  int iterations;
+};
+
+// Rows of a lane, column after column; rows that are not reached stay as they are. Without rows nothing is written.
+struct MotionRows {
+  long rows;
+  double* state;          // states
+  double* direction;      // charts x columns
+  double* chart_rate;     // charts
+  double* chart_second;   // charts
+  double* turn;           // turn slots
+  double* work;           // 2: put in, lost; kg, length units, s
+  unsigned char* flags;   // StageFlag
+};
+
+class ChartedMotion : public Motion {
+ public:
+  // `unit` has as many lanes as there are starts; a lane without a variant of its own repeats another's.
+  ChartedMotion(const MotionUnit& unit, const std::vector<MotionStart>& starts, const MotionLimits& limits,
+                const std::vector<MotionRows>& rows);
+
+  int lanes() const override { return lanes_; }
+  int freedoms() const override { return plan_.charts; }
+  int quadratures() const override { return 2; }
+  void rates(const Places& places, const Rates& rates) override;
+  void accept(const unsigned char* lanes, const double* time, double* y, double* rates, double* longest) override;
+  void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) override;
+  bool event(int lane, int which, bool rising, double time) override;
+
+  // y at the start: u = 0, the rates of u, nothing done.
+  std::vector<double> start() const;
+
+ private:
+  // Arrays of packs, as the unit takes them.
+  struct Stage {
+    Packed state, first, second, jacobian, tangent, chart_second, inertia, power, turned;
+    std::vector<unsigned char> flags;
+  };
+
+  Stage make_stage() const;
+  void evaluate(const double* place, const double* rate, Stage* found);
+  void set_places(const Places& places);
+  void lay_chart(int lane);
+  void continue_turns(int lane, const Packed& found);
+  void write_row(int lane, long row, const Stage& at, const double* done);
+  double at(const Packed& a, long k, int lane) const { return a[k * lanes_ + lane]; }
+
+  const MotionUnit& unit_;
+  const std::vector<MotionStart> starts_;
+  const int lanes_;
+  const Plan& plan_;
+  const MotionLimits limits_;
+  const std::vector<MotionRows> rows_;
+  const std::vector<ClosingTurn> turns_;
+  int turn_slots_;
+  long entries_ = 0;
+  std::vector<char, AlignedAllocator<char>> wide_, workspace_;
+  Packed origin_, origin_first_, origin_second_, direction_, jacobian_, turn_, elapsed_, place_, rate_, origin_time_;
+  Packed inputs_, input_rates_, input_seconds_, loads_;
+  Stage found_, end_;
+};

@@ -1,0 +1,157 @@
+// One instruction set's equations of motion: compiled once per width, with MECHKIN_LANES and MECHKIN_MOTION set by the
+// build.
+#define MECHKIN_WIDE_PLAN
+#include "wide_plan.hpp"
+
+#include "equations_of_motion.hpp"
+#include "motion_unit.hpp"
+#include "regular.hpp"
+
+namespace {
+
+// The arrays of a stage as packs.
+MECHKIN_INLINE const Pack* packs(const double* at) { return reinterpret_cast<const Pack*>(at); }
+MECHKIN_INLINE Pack* packs(double* at) { return reinterpret_cast<Pack*>(at); }
+
+inline void copy(const Pack* from, int count, Pack* to) {
+  for (int i = 0; i < count; ++i) to[i] = from[i];
+}
+
+// What loads read of a stage.
+struct StageValues {
+  const StageGiven& given;
+  MECHKIN_INLINE Pack operator()(int column) const { return packs(given.loads)[column]; }
+  // The turn nearest to where the angle was at the origin; a tree's angle is continuous by itself.
+  MECHKIN_INLINE Pack turned(const Load& l, Pack angle) const {
+    const Pack full = 2.0 * 3.14159265358979323846;
+    if (l.turn < 0 || l.other >= 0) return angle;
+    return angle + full * nearest_integer((packs(given.turned)[l.turn] - angle) / full);
+  }
+};
+
+// Where the states would be by the origin's derivatives, moved along the chart to the wanted place.
+inline void predict(const Plan& p, Workspace& w, const StageGiven& given) {
+  const Pack* const q = packs(given.origin);
+  const Pack t = *packs(given.elapsed), half = Pack(0.5) * t * t;
+  for (int c = 0; c < p.columns; ++c)
+    w.rate[c] = t * packs(given.origin_rate)[c] + half * packs(given.origin_second)[c];
+  for (int i = 0; i < p.charts; ++i) {
+    const Pack* const along = w.direction + i * p.columns;
+    Pack off = w.place[i];
+    for (int c = 0; c < p.columns; ++c) off -= along[c] * w.rate[c];
+    // the directions are orthonormal in the weighted columns
+    for (int c = 0; c < p.columns; ++c) w.rate[c] += off * along[c] * p.column_weight[c] * p.column_weight[c];
+  }
+  copy(q, p.states, w.q);
+  for (int k = 0; k < p.links; ++k) {
+    const TreeJoint& j = p.joints[k];
+    with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      advance(entry, w.q + j.state, w.rate + j.column, all_lanes(true));
+    });
+  }
+  for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = packs(given.inputs)[i];
+}
+
+// The largest weighted way of a column from the origin.
+inline Pack way(const Plan& p, const Workspace& w) {
+  Pack length = 0.0;
+  for (int c = 0; c < p.columns; ++c) length = max(length, abs(w.rate[c]));
+  return length;
+}
+
+struct Placed {
+  Mask closed, on_branch;
+};
+
+inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given,
+                          const StageFound& found) {
+  Request limits = {};
+  limits.tight = given.tight, limits.coarse = given.coarse, limits.accept = given.accept;
+  limits.iterations = given.iterations;
+  const Pack room = Pack(given.jump) * way(p, w);
+  Placed placed = {all_lanes(true), all_lanes(true)};
+  long entries = 0;
+  for (int b = 0; b < p.blocks; ++b) {
+    const Closed closed = close_block(p, w, b, limits);
+    const BlockMatrices at = matrices_of(p, w, b);
+    const int size = at.m * at.n;
+    block_screws(p, w, p.block[b]);
+    block_jacobian(p, w, b, at.jacobian);
+    copy(at.jacobian, size, packs(found.jacobian) + entries);
+    at.factor_jacobian();
+    placed.closed = placed.closed & closed.converged & closed.side;
+    placed.on_branch = placed.on_branch & (closed.correction <= room + Pack(given.coarse)) &
+                       is_regular(p, w, b, packs(given.origin_jacobian) + entries, given.radius, m.radius);
+    entries += size;
+  }
+  for (int k = 0; k < p.rest_count; ++k) {
+    place_joint(p, w, p.rest[k]);
+    find_screws(p, w, p.rest[k]);
+  }
+  return placed;
+}
+
+void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given, const StageFound& found) {
+  copy(packs(given.direction), p.charts * p.columns, w.direction);
+  copy(packs(given.origin), p.states, w.origin);
+  copy(packs(given.place), p.charts, w.place);
+  predict(p, w, given);
+  const Placed placed = close_stage(p, w, m, given, found);
+
+  for (int d = 0; d < directions(p); ++d) move_along(p, w, m, d);
+  const Pack* const input_rate = packs(given.input_rates);
+  move(p, w, m, packs(given.rate), input_rate, packs(given.input_seconds));
+  const StageValues values = {given};
+  reduce_inertia(p, w, m);
+  reduce_forces(p, w, m, values);
+  Pack* const second = packs(found.chart_second);
+  const Mask positive = solve_motion(p, m, second);
+  powers_of_loads(p, w, m, second, input_rate, values, packs(found.power), packs(found.power) + 1);
+
+  copy(w.q, p.states, packs(found.state));
+  copy(w.rate, p.columns, packs(found.first));
+  copy(m.tangent, p.charts * p.columns, packs(found.tangent));
+  copy(m.inertia, p.charts * p.charts, packs(found.inertia));
+  for (int c = 0; c < p.columns; ++c) {
+    Pack sum = w.acceleration[c];
+    for (int i = 0; i < p.charts; ++i) sum += second[i] * m.tangent[i * p.columns + c];
+    packs(found.second)[c] = sum;
+  }
+  for (int t = 0; t < given.turn_count; ++t) {
+    Pack turn[3][4];
+    closing_turn(p, w, given.turns[t], 0, turn);
+    copy(turn[0], given.turns[t].width, packs(found.turned) + given.turns[t].slot);
+  }
+  for (int i = 0; i < LANES; ++i) {
+    unsigned f = STAGE_GOOD;
+    if (!lane(placed.closed, i)) f |= STAGE_NOT_CLOSED;
+    if (!lane(placed.on_branch, i)) f |= STAGE_OFF_BRANCH;
+    if (!lane(positive, i)) f |= STAGE_SINGULAR_INERTIA;
+    found.flags[i] = (unsigned char)f;
+  }
+}
+
+const Plan& plan_at(const char* wide) { return *reinterpret_cast<const Plan*>(wide); }
+
+long workspace_size(const char* wide) {
+  Workspace w;
+  ReducedMotion m;
+  return lay_out(plan_at(wide), nullptr, &w) + lay_out_motion(plan_at(wide), nullptr, &m) + 128;
+}
+
+void evaluate(const char* wide, const StageGiven& given, const StageFound& found, char* memory) {
+  const Plan& p = plan_at(wide);
+  char* const at = memory + (64 - (std::uintptr_t)memory % 64) % 64;
+  Workspace w;
+  ReducedMotion m;
+  const long used = lay_out(p, at, &w);
+  lay_out_motion(p, at + used, &m);
+  find_moving(p, w);
+  evaluate_stage(p, w, m, given, found);
+}
+
+const MotionUnit unit = {LANES, widen, workspace_size, evaluate};
+
+}  // namespace
+
+extern "C" const MotionUnit* MECHKIN_MOTION() { return &unit; }

@@ -1,0 +1,59 @@
+// The entry of a unit that gives the equations of motion of wide plans (equations_of_motion.hpp).
+#pragma once
+
+#include "plan.hpp"
+
+// What a stage of an integration is computed from, one lane a variant; arrays are packs, [k * lanes + lane], 64-byte
+// aligned. The origin is the place that the chart is about.
+struct StageGiven {
+  const double* origin;           // states
+  const double* origin_rate;      // columns
+  const double* origin_second;    // columns: their derivatives
+  const double* direction;        // charts x columns, see chart.hpp
+  const double* origin_jacobian;  // blocks' entries, the chart's rows included
+  const double* elapsed;          // 1: time since the origin
+  const double* place;            // charts: u
+  const double* rate;             // charts: its rate
+  const double *inputs, *input_rates, *input_seconds;  // inputs: of what is driven
+  const double* loads;            // load_values
+  const double* turned;           // turn slots, see Request::turned, of the origin
+  const ClosingTurn* turns;       // turn_count: what StageFound::turned holds
+  int turn_count;
+  double tight, coarse, accept;   // of closing, as in a Request
+  int iterations;
+  double jump, radius;            // what a stage may differ from the origin, as in StepLimits
+};
+
+enum StageFlag : unsigned char {
+  STAGE_GOOD = 0,
+  STAGE_NOT_CLOSED = 1,      // nor a side condition kept
+  STAGE_OFF_BRANCH = 2,      // not told to lie on the origin's branch
+  STAGE_SINGULAR_INERTIA = 4
+};
+
+struct StageFound {
+  double* state;      // states
+  double* first;      // columns
+  double* second;     // columns
+  double* jacobian;   // blocks' entries, not factored
+  double* tangent;    // charts x columns: rates of the columns by those of u
+  double* chart_second;  // charts: u''
+  double* inertia;    // charts x charts: reduced inertia
+  double* power;      // 2: of efforts and loads without a potential; lost in dampers
+  double* turned;        // turn slots: angles and quaternions of the closing joints as the kernel finds them
+  unsigned char* flags;  // lanes: StageFlag
+};
+
+struct MotionUnit {
+  int lanes;
+  // Bytes of the wide plan of some plans (lanes) of one structure; writes it, where there is memory.
+  long (*widen)(const PlanOf<double>* const* plans, char* memory);
+  long (*workspace_size)(const char* wide);
+  void (*evaluate)(const char* wide, const StageGiven&, const StageFound&, char* workspace);
+};
+
+extern "C" {
+const MotionUnit* mechkin_motion_sse2();
+const MotionUnit* mechkin_motion_avx2();
+const MotionUnit* mechkin_motion_avx512();
+}

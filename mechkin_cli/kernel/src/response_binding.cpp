@@ -1,0 +1,98 @@
+// Python's view of responses; needs the class Plan bound before.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include "bindings.hpp"
+#include "frozen_plan.hpp"
+#include "new_array.hpp"
+#include "response.hpp"
+#include "units.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace {
+
+using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Table = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+const double* checked(const Table& a, std::size_t variants, long width, const char* name) {
+  if (a.shape(0) != variants || (long)a.shape(1) != width)
+    throw nb::value_error((std::string(name) + ": not of the shape (variants, " + std::to_string(width) + ")").c_str());
+  if (!all_finite(a.data(), a.shape(0) * a.shape(1)))
+    throw nb::value_error((std::string(name) + ": not finite").c_str());
+  return a.data();
+}
+
+nb::dict report_of(const LaneReport& r) {
+  nb::dict d;
+  d["end"] = (int)r.end, d["fault"] = (int)r.fault, d["which"] = r.which;
+  d["stiff"] = r.stiff, d["stiff_from"] = r.stiff_from, d["time"] = r.time, d["rows"] = r.rows;
+  d["evaluations"] = r.evaluations, d["steps"] = r.steps, d["rejections"] = r.rejections;
+  return d;
+}
+
+void check_plans(const std::vector<const FrozenPlan*>& plans) {
+  if (plans.empty()) throw nb::value_error("plans: none");
+  for (const FrozenPlan* p : plans)
+    if (!p || p->structure() != plans[0]->structure()) throw nb::value_error("plans: not of one structure");
+  if (!plans[0]->view().charts) throw nb::value_error("plans: without a chart nothing moves freely");
+}
+
+nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, const Table& first,
+              const Table& tangent, double begin, const Numbers& times, double tolerance,
+              double fixed_step, long most_steps, int dense_rows, int method, const std::vector<double>& tests, int iterations,
+              double jump, double radius, int lanes, int threads) {
+  check_plans(plans);
+  if (!motion_unit(lanes)) throw nb::value_error("lanes: this width is not available on this machine");
+  if (threads < 1 || threads > 1024) throw nb::value_error("threads: 1 to 1024");
+  if (tests.size() != 3) throw nb::value_error("tests: three");
+  const Plan& p = plans[0]->view();
+  const std::size_t count = plans.size(), rows = times.shape(0);
+  int slots = 0;
+  for (const ClosingTurn& t : closing_turns(p, *kernel_unit(2))) slots += t.width;
+  const std::size_t wide = (std::size_t)p.charts * p.columns;
+  const double* const given[3] = {checked(state, count, p.states, "state"), checked(first, count, p.columns, "first"),
+                                  checked(tangent, count, (long)wide, "tangent")};
+  ResponseTask task;
+  task.times = times.data(), task.begin = begin;
+  task.limits = {tests[0], tests[1], tests[2], jump, radius, iterations};
+  task.settings.tolerance = tolerance, task.settings.fixed_step = fixed_step;
+  task.settings.dense_rows = dense_rows, task.settings.most_steps = most_steps, task.settings.method = (MethodChoice)method;
+  MotionRows all = {};
+  auto states = new_array<double>(&all.state, {count, (std::size_t)p.states, rows});
+  auto directions = new_array<double>(&all.direction, {count, wide, rows});
+  auto rates = new_array<double>(&all.chart_rate, {count, (std::size_t)p.charts, rows});
+  auto seconds = new_array<double>(&all.chart_second, {count, (std::size_t)p.charts, rows});
+  auto turns = new_array<double>(&all.turn, {count, (std::size_t)slots, rows});
+  auto work = new_array<double>(&all.work, {count, 2, rows});
+  auto flags = new_array<unsigned char>(&all.flags, {count, rows});
+  for (std::size_t v = 0; v < count; ++v) {
+    task.starts.push_back(
+        {&plans[v]->view(), given[0] + v * p.states, given[1] + v * p.columns, given[2] + v * wide});
+    task.rows.push_back({(long)rows, all.state + v * p.states * rows, all.direction + v * wide * rows,
+                         all.chart_rate + v * p.charts * rows, all.chart_second + v * p.charts * rows,
+                         all.turn + v * slots * rows, all.work + v * 2 * rows, all.flags + v * rows});
+  }
+  std::vector<LaneReport> reports;
+  {
+    nb::gil_scoped_release released;
+    FloatingPointState floating;
+    reports = respond(task, lanes, threads);
+  }
+  nb::list told;
+  for (const LaneReport& r : reports) told.append(report_of(r));
+  return nb::make_tuple(told, states, directions, rates, seconds, turns, work, flags);
+}
+
+}  // namespace
+
+void bind_response(nb::module_& m) {
+  // Reports, then arrays (variants, columns, rows): states, chart directions, rates and accelerations of the chart,
+  // turns, work put in and lost; flags (variants, rows). Rows that were not reached hold nan.
+  m.def("respond", &run, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "tangent"_a, "begin"_a, "times"_a,
+        "tolerance"_a, "fixed_step"_a, "most_steps"_a, "dense_rows"_a, "method"_a, "tests"_a, "iterations"_a, "jump"_a, "radius"_a,
+        "lanes"_a, "threads"_a);
+}

@@ -1,0 +1,150 @@
+"""A session of what moves freely: its plan has a chart in place of the free inputs, and the
+kernel integrates its motion (kernel/src/charted_motion.hpp)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.kernel.width import threads_for, width
+from mechkin_cli.solver.batch import RESIDUAL_TESTS, Chart
+from mechkin_cli.solver.graph.charted import charted
+from mechkin_cli.solver.session import Coordinate, Packing, Session
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.kernel._kernel import Plan
+
+
+class MotionEnd(IntEnum):
+    """How a motion ended, as the kernel's `LaneEnd`."""
+
+    DONE = 0
+    STOPPED = 1
+    STUCK = 2
+    STEP_LIMIT = 3
+    HELD = 4
+
+
+class Fault(IntEnum):
+    """Why no step could be taken: bits of the kernel's `StageFlag`."""
+
+    NOT_CLOSED = 1
+    OFF_BRANCH = 2
+    SINGULAR_INERTIA = 4
+    NOT_FINITE = 255
+
+
+class MotionReport(NamedTuple):
+    """What a motion came to: its end, the fault of the last refused step, the switch that ended it
+    (-1: none), whether and from when the implicit method took over, the last time in s, and the
+    counts of rows, evaluations, steps and rejections."""
+
+    end: MotionEnd
+    fault: int
+    which: int
+    stiff: bool
+    stiff_from: float
+    time: float
+    rows: int
+    evaluations: int
+    steps: int
+    rejections: int
+
+
+@dataclass(frozen=True)
+class MotionRows:
+    """Rows of one motion in kernel units: states (states, rows), the chart about each, turns of
+    closing joints (slots, rows), work put in and lost (2, rows) in kg, length units and s, and the
+    kernel's flags (rows,). Rows that were not reached hold nan."""
+
+    report: MotionReport
+    states: Floats
+    chart: Chart
+    turns: Floats
+    work: Floats
+    flags: NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class MotionStart:
+    """Where a motion begins: plan, states (states,), rates (columns,) and free rates (freedoms,
+    columns)."""
+
+    plan: Plan
+    state: Floats
+    first: Floats
+    tangents: Floats
+
+
+def free_session(session: Session, free: Sequence[Coordinate]) -> Session:
+    """The session of a problem whose inputs `free` are left to move: the same tree, so the same
+    states; residual and condition in parts of the same size."""
+    graph = charted(session.graph, set(free))
+    other = Session(
+        session.problem,
+        graph,
+        driven=graph.driven,
+        closed_at=session.closed_at,
+        packing=session.packing,
+    )
+    return other if session.size is None else other.sized(session.size)
+
+
+def integrate(
+    starts: Sequence[MotionStart],
+    begin: float,
+    times: Floats,
+    *,
+    tolerance: float,
+    fixed_step: float | None,
+    packing: Packing,
+    method: int = 0,
+) -> list[MotionRows]:
+    """Integrates motions of plans of one structure, packed into lanes, from time `begin` (s) over
+    the rows' `times` (rows,).
+
+    Raises:
+        ValueError: times that do not rise from `begin` on.
+    """
+    reports, *arrays = _kernel.respond(
+        plans=[start.plan for start in starts],
+        state=np.ascontiguousarray([start.state for start in starts]),
+        first=np.ascontiguousarray([start.first for start in starts]),
+        tangent=np.ascontiguousarray([start.tangents.ravel() for start in starts]),
+        begin=begin,
+        times=np.ascontiguousarray(times),
+        tolerance=tolerance,
+        fixed_step=fixed_step or 0.0,
+        most_steps=tolerances.MOST_RESPONSE_STEPS,
+        dense_rows=tolerances.DENSE_ROWS,
+        method=method,
+        tests=list(RESIDUAL_TESTS),
+        iterations=tolerances.NEWTON_ITERATIONS,
+        jump=tolerances.JUMP_LIMIT,
+        radius=tolerances.SPECTRAL_RADIUS,
+        lanes=_lanes(packing, len(starts)),
+        threads=threads_for(len(starts), packing.threads),
+    )
+    found = []
+    for number, told in enumerate(reports):
+        states, direction, rates, seconds, turns, work, flags = (a[number] for a in arrays)
+        report = MotionReport(**{**told, "end": MotionEnd(told["end"])})
+        chart = Chart(direction, rates, seconds)
+        found.append(MotionRows(report, states, chart, turns, work, flags))
+    return found
+
+
+def _lanes(packing: Packing, count: int) -> int:
+    """One motion needs no more than the narrowest packs."""
+    if packing.lanes or count > 2:
+        return width(packing.lanes)
+    return 2
