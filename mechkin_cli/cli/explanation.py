@@ -75,7 +75,7 @@ def _demand_lines(analysis: Analysis) -> list[str]:
     reactions = any(quantity.kind in WRENCH_KINDS for quantity in asked)
     lines = [
         f"first assembly: {result.how or 'none found'}",
-        f"positions: {result.rows} rows, {result.nodes} nodes followed, the rest filled in between",
+        _positions(analysis),
         _line("velocities", bool(demand & Demand.VELOCITY), "no column reads a rate"),
         _line("accelerations", bool(demand & Demand.ACCELERATION), _without(forces, massless)),
         _line("input efforts and closing wrenches", forces, "no column reads a force"),
@@ -96,6 +96,18 @@ def _demand_lines(analysis: Analysis) -> list[str]:
     if forces and massless:
         lines.append("inertia: skipped, no link has mass")
     return [*lines, _width_line()]
+
+
+def _positions(analysis: Analysis) -> str:
+    result = analysis.result
+    if analysis.run == SWEEP:
+        nodes = f"{result.nodes} nodes followed, the rest filled in between"
+        return f"positions: {result.rows} rows, {nodes}"
+    response = analysis.model.response(analysis.run)
+    step = f"a tolerance of {response.tolerance:g}"
+    if response.fixed_step is not None:
+        step = f"steps of {response.fixed_step:g} s"
+    return f"motion: {result.rows} rows, integrated in {result.nodes} steps with {step}"
 
 
 def _width_line() -> str:

@@ -64,6 +64,7 @@ class Result:
         self.session = session
         self.start = start
         self.row_states = rows
+        self.events: tuple[str, ...] = ()
         self.demand = Demand.POSITION
         self.residual = np.full(rows.reached.size, np.nan)
         self.shifts: tuple[int, ...] = SHIFTS if session.is_redundant else ()
@@ -104,11 +105,6 @@ class Result:
     def how(self) -> str:
         """How the first assembly was found."""
         return self.start.how
-
-    @property
-    def events(self) -> Sequence[str]:
-        """No row of a sweep has one."""
-        return ()
 
     @property
     def nodes(self) -> int:
