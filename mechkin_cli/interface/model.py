@@ -23,7 +23,7 @@ from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.demand import needs_all_links
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph
 from mechkin_cli.solver.session import Packing, Session
-from mechkin_cli.tables.layout import ROW_TEXTS, CoefficientsLayout, TableLayout
+from mechkin_cli.tables.layout import ROW_TEXTS, TableLayout, chosen
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -168,7 +168,7 @@ class Model:
                 raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
         self._refuse_loaded_spin(problem, names)
         packed = session.packed(Packing(lanes, threads))
-        analysis = Analysis(self, layouts, packed, names, self._chosen_coefficients(tables))
+        analysis = Analysis(self, layouts, packed, names, chosen(self.built.coefficients, tables))
         for diagnostic in analysis.diagnostics if mode is not None else ():
             if diagnostic.code == "no-such-mode":
                 raise UsageError(f"{diagnostic.message}: {diagnostic.measured}")
@@ -388,10 +388,6 @@ class Model:
                     f"tables are {', '.join([*known, *sorted(of_systems)])}"
                 )
         return tuple(known[name] for name in dict.fromkeys(names))
-
-    def _chosen_coefficients(self, names: Sequence[str] | None) -> tuple[CoefficientsLayout, ...]:
-        every = self.built.coefficients
-        return every if names is None else tuple(one for one in every if one.name in names)
 
 
 def _rebuilt(

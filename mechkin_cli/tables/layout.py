@@ -91,6 +91,13 @@ class CoefficientsLayout(NamedTuple):
         return self.name, f"{self.name}_unknowns"
 
 
+def chosen(
+    every: tuple[CoefficientsLayout, ...], names: Collection[str] | None
+) -> tuple[CoefficientsLayout, ...]:
+    """Those named; None for all."""
+    return every if names is None else tuple(one for one in every if one.name in names)
+
+
 def default_table(
     coordinates: Sequence[str], efforts: Collection[str], *, run: str = SWEEP, timed: bool = False
 ) -> TableLayout:
