@@ -139,7 +139,8 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
 
 
 def _results(analysis: Analysis, request: _Request) -> Results:
-    name, tables, result = analysis.model.name, analysis.tables, analysis.result
+    name, result = analysis.model.name, analysis.result
+    tables = (*analysis.tables, *analysis.coefficients)
     return Results(name, tables, result, analysis.diagnostics, request.threads, analysis.run)
 
 

@@ -38,11 +38,13 @@ def run_all(
 
 def _of_run(model: Model, tables: Sequence[str], run: str) -> list[str]:
     own = {table.name for table in model.tables if table.run == run}
+    own |= {one.name for one in model.built.coefficients} if run == SWEEP else set()
     return [name for name in tables if name in own]
 
 
 def _refuse_unknown(model: Model, tables: Sequence[str]) -> None:
     known = [table.name for table in model.tables]
+    known += sorted(one.name for one in model.built.coefficients)
     for name in tables:
         if name not in known:
             raise UsageError(

@@ -150,7 +150,7 @@ def _fresh_files(
 
     fresh: dict[str, bytes] = {}
     for analysis in analyses:
-        for table in analysis.tables:
+        for table in (*analysis.tables, *analysis.coefficients):
             fresh[f"{table.name}.csv"] = csv_bytes(table, COMMITTED_DIGITS)
             fresh[f"{table.name}.md"] = markdown_bytes(table, analysis.result)
     if printed:

@@ -11,6 +11,7 @@ from mechkin_cli.interface.arguments import a_text, a_whole_number, texts
 from mechkin_cli.kernel.width import check_threads, check_width
 from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.nearest import nearest_hint
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.session import Packing
 from mechkin_cli.tables.layout import TableLayout, row_texts
 
@@ -63,11 +64,14 @@ def chosen_tables(built: Built, names: Sequence[str] | None, run: str) -> tuple[
     if names is None:
         return own
     known = {table.name: table for table in own}
+    of_systems = [one.name for one in built.coefficients] if run == SWEEP else []
     names = texts("tables", names, '["table_03"]')
+    names = [name for name in names if name not in of_systems]
     for name in names:
         if name not in known:
             raise UsageError(
-                f"there is no table {name[:LONGEST_NAME]}; tables are {', '.join(known)}"
+                f"there is no table {name[:LONGEST_NAME]}; "
+                f"tables are {', '.join([*known, *sorted(of_systems)])}"
             )
     return tuple(known[name] for name in dict.fromkeys(names))
 

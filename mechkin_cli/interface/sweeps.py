@@ -16,6 +16,7 @@ from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.demand import needs_all_links
 from mechkin_cli.solver.graph import UnsolvableGraph
 from mechkin_cli.solver.session import Session
+from mechkin_cli.tables.layout import chosen
 
 if TYPE_CHECKING:
     from mechkin_cli.interface.model import Model
@@ -47,7 +48,8 @@ def run_sweep(
     layouts = chosen_tables(model.built, tables, SWEEP)
     names = wanted_names(layouts, quantities, problem.quantities(), SWEEP)
     _refuse_loaded_spin(problem, names)
-    analysis = Analysis(model, layouts, analyze(session.packed(packing), names))
+    result = analyze(session.packed(packing), names)
+    analysis = Analysis(model, layouts, result, SWEEP, chosen(model.built.coefficients, tables))
     return analysis if mode is None else known_mode(analysis)
 
 
