@@ -35,6 +35,8 @@ struct Workspace {
   Pack* saved;                    // states before a trial step
   Pack* kept;                     // largest block squared: factors of lanes that are done
   Mask* kept_swap;
+  Pack* load;                     // load values: of loads that vary
+  Pack* law;                      // registers of Plan::law
   bool* moves;                    // links: whether Newton on the link's block moves it (find_moving)
 };
 
@@ -76,6 +78,8 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->across = (Vec3*)take((p.legs + 1) * sizeof(Vec3));
   w->holding = (Pack*)take((p.legs + 1) * pack);
   w->saved = (Pack*)take(p.states * pack);
+  w->load = (Pack*)take(p.load_values * pack);
+  w->law = (Pack*)take((long)p.law.registers() * pack);
   return used;
 }
 
