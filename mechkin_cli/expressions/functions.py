@@ -10,8 +10,6 @@ from fractions import Fraction
 from functools import reduce
 from typing import NamedTuple
 
-import numpy as np
-
 from mechkin_cli.expressions import scalar_functions
 from mechkin_cli.expressions.arithmetic import common_dimension, raise_to_power
 from mechkin_cli.expressions.operand import Operand, Site

@@ -62,9 +62,10 @@ def larger(left: Scalar, right: Scalar) -> Scalar:
     return _select(np.greater(right, left) | np.isnan(right), right, left)
 
 
-def _unless_nan(right: Any, chosen: Any) -> Any:
+def _unless_nan(right: Any, chosen: Any) -> Scalar:
     """What was chosen of two recorded rows, or the second where that one is nan."""
-    return chosen if isinstance(right, float) else (right == right).choose(chosen, right)  # noqa: PLR0124
+    found: Scalar = chosen if isinstance(right, float) else (right == right).choose(chosen, right)
+    return found
 
 
 def wrap(angle: Scalar) -> Scalar:

@@ -52,9 +52,18 @@ class RowRecorder(Recorder):
 
     def constant(self, value: Any) -> int:
         """The register of a new constant, a float or a number recorded elsewhere."""
-        register = self._register(value.recorded if isinstance(value, Traced) else value)
+        register = self._register(nan)
         self.constants[register] = value
         return register
+
+    def compute(self, operation: Operation, *operands: int) -> int:
+        """The register of an operation's result; it has no value of its own."""
+        a, b, c = (*operands, 0, 0)[:3]
+        instruction = (operation, a, b, c)
+        if instruction not in self._instructions:
+            number = self._instructions[instruction] = self._register(nan)
+            self._written[number] = instruction
+        return self._instructions[instruction]
 
     def guard(self, condition: Operation, a: int, b: int, *, advice: bool = False) -> bool:
         """Refused: rows go all ways."""

@@ -58,7 +58,7 @@ inline Pack potential_energy(const Plan& p, const Workspace& w, const RowValue& 
       energy += spring_energy(l, sqrt(dot(d, d)) - Pack(l.vector[1]));
     } else if (l.type == LOAD_COORDINATE_SPRING) {
       joint_coordinate(p, w, l, false, &value, &rate);
-      energy += spring_energy(l, row_value.turned(l, value) - Pack(l.vector[1]));
+      energy += spring_energy(l, row_value.turned(l.turn, l.other < 0, value) - Pack(l.vector[1]));
     }
   }
   return energy;
