@@ -5,6 +5,7 @@
 
 #include "equations_of_motion.hpp"
 #include "motion_unit.hpp"
+#include "quantity_program.hpp"
 #include "regular.hpp"
 
 namespace {
@@ -20,13 +21,14 @@ inline void copy(const Pack* from, int count, Pack* to) {
 // What loads read of a stage.
 struct StageValues {
   const StageGiven& given;
-  MECHKIN_INLINE Pack operator()(int column) const { return packs(given.loads)[column]; }
+  MECHKIN_INLINE Pack time() const { return *packs(given.time); }
   // The turn nearest to where the angle was at the origin; a tree's angle is continuous by itself.
-  MECHKIN_INLINE Pack turned(const Load& l, Pack angle) const {
+  MECHKIN_INLINE Pack turned(int turn, bool closing, Pack angle) const {
     const Pack full = 2.0 * 3.14159265358979323846;
-    if (l.turn < 0 || l.other >= 0) return angle;
-    return angle + full * nearest_integer((packs(given.turned)[l.turn] - angle) / full);
+    if (turn < 0 || !closing) return angle;
+    return angle + full * nearest_integer((packs(given.turned)[turn] - angle) / full);
   }
+  MECHKIN_INLINE Pack input(int, Pack, Pack angle) const { return angle; }
 };
 
 // Where the states would be by the origin's derivatives, moved along the chart to the wanted place.
@@ -91,6 +93,17 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
   return placed;
 }
 
+// The values of loads, of kinks and of what else is watched.
+inline void evaluate_program(const Plan& p, Workspace& w, const StageGiven& given, const StageValues& values,
+                             Pack* watched) {
+  if (!p.law.outputs) return;
+  run_on_sides(p, w, p.law, values, packs(given.side), w.law);
+  for (int v = 0; v < p.load_values; ++v) w.load[v] = w.law[p.law.output[v]];
+  for (int k = 0; k < p.law.kinks; ++k) watched[k] = kink_value(p.law, k, w.law);
+  for (int v = p.load_values; v < p.law.outputs; ++v)
+    watched[p.law.kinks + v - p.load_values] = w.law[p.law.output[v]];
+}
+
 void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given, const StageFound& found) {
   copy(packs(given.direction), p.charts * p.columns, w.direction);
   copy(packs(given.origin), p.states, w.origin);
@@ -102,6 +115,7 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
   const Pack* const input_rate = packs(given.input_rates);
   move(p, w, m, packs(given.rate), input_rate, packs(given.input_seconds));
   const StageValues values = {given};
+  evaluate_program(p, w, given, values, packs(found.watched));
   reduce_inertia(p, w, m);
   reduce_forces(p, w, m, values);
   Pack* const second = packs(found.chart_second);
