@@ -697,6 +697,10 @@ RESPONSE_TOLERANCES: Final = (1e-14, 1e-2)
 """Least and largest tolerance of a response: below, rounding of the accelerations decides; above,
 error estimates mean nothing."""
 
+DENSE_PIVOT: Final = 1e-12
+"""Pivot of the dense system (equations scaled to a largest coefficient of 1) below which reactions
+are not told apart: rounding of fifty equations leaves 1e-14, mechanisms that stand apart 1e-3."""
+
 MOST_THREADS: Final = 1024
 """As many threads as may be asked for."""
 

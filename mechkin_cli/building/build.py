@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from mechkin_cli.building.assembly import build_assembly, build_follow
+from mechkin_cli.building.coefficients import build_coefficients
 from mechkin_cli.building.columns import build_tables, used_quantities
 from mechkin_cli.building.fields import Fields, Path, read_parameters
 from mechkin_cli.building.idle import held_of, note_spins, settled
@@ -31,7 +32,7 @@ from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of, needs_all_links
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
-from mechkin_cli.tables.layout import TableLayout
+from mechkin_cli.tables.layout import CoefficientsLayout, TableLayout
 from mechkin_cli.units import LENGTH
 
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})
@@ -51,6 +52,7 @@ class Built(NamedTuple):
     read: Source
     runs: tuple[str, ...] = (SWEEP,)
     response_graphs: Mapping[str, SolverGraph | Diagnostic] = _NO_GRAPHS
+    coefficients: tuple[CoefficientsLayout, ...] = ()
 
     def tables_of(self, run: str) -> tuple[TableLayout, ...]:
         """The tables that read a run."""
@@ -65,13 +67,14 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
     """
     file = source.file
     fields = read_fields(source, given)
-    problem = build_problem(fields, file)
+    problem = replace(build_problem(fields, file), hold_idle=file.idle == "hold")
     tables = build_tables(fields, file, problem)
     own = [table for table in tables if table.run == SWEEP]
-    if file.loads or file.responses or needs_forces(problem, own):
+    coefficients = build_coefficients(fields, file.coefficients, problem, tables)
+    if file.loads or file.responses or coefficients or needs_forces(problem, own):
         note_force_unit(fields)
     follow = build_follow(fields, file.follow, problem.mechanism.joints)
-    problem = replace(problem, hold_idle=file.idle == "hold", follow=follow)
+    problem = replace(problem, follow=follow)
     if not fields.error_count:
         problem = replace(problem, held=held_of(problem))
     graph = _graph(fields, file, problem)
@@ -87,8 +90,8 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
     if errors or graph is None:
         raise InvalidFile(in_order(fields.diagnostics))
     problem = replace(problem, diagnostics=tuple(in_order(fields.diagnostics)))
-    own_tables, names = bool(file.tables), runs_of(file)
-    return Built(problem, graph, tables, own_tables, file.source or "", source, names, graphs)
+    read = (bool(file.tables), file.source or "", source)
+    return Built(problem, graph, tables, *read, runs_of(file), graphs, coefficients)
 
 
 def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fields:

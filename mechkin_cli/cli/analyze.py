@@ -131,7 +131,8 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
 
 def _files(analysis: Analysis, request: _Request) -> dict[str, bytes]:
     """The tables and rows.csv."""
-    name, tables, result = analysis.model.name, analysis.tables, analysis.result
+    name, result = analysis.model.name, analysis.result
+    tables = (*analysis.tables, *analysis.coefficients)
     results = Results(name, tables, result, analysis.diagnostics, request.threads)
     return written_files(results, request.formats)
 
@@ -140,7 +141,8 @@ def _record(analysis: Analysis) -> Record:
     from mechkin_cli.tables.json_writer import analysis_record
 
     name = analysis.model.name
-    return analysis_record(name, analysis.tables, analysis.result, analysis.diagnostics)
+    tables = (*analysis.tables, *analysis.coefficients)
+    return analysis_record(name, tables, analysis.result, analysis.diagnostics)
 
 
 def _report(

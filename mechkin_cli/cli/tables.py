@@ -144,7 +144,7 @@ def _fresh_files(analysis: Analysis, printed: Sequence[PrintedTable]) -> dict[st
     from mechkin_cli.tables.markdown import markdown_bytes
 
     fresh: dict[str, bytes] = {}
-    for table in analysis.tables:
+    for table in (*analysis.tables, *analysis.coefficients):
         fresh[f"{table.name}.csv"] = csv_bytes(table, COMMITTED_DIGITS)
         fresh[f"{table.name}.md"] = markdown_bytes(table, analysis.result)
     if printed:

@@ -13,7 +13,7 @@ from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.expressions import Expression, Vector, parse
 from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.tables.columns import Columns, evaluate, mode_words, status_words
-from mechkin_cli.tables.layout import ROW_TEXTS, TableLayout
+from mechkin_cli.tables.layout import ROW_TEXTS, CoefficientsLayout, TableLayout
 from mechkin_cli.tables.uniqueness import unique_cells
 
 if TYPE_CHECKING:
@@ -32,9 +32,11 @@ class Analysis:
         layouts: tuple[TableLayout, ...],
         session: Session,
         names: Iterable[str],
+        coefficients: tuple[CoefficientsLayout, ...] = (),
     ) -> None:
         self.model = model
         self.layouts = layouts
+        self.chosen_coefficients = coefficients
         self.result = analyze(session, names)
 
     @property
@@ -51,6 +53,20 @@ class Analysis:
     def tables(self) -> tuple[Columns, ...]:
         """The tables that were asked for, evaluated in the file's units."""
         return tuple(evaluate(layout, self.result) for layout in self.layouts)
+
+    @cached_property
+    def coefficients(self) -> tuple[Columns, ...]:
+        """The tables of the dense system of reactions that the file asks for, two for each.
+
+        Raises:
+            UsageError: a row has no solution, or a load depends on the reactions.
+        """
+        if not self.chosen_coefficients:
+            return ()
+        from mechkin_cli.interface.coefficients import coefficient_tables
+
+        found = [coefficient_tables(one, self.result) for one in self.chosen_coefficients]
+        return tuple(table for pair in found for table in pair)
 
     def __getitem__(self, text: str) -> NDArray[Any]:
         """A quantity or an expression of quantities, in the file's units.

@@ -23,7 +23,7 @@ from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.demand import needs_all_links
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph
 from mechkin_cli.solver.session import Packing, Session
-from mechkin_cli.tables.layout import ROW_TEXTS, TableLayout
+from mechkin_cli.tables.layout import ROW_TEXTS, TableLayout, chosen
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -167,7 +167,8 @@ class Model:
                 hint = hint_of(name) or nearest_hint(name, self.quantities) or QUANTITIES
                 raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
         self._refuse_loaded_spin(problem, names)
-        analysis = Analysis(self, layouts, session.packed(Packing(lanes, threads)), names)
+        packed = session.packed(Packing(lanes, threads))
+        analysis = Analysis(self, layouts, packed, names, chosen(self.built.coefficients, tables))
         for diagnostic in analysis.diagnostics if mode is not None else ():
             if diagnostic.code == "no-such-mode":
                 raise UsageError(f"{diagnostic.message}: {diagnostic.measured}")
@@ -377,11 +378,14 @@ class Model:
         if names is None:
             return own
         known = {table.name: table for table in own}
+        of_systems = {one.name for one in self.built.coefficients}
         names = texts("tables", names, '["table_03"]')
+        names = [name for name in names if name not in of_systems]
         for name in names:
             if name not in known:
                 raise UsageError(
-                    f"there is no table {name[:LONGEST_NAME]}; tables are {', '.join(known)}"
+                    f"there is no table {name[:LONGEST_NAME]}; "
+                    f"tables are {', '.join([*known, *sorted(of_systems)])}"
                 )
         return tuple(known[name] for name in dict.fromkeys(names))
 

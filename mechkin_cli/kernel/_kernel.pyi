@@ -549,12 +549,13 @@ def integrate_tape(
     tape: Tape,
     freedoms: int,
     quadratures: int,
-    switches: Sequence[tuple[bool, bool]],
+    switches: Sequence[tuple[bool, bool, bool]],
     time: Floats,
     state: Floats,
     parameters: Floats,
     rows: Floats,
     scales: Sequence[float],
+    reach: float,
     tolerance: float,
     fixed_step: float,
     least_step: float,
@@ -564,8 +565,9 @@ def integrate_tape(
 ) -> tuple[Floats, list[dict[str, object]], list[tuple[int, int, bool, float, list[float]]], int]:
     """Integrates x'' = f, w' = g in lanes, see `tape_motion.hpp` for what the tape takes and gives.
 
-    `switches`: whether each is a kink, and whether it ends a lane. `state` (x, v, w) and
-    `parameters` are (components, lanes); `scales` are those of the charts, one step each.
+    `switches`: whether each is a kink, whether it moves, and whether it ends a lane. `state`
+    (x, v, w) and `parameters` are (components, lanes); `scales` are those of the charts, one step
+    each, which go no farther than `reach`.
     Returns the states (rows, components, lanes), a report for each lane (`LaneReport`), the events
     (lane, switch, rising, time, state) and how many rows were interpolated. ValueError for what
     fits no motion.

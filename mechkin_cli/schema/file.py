@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 from mechkin_cli.schema.assembly import AssemblySection
 from mechkin_cli.schema.base import NOTHING, Section, refuse
 from mechkin_cli.schema.chain import ChainRow
+from mechkin_cli.schema.coefficients import Coefficients
 from mechkin_cli.schema.joints import Joint
 from mechkin_cli.schema.links import Link
 from mechkin_cli.schema.loads import Load
@@ -62,6 +63,8 @@ class MechanismFile(Section):
     """Gravity, forces, torques, springs and dampers."""
     tables: Annotated[tuple[Table, ...], After(differing_names)] = ()
     """The tables a run writes; left out, one table of all coordinates, their rates and efforts."""
+    coefficients: Annotated[tuple[Coefficients, ...], After(differing_names)] = ()
+    """Tables of the dense system of all reactions at one row, as textbooks write it."""
     follow: tuple[Name, ...] | None = None
     """Joints whose loops are followed beside those the outputs need; left out, all loops are."""
     accept: tuple[Literal["unphysical-inertia"], ...] = ()

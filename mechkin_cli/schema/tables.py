@@ -1,6 +1,6 @@
 """`tables:` - the layouts a run writes, one file each: columns are expressions over quantities."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Protocol, TypeVar
 
 from mechkin_cli.schema.base import Section, refuse
 from mechkin_cli.schema.rules import After, Barred, Before, Limits, Named, ShortForm, Shown
@@ -24,7 +24,7 @@ TableName = Annotated[
 
 ROW_NUMBER = "row.number"
 # JSON Schema has no flag for ignoring case
-_TAKEN_FOR_EDITORS = (
+TAKEN_FOR_EDITORS = (
     "^([Rr][Oo][Ww][Ss]|[Ee][Rr][Rr][Aa][Tt][Aa]|[Dd][Ii][Ss][Aa][Gg][Rr][Ee][Ee][Mm][Ee][Nn][Tt][Ss]|[Cc][Oo][Nn]|[Pp][Rr][Nn]|[Aa][Uu][Xx]|[Nn][Uu][Ll]"
     "|[Cc][Oo][Mm][0-9]|[Ll][Pp][Tt][0-9])$"
 )
@@ -88,7 +88,8 @@ _TAKEN = {
 }
 
 
-def _free_name(name: str) -> str:
+def free_name(name: str) -> str:
+    """The name, if nothing else is written under it."""
     if name.casefold() in _TAKEN:
         raise refuse("reserved-name", _TAKEN[name.casefold()], "rename it")
     if DEVICE.fullmatch(name):
@@ -109,7 +110,7 @@ def _differing_labels(columns: tuple[Column, ...]) -> tuple[Column, ...]:
 class Table(Section):
     """A table with one row per position."""
 
-    name: Annotated[TableName, After(_free_name), Barred(_TAKEN_FOR_EDITORS)]
+    name: Annotated[TableName, After(free_name), Barred(TAKEN_FOR_EDITORS)]
     """Name of the files written, without ending."""
     title: Text | None = None
     """Heading in Markdown; left out, the name."""
@@ -139,7 +140,17 @@ class Table(Section):
                     raise refuse("unknown-label", text, f"labels are {', '.join(labels)}", *at)
 
 
-def differing_names(tables: tuple[Table, ...]) -> tuple[Table, ...]:
+class _Named(Protocol):
+    """What is written under a name."""
+
+    @property
+    def name(self) -> str: ...
+
+
+AnyNamed = TypeVar("AnyNamed", bound=_Named)
+
+
+def differing_names(tables: tuple[AnyNamed, ...]) -> tuple[AnyNamed, ...]:
     """The tables, if no two would be written to the same file; file systems may ignore case."""
     names = [table.name.casefold() for table in tables]
     for index, name in enumerate(names):

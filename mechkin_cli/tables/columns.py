@@ -41,6 +41,12 @@ class Words:
         return np.array(self.words)[self.codes]
 
 
+def words_of(texts: Sequence[str]) -> Words:
+    """Texts row by row."""
+    places = {text: place for place, text in enumerate(dict.fromkeys(texts))}
+    return Words(np.array([places[text] for text in texts], np.int32), tuple(places))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Column:
     """One evaluated column: `values` in the unit that `unit` names, shape (rows,)."""
@@ -58,11 +64,12 @@ class Column:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Columns:
-    """One evaluated table."""
+    """One evaluated table; `of_rows` says that its rows are those of the run."""
 
     name: str
     title: str
     columns: tuple[Column, ...]
+    of_rows: bool = True
 
 
 def evaluate(table: TableLayout, source: Source) -> Columns:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.tables.columns import Column, Columns, Words
+from mechkin_cli.tables.columns import Column, Columns, words_of
 from mechkin_cli.tables.csv_writer import COMMITTED_DIGITS, csv_bytes
 
 if TYPE_CHECKING:
@@ -70,10 +70,7 @@ def _cell_record(cell: PrintedCell) -> dict[str, Any]:
 
 
 def _words(label: str, texts: Sequence[str]) -> Column:
-    words = tuple(dict.fromkeys(texts))
-    places = {word: place for place, word in enumerate(words)}
-    codes = np.array([places[text] for text in texts], dtype=np.int32)
-    return Column(label, "", Words(codes, words))
+    return Column(label, "", words_of(texts))
 
 
 def _numbers(label: str, values: Sequence[float]) -> Column:

@@ -19,6 +19,8 @@ def footnotes(columns: Columns, source: Source, written: Callable[[str], str] = 
 
     `written` makes of a label what is to stand in the file.
     """
+    if not columns.of_rows:
+        return []
     notes = [
         f"{_where(source.status == status, source)}: {status.label}: {status.sentence}"
         for status in Status

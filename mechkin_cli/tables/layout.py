@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.runs import SWEEP
@@ -69,6 +70,32 @@ class TableLayout(NamedTuple):
 def row_texts(run: str) -> tuple[str, ...]:
     """The quantities that are texts in the rows of a run."""
     return ROW_TEXTS if run == SWEEP else (*ROW_TEXTS, ROW_EVENT)
+
+
+class CoefficientsLayout(NamedTuple):
+    """A table of the dense system at one row (counted from 1); its unknowns have one of their own.
+
+    `along` names two directions of the forces of some balls, `counted` the unknowns that the source
+    counts.
+    """
+
+    name: str
+    title: str
+    row: int = 1
+    along: Mapping[str, tuple[str, str]] = MappingProxyType({})
+    counted: int | None = None
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Names of the two tables."""
+        return self.name, f"{self.name}_unknowns"
+
+
+def chosen(
+    every: tuple[CoefficientsLayout, ...], names: Collection[str] | None
+) -> tuple[CoefficientsLayout, ...]:
+    """Those named; None for all."""
+    return every if names is None else tuple(one for one in every if one.name in names)
 
 
 def default_table(

@@ -38,7 +38,7 @@ def test_summary_of_the_rcsr_mechanism(mechkin) -> None:
     assert "  driven   1 freedom by O1.theta\n" in err
     assert "  loops    1, closed at O3 (S); 3 unknowns\n" in err
     assert "  rows     27 of 27 solved\n" in err
-    assert "  files    out/rcsr (12 csv, 11 md)\n" in err
+    assert "  files    out/rcsr (14 csv, 13 md)\n" in err
     worst = re.search(r"worst +residual (\S+), power error (\S+), condition (\S+)", err)
     assert worst is not None
     residual, power_error, _ = map(float, worst.groups())

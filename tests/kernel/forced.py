@@ -25,8 +25,10 @@ class End(IntEnum):
     HELD = 4
 
 
-NOT_FINITE = 255
-KINK, EVENT, STOP = (True, False), (False, False), (False, True)
+NOT_FINITE, OUT_OF_REACH = 255, 253
+Switch = tuple[bool, bool, bool]
+KINK, BORDER = (True, False, False), (True, True, False)
+EVENT, STOP = (False, False, False), (False, False, True)
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ class System:
     rates: Callable[..., tuple[Sequence[Any], Sequence[Any], Sequence[Any], Any]]
     freedoms: int
     quadratures: int = 0
-    switches: tuple[tuple[bool, bool], ...] = ()
+    switches: tuple[Switch, ...] = ()
     parameters: int = 0
 
     def tape(self) -> _kernel.Tape:
@@ -69,12 +71,13 @@ class System:
         parameters: Sequence[Any] = (),
         start: float | None = None,
         scales: Sequence[float] = (1.0,),
+        reach: float = np.inf,
         tolerance: float = 1e-10,
         fixed_step: float = 0.0,
         least_step: float = 1e-13,
         most_steps: int = 100000,
         dense_rows: int = 3,
-        method: int = EXPLICIT,
+        method: int = AUTOMATIC,
     ) -> Answer:
         """`state` (x, v, w) and `parameters`: a number, or one for each lane, per component."""
         rows = np.array(rows, dtype=float)
@@ -94,6 +97,7 @@ class System:
             np.ascontiguousarray(table[size:]),
             rows,
             list(scales),
+            reach,
             tolerance,
             fixed_step,
             least_step,

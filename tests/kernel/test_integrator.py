@@ -2,35 +2,12 @@
 
 from __future__ import annotations
 
-import mpmath
 import numpy as np
 import pytest
-from kernel.forced import EVENT, KINK, NOT_FINITE, STOP, End, System
-
-from mechkin_cli.tape.scalars import sin
+from kernel.closed_motions import PENDULUM, exact_pendulum, oscillator, wall
+from kernel.forced import BORDER, EVENT, KINK, NOT_FINITE, STOP, End, System
 
 ROWS = [0.0, 1.0, 2.0, 10.0]
-
-
-def oscillator(*switches: tuple[bool, bool], at: float = 0.0) -> System:
-    """x'' = -x with the work of a damper of coefficient 1 that has no force, or a switch x - at."""
-
-    def rates(t, x, v, w, side, p):
-        return [-x[0]], [v[0] * v[0]], [x[0] - at for _ in switches], 0.0
-
-    return System(rates, 1, 1, switches)
-
-
-PENDULUM = System(lambda t, x, v, w, side, p: ([-p[0] * sin(x[0])], [], [], 0.0), 1, 0, (), 1)
-
-
-def exact_pendulum(time: float, rate: float, square: float) -> float:
-    """theta(time) of theta'' = -square sin(theta) from 0 with a rate below the one that turns it
-    over: sin(theta/2) = k sn(sqrt(square) time, k), k = rate/(2 sqrt(square))."""
-    with mpmath.workdps(40):
-        root = mpmath.sqrt(square)
-        k = mpmath.mpf(rate) / (2 * root)
-        return float(2 * mpmath.asin(k * mpmath.ellipfun("sn", root * time, m=k * k)))
 
 
 def test_oscillator_and_its_quadrature() -> None:
@@ -154,6 +131,40 @@ def test_a_corner_costs_a_few_steps() -> None:
     assert np.abs(answer.states[-1, :, 0] - [0.0, 1.0]).max() < 3e-11
 
 
+def test_borders_move() -> None:
+    """x'' = -k/10 from x = k to k + 1, as a table of steps has it."""
+    system = System(
+        lambda t, x, v, w, side, p: ([-0.1 * side[0]], [], [side[0] + 1.0 - x[0]], 0.0),
+        1,
+        0,
+        (BORDER,),
+    )
+    answer = system.integrate([0.0, [1.5, 2.0]], [0.0, 1.0, 3.0])
+    assert not answer.events
+    for lane, speed in enumerate((1.5, 2.0)):
+        k, time, v = 0, 0.0, speed
+        while True:  # from border to border
+            square = v * v - 0.2 * k
+            needed = 1.0 / v if k == 0 else 10.0 * (v - np.sqrt(square)) / k
+            if time + needed > 3.0:
+                break
+            k, time, v = k + 1, time + needed, np.sqrt(square)
+        rest = 3.0 - time
+        assert k > 2
+        exact = [k + v * rest - 0.05 * k * rest**2, v - 0.1 * k * rest]
+        assert np.abs(answer.states[2, :, lane] - exact).max() < 1e-12
+
+
+@pytest.mark.parametrize("reach", [1.0, 0.3, 0.05])
+def test_charts_of_small_reach_cost_few_refusals(reach: float) -> None:
+    answer = oscillator().integrate([0.0, 1.0, 0.0], [0.0, 20.0], tolerance=1e-6, reach=reach)
+    report = answer.reports[0]
+    assert abs(answer.states[-1, 0, 0] - np.sin(20.0)) < 1e-5
+    # the way is 4 in each of 3.2 turns
+    assert report["steps"] < 3.0 * 4.0 * 3.2 / reach + 40
+    assert report["rejections"] < 0.5 * report["steps"] + 10
+
+
 def test_a_motion_that_a_kink_holds_is_told() -> None:
     """x'' = -sign v comes to rest at time 1, where both sides lead back."""
     system = System(lambda t, x, v, w, side, p: ([-side[0]], [], [v[0] + 0.0], 0.0), 1, 0, (KINK,))
@@ -177,17 +188,6 @@ def test_two_switches_at_one_place() -> None:
 
 def test_an_event_that_rests_at_its_zero_goes_on() -> None:
     assert oscillator(EVENT).integrate([0.0, 0.0, 0.0], [0.0, 10.0]).reports[0]["end"] == End.DONE
-
-
-def wall() -> System:
-    """x'' = -x where x is below the parameter; beyond is a fault 7."""
-    return System(
-        lambda t, x, v, w, side, p: ([-x[0]], [], [], (p[0] - x[0] < 0.0).choose(7.0, 0.0)),
-        1,
-        0,
-        (),
-        1,
-    )
 
 
 def test_a_fault_ends_its_lane_where_it_is() -> None:

@@ -37,7 +37,8 @@ double least_between(const double* x, const double* y) {
 
 // An event that is met again and again at one place is let alone there: it rests at its zero.
 bool March::is_ignored(int lane, int which) const {
-  return !states_.kinds[which].kink && control_[lane].passed[which] >= RETURNS;
+  const SwitchKind kind = states_.kinds[which];
+  return !kind.kink && !kind.moves && control_[lane].passed[which] >= RETURNS;
 }
 
 bool March::is_crossed(int lane, int but) const {
@@ -149,20 +150,24 @@ void March::pass(const Flags& mask, const std::vector<int>& which) {
   for (int i = 0; i < lanes; ++i) {
     if (!mask[i]) continue;
     const std::size_t k = (std::size_t)which[i] * lanes + i;
-    states_.side[k] = (std::int8_t)-states_.side[k];
-    const bool is_kink = states_.kinds[which[i]].kink;
+    const bool moves = states_.kinds[which[i]].moves, is_kink = states_.kinds[which[i]].kink || moves;
+    if (moves)
+      states_.motion.move(i, which[i]);
+    else
+      states_.side[k] = (std::int8_t)-states_.side[k];
     if (++control_[i].passed[which[i]] >= RETURNS && is_kink) finish(i, LaneEnd::HELD, which[i]);
     anew[i] = is_kink && control_[i].running;
+    if (anew[i] && implicit_) implicit_->forget(i);
   }
   if (!any(anew)) return;
   const Flags asked = anew;
   std::vector<double> slope(states_.entries);
   states_.evaluate(states_.time.data(), states_.y.data(), false, &anew, slope.data(), values_.data());
   for (int i = 0; i < lanes; ++i) {
-    if (anew[i])
-      for (long k = i; k < states_.entries; k += lanes) states_.slope[k] = slope[k];
-    else if (asked[i])
-      finish(i, LaneEnd::STUCK);
+    if (asked[i] && !anew[i]) finish(i, LaneEnd::STUCK);
+    if (!anew[i]) continue;
+    for (long k = i; k < states_.entries; k += lanes) states_.slope[k] = slope[k];
+    for (std::size_t k = i; k < values_.size(); k += lanes) states_.switch_value[k] = values_[k];
   }
 }
 
@@ -178,6 +183,7 @@ void March::pass_landed(const Flags& mask) {
 
 // Tells the motion of a switch that was passed; it may end the lane.
 void March::tell(int lane, int which) {
+  if (states_.kinds[which].moves) return;
   const bool rising = states_.side[(std::size_t)which * states_.lanes + lane] > 0;
   if (states_.motion.event(lane, which, rising, states_.time[lane])) finish(lane, LaneEnd::STOPPED, which);
 }

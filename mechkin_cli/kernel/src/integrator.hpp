@@ -24,15 +24,18 @@ struct Rates {
   double* rates;         // (v' [freedoms], w' [quadratures]) x lanes; u' = v
   double* switches;      // switches x lanes: their values there
   unsigned char* fault;  // lanes, zero when asked: why a place cannot be told (off the branch, does not close, singular
-                         // inertia), in the motion's own numbers below NOT_FINITE; the step is tried again shorter
+                         // inertia), in the motion's own numbers below NOT_SOLVED; the step is tried again shorter
 };
-constexpr unsigned char NOT_FINITE = 255;  // the fault where a rate is not finite, set by the integrator
+// Faults that the integrator sets: a rate is not finite, the stages of an implicit step cannot be solved for.
+constexpr unsigned char NOT_FINITE = 255, NOT_SOLVED = 254;
 
-// A function of time and place at whose zeros steps end. `kink`: the rates have a corner or jump there. They are to be
-// those of the lane's `side` on both sides of it, so that stages that reach beyond see a smooth function; the side changes
-// when a step has ended there. An event only tells.
+// A function of time and place at whose zeros steps end. An event only tells. At a kink the rates have a corner or jump:
+// they are to be those of the lane's `side` on both sides of it, so that stages that reach beyond see a smooth function; the
+// side changes when a step has ended there. One that `moves` is a border of the piece that a lane is in (of a table between
+// two entries): it stays on its side, and the motion puts it elsewhere when told by `move`.
 struct SwitchKind {
   bool kink;
+  bool moves = false;
 };
 
 class Motion {
@@ -64,6 +67,11 @@ class Motion {
   // A switch was passed to its side +1 (`rising`) or -1, at the chart's origin, after `accept`. True ends the lane. Where it
   // falls together with a row, the row comes first.
   virtual bool event(int lane, int which, bool rising, double time) = 0;
+  // A switch that moves was met at the chart's origin: the lane is in the next piece, whose rates are asked for at once.
+  virtual void move(int lane, int which) {
+    (void)lane;
+    (void)which;
+  }
 };
 
 // In parts of 1 rad over the duration: slower motion is not told relative to itself, as rates at rest are rounding.

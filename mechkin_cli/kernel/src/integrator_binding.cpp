@@ -1,11 +1,11 @@
 // Python's view of the integration of a tape.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
-#include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
-#include <utility>
+#include <tuple>
 
 #include "bindings.hpp"
 #include "new_array.hpp"
@@ -37,16 +37,16 @@ nb::dict lane_report(const LaneReport& r) {
 }
 
 nb::tuple integrate_tape(const TapeStore& tape, int freedoms, int quadratures,
-                         const std::vector<std::pair<bool, bool>>& switches, Row time, Rows state, Rows parameters,
-                         Row rows, const std::vector<double>& scales, double tolerance, double fixed_step,
+                         const std::vector<std::tuple<bool, bool, bool>>& switches, Row time, Rows state, Rows parameters,
+                         Row rows, const std::vector<double>& scales, double reach, double tolerance, double fixed_step,
                          double least_step, long most_steps, int dense_rows, int method) {
   const std::size_t lanes = time.shape(0), size = 2 * (std::size_t)freedoms + quadratures;
   if (state.shape(0) != size || state.shape(1) != lanes || parameters.shape(1) != lanes)
     throw nb::value_error("one column for each lane");
   if (method < 0 || method > 2) throw nb::value_error("unknown method");
-  TapeMotion::Shape shape{(int)lanes, freedoms, quadratures, {}, {}};
-  for (const auto& [kink, stop] : switches) {
-    shape.switches.push_back({kink});
+  TapeMotion::Shape shape{(int)lanes, freedoms, quadratures, {}, {}, reach};
+  for (const auto& [kink, moves, stop] : switches) {
+    shape.switches.push_back({kink, moves});
     shape.stops.push_back(stop);
   }
   const IntegratorSettings settings{tolerance, fixed_step, least_step, most_steps, dense_rows, (MethodChoice)method};
@@ -73,6 +73,6 @@ void bind_integrator(nb::module_& m) {
   // (states (rows, components, lanes), a report for each lane, events (lane, switch, rising, time, state), rows that
   // were interpolated)
   m.def("integrate_tape", &integrate_tape, "tape"_a, "freedoms"_a, "quadratures"_a, "switches"_a, "time"_a, "state"_a,
-        "parameters"_a, "rows"_a, "scales"_a, "tolerance"_a, "fixed_step"_a, "least_step"_a, "most_steps"_a,
+        "parameters"_a, "rows"_a, "scales"_a, "reach"_a, "tolerance"_a, "fixed_step"_a, "least_step"_a, "most_steps"_a,
         "dense_rows"_a, "method"_a);
 }

@@ -14,7 +14,7 @@ LaneStates::LaneStates(Motion& m, const IntegratorSettings& s)
     : motion(m), settings(s), lanes(m.lanes()), freedoms(m.freedoms()), quadratures(m.quadratures()),
       size(2 * freedoms + quadratures), kinds(m.switches()), entries((long)size * lanes) {
   const std::size_t switches = kinds.size() * lanes;
-  for (auto* a : {&time, &speed, &step, &until, &error, &factor, &reached}) a->assign(lanes, 0.0);
+  for (auto* a : {&time, &duration, &speed, &step, &until, &error, &factor, &reached}) a->assign(lanes, 0.0);
   for (auto* a : {&y, &slope, &y_end, &slope_end}) a->assign(entries, 0.0);
   for (auto* a : {&switch_value, &switch_end, &switch_inner[0], &switch_inner[1], &switch_least})
     a->assign(switches, 0.0);
@@ -71,9 +71,12 @@ void LaneStates::error_scales(const double* a, const double* b, double* scale) c
     }
   for (int i = 0; i < lanes && freedoms; ++i) of_v[i] *= tolerance;
   for (int f = 1; f < freedoms; ++f) std::copy_n(of_v, lanes, of_v + (long)f * lanes);
+  // what begins at zero with a power of time has no size of its own yet: part of what its rate makes of the duration
   for (long k = 2 * moved; k < entries; ++k) {
     const double larger = std::fabs(a[k]) > std::fabs(b[k]) ? std::fabs(a[k]) : std::fabs(b[k]);
-    const double known = work[k - 2 * moved];
+    const double first = std::fabs(slope[k]), second = std::fabs(slope_end[k]);
+    const double coming = SLOWEST * duration[k % lanes] * (first > second ? first : second);
+    const double known = work[k - 2 * moved] > coming ? work[k - 2 * moved] : coming;
     scale[k] = tolerance * (larger > known ? larger : known);
   }
 }

@@ -21,7 +21,8 @@ struct LaneStates {
 
   // Largest |v| of a lane in y.
   double speed_in(const double* y, int lane) const;
-  // What an error of one tolerance is in each component, for a step between two y: (size) x lanes.
+  // What an error of one tolerance is in each component, (size) x lanes, for a step from one y to another; of quadratures
+  // with their rates at y and y_end.
   void error_scales(const double* a, const double* b, double* scale) const;
 
   Motion& motion;
@@ -31,6 +32,7 @@ struct LaneStates {
   const long entries;  // size x lanes
 
   std::vector<double> time, y, slope;              // where the lanes stand
+  std::vector<double> duration;                    // lanes: from the start to the last row
   std::vector<double> switch_value;                // switches x lanes, there
   std::vector<std::int8_t> side;                   // switches x lanes
   std::vector<double> speed, work;                 // lanes; quadratures x lanes: the largest so far
@@ -62,6 +64,8 @@ class Method {
   // The step of these lanes was taken, or refused for its error; called before y is moved on.
   virtual void taken(LaneStates& lanes, int lane) = 0;
   virtual void refused(LaneStates& lanes, int lane) = 0;
+  // The rates where a lane stands have changed.
+  virtual void forget(int lane) { (void)lane; }
   // Makes the last tried step ready to be interpolated; lanes that get a fault leave the mask.
   virtual void prepare_dense(LaneStates& lanes, Flags* mask) = 0;
   // y at `part` (lanes) of that step, for the lanes in the mask.

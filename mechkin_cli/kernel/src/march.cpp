@@ -7,9 +7,9 @@
 
 namespace {
 
-constexpr double FAULT_FACTOR = 0.5;   // of the step, where its inside holds a fault
-constexpr double FAULT_MARGIN = 0.8;   // of the way to the fault
-constexpr double ROOM_GROWTH = 1.3;
+constexpr double FAULT_MARGIN = 0.85;  // of the way to a fault, for the next try
+constexpr double FAULT_FACTOR = 0.5;   // of it where that failed, too
+constexpr double ROOM_GROWTH = 0.02;   // of the room after a fault, doubled with each step taken since
 
 void check(const Motion& motion, const IntegratorSettings& s, const double* time, const RowTimes& rows) {
   require(motion.lanes() > 0, "at least one lane");
@@ -37,11 +37,14 @@ std::vector<LaneReport> integrate(Motion& motion, const IntegratorSettings& sett
 March::March(Motion& motion, const IntegratorSettings& settings, const double* time, const std::vector<double>& y,
              const RowTimes& rows)
     : states_(motion, settings), rows_(rows), explicit_(states_), control_(states_.lanes),
-      duration_(states_.lanes, 0.0), size_((1 + states_.quadratures) * (std::size_t)states_.lanes),
+      size_((1 + states_.quadratures) * (std::size_t)states_.lanes),
       place_(states_.entries), values_(states_.side.size()), part_(states_.lanes), at_(states_.lanes),
       row_(states_.lanes) {
   require((long)y.size() == states_.entries, "one y for each lane");
-  for (LaneControl& c : control_) c.passed.assign(states_.kinds.size(), 0);
+  for (LaneControl& c : control_) {
+    c.passed.assign(states_.kinds.size(), 0);
+    c.implicit = settings.method == MethodChoice::IMPLICIT;
+  }
   start(time, y);
 }
 
@@ -56,12 +59,13 @@ std::vector<LaneReport> March::run() {
     const bool is_explicit = any(explicit_lanes), is_implicit = any(implicit_lanes);
     if (!is_explicit && !is_implicit) return states_.report;
     if (is_explicit) round(explicit_, explicit_lanes);
+    if (is_implicit && !implicit_) implicit_ = std::make_unique<Radau>(states_);
     if (is_implicit) round(*implicit_, implicit_lanes);
   }
 }
 
 double March::least(int lane) const {
-  return states_.settings.least_step * std::max(std::fabs(states_.time[lane]), duration_[lane]);
+  return states_.settings.least_step * std::max(std::fabs(states_.time[lane]), states_.duration[lane]);
 }
 
 void March::finish(int lane, LaneEnd end, int which) {
@@ -136,7 +140,8 @@ void March::judge(Method& method, Flags* mask) {
 
 void March::shorten_for_fault(int lane) {
   const double step = states_.step[lane];
-  control_[lane].room = std::min(FAULT_FACTOR * step, FAULT_MARGIN * states_.reached[lane] * step);
+  control_[lane].room = (control_[lane].was_refused ? FAULT_FACTOR : FAULT_MARGIN) * states_.reached[lane] * step;
+  control_[lane].room_growth = ROOM_GROWTH;
   if (states_.settings.fixed_step > 0.0) return finish(lane, LaneEnd::STUCK);
   refuse(lane, control_[lane].room);
 }
@@ -215,6 +220,11 @@ void March::rewiden(int lane) {
   // a step that a row or a crossing cut says little of the next one
   const bool is_short = (c.is_cut || states_.step[lane] < c.wanted) && !c.was_refused;
   c.wanted = is_short ? std::max(c.wanted, wanted) : wanted;
-  c.room *= ROOM_GROWTH;
+  c.room *= 1.0 + c.room_growth;
+  c.room_growth *= 2.0;
   c.was_refused = false;
+  if (c.implicit || states_.settings.method != MethodChoice::AUTOMATIC || !explicit_.is_stiff(lane)) return;
+  c.implicit = true;
+  states_.report[lane].stiff = true;
+  states_.report[lane].stiff_from = states_.time[lane];
 }

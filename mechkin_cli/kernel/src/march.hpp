@@ -6,6 +6,7 @@
 
 #include "dop853.hpp"
 #include "lane_states.hpp"
+#include "radau.hpp"
 
 // How a lane goes on.
 struct LaneControl {
@@ -13,6 +14,7 @@ struct LaneControl {
   bool implicit = false;
   double wanted = 0.0;                   // the step that errors want
   double room = __builtin_inf();         // the step that faults leave, wider again with each step taken
+  double room_growth = 1.0;
   double longest = __builtin_inf();      // the step that the chart bears, as the motion says
   bool is_cut = false;                   // the step was made shorter for a row
   bool was_refused = false;
@@ -74,8 +76,8 @@ class March {
   LaneStates states_;
   const RowTimes rows_;
   Dop853 explicit_;
-  std::unique_ptr<Method> implicit_;
+  std::unique_ptr<Radau> implicit_;  // made when it is first needed
   std::vector<LaneControl> control_;
-  std::vector<double> duration_, size_, place_, values_, part_, at_;
+  std::vector<double> size_, place_, values_, part_, at_;
   std::vector<long> row_;
 };

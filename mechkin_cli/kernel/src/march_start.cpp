@@ -18,7 +18,7 @@ void March::start(const double* time, const std::vector<double>& y) {
   states_.y = y;
   Flags mask(lanes, 1);
   for (int i = 0; i < lanes; ++i) {
-    duration_[i] = rows_.count ? row_time(i, rows_.count - 1) - time[i] : 0.0;
+    states_.duration[i] = rows_.count ? row_time(i, rows_.count - 1) - time[i] : 0.0;
     states_.speed[i] = states_.speed_in(y.data(), i);
   }
   states_.evaluate(time, y.data(), true, &mask, states_.slope.data(), states_.switch_value.data());
@@ -42,9 +42,9 @@ void March::first_sides(const Flags& mask) {
   const std::size_t switches = states_.kinds.size();
   if (!switches || !any(mask)) return;
   const long moved = (long)states_.freedoms * lanes;
-  for (int i = 0; i < lanes; ++i) at_[i] = states_.time[i] + LOOK_AHEAD * duration_[i];
+  for (int i = 0; i < lanes; ++i) at_[i] = states_.time[i] + LOOK_AHEAD * states_.duration[i];
   for (long k = 0; k < states_.entries; ++k) {
-    const double h = LOOK_AHEAD * duration_[k % lanes];
+    const double h = LOOK_AHEAD * states_.duration[k % lanes];
     const double bend = k < moved ? 0.5 * h * h * states_.slope[k + moved] : 0.0;
     place_[k] = states_.y[k] + (h * states_.slope[k] + bend);
   }
@@ -65,7 +65,7 @@ void March::first_sides(const Flags& mask) {
 
 void March::size_up(const Flags& mask) {
   const int lanes = states_.lanes;
-  for (int i = 0; i < lanes; ++i) size_[i] = duration_[i] > 0.0 ? SLOWEST / duration_[i] : 0.0;
+  for (int i = 0; i < lanes; ++i) size_[i] = states_.duration[i] > 0.0 ? SLOWEST / states_.duration[i] : 0.0;
   std::fill(size_.begin() + lanes, size_.end(), 0.0);
   states_.motion.sizes(mask.data(), size_.data());
   for (int i = 0; i < lanes; ++i) {
@@ -90,7 +90,7 @@ void March::first_steps(const Flags& mask) {
   }
   for (int i = 0; i < lanes; ++i) {
     const bool is_told = of_y[i] > 1e-5 && first[i] > 1e-5;
-    part_[i] = std::min(is_told ? 0.01 * of_y[i] / first[i] : 1e-6 * duration_[i], duration_[i]);
+    part_[i] = std::min(is_told ? 0.01 * of_y[i] / first[i] : 1e-6 * states_.duration[i], states_.duration[i]);
     at_[i] = states_.time[i] + part_[i];
   }
   for (long k = 0; k < states_.entries; ++k) place_[k] = states_.y[k] + part_[k % lanes] * states_.slope[k];
@@ -101,8 +101,8 @@ void March::first_steps(const Flags& mask) {
   for (int i = 0; i < lanes; ++i) {
     if (!mask[i]) continue;
     const double most = ahead[i] ? std::max(first[i], second[i] / part_[i]) : 0.0;
-    const double told = most > 1e-15 ? eighth_root(0.01 / most) : std::max(1e-6 * duration_[i], 1e-3 * part_[i]);
-    control_[i].wanted = std::min({100.0 * part_[i], told, duration_[i]});
+    const double told = most > 1e-15 ? eighth_root(0.01 / most) : std::max(1e-6 * states_.duration[i], 1e-3 * part_[i]);
+    control_[i].wanted = std::min({100.0 * part_[i], told, states_.duration[i]});
     states_.fault[i] = 0;
   }
 }

@@ -1,5 +1,6 @@
 #include "tape_motion.hpp"
 
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -28,6 +29,7 @@ TapeMotion::TapeMotion(const TapeStore& tape, Shape shape, const std::vector<dou
     }
   scale_.assign(lanes, scales_[0]);
   accepted_.assign(lanes, 0);
+  moved_.assign(switches * lanes, 0);
   inputs_.resize(t.inputs * lanes);
   outputs_.resize(t.outputs * lanes);
   verdict_.resize(lanes);
@@ -48,7 +50,8 @@ void TapeMotion::rates(const Places& p, const Rates& r) {
   for (int i = 0; i < lanes; ++i) *in++ = p.time[i];
   for (int k = 0; k < size(); ++k)
     for (int i = 0; i < lanes; ++i) *in++ = state(k, i, p.y);
-  for (int k = 0; k < switches * lanes; ++k) *in++ = p.side[k];
+  for (int k = 0; k < switches * lanes; ++k)
+    *in++ = shape_.switches[k / lanes].moves ? (double)moved_[k] : (double)p.side[k];
   for (double x : parameters_) *in++ = x;
   kernel_unit()->replay(t, {(long)lanes, inputs_.data(), outputs_.data(), verdict_.data()}, memory_.data());
   for (int i = 0; i < lanes; ++i) {
@@ -56,7 +59,9 @@ void TapeMotion::rates(const Places& p, const Rates& r) {
     for (int k = 0; k < n + q; ++k) r.rates[k * lanes + i] = k < n ? out[k] / scale_[i] : out[k];
     for (int s = 0; s < switches; ++s) r.switches[s * lanes + i] = out[n + q + s];
     const double fault = out[n + q + switches];
-    r.fault[i] = fault > 0.0 && fault < NOT_FINITE ? (unsigned char)fault : 0;
+    r.fault[i] = fault > 0.0 && fault < OUT_OF_REACH ? (unsigned char)fault : 0;
+    for (int f = 0; f < n; ++f)
+      if (std::fabs(scale_[i] * p.y[f * lanes + i]) > shape_.reach) r.fault[i] = OUT_OF_REACH;
   }
 }
 

@@ -16,13 +16,16 @@ struct TapeEvent {
 
 // The tape's inputs are time, x [n], v [n], w [q], sides of the switches [s] and parameters; its outputs v' [n], w' [q],
 // switches [s] and a number that is a fault where it is not zero. The chart of a lane is x = origin + scale u, with the
-// scales one after the other, one step each.
+// scales one after the other, one step each. For a switch that moves the tape is given how often it did, not its side.
+constexpr unsigned char OUT_OF_REACH = 253;
+
 class TapeMotion : public Motion {
  public:
   struct Shape {
     int lanes, freedoms, quadratures;
     std::vector<SwitchKind> switches;
     std::vector<bool> stops;  // switches: whether they end a lane
+    double reach;             // distance from the chart's origin, in x, from which on a place is a fault OUT_OF_REACH
   };
   // `state` (x, v, w) and `parameters`, each x lanes. Throws std::invalid_argument where the tape has other numbers.
   TapeMotion(const TapeStore& tape, Shape shape, const std::vector<double>& state, std::vector<double> parameters,
@@ -36,6 +39,8 @@ class TapeMotion : public Motion {
   void accept(const unsigned char* lanes, const double* time, double* y, double* rates, double* longest) override;
   void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) override;
   bool event(int lane, int which, bool rising, double time) override;
+
+  void move(int lane, int which) override { ++moved_[which * shape_.lanes + lane]; }
 
   // The first y.
   const std::vector<double>& start() const { return start_; }
@@ -52,7 +57,7 @@ class TapeMotion : public Motion {
   const Shape shape_;
   const std::vector<double> parameters_, scales_;
   std::vector<double> start_, origin_, scale_, now_, inputs_, outputs_, rows_;
-  std::vector<long> accepted_;
+  std::vector<long> accepted_, moved_;
   std::vector<std::uint8_t> verdict_;
   std::vector<char> memory_;
   std::vector<TapeEvent> events_;

@@ -1,0 +1,186 @@
+"""What acts on the links at one row beside their pairs: loads, gravity and inertia.
+
+Wrenches are (force, moment about the ground origin), in N and N m. Newton and Euler: the inertia
+force -m a through the mass centre and the couple -(I alpha + omega x I omega).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.mechanism.joint_table import is_angle
+from mechkin_cli.mechanism.load_laws import law_values
+from mechkin_cli.mechanism.model import (
+    GROUND_NAME,
+    Amount,
+    Attached,
+    Damper,
+    Joint,
+    JointLoad,
+    Link,
+    LinkLoad,
+    Load,
+    Spring,
+    Tensor,
+    Varying,
+)
+from mechkin_cli.mechanism.vectors import ZERO, Vector, add, cross, dot, norm, scale, subtract
+
+if TYPE_CHECKING:
+    from mechkin_cli.analysis.dense.row_motion import LinkMotion, RowMotion
+    from mechkin_cli.analysis.sweep import Result
+
+
+class Wrench(NamedTuple):
+    """A force (N), and a moment (N m) about the ground origin."""
+
+    force: Vector = ZERO
+    moment: Vector = ZERO
+
+    def plus(self, other: Wrench) -> Wrench:
+        """The sum of both."""
+        return Wrench(add(self.force, other.force), add(self.moment, other.moment))
+
+    def times(self, factor: float) -> Wrench:
+        """A multiple."""
+        return Wrench(scale(factor, self.force), scale(factor, self.moment))
+
+
+def force_at(point: Vector, force: Vector) -> Wrench:
+    """A force through a point."""
+    return Wrench(force, cross(point, force))
+
+
+def coordinate_wrench(joint: Joint, coordinate: str, motion: RowMotion) -> Wrench:
+    """The unit effort on a coordinate, as it acts on the second link: a force along its line
+    through the pair's point, or a couple about it."""
+    axis = motion.direction(_axis_of(joint, coordinate))
+    if is_angle(coordinate):
+        return Wrench(ZERO, axis)
+    return force_at(motion.point(joint.point), axis)
+
+
+def _axis_of(joint: Joint, coordinate: str) -> Attached:
+    """The direction about or along which a coordinate is told, on the link that carries it."""
+    known = joint.type.coordinate[coordinate]
+    if known.axis is not None:
+        return joint.drawn(known.axis)
+    steps = [entry for free in joint.type.free.values() for entry in free]
+    step, along = sorted(steps, key=lambda entry: entry[0])[known.freedom]
+    return (
+        Attached(joint.first, joint.parts[step].before.z) if along is None else joint.drawn(along)
+    )
+
+
+def borne_wrenches(result: Result, motion: RowMotion, row: int) -> dict[str, Wrench]:
+    """The sum of loads, gravity and inertia on every moving link at a row (from 0), in SI."""
+    mechanism = result.problem.mechanism
+    found = {name: Wrench() for name in (GROUND_NAME, *mechanism.links)}
+    for name, link in mechanism.links.items():
+        if name != GROUND_NAME:
+            found[name] = _own(link, motion.links[name], mechanism.gravity)
+    acting = _Acting(result, motion, row)
+    for load in mechanism.loads:
+        for name, wrench in acting.on_links(load):
+            found[name] = found[name].plus(wrench)
+    return found
+
+
+def _own(link: Link, motion: LinkMotion, gravity: Vector) -> Wrench:
+    """Gravity and inertia of a link."""
+    centre = motion.point(link.center_of_mass)
+    felt = subtract(gravity, motion.acceleration_of(link.center_of_mass))
+    omega, alpha = motion.drawn(motion.omega), motion.drawn(motion.alpha)
+    gyroscopic = cross(omega, _times(link.inertia, omega))
+    couple = motion.direction(add(_times(link.inertia, alpha), gyroscopic))
+    return force_at(centre, scale(link.mass, felt)).plus(Wrench(ZERO, scale(-1.0, couple)))
+
+
+def _times(inertia: Tensor, vector: Vector) -> Vector:
+    xx, yy, zz, xy, xz, yz = inertia
+    return (dot((xx, xy, xz), vector), dot((xy, yy, yz), vector), dot((xz, yz, zz), vector))
+
+
+class _Acting:
+    """The loads of a result at one row."""
+
+    def __init__(self, result: Result, motion: RowMotion, row: int) -> None:
+        self.joints = result.problem.mechanism.joints
+        self.motion = motion
+        self.result = result
+        self.row = row
+        laws = law_values(result.problem, result.quantity, result.row_states.reached)
+        self.laws: Sequence[float] = [float(values[row]) for values in laws.values]
+
+    def on_links(self, load: Load) -> Iterator[tuple[str, Wrench]]:
+        """What a load exerts, link by link."""
+        if isinstance(load, LinkLoad):
+            yield load.link, self._on_link(load)
+        elif isinstance(load, JointLoad):
+            yield from self._on_joint(load.joint, load.coordinate, self._amount(load.value))
+        elif isinstance(load, Spring | Damper):
+            if load.between is not None:
+                yield from self._between(load, load.between)
+            else:
+                assert load.joint is not None
+                assert load.coordinate is not None
+                resisting = -self._resistance(load, *self._coordinate(load))
+                yield from self._on_joint(load.joint, load.coordinate, resisting)
+        else:
+            raise UsageError(
+                "the coefficients of the reactions cannot be told where a load depends on the "
+                "reactions; leave out coefficients: or the friction"
+            )
+
+    def _number(self, name: str) -> float:
+        value = self.result.quantity(name).value
+        assert isinstance(value, np.ndarray)
+        return float(value[self.row])
+
+    def _amount(self, amount: Amount) -> float:
+        return self.laws[amount.number] if isinstance(amount, Varying) else amount
+
+    def _on_link(self, load: LinkLoad) -> Wrench:
+        link = self.motion.links[load.link]
+        x, y, z = (self._amount(amount) for amount in load.value)
+        value = link.direction((x, y, z)) if load.axes == "link" else (x, y, z)
+        if load.kind == "torque":
+            return Wrench(ZERO, value)
+        return force_at(link.point(load.point), value)
+
+    def _on_joint(self, name: str, coordinate: str, value: float) -> Iterator[tuple[str, Wrench]]:
+        joint = self.joints[name]
+        wrench = coordinate_wrench(joint, coordinate, self.motion).times(value)
+        yield joint.second, wrench
+        yield joint.first, wrench.times(-1.0)
+
+    def _coordinate(self, load: Spring | Damper) -> tuple[float, float]:
+        """Value and rate of the coordinate on which a spring or damper acts."""
+        name = f"{load.joint}.{load.coordinate}"
+        rate = self._number(f"{name}_dot") if isinstance(load, Damper) else 0.0
+        return self._number(name), rate
+
+    @staticmethod
+    def _resistance(load: Spring | Damper, stretch: float, rate: float) -> float:
+        """Force or moment against growing stretch."""
+        if isinstance(load, Spring):
+            return load.stiffness * (stretch - load.free) + load.preload
+        return load.damping * rate
+
+    def _between(
+        self, load: Spring | Damper, ends: tuple[Attached, Attached]
+    ) -> Iterator[tuple[str, Wrench]]:
+        """Pulls both ends towards each other."""
+        first, second = (self.motion.point(end) for end in ends)
+        line = subtract(second, first)
+        length = norm(line)
+        along = scale(1.0 / length, line)
+        speeds = [self.motion.links[end.link].velocity_of(end.vector) for end in ends]
+        rate = dot(along, subtract(speeds[1], speeds[0]))
+        pull = scale(self._resistance(load, length, rate), along)
+        yield ends[0].link, force_at(first, pull)
+        yield ends[1].link, force_at(second, scale(-1.0, pull))

@@ -1,0 +1,206 @@
+"""The dense system of reactions against what the transposed blocks give.
+
+The equations are assembled from poses and accelerations of the links alone, so that agreement says
+something of both. `coefficients:` writes them as tables.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from mechanisms.runs import model
+from oracle import document, to_text
+from references import MECHANISMS, committed
+
+import mechkin_cli as mk
+from mechkin_cli.analysis.dense.loads import borne_wrenches
+from mechkin_cli.analysis.dense.row_motion import row_motion
+from mechkin_cli.analysis.dense.system import dense_system, solved
+from mechkin_cli.diagnostics import InvalidFile
+
+LIMIT = 1e-11
+SOURCES = {
+    "rcsr": 24,
+    "rcsr_csr": 40,
+    "rchch": 34,
+    "sevenr": 50,
+    "rprhrrr": 50,
+    "rrrrrrh": 50,
+    "rprrhc": 42,
+    "pphchp": 42,
+    "rcrcr": 34,
+    "phchc": 34,
+}
+"""Unknowns that the dissertation counts."""
+OTHERS = ("rccc", "rssr", "swash_plate", "rsgc", "cspc", "csgc", "hooke", "slider_crank", "bricard")
+WIDE = ("five_link_suspension", "stewart")
+
+
+@cache
+def analysis(name):
+    return model(name).analyze()
+
+
+def wrench(run, name, row):
+    """What the first link of a joint exerts on the second (6,), about the origin, in SI."""
+    parts = (
+        run.result.quantity(f"{name}.{word}").value for word in ("force", "moment_about_origin")
+    )
+    return np.array([getattr(part, axis)[row] for part in parts for axis in "xyz"])
+
+
+def told(unknowns, values, name):
+    """The same from the dense solution."""
+    found = np.zeros(6)
+    for unknown, value in zip(unknowns, values, strict=True):
+        if unknown.joint == name and not unknown.name.endswith(".effort"):
+            found += value * np.array([*unknown.wrench.force, *unknown.wrench.moment])
+    return found
+
+
+@pytest.mark.parametrize("name", SOURCES)
+@pytest.mark.parametrize("row", [0, 7])
+def test_its_solution_is_the_reactions(name, row):
+    run = analysis(name)
+    system = dense_system(run.result, row)
+    assert len(system.equations) == len(system.unknowns) == SOURCES[name]
+    values = solved(system)
+    joints = run.result.problem.mechanism.joints
+    expected = {joint: wrench(run, joint, row) for joint in joints}
+    for part in (slice(0, 3), slice(3, 6)):
+        largest = max(np.max(np.abs(found[part])) for found in expected.values())
+        for joint, found in expected.items():
+            error = np.abs(told(system.unknowns, values, joint) - found)[part]
+            assert np.max(error) <= LIMIT * largest, joint
+    for unknown, value in zip(system.unknowns, values, strict=True):
+        if unknown.name.endswith(".effort"):
+            effort = run.result.quantity(unknown.name).value[row]
+            assert abs(value - effort) <= LIMIT * max(abs(effort), largest)
+
+
+def balance(run, row):
+    """The largest resultant on a moving link, in parts of the largest wrench: mechkin's reactions
+    and efforts with the dense system's loads, gravity and inertia."""
+    problem, motion = run.result.problem, row_motion(run.result, row)
+    system = dense_system(run.result, row)
+    borne = borne_wrenches(run.result, motion, row)
+    total = {name: np.array([*w.force, *w.moment]) for name, w in borne.items()}
+    parts = [(joint, wrench(run, name, row)) for name, joint in problem.mechanism.joints.items()]
+    for unknown in system.unknowns:
+        if unknown.name.endswith(".effort"):
+            unit = np.array([*unknown.wrench.force, *unknown.wrench.moment])
+            value = run.result.quantity(unknown.name).value[row]
+            parts.append((problem.mechanism.joints[unknown.joint], value * unit))
+    for joint, found in parts:
+        total[joint.second] = total[joint.second] + found
+        total[joint.first] = total[joint.first] - found
+    largest = max(np.max(np.abs(found)) for _, found in parts)
+    return max(np.max(np.abs(total[name])) for name in problem.mechanism.links) / largest
+
+
+@pytest.mark.parametrize("name", [*OTHERS, *WIDE])
+def test_links_are_in_equilibrium(name):
+    """Where it is not square: redundant constraints, idle freedoms, legs."""
+    run = analysis(name)
+    assert balance(run, run.rows // 2) <= LIMIT
+
+
+LOADS = [
+    {"type": "gravity", "g": ["10", "-20", "-386.09"]},
+    {"type": "force", "link": "coupler", "point": ["1", "2", "3"], "force": ["5", "-7", "9"]},
+    {
+        "type": "force",
+        "link": "rocker",
+        "point": ["3", "1", "0"],
+        "force": ["5", "-7", "9"],
+        "axes": "link",
+    },
+    {
+        "type": "torque",
+        "link": "coupler",
+        "torque": ["5", "20 lbm*in^2/s^2*O1.theta/(1 rad)", "9"],
+        "axes": "link",
+    },
+    {
+        "type": "torque",
+        "joint": "O2",
+        "value": "-3 lbm*in^2/s^2 - 40 lbm*in^2/s*O4.theta_dot/(1 rad)",
+    },
+    {"type": "force", "joint": "O2", "value": "17"},
+    {"type": "spring", "between": ["pm1", "pm3"], "stiffness": "12", "free": "2", "preload": "3"},
+    {"type": "spring", "joint": "O2", "coordinate": "s", "stiffness": "4", "free": "-9"},
+    {"type": "damper", "between": ["pm2", "pm3"], "damping": "30"},
+    {"type": "damper", "joint": "O4", "coordinate": "theta", "damping": "25"},
+]
+
+
+@pytest.mark.parametrize("load", LOADS, ids=[f"{n}-{load['type']}" for n, load in enumerate(LOADS)])
+def test_every_load_counts(load):
+    data = document(MECHANISMS / "rcsr.yaml")
+    data.pop("coefficients")
+    run = mk.loads(to_text(data | {"loads": [load]}), "rcsr").analyze([], tables=["table_18"])
+    assert balance(run, 5) <= LIMIT
+    without = mk.loads(to_text(data | {"loads": []}), "rcsr").analyze([], tables=["table_18"])
+    borne = [borne_wrenches(one.result, row_motion(one.result, 5), 5) for one in (run, without)]
+    assert borne[0] != borne[1]
+
+
+def test_an_error_is_seen():
+    """The drive's sign turned round upsets the balance of the crank."""
+    run = analysis("rcsr")
+    system = dense_system(run.result, 3)
+    values = np.array(solved(system))
+    rest = np.array(system.coefficients) @ values - np.array(system.right)
+    assert np.max(np.abs(rest)) <= LIMIT * np.max(np.abs(values))
+    values[-1] *= -1
+    rest = np.array(system.coefficients) @ values - np.array(system.right)
+    assert np.max(np.abs(rest)) > 1e-3 * np.max(np.abs(values))
+
+
+def test_the_table_is_the_system():
+    """Coefficients times values are the right side, in the file's units."""
+    for stem, name in (("rcsr", "table_14"), ("rcsr_csr", "table_24"), ("rchch", "table_32")):
+        rows, unknowns = committed(stem, name), committed(stem, f"{name}_unknowns")
+        labels = [row["unknown"] for row in unknowns]
+        assert list(rows[0]) == ["i", "equation", *labels, "right side"]
+        assert len(rows) == len(labels) == SOURCES[stem]
+        values = [float(row["value"]) for row in unknowns]
+        largest = max(map(abs, values))
+        for row in rows:
+            left = sum(float(row[n]) * v for n, v in zip(labels, values, strict=True))
+            assert abs(left - float(row["right side"])) <= 1e-9 * largest
+
+
+def test_values_stand_in_the_reaction_tables():
+    """O3 along B, C and B x C, as Table XVIII has it at the same row."""
+    unknowns = {
+        row["unknown"]: float(row["value"]) for row in committed("rcsr", "table_14_unknowns")
+    }
+    printed = committed("rcsr", "table_18")[0]
+    for unknown, label in (("O3.F B", "FB"), ("O3.F C", "FC"), ("O3.F B x C", "FD")):
+        assert abs(unknowns[unknown] - float(printed[label])) <= 1e-9
+    assert abs(unknowns["O1.theta.effort"] + float(printed["MIN"])) <= 1e-9
+
+
+WRONG = {
+    "row: 28": "the sweep has 27 rows",
+    "along: {O2: [B, C]}": "O2 is no ball of the mechanism",
+    "along: {O3: [B, E]}": "there is no direction E",
+    "along: {O3: [B]}": "",
+    "name: table_15": "another table is written to table_15",
+}
+
+
+@pytest.mark.parametrize("text", WRONG)
+def test_what_cannot_be_is_told_with_its_place(text):
+    written = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8")
+    head = written[: written.index("coefficients:")]
+    name = "" if text.startswith("name") else "name: table_14, "
+    with pytest.raises(InvalidFile) as error:
+        mk.loads(f"{head}coefficients:\n  - {{{name}{text}}}\n", str(MECHANISMS / "rcsr.yaml"))
+    (found,) = error.value.diagnostics
+    assert WRONG[text] in found.message
+    assert found.place is not None
+    assert found.place.line == head.count("\n") + 2
