@@ -12,8 +12,8 @@ class DrivenLaws {
  public:
   // `edges`: moments (s), rising, between cells; `constants` (cells x inputs of the tape but the first) and `ways` (cells
   // x switches of the tape); `units` (inputs): what the tape's outputs are divided by; `time_unit` (s); `held`: values of
-  // further inputs, at rest. Throws std::invalid_argument.
-  DrivenLaws(const TapeStore& tape, std::vector<double> edges, std::vector<double> constants, std::vector<double> ways,
+  // further inputs, at rest. Without a tape there are only these. Throws std::invalid_argument.
+  DrivenLaws(const TapeStore* tape, std::vector<double> edges, std::vector<double> constants, std::vector<double> ways,
              std::vector<double> units, double time_unit, std::vector<double> held);
   DrivenLaws(const DrivenLaws&) = delete;
 
@@ -23,7 +23,7 @@ class DrivenLaws {
   void at(int cell, double time, int lane, int lanes, double* value, double* rate, double* second) const;
 
  private:
-  const TapeStore& tape_;
+  const TapeStore* tape_;
   const std::vector<double> edges_, constants_, ways_, units_;
   const double time_unit_;
   const std::vector<double> held_;

@@ -99,9 +99,20 @@ nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, c
 
 void bind_response(nb::module_& m) {
   nb::class_<DrivenLaws>(m, "DrivenLaws", "Coordinates driven by laws of time.")
-      .def(nb::init<const TapeStore&, std::vector<double>, std::vector<double>, std::vector<double>, std::vector<double>,
+      .def(nb::init<const TapeStore*, std::vector<double>, std::vector<double>, std::vector<double>, std::vector<double>,
                     double, std::vector<double>>(),
-           "tape"_a, "edges"_a, "constants"_a, "ways"_a, "units"_a, "time_unit"_a, "held"_a, nb::keep_alive<1, 2>());
+           "tape"_a.none(), "edges"_a, "constants"_a, "ways"_a, "units"_a, "time_unit"_a, "held"_a, nb::keep_alive<1, 2>())
+      .def("at", [](const DrivenLaws& laws, double time) {
+        // value, rate and acceleration of each input at a moment (s)
+        int cell = 0;
+        for (double edge : laws.edges()) cell += time >= edge;
+        std::vector<double> value(laws.inputs()), rate(laws.inputs()), second(laws.inputs());
+        FloatingPointState floating;
+        laws.at(cell, time, 0, 1, value.data(), rate.data(), second.data());
+        std::vector<std::tuple<double, double, double>> all;
+        for (int i = 0; i < laws.inputs(); ++i) all.emplace_back(value[i], rate[i], second[i]);
+        return all;
+      }, "time"_a);
   // Reports, then arrays (variants, columns, rows): states, chart directions, rates and accelerations of the chart,
   // turns, work put in and lost; flags (variants, rows). One row more is for the place of a stop. Rows that were not
   // reached hold nan.
