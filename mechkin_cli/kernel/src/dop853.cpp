@@ -57,12 +57,10 @@ void weigh(const double* slopes, long entries, double* __restrict out) {
 }
 
 constexpr double SAFETY = 0.9, LEAST_FACTOR = 1.0 / 3.0, MOST_FACTOR = 6.0;
-constexpr double LEAST_ERROR_BEFORE = 1e-4;
+constexpr double LEAST_ROOT = 0.8659643233600653;  // of an error of 1e-4 before
 constexpr double STABLE = 6.1;  // about the boundary of stability on the negative real axis
 constexpr double NOISE = 1e-15;  // a distance of two places that rounding alone makes says nothing
 constexpr int INNER_STAGE[2] = {5, 8};
-
-double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
 
 }  // namespace
 
@@ -71,7 +69,7 @@ Dop853::Dop853(const LaneStates& lanes)
       stage_time_(lanes.lanes), mean_(lanes.entries), fifth_(lanes.entries), third_(lanes.entries),
       scale_(lanes.entries), worst_fifth_(lanes.lanes), worst_third_(lanes.lanes),
       switches_(lanes.kinds.size() * lanes.lanes), coefficients_(7 * lanes.entries),
-      error_before_(lanes.lanes, LEAST_ERROR_BEFORE), was_refused_(lanes.lanes, 0), stiff_(lanes.lanes, 0),
+      wanted_(lanes.lanes), root_(lanes.lanes), root_before_(lanes.lanes, LEAST_ROOT), was_refused_(lanes.lanes, 0), stiff_(lanes.lanes, 0),
       not_stiff_(lanes.lanes, 0) {}
 
 void Dop853::attempt(LaneStates& s, const Flags& asked) {
@@ -110,8 +108,7 @@ void Dop853::note_switches(LaneStates& s, int stage) {
     }
 }
 
-// The error of the step by the estimates of orders 5 and 3 together, the largest of all components, and the step that it
-// wants next by a proportional and integral controller. Its powers are eighths and their halves: roots that IEEE rounds.
+// The error of the step by the estimates of orders 5 and 3 together, the largest of all components. (II.10.17)
 void Dop853::estimate(LaneStates& s, const Flags& mask) {
   const long entries = s.entries;
   const double* const slopes = slopes_.data();
@@ -130,27 +127,39 @@ void Dop853::estimate(LaneStates& s, const Flags& mask) {
       worst_third_[i] = of_third > worst_third_[i] ? of_third : worst_third_[i];
     }
   for (int i = 0; i < s.lanes; ++i) {
+    const double a = worst_fifth_[i], ratio = a > 0.0 ? worst_third_[i] / a : 0.0;
+    worst_fifth_[i] = s.step[i] * a / std::sqrt(1.0 + 0.01 * ratio * ratio);
+  }
+  control(s, mask);
+}
+
+// The step that the error wants next, by a proportional and integral controller: error^(-7/64) times the 64th root of the
+// error before; after a refusal no longer one. Its powers are halves of halves, roots that IEEE rounds.
+void Dop853::control(LaneStates& s, const Flags& mask) {
+  const double* const error = worst_fifth_.data();
+  double* const eighth = worst_third_.data();
+  for (int i = 0; i < s.lanes; ++i) eighth[i] = std::sqrt(std::sqrt(std::sqrt(error[i])));
+  for (int i = 0; i < s.lanes; ++i) {
+    const double r16 = std::sqrt(eighth[i]), r32 = std::sqrt(r16), r64 = std::sqrt(r32);
+    wanted_[i] = SAFETY * root_before_[i] / (r16 * r32 * r64);
+    root_[i] = r64 > LEAST_ROOT ? r64 : LEAST_ROOT;
+  }
+  for (int i = 0; i < s.lanes; ++i) {
     if (!mask[i]) continue;
-    const double a = worst_fifth_[i], b = worst_third_[i];
-    const double ratio = a > 0.0 ? b / a : 0.0;
-    s.error[i] = s.step[i] * a / std::sqrt(1.0 + 0.01 * ratio * ratio);
-    const double r8 = eighth_root(s.error[i]);
-    if (!(s.error[i] <= 1.0)) {
-      s.factor[i] = std::max(LEAST_FACTOR, SAFETY / r8);
-      continue;
-    }
-    const double r16 = std::sqrt(r8), r32 = std::sqrt(r16), r64 = std::sqrt(r32);
-    const double before = std::sqrt(std::sqrt(std::sqrt(eighth_root(error_before_[i]))));
-    const double most = was_refused_[i] ? 1.0 : MOST_FACTOR;
-    const double wanted = SAFETY * before / (r16 * r32 * r64);  // error^(-7/64), the error before^(1/64)
+    s.error[i] = error[i];
+    const bool is_good = error[i] <= 1.0;
+    const double most = is_good && !was_refused_[i] ? MOST_FACTOR : 1.0;
+    const double wanted = is_good ? wanted_[i] : SAFETY / eighth[i];
     s.factor[i] = wanted < most ? std::max(LEAST_FACTOR, wanted) : most;
+    // an error that is no number
+    if (!(error[i] < __builtin_inf())) s.factor[i] = LEAST_FACTOR;
   }
 }
 
 void Dop853::refused(LaneStates&, int lane) { was_refused_[lane] = 1; }
 
 void Dop853::taken(LaneStates& s, int lane) {
-  error_before_[lane] = std::max(s.error[lane], LEAST_ERROR_BEFORE);
+  root_before_[lane] = root_[lane];
   was_refused_[lane] = 0;
   if (stability(s, lane) > STABLE) {
     not_stiff_[lane] = 0;

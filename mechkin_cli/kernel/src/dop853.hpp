@@ -18,6 +18,7 @@ class Dop853 : public Method {
 
  private:
   void estimate(LaneStates& lanes, const Flags& mask);
+  void control(LaneStates& lanes, const Flags& mask);
   void note_switches(LaneStates& lanes, int stage);
   double stability(const LaneStates& lanes, int lane) const;
 
@@ -27,7 +28,7 @@ class Dop853 : public Method {
   std::vector<double> stage_time_, mean_, fifth_, third_, scale_, worst_fifth_, worst_third_;
   std::vector<double> switches_;
   std::vector<double> coefficients_;      // of the interpolation, 7 x components x lanes
-  std::vector<double> error_before_;      // lanes: of the last step taken
+  std::vector<double> wanted_, root_, root_before_;  // lanes: see `control`; of the last step taken
   Flags was_refused_;
   std::vector<int> stiff_, not_stiff_;    // lanes: counts of Hairer's test
 };

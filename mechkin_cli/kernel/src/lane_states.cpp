@@ -20,6 +20,7 @@ LaneStates::LaneStates(Motion& m, const IntegratorSettings& s)
     a->assign(switches, 0.0);
   side.assign(switches, 1);
   work.assign((std::size_t)quadratures * lanes, 0.0);
+  evaluations.assign(lanes, 0);
   fault.assign(lanes, 0);
   fresh_fault_.assign(lanes, 0);
   finite_.assign(lanes, 0.0);
@@ -37,10 +38,19 @@ bool LaneStates::evaluate(const double* at, const double* place, bool is_end, Fl
   std::fill(finite_.begin(), finite_.end(), 0.0);
   for (long k = 0; k < rest; k += lanes)
     for (int i = 0; i < lanes; ++i) finite_[i] += 0.0 * rates[k + i];
+  int bad = 0;
+  for (int i = 0; i < lanes; ++i) {
+    evaluations[i] += (*mask)[i];
+    bad |= (int)fresh_fault_[i] | (int)(finite_[i] != 0.0);
+  }
+  return !bad || drop_faults(mask);
+}
+
+// Takes the lanes with a fault out of the mask.
+bool LaneStates::drop_faults(Flags* mask) {
   bool left = false;
   for (int i = 0; i < lanes; ++i) {
     if (!(*mask)[i]) continue;
-    ++report[i].evaluations;
     if (!fresh_fault_[i] && !(finite_[i] == 0.0)) fresh_fault_[i] = NOT_FINITE;
     if (fresh_fault_[i]) {
       fault[i] = fresh_fault_[i];

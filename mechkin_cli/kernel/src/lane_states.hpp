@@ -49,8 +49,11 @@ struct LaneStates {
   std::vector<double> switch_inner[2], switch_least;
 
   std::vector<LaneReport> report;
+  std::vector<long> evaluations;                   // lanes
 
  private:
+  bool drop_faults(Flags* mask);
+
   Flags fresh_fault_;
   std::vector<double> finite_;
 };

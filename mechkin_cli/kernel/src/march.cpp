@@ -75,6 +75,7 @@ void March::finish(int lane, LaneEnd end, int which) {
   report.which = which;
   report.fault = end == LaneEnd::STUCK ? states_.fault[lane] : 0;
   report.time = states_.time[lane];
+  report.evaluations = states_.evaluations[lane];
 }
 
 // Chooses the next step of a lane and its end.
@@ -150,6 +151,7 @@ void March::refuse(int lane, double step) {
   LaneControl& c = control_[lane];
   ++states_.report[lane].rejections;
   c.landing = -1;
+  c.landed = false;
   c.was_refused = true;
   c.wanted = step;
   if (!(step > least(lane))) finish(lane, LaneEnd::STUCK);

@@ -1,11 +1,14 @@
 // Rows: steps end on them; where they are denser than the steps would be, they are interpolated.
 #include <algorithm>
+#include <cmath>
 
 #include "march.hpp"
 
 namespace {
 
 constexpr double STRETCH = 1.01;  // of a step that reaches a row with it
+constexpr double SAME_TIME = 2e-15;  // in parts of the time or the duration: between a row and a step that ended for more
+                                     // than it
 
 }  // namespace
 
@@ -59,7 +62,8 @@ void March::rows_here(const Flags& mask) {
   Flags here(states_.lanes, 0);
   for (int i = 0; i < states_.lanes; ++i) {
     LaneControl& c = control_[i];
-    here[i] = mask[i] && has_row(c) && row_time(i, c.next_row) - states_.time[i] <= least(i);
+    const double rounding = SAME_TIME * std::max(std::fabs(states_.time[i]), states_.duration[i]);
+    here[i] = mask[i] && has_row(c) && row_time(i, c.next_row) - states_.time[i] <= rounding;
     if (!here[i]) continue;
     row_[i] = c.next_row++;
     states_.report[i].rows = c.next_row;
