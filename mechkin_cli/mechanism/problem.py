@@ -17,7 +17,7 @@ from mechkin_cli.mechanism.quantities import Wanted, catalogue, response_quantit
 
 if TYPE_CHECKING:
     from mechkin_cli.expressions import Quantity
-    from mechkin_cli.mechanism.load_laws import LoadLaw
+    from mechkin_cli.mechanism.load_laws import Laws, LoadLaw
     from mechkin_cli.mechanism.response import Response
     from mechkin_cli.units import UnitSystem
 
@@ -70,6 +70,15 @@ class Problem:
         if not told:
             return self.laid_mechanism
         return replace(self.laid_mechanism, joints={**self.laid_mechanism.joints, **told})
+
+    @property
+    def laws(self) -> Laws | None:
+        """The laws of the loads that vary, with what their names stand for; None without any."""
+        if not self.load_laws:
+            return None
+        from mechkin_cli.mechanism.load_laws import Laws
+
+        return Laws(self.load_laws, self.parameters, self.quantities())
 
     def quantities(self) -> Mapping[str, Wanted]:
         """The quantities that the mechanism has, by name."""

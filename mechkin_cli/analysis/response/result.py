@@ -90,7 +90,6 @@ class ResponseResult(Result):
         *,
         session: Session | None = None,
         inputs: KernelInputs | None = None,
-        loads: Floats | None = None,
         shift: int = 0,
         iterations: int = 0,
         chart: Chart | None = None,
@@ -101,7 +100,6 @@ class ResponseResult(Result):
             demand,
             session=session,
             inputs=inputs,
-            loads=loads,
             shift=shift,
             iterations=iterations,
             chart=self.chart if chart is None else chart,
@@ -184,8 +182,7 @@ class ResponseResult(Result):
         total = np.zeros(self.rows)
         for amount in given:
             if isinstance(amount, Varying):
-                assert self.loads is not None
-                total = total + self.loads.values[amount.number]
+                total = total + self.law_values[amount.number]
             else:
                 total = total + amount
         return np.where(self.solved, total, np.nan)

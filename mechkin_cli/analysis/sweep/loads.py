@@ -1,13 +1,12 @@
-"""Loads that vary: evaluated over all rows from what they read, before the forces."""
+"""Loads that vary where one has no value: which, and what to say."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.mechanism.load_laws import law_values, quantities_read
-from mechkin_cli.solver.varying_loads import kernel_loads
+from mechkin_cli.mechanism.load_laws import law_value, quantities_read, undefined_laws
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.sweep.result import Result
@@ -15,23 +14,24 @@ if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Diagnostic
 
 
-class RowLoads(NamedTuple):
-    """Values of the laws (laws, rows) in SI, loads as the kernel takes them (columns, rows), rows
-    (rows,) that lack one, and why."""
-
-    values: Floats
-    columns: Floats
-    lost: Bools
-    diagnostics: list[Diagnostic]
+def values_of_laws(result: Result) -> Floats:
+    """Values of the laws (laws, rows) in SI: what the kernel has, before units and axes."""
+    laws, rows = result.problem.load_laws, result.row_states.reached.size
+    _read(result)
+    values = [law_value(law, result.quantity, rows) for law in laws]
+    return np.array(values).reshape(len(laws), rows)
 
 
-def row_loads(result: Result) -> RowLoads:
-    """The loads of all rows of a result."""
-    problem, reached = result.problem, result.row_states.reached
-    known = problem.quantities()
-    result.read([known[name] for name in quantities_read(problem)])
-    found = law_values(problem, result.quantity, reached)
-    lost = reached & np.isnan(found.values).any(axis=0)
-    return RowLoads(
-        found.values, kernel_loads(result.session.layout, found.values), lost, found.diagnostics
-    )
+def undefined_loads(result: Result, lost: Bools) -> list[Diagnostic]:
+    """What to say of the rows (rows,) of a result in which some load has no value.
+
+    The laws are evaluated once more, from the same quantities as in the kernel and with the same
+    bits, to tell them apart.
+    """
+    _read(result)
+    return undefined_laws(result.problem, result.quantity, lost)
+
+
+def _read(result: Result) -> None:
+    known = result.problem.quantities()
+    result.read([known[name] for name in quantities_read(result.problem)])

@@ -36,6 +36,7 @@ struct Workspace {
   Pack* saved;                    // states before a trial step
   Pack* kept;                     // largest block squared: factors of lanes that are done
   Mask* kept_swap;
+  Pack *load, *law;               // values of loads that vary; registers of Plan::law
   bool* moves;                    // links: whether Newton on the link's block moves it (find_moving)
   Pack *direction, *origin;       // charts x columns, states: the chart's, see Chart
   Pack *place, *place_rate, *place_acceleration;  // charts
@@ -58,9 +59,7 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   }
   const long pack = sizeof(Pack), largest = p.largest_block;
   w->q = (Pack*)take(p.states * pack);
-  w->rate = (Pack*)take(p.columns * pack);
-  w->acceleration = (Pack*)take(p.columns * pack);
-  w->jerk = (Pack*)take(p.columns * pack);
+  for (Pack** const of_column : {&w->rate, &w->acceleration, &w->jerk}) *of_column = (Pack*)take(p.columns * pack);
   w->link_jerk = (Twist*)take((p.links + 1) * sizeof(Twist));
   w->pose = (Pose*)take(p.links * sizeof(Pose));
   w->screw = (Twist*)take(p.columns * sizeof(Twist));
@@ -81,6 +80,7 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->across = (Vec3*)take((p.legs + 1) * sizeof(Vec3));
   w->holding = (Pack*)take((p.legs + 1) * pack);
   w->saved = (Pack*)take(p.states * pack);
+  w->load = (Pack*)take(p.load_values * pack), w->law = (Pack*)take(p.law.registers() * pack);
   w->direction = (Pack*)take(p.charts * p.columns * pack);
   w->origin = (Pack*)take((p.charts ? p.states : 0) * pack);
   w->place = (Pack*)take(p.charts * pack);
