@@ -40,6 +40,7 @@ class Fault(IntEnum):
     NOT_CLOSED = 1
     OFF_BRANCH = 2
     SINGULAR_INERTIA = 4
+    UNDEFINED_LOAD = 8
     NOT_FINITE = 255
 
 

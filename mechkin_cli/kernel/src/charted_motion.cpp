@@ -36,7 +36,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   make(direction_, (long)plan_.charts * plan_.columns), make(jacobian_, entries_), make(turn_, turn_slots_);
   make(elapsed_, 1), make(origin_time_, 1), make(place_, plan_.charts), make(rate_, plan_.charts);
   make(inputs_, plan_.inputs), make(input_rates_, plan_.inputs), make(input_seconds_, plan_.inputs);
-  make(loads_, plan_.load_values);
+  make(time_, 1);
   found_ = make_stage(), end_ = make_stage();
   for (int l = 0; l < lanes_; ++l) {
     const MotionStart& s = starts_[l];
@@ -44,6 +44,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
     for (int k = 0; k < plan_.columns; ++k) origin_first_[k * lanes_ + l] = s.first[k];
     for (int k = 0; k < plan_.charts * plan_.columns; ++k) end_.tangent[k * lanes_ + l] = s.tangent[k];
     lay_chart(l);
+    origin_time_[l] = time_[l] = s.begin;
   }
   const std::vector<double> y = start();
   std::copy(y.begin() + (long)plan_.charts * lanes_, y.begin() + 2L * plan_.charts * lanes_, rate_.begin());
@@ -74,7 +75,7 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
   given.direction = direction_.data(), given.origin_jacobian = jacobian_.data(), given.elapsed = elapsed_.data();
   given.place = place, given.rate = rate;
   given.inputs = inputs_.data(), given.input_rates = input_rates_.data(), given.input_seconds = input_seconds_.data();
-  given.loads = loads_.data(), given.turned = turn_.data();
+  given.time = time_.data(), given.turned = turn_.data();
   given.turns = turns_.data(), given.turn_count = (int)turns_.size();
   given.tight = limits_.tight, given.coarse = limits_.coarse, given.accept = limits_.accept;
   given.iterations = limits_.iterations, given.jump = limits_.jump, given.radius = limits_.radius;
@@ -89,7 +90,8 @@ void ChartedMotion::set_places(const Places& places) {
   const int n = plan_.charts;
   for (int l = 0; l < lanes_; ++l) {
     const bool active = places.active[l];
-    elapsed_[l] = active ? places.time[l] - origin_time_[l] : 0.0;
+    time_[l] = active ? places.time[l] : origin_time_[l];
+    elapsed_[l] = time_[l] - origin_time_[l];
     for (int i = 0; i < n; ++i) {
       place_[i * lanes_ + l] = active ? places.y[i * lanes_ + l] : 0.0;
       rate_[i * lanes_ + l] = active ? places.y[(n + i) * lanes_ + l] : 0.0;

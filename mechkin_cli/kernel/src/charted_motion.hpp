@@ -19,6 +19,7 @@ struct MotionStart {
   const double* state;      // states, closed
   const double* first;      // columns: their rates
   const double* tangent;    // charts x columns: rates that the loops allow, as many as freedoms, independent
+  double begin;             // s
 };
 
 struct MotionLimits {
@@ -81,6 +82,6 @@ class ChartedMotion : public Motion {
   long entries_ = 0;
   std::vector<char, AlignedAllocator<char>> wide_, workspace_;
   Packed origin_, origin_first_, origin_second_, direction_, jacobian_, turn_, elapsed_, place_, rate_, origin_time_;
-  Packed inputs_, input_rates_, input_seconds_, loads_;
+  Packed inputs_, input_rates_, input_seconds_, time_;
   Stage found_, end_;
 };

@@ -5,6 +5,7 @@
 
 #include "equations_of_motion.hpp"
 #include "motion_unit.hpp"
+#include "quantity_program.hpp"
 #include "regular.hpp"
 
 namespace {
@@ -17,16 +18,17 @@ inline void copy(const Pack* from, int count, Pack* to) {
   for (int i = 0; i < count; ++i) to[i] = from[i];
 }
 
-// What loads read of a stage.
+// What loads and their laws read of a stage.
 struct StageValues {
   const StageGiven& given;
-  MECHKIN_INLINE Pack operator()(int column) const { return packs(given.loads)[column]; }
+  MECHKIN_INLINE Pack time() const { return *packs(given.time); }
   // The turn nearest to where the angle was at the origin; a tree's angle is continuous by itself.
-  MECHKIN_INLINE Pack turned(const Load& l, Pack angle) const {
+  MECHKIN_INLINE Pack turned(int turn, bool closing, Pack angle) const {
     const Pack full = 2.0 * 3.14159265358979323846;
-    if (l.turn < 0 || l.other >= 0) return angle;
-    return angle + full * nearest_integer((packs(given.turned)[l.turn] - angle) / full);
+    if (turn < 0 || !closing) return angle;
+    return angle + full * nearest_integer((packs(given.turned)[turn] - angle) / full);
   }
+  MECHKIN_INLINE Pack input(int, Pack, Pack angle) const { return angle; }
 };
 
 // Where the states would be by the origin's derivatives, moved along the chart to the wanted place.
@@ -102,6 +104,7 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
   const Pack* const input_rate = packs(given.input_rates);
   move(p, w, m, packs(given.rate), input_rate, packs(given.input_seconds));
   const StageValues values = {given};
+  const Mask undefined = evaluate_loads(p, w, values);
   reduce_inertia(p, w, m);
   reduce_forces(p, w, m, values);
   Pack* const second = packs(found.chart_second);
@@ -127,6 +130,7 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
     if (!lane(placed.closed, i)) f |= STAGE_NOT_CLOSED;
     if (!lane(placed.on_branch, i)) f |= STAGE_OFF_BRANCH;
     if (!lane(positive, i)) f |= STAGE_SINGULAR_INERTIA;
+    if (lane(undefined, i)) f |= STAGE_UNDEFINED_LOAD;
     found.flags[i] = (unsigned char)f;
   }
 }

@@ -15,7 +15,7 @@ struct StageGiven {
   const double* place;            // charts: u
   const double* rate;             // charts: its rate
   const double *inputs, *input_rates, *input_seconds;  // inputs: of what is driven
-  const double* loads;            // load_values
+  const double* time;             // 1: s, as laws of loads read it
   const double* turned;           // turn slots, see Request::turned, of the origin
   const ClosingTurn* turns;       // turn_count: what StageFound::turned holds
   int turn_count;
@@ -28,7 +28,8 @@ enum StageFlag : unsigned char {
   STAGE_GOOD = 0,
   STAGE_NOT_CLOSED = 1,      // nor a side condition kept
   STAGE_OFF_BRANCH = 2,      // not told to lie on the origin's branch
-  STAGE_SINGULAR_INERTIA = 4
+  STAGE_SINGULAR_INERTIA = 4,
+  STAGE_UNDEFINED_LOAD = 8   // a law of a load has no value
 };
 
 struct StageFound {

@@ -59,7 +59,9 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   }
   const long pack = sizeof(Pack), largest = p.largest_block;
   w->q = (Pack*)take(p.states * pack);
-  for (Pack** const of_column : {&w->rate, &w->acceleration, &w->jerk}) *of_column = (Pack*)take(p.columns * pack);
+  w->rate = (Pack*)take(p.columns * pack);
+  w->acceleration = (Pack*)take(p.columns * pack);
+  w->jerk = (Pack*)take(p.columns * pack);
   w->link_jerk = (Twist*)take((p.links + 1) * sizeof(Twist));
   w->pose = (Pose*)take(p.links * sizeof(Pose));
   w->screw = (Twist*)take(p.columns * sizeof(Twist));

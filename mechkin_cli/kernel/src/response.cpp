@@ -15,6 +15,7 @@ void respond_pack(const ResponseTask& task, const MotionUnit& unit, long first, 
   for (int l = 0; l < unit.lanes; ++l) {
     const long v = std::min(first + l, count - 1);
     starts.push_back(task.starts[v]);
+    starts.back().begin = task.begin;
     rows.push_back(task.rows[v]);
     if (first + l >= count) rows.back().rows = 0;
   }

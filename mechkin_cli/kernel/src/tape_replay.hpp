@@ -25,7 +25,7 @@ MECHKIN_INLINE Mask tape_condition(int operation, Pack a, Pack b) {
   return operation == TAPE_LESS ? a < b : operation == TAPE_NOT_MORE ? a <= b : a == b;
 }
 
-void replay_pack(const Tape& t, Pack* r) {
+inline void replay_pack(const Tape& t, Pack* r) {
   Pack* result = r + t.inputs + t.constants;
   const std::int32_t* o = t.operand;
   for (int i = 0; i < t.instructions; ++i, o += 3) {
@@ -61,10 +61,10 @@ void replay_pack(const Tape& t, Pack* r) {
   }
 }
 
-long replay_size(const Tape& t) { return (long)sizeof(Pack) * t.registers() + 64; }
+inline long replay_size(const Tape& t) { return (long)sizeof(Pack) * t.registers() + 64; }
 
 // Lanes beyond the last set of inputs repeat it.
-void replay(const Tape& t, const TapeRequest& request, char* memory) {
+inline void replay(const Tape& t, const TapeRequest& request, char* memory) {
   Pack* const r = (Pack*)(memory + (64 - (std::uintptr_t)memory % 64) % 64);
   for (int c = 0; c < t.constants; ++c) r[t.inputs + c] = t.constant[c];
   for (long first = 0; first < request.count; first += LANES) {
