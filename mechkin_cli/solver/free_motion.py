@@ -40,6 +40,7 @@ class Fault(IntEnum):
     NOT_CLOSED = 1
     OFF_BRANCH = 2
     SINGULAR_INERTIA = 4
+    UNDEFINED_LOAD = 8
     NOT_FINITE = 255
 
 
@@ -83,8 +84,8 @@ class MotionRows:
 
 class WatchedStop(NamedTuple):
     """What ends a motion, by a value that is watched: 0 it crosses `at`, upwards (1), downwards
-    (-1) or either way (0); 1 it changes its sign for the `times`th time; 2 it lies `times` turns from
-    where it began."""
+    (-1) or either way (0); 1 it changes its sign for the `times`th time; 2 it lies `times` turns
+    from where it began."""
 
     kind: int
     direction: int

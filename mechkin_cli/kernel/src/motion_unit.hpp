@@ -29,7 +29,8 @@ enum StageFlag : unsigned char {
   STAGE_GOOD = 0,
   STAGE_NOT_CLOSED = 1,      // nor a side condition kept
   STAGE_OFF_BRANCH = 2,      // not told to lie on the origin's branch
-  STAGE_SINGULAR_INERTIA = 4
+  STAGE_SINGULAR_INERTIA = 4,
+  STAGE_UNDEFINED_LOAD = 8   // a law of a load has no value
 };
 
 struct StageFound {
