@@ -91,7 +91,7 @@ def _demand_lines(analysis: Analysis) -> list[str]:
         from mechkin_cli.mechanism.load_laws import quantities_read
 
         read = ", ".join(quantities_read(problem))
-        lines.append(f"loads that vary: evaluated on all rows first, from {read}")
+        lines.append(f"loads that vary: evaluated with the forces, from {read}")
     lines += _derived_lines(asked)
     if forces and massless:
         lines.append("inertia: skipped, no link has mass")

@@ -10,13 +10,11 @@ from fractions import Fraction
 from functools import reduce
 from typing import NamedTuple
 
-import numpy as np
-
 from mechkin_cli.expressions import scalar_functions
 from mechkin_cli.expressions.arithmetic import common_dimension, raise_to_power
 from mechkin_cli.expressions.operand import Operand, Site
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Vector
-from mechkin_cli.tape.scalars import of_one
+from mechkin_cli.tape.scalars import is_number, of_one
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, Dimension
 
 
@@ -72,7 +70,7 @@ def _arctangent(site: Site, y: Operand, x: Operand) -> Quantity:
 
 def _square_root(site: Site, operand: Operand) -> Quantity:
     value = site.scalar(operand)
-    if not isinstance(value, np.ndarray) and value < 0.0:
+    if is_number(value) and value < 0.0:
         raise site.error(
             f"square root of a negative number ({value:.6g} in SI units)",
             "check the values of the parameters",

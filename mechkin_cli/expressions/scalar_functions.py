@@ -46,6 +46,8 @@ def angle_of(y: Scalar, x: Scalar) -> Scalar:
 
 def smaller(left: Scalar, right: Scalar) -> Scalar:
     """The smaller of two; nan if one is nan."""
+    if scalars.is_row(left) or scalars.is_row(right):
+        return _unless_nan(right, scalars.of_two("SMALLER", left, right))
     if not isinstance(left, np.ndarray) and not isinstance(right, np.ndarray):
         return scalars.smallest(left, right)
     return _select(np.less(right, left) | np.isnan(right), right, left)
@@ -53,9 +55,17 @@ def smaller(left: Scalar, right: Scalar) -> Scalar:
 
 def larger(left: Scalar, right: Scalar) -> Scalar:
     """The larger of two; nan if one is nan."""
+    if scalars.is_row(left) or scalars.is_row(right):
+        return _unless_nan(right, scalars.of_two("LARGER", left, right))
     if not isinstance(left, np.ndarray) and not isinstance(right, np.ndarray):
         return scalars.largest(left, right)
     return _select(np.greater(right, left) | np.isnan(right), right, left)
+
+
+def _unless_nan(right: Any, chosen: Any) -> Scalar:
+    """What was chosen of two recorded rows, or the second where that one is nan."""
+    found: Scalar = chosen if isinstance(right, float) else (right == right).choose(chosen, right)
+    return found
 
 
 def wrap(angle: Scalar) -> Scalar:

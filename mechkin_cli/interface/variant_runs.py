@@ -125,11 +125,9 @@ class Study:
         problem = self.problem
         given = {driven.name for driven in problem.motion.inputs}
         given |= {name for driven in problem.motion.inputs for name in driven.orders}
-        forces = demand_of(problem.mechanism, self.wanted) & Demand.FORCES
         session = variation.base
         if (
             any(q.kind in DERIVED_KINDS or q.kind == "power_error" for q in self.wanted)
-            or (problem.load_laws and forces)
             or (session.is_redundant and any(q.kind in WRENCH_KINDS for q in self.wanted))
             or (variation.moving_inputs and given & {q.name for q in self.wanted})
         ):

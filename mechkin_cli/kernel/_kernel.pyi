@@ -39,6 +39,11 @@ class FreeCode(IntEnum):
     SQUARE = ...
     ALL = ...
 
+class ReadCode(IntEnum):
+    OUTPUT = 0
+    ANGLE = 1
+    TIME = 2
+
 class LoadCode(IntEnum):
     FORCE_GROUND = 0
     FORCE_LINK = 1
@@ -231,6 +236,19 @@ class PlanBuilder:
         vector: Triple,
         varying: bool = False,
     ) -> None: ...
+    def set_load_program(
+        self,
+        reads: Sequence[tuple[int, int, int, int, int]],
+        numbers: Sequence[float],
+        curves: Sequence[
+            tuple[int, float, float, Sequence[tuple[float, float, float, float, float]]]
+        ],
+        constants: Sequence[float],
+        operations: Sequence[int],
+        operands: Sequence[tuple[int, int, int]],
+        outputs: Sequence[int],
+        kinks: Sequence[int],
+    ) -> None: ...
     def add_size_point(self, link: int, point: Triple) -> None: ...
     def finish(self) -> Plan: ...
 
@@ -281,9 +299,10 @@ class Plan:
         rates: Floats | None = None,
         accelerations: Floats | None = None,
         jerks: Floats | None = None,
-        loads: Floats | None = None,
         turned: Floats | None = None,
         whole: Floats | None = None,
+        full: Floats | None = None,
+        time: Floats | None = None,
         outputs: Outputs | None = None,
         states: Floats,
         values: Floats | None = None,
@@ -295,6 +314,8 @@ class Plan:
         condition: Floats | None = None,
         power_error: Floats | None = None,
         flags: NDArray[np.uint8],
+        loads: Floats | None = None,
+        undefined: NDArray[np.uint8] | None = None,
         demand: int = 0,
         shift: int = 0,
         iterations: int = 0,
@@ -335,6 +356,8 @@ class Variants:
         parameters: Floats,
         inputs: Floats,
         whole: Floats,
+        full: Floats,
+        time: Floats,
         rates: Floats,
         accelerations: Floats,
         jerks: Floats,
@@ -559,6 +582,8 @@ def respond(
     tangent: Floats,
     begin: float,
     times: Floats,
+    stops: Sequence[tuple[int, int, int, float]],
+    driven: DrivenLaws | None,
     tolerance: float,
     fixed_step: float,
     most_steps: int,
@@ -571,3 +596,16 @@ def respond(
     lanes: int,
     threads: int,
 ) -> tuple[Any, ...]: ...
+
+class DrivenLaws:
+    def __init__(
+        self,
+        tape: Tape | None,
+        edges: Sequence[float],
+        constants: Sequence[float],
+        ways: Sequence[float],
+        units: Sequence[float],
+        time_unit: float,
+        held: Sequence[float],
+    ) -> None: ...
+    def at(self, time: float) -> list[tuple[float, float, float]]: ...

@@ -1,4 +1,7 @@
-"""Loads that vary: laws of coordinates, rates and time, evaluated over all rows before the forces.
+"""Loads that vary: laws of coordinates, rates and time.
+
+The kernel evaluates them row by row before the forces (`solver.quantity_program`); here is what
+they are over rows of numbers.
 
 A law is an expression of quantities that are known without forces, or a table's curve over one of
 them. Where a law has no value (a row outside its table, a root of a negative number) the row keeps
@@ -7,7 +10,7 @@ its position and rates; what depends on the load has no value either.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -23,6 +26,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.mechanism.curve import Curve
+    from mechkin_cli.mechanism.quantities import Wanted
 
 Resolve = Callable[[str], Quantity]
 
@@ -40,11 +44,14 @@ class LoadLaw(NamedTuple):
     curve: Curve | None = None
 
 
-class LawValues(NamedTuple):
-    """Values (laws, rows) in SI, nan where a law has none; what to say about those rows."""
+class Laws(NamedTuple):
+    """The laws of the loads that vary, and what the names in them stand for; `watched` are values
+    that a motion is watched for beside them."""
 
-    values: Floats
-    diagnostics: list[Diagnostic]
+    laws: tuple[LoadLaw, ...]
+    parameters: Mapping[str, Quantity]
+    quantities: Mapping[str, Wanted]
+    watched: tuple[LoadLaw, ...] = ()
 
 
 def quantities_read(problem: Problem) -> list[str]:
@@ -52,40 +59,50 @@ def quantities_read(problem: Problem) -> list[str]:
     return list(dict.fromkeys(name for law in problem.load_laws for name in law.reads))
 
 
-def law_values(problem: Problem, resolve: Resolve, reached: Bools) -> LawValues:
-    """Evaluates the laws of a problem.
+def law_value(law: LoadLaw, resolve: Resolve, rows: int) -> Floats:
+    """The value of a law (rows,) in SI, nan where it has none.
+
+    Args:
+        law: an expression or a curve.
+        resolve: the quantity of a name over the rows, in SI.
+        rows: how many there are.
+    """
+    if law.curve is not None:
+        x = np.broadcast_to(np.asarray(resolve(law.reads[0]).value, dtype=np.float64), (rows,))
+        slack = TABLE_END * (law.curve.last - law.curve.first)
+        inside = (x >= law.curve.first - slack) & (x <= law.curve.last + slack)
+        clipped = np.clip(x, law.curve.first, law.curve.last)
+        return np.where(inside, law.curve.evaluate(clipped)[0], np.nan)
+    assert law.expression is not None
+    found = np.asarray(law.expression.evaluate(resolve).value, dtype=np.float64)
+    inside = np.broadcast_to(np.abs(found) <= LARGEST_NUMBER, (rows,))
+    return np.where(inside, found, np.nan)
+
+
+def undefined_laws(problem: Problem, resolve: Resolve, lost: Bools) -> list[Diagnostic]:
+    """What to say of rows in which a law has no value.
 
     Args:
         problem: its laws, and the units of messages.
         resolve: the quantity of a name over the rows, in SI.
-        reached: rows (rows,) that have a position; nothing is said about others.
+        lost: the rows (rows,) to look at.
     """
-    values, diagnostics = np.empty((len(problem.load_laws), reached.size)), []
-    for number, law in enumerate(problem.load_laws):
-        place = _Places(law, resolve, problem.units, reached.size)
+    diagnostics = []
+    for law in problem.load_laws:
+        rows = np.flatnonzero(lost & np.isnan(law_value(law, resolve, lost.size)))
+        if not rows.size:
+            continue
+        place = _Places(law, resolve, problem.units, lost.size)
         if law.curve is not None:
-            x = place.rows(law.reads[0])
-            slack = TABLE_END * (law.curve.last - law.curve.first)
-            inside = (x >= law.curve.first - slack) & (x <= law.curve.last + slack)
-            clipped = np.clip(x, law.curve.first, law.curve.last)
-            values[number] = np.where(inside, law.curve.evaluate(clipped)[0], np.nan)
             words, limit = "lies outside its table", place.limit(law.curve)
             hint = "extend the table, or keep the motion within it"
         else:
-            assert law.expression is not None
-            found = np.asarray(law.expression.evaluate(resolve).value, dtype=np.float64)
-            inside = np.broadcast_to(np.abs(found) <= LARGEST_NUMBER, reached.shape)
-            values[number] = np.where(inside, found, np.nan)
             words, limit = "has no finite value", None
             hint = "write an expression that holds in all rows, or move the rows"
-        lost = np.flatnonzero(reached & ~inside)
-        if lost.size:
-            text = f"this load {words} in {_count(lost)}; cells that depend on it stay empty"
-            at = place.measured(int(lost[0]))
-            diagnostics.append(
-                Diagnostic("load-undefined", "error", text, law.place, at, limit, hint)
-            )
-    return LawValues(values, diagnostics)
+        text = f"this load {words} in {_count(rows)}; cells that depend on it stay empty"
+        at = place.measured(int(rows[0]))
+        diagnostics.append(Diagnostic("load-undefined", "error", text, law.place, at, limit, hint))
+    return diagnostics
 
 
 def _count(rows: Sequence[int] | NDArray[np.intp]) -> str:

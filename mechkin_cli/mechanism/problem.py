@@ -17,7 +17,7 @@ from mechkin_cli.mechanism.quantities import Wanted, catalogue, response_quantit
 
 if TYPE_CHECKING:
     from mechkin_cli.expressions import Quantity
-    from mechkin_cli.mechanism.load_laws import LoadLaw
+    from mechkin_cli.mechanism.load_laws import Laws, LoadLaw
     from mechkin_cli.mechanism.response import Response
     from mechkin_cli.units import UnitSystem
 
@@ -70,6 +70,16 @@ class Problem:
         if not told:
             return self.laid_mechanism
         return replace(self.laid_mechanism, joints={**self.laid_mechanism.joints, **told})
+
+    @property
+    def laws(self) -> Laws | None:
+        """The laws of the loads that vary, with what their names stand for; None without any."""
+        watched = () if self.response is None else self.response.watched
+        if not self.load_laws and not watched:
+            return None
+        from mechkin_cli.mechanism.load_laws import Laws
+
+        return Laws(self.load_laws, self.parameters, self.quantities(), watched)
 
     def quantities(self) -> Mapping[str, Wanted]:
         """The quantities that the mechanism has, by name."""

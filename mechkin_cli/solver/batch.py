@@ -52,7 +52,9 @@ class Batch(NamedTuple):
     `states` and `outputs` as planned; `first` and `second` are the derivatives of the columns
     (lengths in the kernel's unit); `correction` is the largest change of an unknown against its
     guess; `side` (blocks, rows) are the signs of the square blocks' determinants where more than
-    positions was demanded; `flags` are `RowFlag`s; what was not asked for is None.
+    positions was demanded; `flags` are `RowFlag`s; `loads` (values, rows) are those of loads
+    that vary, in the kernel's units, and `undefined` tells rows in which one has none; what was not
+    asked for is None.
     """
 
     states: Floats
@@ -65,6 +67,8 @@ class Batch(NamedTuple):
     condition: Floats | None
     power_error: Floats | None
     flags: NDArray[np.uint8]
+    loads: Floats | None = None
+    undefined: NDArray[np.uint8] | None = None
 
     @property
     def good(self) -> NDArray[np.bool_]:
@@ -79,10 +83,11 @@ def run(
     *,
     rates: Floats | None = None,
     accelerations: Floats | None = None,
-    loads: Floats | None = None,
     jerks: Floats | None = None,
     turned: Floats | None = None,
     whole: Floats | None = None,
+    full: Floats | None = None,
+    time: Floats | None = None,
     demand: Demand = Demand.POSITION,
     outputs: Outputs | None = None,
     derivatives: bool = False,
@@ -103,11 +108,12 @@ def run(
         rates: needed for velocities.
         accelerations: needed for accelerations.
         jerks: needed for third derivatives.
-        loads: values of varying loads (columns, rows) as `varying_loads.kernel_loads` gives them,
-            needed for forces where there are any.
-        turned: (turn slots, rows) as `solver.closing_turns` has them; springs on angles go by them.
+        turned: (turn slots, rows) as `solver.closing_turns` has them; springs on angles and laws of
+            loads go by them.
         whole: (inputs, rows) whole turns that the inputs are without, likewise.
         chart: of a plan with one.
+        full: (inputs, rows) the inputs with their whole turns, which laws of loads read.
+        time: (rows,) s, likewise.
         demand: what to compute beyond positions.
         outputs: quantities to write, of a plan of the same structure.
         derivatives: return the columns' first and second derivatives, as far as they are demanded.
@@ -132,16 +138,20 @@ def run(
     condition = np.empty(rows) if demand & Demand.CONDITION else None
     power_error = np.empty(rows) if demand & Demand.POWER else None
     flags = np.empty(rows, dtype=np.uint8)
+    varying = plan.load_values and demand & Demand.FORCES
+    loads = np.empty((plan.load_values, rows)) if varying else None
+    undefined = np.empty(rows, dtype=np.uint8) if varying else None
     plan.run(
         inputs=_contiguous(inputs),
         guess=_contiguous(guess),
         rates=_contiguous(rates),
         accelerations=_contiguous(accelerations),
         jerks=_contiguous(jerks),
-        loads=_contiguous(loads),
         turned=_contiguous(turned),
         whole=_contiguous(whole),
         **({} if chart is None else chart.arguments(demand)),
+        full=_contiguous(full),
+        time=_contiguous(time),
         outputs=outputs,
         states=states,
         values=values,
@@ -152,6 +162,8 @@ def run(
         side=side,
         condition=condition,
         power_error=power_error,
+        loads=loads,
+        undefined=undefined,
         flags=flags,
         demand=int(demand),
         shift=shift,
@@ -162,7 +174,7 @@ def run(
         threads=threads_for(rows, threads),
     )
     measured = (residual, correction, side, condition, power_error)
-    return Batch(states, values, first, second, *measured, flags)
+    return Batch(states, values, first, second, *measured, flags, loads, undefined)
 
 
 def assembly_size(plan: Plan, inputs: Floats, state: Floats) -> float:

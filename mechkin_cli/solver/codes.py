@@ -21,6 +21,9 @@ if TYPE_CHECKING:
         PassageEnd as PassageEnd,
     )
     from mechkin_cli.kernel._kernel import (
+        ReadCode as ReadCode,
+    )
+    from mechkin_cli.kernel._kernel import (
         RowFlag as RowFlag,
     )
     from mechkin_cli.kernel._kernel import (
@@ -37,6 +40,7 @@ else:
     LoadCode = _kernel.LoadCode
     OutputCode = _kernel.OutputCode
     PassageEnd = _kernel.PassageEnd
+    ReadCode = _kernel.ReadCode
     RowFlag = _kernel.RowFlag
     TrackEnd = _kernel.TrackEnd
     TreeCode = _kernel.TreeCode

@@ -94,11 +94,11 @@ class Slot(NamedTuple):
 class OutputPlan:
     """Collects the quantities that runs of a plan write, and their slots.
 
-    `plan` serves them; `outputs` are what a run takes. Another `OutputPlan` on the same plan reads
-    other quantities.
+    `plan` serves them (None: only their records are wanted); `outputs` are what a run takes.
+    Another `OutputPlan` on the same plan reads other quantities.
     """
 
-    def __init__(self, layout: Layout, plan: Plan, inputs: list[tuple[str, str]]) -> None:
+    def __init__(self, layout: Layout, plan: Plan | None, inputs: list[tuple[str, str]]) -> None:
         self.layout = layout
         self.plan = plan
         self.inputs = inputs
@@ -111,6 +111,7 @@ class OutputPlan:
     def outputs(self) -> Outputs:
         """What was collected, checked against the plan."""
         if self._outputs is None:
+            assert self.plan is not None
             self._outputs = hand_over_outputs(self.plan, self.records)
         return self._outputs
 

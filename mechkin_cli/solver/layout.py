@@ -25,6 +25,7 @@ from mechkin_cli.tape.scalars import next_power_of_two
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.mechanism.load_laws import Laws
 
 
 class Carrier(NamedTuple):
@@ -44,11 +45,13 @@ class Carrier(NamedTuple):
 
 @dataclass(frozen=True)
 class Layout:
-    """Numbers, scale and frames of a mechanism and its solver graph. All methods are pure."""
+    """Numbers, scale and frames of a mechanism and its solver graph, and the laws of its loads that
+    vary. All methods are pure."""
 
     mechanism: Mechanism
     graph: SolverGraph
     unit: float | None = None
+    laws: Laws | None = None
 
     @cached_property
     def length(self) -> float:

@@ -25,6 +25,7 @@ from mechkin_cli.solver.records import (
     Leg,
     Place,
     PlanRecord,
+    Program,
     Rest,
     SizePoint,
     TreeJoint,
@@ -66,6 +67,7 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
         Gravity(scale(1.0 / layout.length, layout.mechanism.gravity)),
         *_inertias(layout),
         *(load_record(layout, load) for load in layout.mechanism.loads),
+        *_load_program(layout),
         *_size_points(layout),
     ]
 
@@ -218,6 +220,14 @@ def _inertias(layout: Layout) -> Iterator[Inertia]:
             for i in turned_tensor(link.inertia, layout.link_frame[name])
         ]
         yield Inertia(layout.link_number[name], link.mass, centre, tensor)
+
+
+def _load_program(layout: Layout) -> list[Program]:
+    if layout.laws is None:
+        return []
+    from mechkin_cli.solver.quantity_program import load_program
+
+    return load_program(layout)
 
 
 def _size_points(layout: Layout) -> Iterator[SizePoint]:

@@ -156,6 +156,33 @@ class AppliedLoad(NamedTuple):
     varying: bool = False
 
 
+class Curve(NamedTuple):
+    """A curve of a program over a register, nan outside [low, high]; `knots` are x and y, b, c, d
+    of each piece."""
+
+    over: int
+    low: float
+    high: float
+    knots: Sequence[tuple[float, float, float, float, float]]
+
+
+class Program(NamedTuple):
+    """Arithmetic over quantities, see the kernel's `ProgramOf`: the values of loads that vary.
+
+    `reads` are kind, then type, number, freedom and order of an `Output`; `numbers` data and factor
+    of each; `outputs` are registers, `kinks` numbers of operations.
+    """
+
+    reads: Sequence[tuple[int, int, int, int, int]]
+    numbers: Sequence[Number]
+    curves: Sequence[Curve]
+    constants: Sequence[Number]
+    operations: Sequence[int]
+    operands: Sequence[tuple[int, int, int]]
+    outputs: Sequence[int]
+    kinks: Sequence[int]
+
+
 class SizePoint(NamedTuple):
     """A joint's point whose place in the first assembly tells the mechanism's size; of ground in
     m."""
@@ -189,6 +216,7 @@ PlanRecord = (
     | Inertia
     | Gravity
     | AppliedLoad
+    | Program
     | SizePoint
 )
 
@@ -206,6 +234,7 @@ _VERBS: dict[type, str] = {
     Inertia: "set_inertia",
     Gravity: "set_gravity",
     AppliedLoad: "add_load",
+    Program: "set_load_program",
     SizePoint: "add_size_point",
 }
 """The builder's call for each record."""
@@ -222,6 +251,7 @@ _CONSTANTS: dict[type, tuple[str, ...]] = {
     Inertia: ("mass", "centre", "tensor"),
     Gravity: ("g",),
     AppliedLoad: ("point", "other_point", "vector"),
+    Program: ("numbers", "constants"),
     SizePoint: ("point",),
     Output: ("data", "factor"),
 }

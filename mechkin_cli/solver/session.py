@@ -104,7 +104,7 @@ class Session:
     @cached_property
     def layout(self) -> Layout:
         """How the mechanism lies in the kernel."""
-        return Layout(self.problem.laid_mechanism, self.graph)
+        return Layout(self.problem.laid_mechanism, self.graph, laws=self.problem.laws)
 
     @cached_property
     def plan(self) -> Plan:
@@ -295,10 +295,11 @@ class Session:
         rates: Floats | None = None,
         accelerations: Floats | None = None,
         jerks: Floats | None = None,
-        loads: Floats | None = None,
         turned: Floats | None = None,
         whole: Floats | None = None,
         chart: Chart | None = None,
+        full: Floats | None = None,
+        time: Floats | None = None,
         derivatives: bool = False,
         shift: int = 0,
         iterations: int = tolerances.NEWTON_ITERATIONS,
@@ -313,10 +314,11 @@ class Session:
             rates=rates,
             accelerations=accelerations,
             jerks=jerks,
-            loads=loads,
             turned=turned,
             whole=whole,
             chart=chart,
+            full=full,
+            time=time,
             demand=demand,
             outputs=None if readout is None else readout.outputs,
             derivatives=derivatives,

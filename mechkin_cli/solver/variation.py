@@ -91,6 +91,7 @@ class Reading:
         """The kernel's variants of this reading."""
         variation = self.variation
         base = variation.base
+        moments = base.problem.motion.time
         return _kernel.Variants(
             tape=self.tape,
             plan=base.plan,
@@ -98,6 +99,8 @@ class Reading:
             parameters=variation.values,
             inputs=base.inputs.reduced,
             whole=base.inputs.whole,
+            full=base.inputs.values,
+            time=np.empty(0) if moments is None else moments.values,
             rates=base.inputs.rates,
             accelerations=base.inputs.accelerations,
             jerks=base.inputs.jerks,
@@ -145,6 +148,7 @@ class Variation:
             problem.laid_mechanism,
             graph_of(problem.solved_mechanism, base.graph),
             base.layout.length,
+            problem.laws,
         )
         self._refuse_other_scale(problem)
         self.constants = flatten(plan_records(self.layout))

@@ -47,7 +47,7 @@ class VariedSession(Session):
         lost = end != VariantEnd.COMPLETE
         self.continued = Continued(None if lost else np.asarray(state), start.row)
         self.size = base.size if lost else size
-        self.layout = Layout(problem.laid_mechanism, self.graph, base.layout.length)
+        self.layout = Layout(problem.laid_mechanism, self.graph, base.layout.length, problem.laws)
         self.plan = variation.plan(values, start.size if lost else size)
         self.inputs = variation.inputs(values)
 

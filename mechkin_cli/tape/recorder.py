@@ -8,12 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.tape.floats import meaning
 from mechkin_cli.tape.operations import ARITY, Operation
 from mechkin_cli.tape.tape import Tape
+
+if TYPE_CHECKING:
+    from mechkin_cli.tape.traced import Traced
 
 Instruction = tuple[Operation, int, int, int]
 
@@ -23,7 +27,10 @@ class Recorder:
 
     Attributes:
         values: what every register held when it was recorded.
+        holds_others: whether numbers of other recordings are constants of this one.
     """
+
+    holds_others = False
 
     def __init__(self, inputs: Sequence[str], values: Sequence[float]) -> None:
         self.inputs = tuple(inputs)
@@ -51,6 +58,12 @@ class Recorder:
             self._written[number] = instruction
         return self._instructions[instruction]
 
+    def number(self, register: int) -> Traced:
+        """The number in a register."""
+        from mechkin_cli.tape.traced import Traced
+
+        return Traced(self, register)
+
     def guard(self, condition: Operation, a: int, b: int, *, advice: bool = False) -> bool:
         """What a condition finds now; a replay must find the same, or where that is only `advice`
         say so."""
@@ -73,7 +86,7 @@ class Recorder:
         number = {r: r for r in range(first)}
         number |= {r: first + k for k, r in enumerate((*constants, *computed))}
         written = [self._written[r] for r in computed]
-        operands = [_renumbered(instruction, number) for instruction in written]
+        operands = [renumbered(instruction, number) for instruction in written]
         guards = [(g[0], number[g[1]], number[g[2]]) for g in asked]
         return Tape(
             self.inputs,
@@ -104,7 +117,8 @@ class Recorder:
         return sorted(found)
 
 
-def _renumbered(instruction: Instruction, number: dict[int, int]) -> tuple[int, int, int]:
+def renumbered(instruction: Instruction, number: dict[int, int]) -> tuple[int, int, int]:
+    """The operands of an instruction by other numbers of their registers; unused ones are 0."""
     operation, *operands = instruction
     count = ARITY[operation]
     a, b, c = ([number[r] for r in operands[:count]] + [0, 0])[:3]

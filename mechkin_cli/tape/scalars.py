@@ -15,9 +15,10 @@ LARGEST_FLOAT = sys.float_info.max
 
 
 class Recorded:
-    """What `Traced` numbers are, for code that must tell them from floats."""
+    """What `Traced` numbers are, for code that must tell them from floats; `is_row`: from rows."""
 
     __slots__ = ()
+    is_row = False
 
     def apply(self, operation: str, *others: Any) -> Any:
         """The operation of a name on this number first, then on others."""
@@ -47,7 +48,12 @@ Result = TypeVar("Result", bound=tuple[Any, ...])
 
 def is_number(value: object) -> TypeGuard[float]:
     """Whether a value is one number, not rows or a vector."""
-    return isinstance(value, float | Recorded)
+    return isinstance(value, float) or (isinstance(value, Recorded) and not value.is_row)
+
+
+def is_row(value: object) -> bool:
+    """Whether a value is recorded and another in every row."""
+    return isinstance(value, Recorded) and value.is_row
 
 
 def plain(value: Any) -> Any:
@@ -167,6 +173,6 @@ def cos(angle: Any) -> Any:
 
 def whole(value: Recorded) -> Any:
     """The nearest whole number of a recorded one that is smaller than 2^51."""
-    if not abs(value) < float(2**51):  # type: ignore[arg-type]
+    if not value.is_row and not abs(value) < float(2**51):  # type: ignore[arg-type]
         raise TypeError("a varied number is too large to be rounded")
     return value.apply("WHOLE")

@@ -49,7 +49,7 @@ class Condition(Undecided):
         recorder = self.recorder
         holds = recorder.compute(self.operation, self.left, self.right)
         registers = (register(recorder, chosen), register(recorder, other))
-        return Traced(recorder, recorder.compute(Operation.CHOOSE, holds, *registers))
+        return recorder.number(recorder.compute(Operation.CHOOSE, holds, *registers))
 
 
 class Traced(Recorded):
@@ -129,21 +129,19 @@ class Traced(Recorded):
         return self._after(Operation[operation], first)
 
     def _with(self, operation: Operation, *others: float | Traced) -> Traced:
-        registers = (register(self.recorder, other) for other in others)
-        result = self.recorder.compute(operation, self.register, *registers)
-        return Traced(self.recorder, result)
+        return _computed(operation, self, *others)
 
     def _after(self, operation: Operation, other: float) -> Traced:
-        first = register(self.recorder, other)
-        return Traced(self.recorder, self.recorder.compute(operation, first, self.register))
+        return _computed(operation, other, self)
 
     def _compared(
         self, operation: Operation, other: object, *, turned: bool = False, negated: bool = False
     ) -> Condition:
-        left, right = self.register, register(self.recorder, other)
+        recorder = _innermost(self, other)
+        left, right = register(recorder, self), register(recorder, other)
         if turned:
             left, right = right, left
-        return Condition(self.recorder, operation, left, right, negated)
+        return Condition(recorder, operation, left, right, negated)
 
     def _refuse_zero(self) -> None:
         """A division by zero ends the code with an error."""
@@ -163,16 +161,30 @@ class Traced(Recorded):
         return f"Traced({self.recorded!r})"
 
 
+def _innermost(*numbers: object) -> Recorder:
+    """The recorder of some numbers, of which those of other recordings are constants."""
+    recorders = [number.recorder for number in numbers if isinstance(number, Traced)]
+    return next((r for r in recorders if r.holds_others), recorders[0])
+
+
+def _computed(operation: Operation, *operands: float | Traced) -> Traced:
+    recorder = _innermost(*operands)
+    registers = [register(recorder, operand) for operand in operands]
+    return recorder.number(recorder.compute(operation, *registers))
+
+
 def register(recorder: Recorder, value: object) -> int:
     """The register of a traced number or of a constant.
 
     Raises:
-        TraceLost: something else, or a number of another recording.
+        TraceLost: something else, or a number of another recording that is no constant of this one.
     """
     if isinstance(value, Traced):
-        if value.recorder is not recorder:
-            raise TraceLost("numbers of two recordings meet")
-        return value.register
+        if value.recorder is recorder:
+            return value.register
+        if recorder.holds_others and not value.recorder.holds_others:
+            return recorder.constant(value)  # type: ignore[arg-type]
+        raise TraceLost("numbers of two recordings meet")
     if isinstance(value, float | int):
         return recorder.constant(float(value))
     raise TraceLost(f"a varied number meets {type(value).__name__}")

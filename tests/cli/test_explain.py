@@ -85,7 +85,7 @@ def test_loads_that_vary_are_evaluated_first(mechkin, tmp_path) -> None:
     law = '{type: torque, joint: O4, value: "-2 lbm*in^2/s*O4.theta_dot*sin(O4.theta)"}'
     place = tmp_path / "rcsr.yaml"
     place.write_text(LOADS.sub(f"loads: [{law}]", text), encoding="utf-8")
-    read = "loads that vary: evaluated on all rows first, from O4.theta, O4.theta_dot"
+    read = "loads that vary: evaluated with the forces, from O4.theta, O4.theta_dot"
     assert read in lines(mechkin, place, "--table", "table_16")
     assert read not in lines(mechkin, place, "--table", "table_04")
 

@@ -153,6 +153,7 @@ class Hostile:
             inertia = self.number(), self.numbers(3), self.numbers(6)
             self.attempt(builder.set_inertia, self.index(0, links), *inertia)
         self.attempt(builder.set_gravity, self.numbers(3))
+        values = 0
         for _number in range(self.random.randint(0, 4)):
             code = self.index(0, 9)
             along = isinstance(code, int) and code in (4, 7, 8)
@@ -161,8 +162,43 @@ class Hostile:
             freedom = self.index(0, 3) if along else self.index(0, 1)
             vectors = [self.numbers(3) for _ in range(3)]
             varying = self.random.random() < 0.2
+            before = self.counts["add_load done"]
             self.attempt(builder.add_load, code, link, other, freedom, *vectors, varying)
+            if varying and self.counts["add_load done"] > before:
+                values += 1 if along else 3
+        self.program(builder, links, closings, values)
         self.attempt(builder.add_size_point, self.index(-1, links), self.numbers(3))
+
+    def program(self, builder: Any, links: int, closings: int, values: int) -> None:
+        """The values of varying loads: random instructions over random reads and curves."""
+        if not values and self.random.random() < 0.8:
+            return
+        reads, registers = [], 0
+        for _number in range(self.random.randint(1, 4)):
+            kind = self.index(0, 3)
+            code = self.random.choice([0, 0, 1, 3, 4, 5, 6, 7, 20, 21, self.index(0, 23)])
+            code = 0 if str(kind) == "1" and not self.bad() else code
+            order = self.index(0, 2) if str(code) in ("3", "5") else 0
+            reads.append((kind, code, self.index(0, links), 0, order))
+            wide = str(kind) == "0" and str(code) in ("4", "5", "6", "7")
+            registers += 3 if wide else 2 if str(kind) == "1" else 1
+        curves = []
+        for _number in range(self.random.randint(0, 2)):
+            count = self.random.randint(0, 4)
+            knots = [(float(x), *(self.number() for _ in range(4))) for x in range(count)]
+            curves.append((self.index(0, registers), self.number(), 9.0, knots))
+        constants = [self.number() for _ in range(self.random.randint(0, 3))]
+        registers += len(curves) + len(constants)
+        operations, operands = [], []
+        for _number in range(self.random.randint(0, 12)):
+            operations.append(self.index(0, 25))
+            operands.append(tuple(self.index(0, registers) for _ in range(3)))
+            registers += 1
+        outputs = [self.index(0, registers) for _ in range(values)]
+        kinks = [k for k, code in enumerate(operations) if str(code) in ("5", "7", "8", "14")]
+        numbers = [self.number() for _ in range(4 * len(reads))]
+        record = (reads, numbers, curves, constants, operations, operands, outputs, kinks)
+        self.attempt(builder.set_load_program, *record)
 
     def outputs(self, plan: Any) -> Any:
         records = []
@@ -207,7 +243,11 @@ class Hostile:
             for name in ("inputs", "rates", "accelerations", "jerks")
         }
         named |= {name: self.array(plan.states, rows) for name in ("guess", "states")}
-        named["loads"] = self.array(plan.load_values, rows)
+        if demand & 4:
+            named["loads"] = self.random.choice([None, self.array(plan.load_values, rows)])
+            named["undefined"] = self.random.choice([None, self.per_row(rows, np.uint8)])
+        named["full"] = self.random.choice([None, self.array(plan.inputs, rows)])
+        named["time"] = self.random.choice([None, self.per_row(rows)])
         named["turned"] = self.random.choice([None, self.array(turn_count(plan), rows)])
         named["whole"] = self.random.choice([None, self.array(plan.inputs, rows)])
         named["outputs"] = outputs

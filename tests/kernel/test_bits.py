@@ -99,7 +99,9 @@ def compute(own: Any, rows: Rows, lanes: int = 0) -> Batch:
 def assert_same_bits(found: Batch, expected: Batch, rows: Any = slice(None)) -> None:
     """Every array of `found` holds the bytes of the chosen rows of `expected`."""
     for name, array in expected._asdict().items():
-        assert getattr(found, name).tobytes() == array[..., rows].tobytes(), name
+        assert (getattr(found, name) is None) is (array is None), name
+        if array is not None:
+            assert getattr(found, name).tobytes() == array[..., rows].tobytes(), name
 
 
 def test_rows_take_different_numbers_of_steps(closed_at: str) -> None:
@@ -149,7 +151,8 @@ def test_nonsense_in_the_neighbouring_rows(closed_at: str, lanes: int) -> None:
     whole = compute(own, rows)
     good = np.arange(0, ROWS, 3)
     for name, array in whole._asdict().items():
-        assert getattr(found, name)[..., good].tobytes() == array[..., good].tobytes(), name
+        if array is not None:
+            assert getattr(found, name)[..., good].tobytes() == array[..., good].tobytes(), name
     assert np.all(found.flags[1::3] != 0)
 
 

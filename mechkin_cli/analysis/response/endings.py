@@ -49,7 +49,7 @@ def _reason(report: MotionReport) -> tuple[Status, str, str, str]:
         text = "on both sides of a jump of a load the motion goes back to it"
         hint = "write what sticks as {type: friction, ...}, or make the load continuous"
         return Status.friction_undecided, "held-at-jump", text, hint
-    if report.fault == Fault.NOT_FINITE:
+    if report.fault == Fault.NOT_FINITE or report.fault & Fault.UNDEFINED_LOAD:
         text = "a load or a rate has no finite value beyond"
         return Status.step_limit, "load-undefined", text, "write loads that hold along the motion"
     if report.fault & Fault.SINGULAR_INERTIA:

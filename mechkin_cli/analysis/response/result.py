@@ -10,6 +10,7 @@ import numpy as np
 
 from mechkin_cli.analysis.sweep.result import Result
 from mechkin_cli.expressions import Quantity
+from mechkin_cli.mechanism.load_laws import law_value
 from mechkin_cli.mechanism.model import Varying
 from mechkin_cli.mechanism.quantities import response_quantities
 
@@ -90,7 +91,6 @@ class ResponseResult(Result):
         *,
         session: Session | None = None,
         inputs: KernelInputs | None = None,
-        loads: Floats | None = None,
         shift: int = 0,
         iterations: int = 0,
         chart: Chart | None = None,
@@ -101,7 +101,6 @@ class ResponseResult(Result):
             demand,
             session=session,
             inputs=inputs,
-            loads=loads,
             shift=shift,
             iterations=iterations,
             chart=self.chart if chart is None else chart,
@@ -184,8 +183,8 @@ class ResponseResult(Result):
         total = np.zeros(self.rows)
         for amount in given:
             if isinstance(amount, Varying):
-                assert self.loads is not None
-                total = total + self.loads.values[amount.number]
+                law = self.problem.load_laws[amount.number]
+                total = total + law_value(law, self.quantity, self.rows)
             else:
                 total = total + amount
         return np.where(self.solved, total, np.nan)

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.analysis.assembly.start import Start
-    from mechkin_cli.analysis.sweep.loads import RowLoads
     from mechkin_cli.analysis.sweep.rows import Rows
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.diagnostics import Diagnostic
@@ -75,6 +74,7 @@ class Result:
         self._disturbance: int | None = None
         self._condition: Floats | None = None
         self._power_error: Floats | None = None
+        self._unloaded: bool | None = None
 
     @property
     def problem(self) -> Problem:
@@ -167,8 +167,7 @@ class Result:
     @property
     def complete(self) -> bool:
         """Whether every row has a solution, and a value of every load that forces need."""
-        unloaded = self.demand & Demand.FORCES and self.loads is not None and self.loads.lost.any()
-        return bool(self.solved.all()) and not unloaded
+        return bool(self.solved.all()) and not self._unloaded
 
     @property
     def sound(self) -> bool:
@@ -205,17 +204,6 @@ class Result:
     def columns(self) -> Mapping[str, Floats]:
         """What has been read, see `Columns`."""
         return self._columns
-
-    @cached_property
-    def loads(self) -> RowLoads | None:
-        """The values of loads that vary."""
-        if not self.problem.load_laws:
-            return None
-        from mechkin_cli.analysis.sweep.loads import row_loads
-
-        found = row_loads(self)
-        self.row_states.diagnostics += found.diagnostics
-        return found
 
     @cached_property
     def alternatives(self) -> tuple[Result, ...]:
@@ -317,8 +305,7 @@ class Result:
             others |= self.evaluated(reactions, shift=shift)
 
     def _evaluated(self, demand: Demand, wanted: Sequence[Wanted] = ()) -> Batch:
-        loads = self.loads if demand & Demand.FORCES else None
-        return self.run(wanted, demand, loads=None if loads is None else loads.columns)
+        return self.run(wanted, demand)
 
     def evaluated(
         self,
@@ -332,14 +319,11 @@ class Result:
         """Quantities on the stored states, not kept: with other `inputs` (rates), of a session that
         differs in masses and loads alone, or with the reactions of a `shift`."""
         demand |= demand_of((session or self.session).problem.mechanism, wanted)
-        own = session is None
-        loads = self.loads if own and demand & Demand.FORCES else None
         batch = self.run(
             wanted,
             demand,
             session=session,
             inputs=inputs,
-            loads=None if loads is None else loads.columns,
             shift=shift,
         )
         return self._split(wanted, batch, session or self.session)
@@ -351,7 +335,6 @@ class Result:
         *,
         session: Session | None = None,
         inputs: KernelInputs | None = None,
-        loads: Floats | None = None,
         shift: int = 0,
         iterations: int = 0,
         chart: Chart | None = None,
@@ -362,12 +345,15 @@ class Result:
         inputs = inputs or self.session.inputs
         rows = self.row_states
         values, states = inputs.reduced, rows.states
-        turned, whole = rows.turns, self.session.inputs.whole
+        turned, whole, full = rows.turns, self.session.inputs.whole, self.session.inputs.values
+        moments = self.problem.motion.time
+        time = None if moments is None else moments.values
         if not rows.reached.all():
             first = int(np.argmax(rows.reached))
             stand_in = np.where(rows.reached, np.arange(rows.reached.size), first)
             values, states = values[:, stand_in], states[:, stand_in]
-            turned, whole = turned[:, stand_in], whole[:, stand_in]
+            turned, whole, full = turned[:, stand_in], whole[:, stand_in], full[:, stand_in]
+            time = None if time is None else time[stand_in]
             if chart is not None:
                 chart = chart.at(stand_in)
         return session.run(
@@ -378,10 +364,11 @@ class Result:
             rates=inputs.rates if demand & Demand.VELOCITY else None,
             accelerations=inputs.accelerations if demand & Demand.ACCELERATION else None,
             jerks=inputs.jerks if demand & Demand.JERK else None,
-            loads=loads,
             turned=turned,
             whole=whole,
             chart=chart,
+            full=full,
+            time=time,
             shift=shift,
             iterations=iterations,
         )
@@ -396,3 +383,10 @@ class Result:
             self._condition = np.where(missing, np.nan, batch.condition)
         if batch.power_error is not None and self._power_error is None:
             self._power_error = np.where(missing, np.nan, batch.power_error)
+        if batch.undefined is not None and self._unloaded is None:
+            lost = batch.undefined.astype(bool) & ~missing
+            self._unloaded = bool(lost.any())
+            if self._unloaded:
+                from mechkin_cli.analysis.sweep.loads import undefined_loads
+
+                self.row_states.diagnostics += undefined_loads(self, lost)

@@ -25,7 +25,6 @@ from mechkin_cli.mechanism.coefficient_quantities import (
 )
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, TRANSMISSION_KINDS
 from mechkin_cli.mechanism.legs import find_legs
-from mechkin_cli.mechanism.load_laws import quantities_read
 from mechkin_cli.solver.batch import assembly_size
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
@@ -138,20 +137,10 @@ def _closed(
 
 
 def at_once(session: Session, asked: list[Wanted], verdicts: bool) -> tuple[list[Wanted], Demand]:
-    """What the run that closes the rows reads off, and its demand: no derived quantities, and no
-    forces where loads vary, but what those loads read."""
-    problem, mechanism = session.problem, session.problem.mechanism
+    """What the run that closes the rows reads off, and its demand: no derived quantities."""
+    mechanism = session.problem.mechanism
     wanted = [q for q in asked if q.kind not in DERIVED_KINDS and q.owner != "row"]
-    demand = Demand.POSITION
-    forces = demand_of(mechanism, wanted) & Demand.FORCES
-    if problem.load_laws and forces:
-        known = problem.quantities()
-        read = [known[name] for name in quantities_read(problem)]
-        wanted = [q for q in wanted if not demand_of(mechanism, [q]) & Demand.FORCES]
-        wanted += [q for q in read if q not in wanted and q.owner != "row"]
-        # velocities also tell on which side of a fold a row lies
-        demand |= Demand.VELOCITY
-    demand |= demand_of(mechanism, wanted)
+    demand = demand_of(mechanism, wanted)
     if verdicts and session.graph.blocks:
         demand |= Demand.CONDITION
     if verdicts and demand & Demand.FORCES and demand & Demand.VELOCITY:
@@ -207,8 +196,10 @@ def _judge_inputs(session: Session, rows: Rows) -> None:
 
 def _read_by_loads(result: Result) -> list[Wanted]:
     """What loads that vary read, where forces are computed."""
-    if not result.demand & Demand.FORCES:
+    if not (result.demand & Demand.FORCES and result.problem.load_laws):
         return []
+    from mechkin_cli.mechanism.load_laws import quantities_read
+
     known = result.problem.quantities()
     return [known[name] for name in quantities_read(result.problem)]
 

@@ -71,7 +71,7 @@ double* Arguments::write(const char* name, long columns) {
 
 unsigned char* Arguments::write_flags(const char* name) {
   nb::object object = find(name);
-  if (object.is_none()) refuse_type(name, "missing");
+  if (object.is_none()) return nullptr;
   const auto array = array_of<Flags>(object, name, "not a writable array of uint8, one per row");
   check_shape(array, name, ONE_PER_ROW);
   const char* const begin = reinterpret_cast<const char*>(array.data());
@@ -90,6 +90,13 @@ const double* Arguments::read_required(const char* name, long columns) {
 double* Arguments::write_required(const char* name, long columns) {
   const std::size_t kept = kept_.size();
   double* const data = write(name, columns);
+  if (kept_.size() == kept) refuse_type(name, "missing");
+  return data;
+}
+
+unsigned char* Arguments::write_flags_required(const char* name) {
+  const std::size_t kept = kept_.size();
+  unsigned char* const data = write_flags(name);
   if (kept_.size() == kept) refuse_type(name, "missing");
   return data;
 }

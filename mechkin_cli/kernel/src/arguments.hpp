@@ -17,9 +17,10 @@ class Arguments {
   static constexpr long ONE_PER_ROW = -1;
   const double* read(const char* name, long columns);
   double* write(const char* name, long columns);
-  unsigned char* write_flags(const char* name);
+  unsigned char* write_flags(const char* name);  // uint8, one per row
   const double* read_required(const char* name, long columns);
   double* write_required(const char* name, long columns);
+  unsigned char* write_flags_required(const char* name);
 
   long rows() const { return rows_; }
   // A whole number from least to most; `otherwise` where it is left out.

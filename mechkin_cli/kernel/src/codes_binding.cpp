@@ -53,6 +53,10 @@ void bind_plan_codes(nb::module_& m) {
       .value("KINETIC_ENERGY", OUT_KINETIC_ENERGY)
       .value("POTENTIAL_ENERGY", OUT_POTENTIAL_ENERGY)
       .value("LOAD_POWER", OUT_LOAD_POWER);
+  nb::enum_<ReadCode>(m, "ReadCode", nb::is_arithmetic(), "What programs of quantities read.")
+      .value("OUTPUT", READ_OUTPUT)
+      .value("ANGLE", READ_ANGLE)
+      .value("TIME", READ_TIME);
   nb::enum_<FreeCode>(m, "FreeCode", nb::is_arithmetic(), "Kinds of free motions.")
       .value("ALONG", FREE_ALONG)
       .value("SQUARE", FREE_SQUARE)

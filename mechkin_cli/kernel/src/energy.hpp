@@ -58,7 +58,7 @@ inline Pack potential_energy(const Plan& p, const Workspace& w, const RowValue& 
       energy += spring_energy(l, sqrt(dot(d, d)) - Pack(l.vector[1]));
     } else if (l.type == LOAD_COORDINATE_SPRING) {
       joint_coordinate(p, w, l, false, &value, &rate);
-      energy += spring_energy(l, row_value.turned(l, value) - Pack(l.vector[1]));
+      energy += spring_energy(l, row_value.turned(l.turn, l.other < 0, value) - Pack(l.vector[1]));
     }
   }
   return energy;
@@ -97,20 +97,20 @@ inline void add_load_power(Powers& powers, const Plan& p, const Workspace& w, co
     case LOAD_FORCE_GROUND:
     case LOAD_FORCE_LINK: {
       const Vec3 velocity = w.motion[l.link].velocity.at(w.pose[l.link].point(l.point));
-      const Vec3 force = load_vector(l, row_value);
+      const Vec3 force = load_vector(w, l);
       return powers.add(force, l.type == LOAD_FORCE_LINK ? w.pose[l.link].components(velocity) : velocity);
     }
-    case LOAD_TORQUE_GROUND: return powers.add(load_vector(l, row_value), w.motion[l.link].velocity.angular);
+    case LOAD_TORQUE_GROUND: return powers.add(load_vector(w, l), w.motion[l.link].velocity.angular);
     case LOAD_TORQUE_LINK:
-      return powers.add(load_vector(l, row_value), w.pose[l.link].components(w.motion[l.link].velocity.angular));
+      return powers.add(load_vector(w, l), w.pose[l.link].components(w.motion[l.link].velocity.angular));
     case LOAD_SPRING:
     case LOAD_DAMPER: return add_power_between_points(powers, w, l);
     case LOAD_COORDINATE:
       joint_coordinate(p, w, l, true, &value, &rate);
-      return powers.add((l.varying < 0 ? Pack(l.vector[0]) : row_value(l.varying)) * rate);
+      return powers.add((l.varying < 0 ? Pack(l.vector[0]) : w.load[l.varying]) * rate);
     case LOAD_COORDINATE_SPRING:
       joint_coordinate(p, w, l, true, &value, &rate);
-      value = row_value.turned(l, value);
+      value = row_value.turned(l.turn, l.other < 0, value);
       return powers.add(-(Pack(l.vector[0]) * (value - Pack(l.vector[1])) + Pack(l.vector[2])) * rate);
     case LOAD_COORDINATE_DAMPER:
       joint_coordinate(p, w, l, true, &value, &rate);

@@ -40,6 +40,14 @@ void each_array(Plan& p, const Visit& visit) {
   visit(ARRAY_INERTIA, p.inertia, p.links);
   visit(ARRAY_LOAD, p.load, p.loads);
   visit(ARRAY_SIZE_POINT, p.size_point, p.size_points);
+  visit(ARRAY_READ, p.law.read, p.law.reads);
+  visit(ARRAY_CURVE, p.law.curve, p.law.curves);
+  visit(ARRAY_KNOT, p.law.knot, p.law.knots);
+  visit(ARRAY_PROGRAM_CONSTANT, p.law.constant, p.law.constants);
+  visit(ARRAY_OPERATION, p.law.operation, p.law.instructions);
+  visit(ARRAY_OPERAND, p.law.operand, 3 * p.law.instructions);
+  visit(ARRAY_PROGRAM_OUTPUT, p.law.output, p.law.outputs);
+  visit(ARRAY_KINK, p.law.kink, p.law.kinks);
 }
 
 }  // namespace

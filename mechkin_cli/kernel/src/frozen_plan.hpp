@@ -12,6 +12,7 @@
 //   set_inertia        mass, centre (3), tensor (6: xx yy zz xy xz yz)
 //   set_gravity        g (3)
 //   add_load           point (3), other_point (3), vector (3)
+//   set_load_program   of each read data (3) and factor, then its own constants
 //   add_size_point     point (3)
 // Signs (+1, -1), codes and indices are structure. `assign` gives a plan other constants and recomputes what is derived
 // from them (row_weight, column_weight): no allocation, no exception, so a loop over variants keeps one copy a thread.
@@ -49,6 +50,14 @@ enum PlanArray : int {
   ARRAY_INERTIA,
   ARRAY_LOAD,
   ARRAY_SIZE_POINT,
+  ARRAY_READ,
+  ARRAY_CURVE,
+  ARRAY_KNOT,
+  ARRAY_PROGRAM_CONSTANT,
+  ARRAY_OPERATION,
+  ARRAY_OPERAND,
+  ARRAY_PROGRAM_OUTPUT,
+  ARRAY_KINK,
   ARRAY_COUNT
 };
 

@@ -5,6 +5,7 @@
 
 #include "equations_of_motion.hpp"
 #include "motion_unit.hpp"
+#include "quantity_program.hpp"
 #include "regular.hpp"
 
 namespace {
@@ -20,13 +21,14 @@ inline void copy(const Pack* from, int count, Pack* to) {
 // What loads read of a stage.
 struct StageValues {
   const StageGiven& given;
-  MECHKIN_INLINE Pack operator()(int column) const { return packs(given.loads)[column]; }
+  MECHKIN_INLINE Pack time() const { return *packs(given.time); }
   // The turn nearest to where the angle was at the origin; a tree's angle is continuous by itself.
-  MECHKIN_INLINE Pack turned(const Load& l, Pack angle) const {
+  MECHKIN_INLINE Pack turned(int turn, bool closing, Pack angle) const {
     const Pack full = 2.0 * 3.14159265358979323846;
-    if (l.turn < 0 || l.other >= 0) return angle;
-    return angle + full * nearest_integer((packs(given.turned)[l.turn] - angle) / full);
+    if (turn < 0 || !closing) return angle;
+    return angle + full * nearest_integer((packs(given.turned)[turn] - angle) / full);
   }
+  MECHKIN_INLINE Pack input(int, Pack, Pack angle) const { return angle; }
 };
 
 // Where the states would be by the origin's derivatives, moved along the chart to the wanted place.
@@ -91,6 +93,22 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
   return placed;
 }
 
+// The values of loads, of kinks and of what else is watched; the lanes in which a load has none.
+inline Mask evaluate_program(const Plan& p, Workspace& w, const StageGiven& given, const StageValues& values,
+                             Pack* watched) {
+  Mask undefined = all_lanes(false);
+  if (!p.law.outputs) return undefined;
+  run_on_sides(p, w, p.law, values, packs(given.side), w.law);
+  for (int v = 0; v < p.load_values; ++v) {
+    w.load[v] = w.law[p.law.output[v]];
+    undefined = undefined | ~(w.load[v] == w.load[v]);
+  }
+  for (int k = 0; k < p.law.kinks; ++k) watched[k] = kink_value(p.law, k, w.law);
+  for (int v = p.load_values; v < p.law.outputs; ++v)
+    watched[p.law.kinks + v - p.load_values] = w.law[p.law.output[v]];
+  return undefined;
+}
+
 void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given, const StageFound& found) {
   copy(packs(given.direction), p.charts * p.columns, w.direction);
   copy(packs(given.origin), p.states, w.origin);
@@ -102,6 +120,7 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
   const Pack* const input_rate = packs(given.input_rates);
   move(p, w, m, packs(given.rate), input_rate, packs(given.input_seconds));
   const StageValues values = {given};
+  const Mask undefined = evaluate_program(p, w, given, values, packs(found.watched));
   reduce_inertia(p, w, m);
   reduce_forces(p, w, m, values);
   Pack* const second = packs(found.chart_second);
@@ -127,6 +146,7 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
     if (!lane(placed.closed, i)) f |= STAGE_NOT_CLOSED;
     if (!lane(placed.on_branch, i)) f |= STAGE_OFF_BRANCH;
     if (!lane(positive, i)) f |= STAGE_SINGULAR_INERTIA;
+    if (lane(undefined, i)) f |= STAGE_UNDEFINED_LOAD;
     found.flags[i] = (unsigned char)f;
   }
 }

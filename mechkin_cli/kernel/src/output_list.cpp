@@ -14,7 +14,9 @@ void check_index(int index, int least, int end, const char* what) {
                               std::to_string(end));
 }
 
-void check(const Plan& p, const OutputRecord& r) {
+}  // namespace
+
+void check_output(const Plan& p, const OutputRecord& r) {
   require(is_output(r.type), "unknown kind of output");
   require(r.order >= 0 && r.order <= 3, "outputs go to third order");
   const bool orders = r.type == OUT_CLOSING || r.type == OUT_POINT;
@@ -43,8 +45,6 @@ void check(const Plan& p, const OutputRecord& r) {
     default: return require(r.index == 0, "an output of the whole mechanism has index 0");
   }
 }
-
-}  // namespace
 
 bool is_output(int type) { return type >= 0 && type <= OUT_LOAD_POWER; }
 
@@ -101,7 +101,7 @@ OutputList::OutputList(const FrozenPlan& plan, const std::vector<OutputRecord>& 
     : structure_(plan.structure()) {
   output_.reserve(records.size());
   for (const OutputRecord& r : records) {
-    check(plan.view(), r);
+    check_output(plan.view(), r);
     require(slots_ <= (1 << 24), "too many outputs");
     Output o = {r.type, r.index, r.order, r.freedom, slots_, {}, r.factor};
     std::memcpy(o.data, r.data.data(), sizeof o.data);

@@ -42,5 +42,7 @@ int output_width(int type);
 unsigned output_demand(int type, int order);
 // Whether a type is one of OutputCode.
 bool is_output(int type);
+// std::invalid_argument: a record that the plan cannot serve.
+void check_output(const Plan& p, const OutputRecord& r);
 // std::invalid_argument if closing joint `c` has no coordinate that is its freedom's.
 void check_closing_coordinate(const Plan& p, int c, int freedom);

@@ -21,7 +21,8 @@ struct Writer {
   }
 };
 
-inline Vec3 output_point(const Plan& p, const Workspace& w, const Output& o) {
+template <class Number>
+inline Vec3 output_point(const Plan& p, const Workspace& w, const OutputOf<Number>& o) {
   const Pack unit = p.length;
   if (o.index < 0) return o.order ? zero3() : unit * constant(o.data) + constant(p.origin);
   const Vec3 at = w.pose[o.index].point(o.data);
@@ -36,57 +37,75 @@ inline Vec3 ground_moment(const Plan& p, Wrench r) {
   return r.moment + (Pack(1.0) / Pack(p.length)) * cross(constant(p.origin), r.force);
 }
 
-inline Vec3 output_joint(const Plan& p, const Workspace& w, const Output& o) {
-  const JointPlace& j = p.place[o.index];
+inline Vec3 output_joint(const Plan& p, const Workspace& w, int type, int index) {
+  const JointPlace& j = p.place[index];
   const Wrench r = joint_wrench(p, w, j);
-  if (o.type == OUT_JOINT_FORCE) return without_free(p, w, j, true, r.force);
-  if (o.type == OUT_JOINT_MOMENT)
+  if (type == OUT_JOINT_FORCE) return without_free(p, w, j, true, r.force);
+  if (type == OUT_JOINT_MOMENT)
     return without_free(p, w, j, false, r.moment - cross(carried_point(w, j.point_on, j.point), r.force));
   return ground_moment(p, r);
 }
 
-inline Vec3 output_slip(const Plan& p, const Workspace& w, const Output& o) {
+template <class Number>
+inline Vec3 output_slip(const Plan& p, const Workspace& w, const OutputOf<Number>& o) {
   const JointPlace& j = p.place[o.index];
   return carried_point(w, j.point_on, j.point) - carried_point(w, j.second, o.data);
 }
 
-inline Pack output_closing(const Plan& p, const Workspace& w, const Output& o) {
+template <class Number>
+inline Pack output_closing(const Plan& p, const Workspace& w, const OutputOf<Number>& o) {
   Pack k[4];
   closing_coordinate(p, w, o.index, o.freedom, o.order, k);
   return k[o.order];
 }
 
-// `row_value` as in apply_load.
+// The value of a quantity, one pack or three; returns how many. `balance` for those that need forces, `row_value` as in
+// apply_load.
+template <class Number, class RowValue>
+inline int output_value(const Plan& p, const Workspace& w, const Balance* balance, const RowValue& row_value,
+                        const OutputOf<Number>& o, Pack* out) {
+  const auto one = [out](Pack a) {
+    out[0] = a;
+    return 1;
+  };
+  const auto three = [out](Vec3 a) {
+    out[0] = a.x, out[1] = a.y, out[2] = a.z;
+    return 3;
+  };
+  const Pack factor = o.factor;
+  switch (o.type) {
+    case OUT_STATE: return one(factor * w.q[o.index]);
+    case OUT_RATE: return one(factor * w.rate[o.index]);
+    case OUT_ACCELERATION: return one(factor * w.acceleration[o.index]);
+    case OUT_JERK: return one(factor * w.jerk[o.index]);
+    case OUT_CLOSING: return one(factor * output_closing(p, w, o));
+    case OUT_SLIP: return three(factor * output_slip(p, w, o));
+    case OUT_POINT: return three(output_point(p, w, o));
+    case OUT_VECTOR: return three(carried_vector(w, o.index, o.data));
+    case OUT_OMEGA: return three(w.motion[o.index].velocity.angular);
+    case OUT_ALPHA: return three(w.motion[o.index].acceleration.angular);
+    case OUT_JOINT_FORCE:
+    case OUT_JOINT_MOMENT:
+    case OUT_JOINT_MOMENT_ORIGIN: return three(factor * output_joint(p, w, o.type, o.index));
+    case OUT_HOLDING_MOMENT: return one(factor * w.holding[o.index]);
+    case OUT_REACTION_LEVEL: return one(factor * balance->level);
+    case OUT_EFFORT: return one(factor * w.effort[o.index]);
+    case OUT_SHAKING_FORCE: return three(factor * (balance->outside - balance->inertia).force);
+    case OUT_SHAKING_MOMENT: return three(factor * ground_moment(p, balance->outside - balance->inertia));
+    case OUT_INERTIA_FORCE: return three((-factor) * balance->inertia.force);
+    case OUT_KINETIC_ENERGY: return one(factor * kinetic_energy(p, w));
+    case OUT_POTENTIAL_ENERGY: return one(factor * potential_energy(p, w, row_value));
+    case OUT_LOAD_POWER: return one(factor * load_power(p, w, o.index, row_value));
+    default: return three((-factor) * ground_moment(p, balance->inertia));  // OUT_INERTIA_MOMENT
+  }
+}
+
 template <class RowValue>
 inline void write_output(const Plan& p, const Workspace& w, const Balance* balance, const RowValue& row_value,
                          const Output& o, const Writer& out) {
-  const Pack factor = o.factor;
-  switch (o.type) {
-    case OUT_STATE: return out.put(o.slot, factor * w.q[o.index]);
-    case OUT_RATE: return out.put(o.slot, factor * w.rate[o.index]);
-    case OUT_ACCELERATION: return out.put(o.slot, factor * w.acceleration[o.index]);
-    case OUT_JERK: return out.put(o.slot, factor * w.jerk[o.index]);
-    case OUT_CLOSING: return out.put(o.slot, factor * output_closing(p, w, o));
-    case OUT_SLIP: return out.put(o.slot, factor * output_slip(p, w, o));
-    case OUT_POINT: return out.put(o.slot, output_point(p, w, o));
-    case OUT_VECTOR: return out.put(o.slot, carried_vector(w, o.index, o.data));
-    case OUT_OMEGA: return out.put(o.slot, w.motion[o.index].velocity.angular);
-    case OUT_ALPHA: return out.put(o.slot, w.motion[o.index].acceleration.angular);
-    case OUT_JOINT_FORCE:
-    case OUT_JOINT_MOMENT:
-    case OUT_JOINT_MOMENT_ORIGIN: return out.put(o.slot, factor * output_joint(p, w, o));
-    case OUT_HOLDING_MOMENT: return out.put(o.slot, factor * w.holding[o.index]);
-    case OUT_REACTION_LEVEL: return out.put(o.slot, factor * balance->level);
-    case OUT_EFFORT: return out.put(o.slot, factor * w.effort[o.index]);
-    case OUT_SHAKING_FORCE: return out.put(o.slot, factor * (balance->outside - balance->inertia).force);
-    case OUT_SHAKING_MOMENT:
-      return out.put(o.slot, factor * ground_moment(p, balance->outside - balance->inertia));
-    case OUT_INERTIA_FORCE: return out.put(o.slot, (-factor) * balance->inertia.force);
-    case OUT_INERTIA_MOMENT: return out.put(o.slot, (-factor) * ground_moment(p, balance->inertia));
-    case OUT_KINETIC_ENERGY: return out.put(o.slot, factor * kinetic_energy(p, w));
-    case OUT_POTENTIAL_ENERGY: return out.put(o.slot, factor * potential_energy(p, w, row_value));
-    case OUT_LOAD_POWER: return out.put(o.slot, factor * load_power(p, w, o.index, row_value));
-  }
+  Pack value[3];
+  const int width = output_value(p, w, balance, row_value, o, value);
+  for (int k = 0; k < width; ++k) out.put(o.slot + k, value[k]);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 // own with the same structure (wide_plan.hpp). `Plan`, `Frame` ... are those of the constants of this compiled unit.
 #pragma once
 
+#include <cstdint>
+
 // Displacements that carry links in the tree; other pairs are chains of these (joint_table.py).
 // TREE_L hangs the body of a leg between two points (legs.hpp).
 enum TreeCode : int {
@@ -108,7 +110,7 @@ struct LoadOf {
   int freedom;        // of the coordinate in that joint
   Number point[3], other_point[3];
   Number vector[3];   // force, torque, or the data of springs and dampers
-  int varying;        // first of its values in Request::loads instead of `vector`, -1: constant
+  int varying;        // first of its values among the outputs of Plan::law instead of `vector`, -1: constant
   int turn;           // LOAD_COORDINATE_SPRING on an angle: its slot in Request::turned; of an input -2 - its number in
                       // Request::whole; -1: turns do not matter
 };
@@ -140,15 +142,17 @@ enum OutputCode : int {
 };
 
 // One quantity that a run writes; outputs are no part of the plan (OutputsView).
-struct Output {
+template <class Number>
+struct OutputOf {
   int type;
   int index;
   int order;
   int freedom;
-  int slot;        // first column of the output array
-  double data[3];  // local point or vector
-  double factor;   // to SI
+  int slot;        // first column of the output array, or first register of a program
+  Number data[3];  // local point or vector
+  Number factor;   // to SI
 };
+using Output = OutputOf<double>;
 
 // What a run writes, in the order of its slots.
 struct OutputsView {
@@ -168,6 +172,48 @@ enum Demand : unsigned {
   DEMAND_SINGULAR = 64,  // with DEMAND_CONDITION: to rounding instead of to 1 %
   DEMAND_EVERYTHING = 127,  // that can be asked for from outside
   DEMAND_JACOBIAN = 128     // the blocks' Jacobians alone, which a Request without a demand does not get
+};
+
+enum ReadCode : int {
+  READ_OUTPUT = 0,
+  READ_ANGLE = 1,  // two registers: with its whole turns, and without
+  READ_TIME = 2
+};
+
+// What a program reads into its first registers, of a row whose positions, or rates, are known.
+template <class Number>
+struct ReadOf {
+  int kind;
+  int turn;  // READ_ANGLE: its slot in Request::turned; of an input -2 - its number; -1: its whole turns are not counted
+  OutputOf<Number> output;
+};
+
+// A curve of a table over a register; outside [low, high] it has no value, beyond its ends within them the end's.
+struct ProgramCurve {
+  int over;        // register
+  int begin, end;  // into Program::knot
+  double low, high;
+};
+// From x on: y + b u + c u^2 + d u^3 with u from x.
+struct Knot {
+  double x, y, b, c, d;
+};
+
+// Arithmetic over quantities as data: registers of what is read, then one of each curve, then constants, then results of
+// instructions, which are those of a tape (tape.hpp).
+template <class Number>
+struct ProgramOf {
+  int reads, curves, knots, constants, instructions, outputs, kinks;
+  int inputs;  // registers of reads and curves
+  const ReadOf<Number>* read;
+  const ProgramCurve* curve;
+  const Knot* knot;
+  const Number* constant;
+  const std::uint8_t* operation;
+  const std::int32_t* operand;  // instructions x 3
+  const std::int32_t* output;   // registers
+  const std::int32_t* kink;     // instructions that choose: where the outputs may bend or jump
+  int registers() const { return inputs + constants + instructions; }
 };
 
 // A joint as its user knows it: where its wrench is read off, and where its point rides.
@@ -247,6 +293,7 @@ struct PlanOf : PlanShape {
   const Number* column_weight;  // scaled-block weight of a column: size / length unit for slides, 1 for angles
   const LinkInertiaOf<Number>* inertia;
   const LoadOf<Number>* load;
+  ProgramOf<Number> law;     // the values of loads that vary
   const Output* size_point;  // joint points, whose box at the first assembly tells the size; of ground: in m
   Number gravity[3];         // in length units
   Number length;             // the length unit in m, a power of two
@@ -302,10 +349,11 @@ struct Request {
   const double* accelerations;  // inputs x rows, likewise
   const double* jerks;          // inputs x rows, with DEMAND_JERK
   const double* guess;          // states x rows
-  const double* loads;          // load_values x rows: values of varying loads, may be null without DEMAND_FORCES
   const double* turned;         // turn slots x rows, may be null: closing joints' continuous angles to less than half a
                                 // turn, whole turns of the tree's angles; springs go by them
   const double* whole;          // inputs x rows, may be null: whole turns that the inputs are without, likewise
+  const double* full;           // inputs x rows, may be null: inputs with their whole turns, as laws of loads read them
+  const double* time;           // rows, may be null: what laws of loads read as time (s)
   OutputsView wanted;           // what `outputs` receives
   double* states;               // states x rows
   double* outputs;              // slots x rows, may be null
@@ -324,6 +372,8 @@ struct Request {
   double* turn_second;          // (its fourth value is zero), and that one's derivative
   double* condition;            // rows, with DEMAND_CONDITION
   double* power_error;          // rows, with DEMAND_POWER
+  double* loads;                // load_values x rows, may be null: values of varying loads, with DEMAND_FORCES
+  unsigned char* undefined;     // rows, may be null: whether some of them has no value, likewise
   unsigned char* flags;         // rows
   unsigned demand;
   int shift;                    // 0, or 1 and 2: parts of the null space added to reactions

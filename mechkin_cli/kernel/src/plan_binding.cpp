@@ -90,7 +90,8 @@ void check_demand(const Request& r, const OutputList* outputs, const Plan& p) {
   refuse(acceleration && (!velocity || !r.accelerations),
          "accelerations need rates and accelerations of the inputs");
   refuse(r.demand & DEMAND_JERK && (!acceleration || !r.jerks), "jerks need accelerations, and jerks of the inputs");
-  refuse(r.demand & DEMAND_FORCES && p.load_values && !r.loads, "forces need the values of varying loads");
+  refuse((r.loads || r.undefined) && !(r.demand & DEMAND_FORCES), "the values of loads go with forces");
+  refuse(r.demand & DEMAND_FORCES && program_demand(p.law) & ~r.demand, "loads that vary need more than is demanded");
   refuse(r.demand & DEMAND_POWER && !(r.demand & DEMAND_FORCES), "the power error needs forces");
   refuse(!(r.demand & DEMAND_CONDITION) != !r.condition, "an array for the condition goes with its demand");
   refuse(!(r.demand & DEMAND_POWER) != !r.power_error, "an array for the power error goes with its demand");
@@ -132,13 +133,14 @@ void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.rates = given.read("rates", p.inputs);
   r.accelerations = given.read("accelerations", p.inputs);
   r.jerks = given.read("jerks", p.inputs);
-  r.loads = given.read("loads", p.load_values);
   const KernelUnit& narrow = *kernel_unit(2);
   r.turned = given.read("turned", turn_slots(p, narrow));
   r.whole = given.read("whole", p.inputs);
   r.chart = given.read("chart", p.charts * p.columns);
   r.chart_rates = given.read("chart_rates", p.charts);
   r.chart_accelerations = given.read("chart_accelerations", p.charts);
+  r.full = given.read("full", p.inputs);
+  r.time = given.read("time", Arguments::ONE_PER_ROW);
   const OutputList* outputs = nullptr;
   nb::object list = given.other("outputs");
   if (!list.is_none()) {
@@ -155,7 +157,9 @@ void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.side = given.write("side", p.blocks);
   r.condition = given.write("condition", Arguments::ONE_PER_ROW);
   r.power_error = given.write("power_error", Arguments::ONE_PER_ROW);
-  r.flags = given.write_flags("flags");
+  r.flags = given.write_flags_required("flags");
+  r.loads = given.write("loads", p.load_values);
+  r.undefined = given.write_flags("undefined");
   r.rows = given.rows();
   r.demand = (unsigned)given.integer("demand", 0, DEMAND_EVERYTHING, 0);
   r.shift = (int)given.integer("shift", 0, 2, 0);
@@ -189,7 +193,7 @@ void search(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.inputs = given.read_required("inputs", p.inputs);
   r.states = given.write_required("states", p.states);
   r.residual = given.write_required("residual", Arguments::ONE_PER_ROW);
-  r.flags = given.write_flags("flags");
+  r.flags = given.write_flags_required("flags");
   r.rows = given.rows();
   r.block = (int)given.integer("block", 0, p.blocks - 1, -1);
   if (r.block < 0) throw nb::type_error("block: missing");
@@ -205,6 +209,40 @@ void search(const FrozenPlan& plan, const nb::kwargs& keywords) {
   over_rows(r.rows, 64, threads, [&](long begin, long end, int thread) {
     unit.search_rows(p, r, begin, end, memory.of(thread));
   });
+}
+
+using OutputTuple = std::tuple<int, int, int, int, Triple, double>;
+using CurveTuple = std::tuple<int, double, double, std::vector<std::array<double, 5>>>;
+
+OutputRecord output_record(const OutputTuple& given) {
+  const auto& [type, index, freedom, order, data, factor] = given;
+  return {type, index, freedom, order, data, factor};
+}
+
+// Numbers of the reads: data (3) and factor of each.
+ProgramRecord program_record(const std::vector<std::array<int, 5>>& reads, const std::vector<double>& numbers,
+                             const std::vector<CurveTuple>& curves, const std::vector<double>& constants,
+                             const std::vector<int>& operations, const std::vector<std::array<int, 3>>& operands,
+                             const std::vector<int>& outputs, const std::vector<int>& kinks) {
+  if (numbers.size() != 4 * reads.size()) throw nb::value_error("four numbers a read");
+  ProgramRecord record;
+  for (std::size_t k = 0; k < reads.size(); ++k) {
+    const auto& [kind, type, index, freedom, order] = reads[k];
+    const double* const n = &numbers[4 * k];
+    record.reads.push_back({kind, {type, index, freedom, order, {n[0], n[1], n[2]}, n[3]}});
+  }
+  for (const auto& [over, low, high, knots] : curves) {
+    record.curves.push_back({over, low, high, {}});
+    for (const auto& [x, y, b, c, d] : knots) record.curves.back().knots.push_back({x, y, b, c, d});
+  }
+  record.constants = constants;
+  for (int o : operations) {
+    if (o < 0 || o > 255) throw nb::value_error("unknown operation");
+    record.operations.push_back((std::uint8_t)o);
+  }
+  for (const auto& [a, b, c] : operands) record.operands.insert(record.operands.end(), {a, b, c});
+  record.outputs.assign(outputs.begin(), outputs.end()), record.kinks.assign(kinks.begin(), kinks.end());
+  return record;
 }
 
 // name, type, parent: as PlanBuilder names them
@@ -229,20 +267,26 @@ void bind_builder(nb::module_& m) {
       .def("set_gravity", &PlanBuilder::set_gravity, "g"_a)
       .def("add_load", &PlanBuilder::add_load, "type"_a, "link"_a, "other"_a, "freedom"_a, "point"_a,
            "other_point"_a, "vector"_a, "varying"_a = false)
+      .def("set_load_program",
+           [](PlanBuilder* builder, const std::vector<std::array<int, 5>>& reads, const std::vector<double>& numbers,
+              const std::vector<CurveTuple>& curves, const std::vector<double>& constants,
+              const std::vector<int>& operations, const std::vector<std::array<int, 3>>& operands,
+              const std::vector<int>& outputs, const std::vector<int>& kinks) {
+             builder->set_load_program(
+                 program_record(reads, numbers, curves, constants, operations, operands, outputs, kinks));
+           },
+           "reads"_a, "numbers"_a, "curves"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "kinks"_a)
       .def("add_size_point", &PlanBuilder::add_size_point, "link"_a, "point"_a)
       .def("finish", &PlanBuilder::finish)
       .def_prop_ro("states", &PlanBuilder::states)
       .def_prop_ro("columns", &PlanBuilder::columns);
 }
 
-using OutputTuple = std::tuple<int, int, int, int, Triple, double>;
-
 void bind_outputs(nb::module_& m) {
   nb::class_<OutputList>(m, "Outputs", "Quantities that runs of a plan write, checked against it.")
       .def("__init__", [](OutputList* self, const FrozenPlan& plan, const std::vector<OutputTuple>& records) {
         std::vector<OutputRecord> list;
-        for (const auto& [type, index, freedom, order, data, factor] : records)
-          list.push_back({type, index, freedom, order, data, factor});
+        for (const OutputTuple& record : records) list.push_back(output_record(record));
         new (self) OutputList(plan, list);
       }, "plan"_a, "records"_a)
       .def_prop_ro("slots", [](const OutputList& o) { return o.view().slots; })

@@ -164,6 +164,8 @@ FrozenPlan PlanBuilder::finish() {
   check_order();
   sort_drives();
   find_turns();
+  require(program_.view().outputs >= plan_.load_values, "one output of the load program for each value that varies");
+  program_.find_turns(arrays());
   FrozenPlan plan(arrays(), constants_, repeated_);
   spent_ = true;
   return plan;
@@ -197,5 +199,6 @@ Plan PlanBuilder::arrays() const {
   p.column_block = column_block_.data(), p.column_place = column_place_.data();
   p.column_weight = column_weight_.data();
   p.inertia = inertia_.data(), p.load = load_.data(), p.size_point = size_point_.data();
+  p.law = program_.view();
   return p;
 }

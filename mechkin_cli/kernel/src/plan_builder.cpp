@@ -250,6 +250,19 @@ void PlanBuilder::add_load(int type, int link, int other, int freedom, const Tri
   number(ARRAY_LOAD, at + offsetof(Load, vector), 3);
 }
 
+void PlanBuilder::set_load_program(const ProgramRecord& program) {
+  open();
+  require(!program_set_, "the load program is set once");
+  program_ = ProgramStore(arrays(), program);
+  program_set_ = true;
+  for (std::size_t k = 0; k < program.reads.size(); ++k) {
+    const std::size_t at = k * sizeof(ReadOf<double>) + offsetof(ReadOf<double>, output);
+    number(ARRAY_READ, at + offsetof(Output, data), 3);
+    number(ARRAY_READ, at + offsetof(Output, factor), 1);
+  }
+  number(ARRAY_PROGRAM_CONSTANT, 0, (int)program.constants.size());
+}
+
 void PlanBuilder::add_size_point(int link, const Triple& point) {
   open();
   check_link(link);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frozen_plan.hpp"
+#include "program_store.hpp"
 
 using Triple = std::array<double, 3>;
 using FrameData = std::array<double, 12>;  // x, y, z axes, origin
@@ -40,9 +41,11 @@ class PlanBuilder {
   void add_input(int column, int axis, double scale);
   void set_inertia(int link, double mass, const Triple& centre, const std::array<double, 6>& tensor);
   void set_gravity(const Triple& g);
-  // A varying load takes its value from the next columns of Request::loads: one along a coordinate, else three.
+  // A varying load takes its value from the next outputs of the load program: one along a coordinate, else three.
   void add_load(int type, int link, int other, int freedom, const Triple& point, const Triple& other_point,
                 const Triple& vector, bool varying);
+  // The values of the loads that vary.
+  void set_load_program(const ProgramRecord& program);
   // A joint's point, see Plan::size_point: in the link's frame and length units, of ground in m.
   void add_size_point(int link, const Triple& point);
   // Checks that the parts fit together; the builder is spent after it.
@@ -68,7 +71,7 @@ class PlanBuilder {
   Plan arrays() const;
 
   Plan plan_{};
-  bool spent_ = false, gravity_ = false, rest_set_ = false;
+  bool spent_ = false, gravity_ = false, rest_set_ = false, program_set_ = false;
   std::vector<ConstantPlace> constants_;
   std::vector<std::pair<int, ConstantPlace>> repeated_;
   std::vector<TreeJoint> joints_;
@@ -87,4 +90,5 @@ class PlanBuilder {
   std::vector<LinkInertia> inertia_;
   std::vector<Load> load_;
   std::vector<Output> size_point_;
+  ProgramStore program_;
 };

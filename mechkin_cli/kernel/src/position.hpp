@@ -36,6 +36,8 @@ struct Workspace {
   Pack* saved;                    // states before a trial step
   Pack* kept;                     // largest block squared: factors of lanes that are done
   Mask* kept_swap;
+  Pack* load;                     // load values: of loads that vary
+  Pack* law;                      // registers of Plan::law
   bool* moves;                    // links: whether Newton on the link's block moves it (find_moving)
   Pack *direction, *origin;       // charts x columns, states: the chart's, see Chart
   Pack *place, *place_rate, *place_acceleration;  // charts
@@ -86,6 +88,8 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->place = (Pack*)take(p.charts * pack);
   w->place_rate = (Pack*)take(p.charts * pack);
   w->place_acceleration = (Pack*)take(p.charts * pack);
+  w->load = (Pack*)take(p.load_values * pack);
+  w->law = (Pack*)take((long)p.law.registers() * pack);
   return used;
 }
 

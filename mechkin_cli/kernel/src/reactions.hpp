@@ -152,13 +152,12 @@ inline void apply_between_points(Balance& balance, const Load& l) {
   balance.apply(l.other, Pack(-1.0) * force_at(p, pull));
 }
 
-// `row_value` gives a column of Request::loads for the pack's rows, and angles with their whole turns.
-template <class RowValue>
-MECHKIN_INLINE Vec3 load_vector(const Load& l, const RowValue& row_value) {
+MECHKIN_INLINE Vec3 load_vector(const Workspace& w, const Load& l) {
   if (l.varying < 0) return constant(l.vector);
-  return {row_value(l.varying), row_value(l.varying + 1), row_value(l.varying + 2)};
+  return {w.load[l.varying], w.load[l.varying + 1], w.load[l.varying + 2]};
 }
 
+// `row_value` gives angles with their whole turns.
 template <class RowValue>
 inline void apply_load(Balance& balance, const Load& l, const RowValue& row_value) {
   const Plan& p = balance.p;
@@ -168,20 +167,20 @@ inline void apply_load(Balance& balance, const Load& l, const RowValue& row_valu
     case LOAD_FORCE_GROUND:
     case LOAD_FORCE_LINK: {
       const Pose& pose = w.pose[l.link];
-      const Vec3 given = load_vector(l, row_value);
+      const Vec3 given = load_vector(w, l);
       const Vec3 force = l.type == LOAD_FORCE_LINK ? pose.vector(given) : given;
       return balance.apply_outside(l.link, force_at(pose.point(l.point), force));
     }
-    case LOAD_TORQUE_GROUND: return balance.apply_outside(l.link, {load_vector(l, row_value), zero3()});
+    case LOAD_TORQUE_GROUND: return balance.apply_outside(l.link, {load_vector(w, l), zero3()});
     case LOAD_TORQUE_LINK:
-      return balance.apply_outside(l.link, {w.pose[l.link].vector(load_vector(l, row_value)), zero3()});
+      return balance.apply_outside(l.link, {w.pose[l.link].vector(load_vector(w, l)), zero3()});
     case LOAD_COORDINATE:
-      return apply_along_coordinate(balance, l.link, l.varying < 0 ? Pack(l.vector[0]) : row_value(l.varying));
+      return apply_along_coordinate(balance, l.link, l.varying < 0 ? Pack(l.vector[0]) : w.load[l.varying]);
     case LOAD_SPRING:
     case LOAD_DAMPER: return apply_between_points(balance, l);
     case LOAD_COORDINATE_SPRING:
       joint_coordinate(p, w, l, balance.moving, &value, &rate);
-      value = row_value.turned(l, value);
+      value = row_value.turned(l.turn, l.other < 0, value);
       return apply_along_coordinate(balance, l.link,
                                     -(Pack(l.vector[0]) * (value - Pack(l.vector[1])) + Pack(l.vector[2])));
     case LOAD_COORDINATE_DAMPER:
@@ -260,7 +259,8 @@ inline void closing_wrenches(const Plan& p, Workspace& w, int shift, Pack level)
   }
 }
 
-// Applies everything, solves for the closing wrenches and the efforts.
+// Applies everything, solves for the closing wrenches and the efforts; the values of loads that vary stand in
+// `w.load` (quantity_program.hpp).
 template <class RowValue>
 inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool accelerating, int shift,
                               const RowValue& row_value) {

@@ -61,10 +61,10 @@ void replay_pack(const Tape& t, Pack* r) {
   }
 }
 
-long replay_size(const Tape& t) { return (long)sizeof(Pack) * t.registers() + 64; }
+inline long replay_size(const Tape& t) { return (long)sizeof(Pack) * t.registers() + 64; }
 
 // Lanes beyond the last set of inputs repeat it.
-void replay(const Tape& t, const TapeRequest& request, char* memory) {
+inline void replay(const Tape& t, const TapeRequest& request, char* memory) {
   Pack* const r = (Pack*)(memory + (64 - (std::uintptr_t)memory % 64) % 64);
   for (int c = 0; c < t.constants; ++c) r[t.inputs + c] = t.constant[c];
   for (long first = 0; first < request.count; first += LANES) {

@@ -6,7 +6,7 @@
 #include "elementwise.hpp"
 #include "energy.hpp"
 #include "held.hpp"
-#include "outputs.hpp"
+#include "quantity_program.hpp"
 #include "search.hpp"
 #include "tape_jets.hpp"
 
@@ -25,18 +25,22 @@ struct Reader {
   }
 };
 
-// What loads read of a row.
+// What loads and their laws read of a row beside the workspace.
 struct RowValues {
   const Request& r;
   const Reader& in;
-  MECHKIN_INLINE Pack operator()(int column) const { return in.get(r.loads, column); }
-  // An angle with its whole turns: of a closing joint, what is nearest to what following says.
-  MECHKIN_INLINE Pack turned(const Load& l, Pack angle) const {
+  MECHKIN_INLINE Pack time() const { return r.time ? in.get(r.time, 0) : Pack(__builtin_nan("")); }
+  // An angle with its whole turns, see LoadOf::turn: of a closing joint, what is nearest to what following says.
+  MECHKIN_INLINE Pack turned(int turn, bool closing, Pack angle) const {
     const Pack full = 2.0 * 3.14159265358979323846;
-    if (l.turn == -1 || !(l.turn >= 0 ? r.turned : r.whole)) return angle;
-    if (l.turn < -1) return angle + full * in.get(r.whole, -2 - l.turn);
-    const Pack known = in.get(r.turned, l.turn);
-    return angle + full * (l.other < 0 ? nearest_integer((known - angle) / full) : known);
+    if (turn == -1 || !(turn >= 0 ? r.turned : r.whole)) return angle;
+    if (turn < -1) return angle + full * in.get(r.whole, -2 - turn);
+    const Pack known = in.get(r.turned, turn);
+    return angle + full * (closing ? nearest_integer((known - angle) / full) : known);
+  }
+  // The value of an input whose part within a turn is `angle`: as it was given, which a sum with its turns rounds.
+  MECHKIN_INLINE Pack input(int number, Pack factor, Pack angle) const {
+    return r.full ? factor * in.get(r.full, number) : turned(-2 - number, false, angle);
   }
 };
 
@@ -182,6 +186,11 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int o = 0; o < r.wanted.count; ++o) write_output(p, w, balance, row_values, r.wanted.output[o], out);
   };
   if (r.demand & DEMAND_FORCES) {
+    const Mask undefined = evaluate_loads(p, w, row_values);
+    if (r.loads)
+      for (int v = 0; v < p.load_values; ++v) writer(r.loads).put(v, w.load[v]);
+    if (r.undefined)
+      for (int i = 0; i < in.count; ++i) r.undefined[in.row + i] = lane(undefined, i);
     const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift, row_values);
     if (r.demand & DEMAND_POWER)
       writer(r.power_error)

@@ -9,6 +9,7 @@
 
 #include "assembly_size.hpp"
 #include "dimension_path.hpp"
+#include "program_store.hpp"
 #include "requirements.hpp"
 #include "threads.hpp"
 #include "units.hpp"
@@ -98,6 +99,8 @@ class Worker {
     r.jerks = moves_ ? moved + 3 * table : base_.jerks.data();
     r.guess = guess_.data();
     r.turned = turn_.data(), r.whole = whole;
+    r.full = moves_ ? moved : base_.full.data();
+    r.time = base_.time.empty() ? nullptr : base_.time.data();
     r.wanted = outputs_.view();
     r.outputs = out.outputs + number * (long)r.wanted.slots * rows;
     r.residual = out.residual + number * rows, r.condition = out.condition + number * rows;
@@ -267,12 +270,13 @@ Variants::Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputLi
           "the tape does not give the constants of plan and outputs");
   require(base_.rows <= MOST_ROWS, "rows: more than 100000000");
   require(base_.rows > 0 && base_.start_row >= 0 && base_.start_row < base_.rows, "rows: none, or no start among them");
-  for (const auto* values : {&base_.inputs, &base_.rates, &base_.accelerations, &base_.jerks})
+  for (const auto* values : {&base_.inputs, &base_.full, &base_.rates, &base_.accelerations, &base_.jerks})
     require(values->size() == table, "inputs: wrong shape");
   require((int)base_.state.size() == p.states, "state: wrong length");
   require(base_.size > 0.0 && std::isfinite(base_.size), "size: not positive");
   require(!(outputs.demand() & ~base_.demand), "the outputs need more than is demanded");
-  require(!(base_.demand & DEMAND_FORCES) || p.load_values == 0, "loads that vary by row have no place here");
+  require(!(base_.demand & DEMAND_FORCES) || !(program_demand(p.law) & ~base_.demand), "loads that vary need more than is demanded");
+  require(base_.time.empty() || (long)base_.time.size() == base_.rows, "time: one for each row");
   require(!(base_.demand & DEMAND_POWER), "no place for the power error");
   const unsigned demand = base_.demand;
   require(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");

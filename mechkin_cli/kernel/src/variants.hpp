@@ -47,6 +47,8 @@ struct VariantBase {
   std::vector<double> parameters;                            // the tape's inputs
   std::vector<double> inputs, rates, accelerations, jerks;   // inputs x rows each; angles without their
   std::vector<double> whole;                                 // whole turns
+  std::vector<double> full;                                  // inputs x rows, with their whole turns
+  std::vector<double> time;                                  // rows (s), or none
   std::vector<double> state;                                 // states, the first assembly
   double size;                                               // m, as the first assembly has it
   long rows, start_row;                                      // the first assembly stands at this row

@@ -77,7 +77,7 @@ void bind_variants(nb::module_& m) {
   nb::class_<Variants>(m, "Variants")
       .def("__init__",
            [](Variants* at, const TapeStore& tape, const FrozenPlan& plan, const OutputList& outputs,
-              const Numbers& parameters, const Table& inputs, const Table& whole, const Table& rates, const Table& accelerations,
+              const Numbers& parameters, const Table& inputs, const Table& whole, const Table& full, const Numbers& time, const Table& rates, const Table& accelerations,
               const Table& jerks, const Numbers& state, double size, long start_row, unsigned demand, int iterations,
               const StepLimits& continuation, const StepLimits& following,
               const std::vector<std::tuple<int, int, bool>>& angles, double half_turn_side,
@@ -85,7 +85,7 @@ void bind_variants(nb::module_& m) {
              const long rows = (long)inputs.shape(1);
              VariantBase base = {copy_of(parameters), copy_of(inputs, rows, "inputs"), copy_of(rates, rows, "rates"),
                                  copy_of(accelerations, rows, "accelerations"), copy_of(jerks, rows, "jerks"),
-                                 copy_of(whole, rows, "whole"),
+                                 copy_of(whole, rows, "whole"), copy_of(full, rows, "full"), copy_of(time),
                                  copy_of(state), size, rows, start_row, demand, iterations, continuation, following, {},
                                  half_turn_side, {}};
              for (const auto& [slot, turn, closing] : angles) base.angles.push_back({slot, turn, closing});
@@ -93,7 +93,7 @@ void bind_variants(nb::module_& m) {
                base.ways.push_back({step, places, copy_of(values, (long)places.size(), "ways"), course});
              new (at) Variants(tape, plan, outputs, std::move(base));
            },
-           nb::kw_only(), "tape"_a, "plan"_a, "outputs"_a, "parameters"_a, "inputs"_a, "whole"_a, "rates"_a, "accelerations"_a,
+           nb::kw_only(), "tape"_a, "plan"_a, "outputs"_a, "parameters"_a, "inputs"_a, "whole"_a, "full"_a, "time"_a, "rates"_a, "accelerations"_a,
            "jerks"_a, "state"_a, "size"_a, "start_row"_a, "demand"_a, "iterations"_a, "continuation"_a, "following"_a,
            "angles"_a, "half_turn_side"_a, "ways"_a = nb::list(), nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(),
            nb::keep_alive<1, 4>())
