@@ -555,6 +555,7 @@ def integrate_tape(
     parameters: Floats,
     rows: Floats,
     scales: Sequence[float],
+    bounce: float,
     reach: float,
     tolerance: float,
     fixed_step: float,
@@ -567,7 +568,7 @@ def integrate_tape(
 
     `switches`: whether each is a kink, whether it moves, and whether it ends a lane. `state`
     (x, v, w) and `parameters` are (components, lanes); `scales` are those of the charts, one step
-    each, which go no farther than `reach`.
+    each, which go no farther than `reach`; where a switch moves, v is multiplied by `bounce`.
     Returns the states (rows, components, lanes), a report for each lane (`LaneReport`), the events
     (lane, switch, rising, time, state) and how many rows were interpolated. ValueError for what
     fits no motion.

@@ -155,6 +155,24 @@ def test_borders_move() -> None:
         assert np.abs(answer.states[2, :, lane] - exact).max() < 1e-12
 
 
+def test_rates_may_jump_at_borders() -> None:
+    """A ball that leaves the floor half as fast as it meets it: the bounces end at time 3."""
+    system = System(
+        lambda t, x, v, w, side, p: ([-2.0], [], [x[0] + 0.0 * side[0]], 0.0), 1, 0, (BORDER,)
+    )
+    answer = system.integrate([0.0, 1.5], [0.0, 2.0, 2.5, 2.9, 9.0], bounce=-0.5)
+    exact = []
+    for t in (2.0, 2.5, 2.9):
+        begin, speed = 0.0, 1.5
+        while begin + speed <= t:
+            begin, speed = begin + speed, 0.5 * speed
+        exact.append((speed - (t - begin)) * (t - begin))
+    assert np.abs(answer.states[1:4, 0, 0] - exact).max() < 1e-12
+    report = answer.reports[0]
+    assert (report["end"], report["which"], report["rows"]) == (End.HELD, 0, 4)
+    assert abs(report["time"] - 3.0) < 1e-6
+
+
 @pytest.mark.parametrize("reach", [1.0, 0.3, 0.05])
 def test_charts_of_small_reach_cost_few_refusals(reach: float) -> None:
     answer = oscillator().integrate([0.0, 1.0, 0.0], [0.0, 20.0], tolerance=1e-6, reach=reach)

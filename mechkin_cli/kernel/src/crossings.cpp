@@ -152,7 +152,7 @@ void March::pass(const Flags& mask, const std::vector<int>& which) {
     const std::size_t k = (std::size_t)which[i] * lanes + i;
     const bool moves = states_.kinds[which[i]].moves, is_kink = states_.kinds[which[i]].kink || moves;
     if (moves)
-      states_.motion.move(i, which[i]);
+      states_.motion.move(i, which[i], states_.time[i], states_.y.data());
     else
       states_.side[k] = (std::int8_t)-states_.side[k];
     if (++control_[i].passed[which[i]] >= RETURNS && is_kink) finish(i, LaneEnd::HELD, which[i]);
@@ -167,6 +167,7 @@ void March::pass(const Flags& mask, const std::vector<int>& which) {
     if (asked[i] && !anew[i]) finish(i, LaneEnd::STUCK);
     if (!anew[i]) continue;
     for (long k = i; k < states_.entries; k += lanes) states_.slope[k] = slope[k];
+    states_.speed[i] = std::max(states_.speed[i], states_.speed_in(states_.y.data(), i));
     for (std::size_t k = i; k < values_.size(); k += lanes) states_.switch_value[k] = values_[k];
   }
 }

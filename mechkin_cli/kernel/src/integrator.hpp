@@ -24,10 +24,9 @@ struct Rates {
   double* rates;         // (v' [freedoms], w' [quadratures]) x lanes; u' = v
   double* switches;      // switches x lanes: their values there
   unsigned char* fault;  // lanes, zero when asked: why a place cannot be told (off the branch, does not close, singular
-                         // inertia), in the motion's own numbers below NOT_SOLVED; the step is tried again shorter
+                         // inertia), in the motion's own numbers below 254; the step is tried again shorter
 };
-// Faults that the integrator sets: a rate is not finite, the stages of an implicit step cannot be solved for.
-constexpr unsigned char NOT_FINITE = 255, NOT_SOLVED = 254;
+constexpr unsigned char NOT_FINITE = 255;  // the fault where a rate is not finite, set by the integrator
 
 // A function of time and place at whose zeros steps end. An event only tells. At a kink the rates have a corner or jump:
 // they are to be those of the lane's `side` on both sides of it, so that stages that reach beyond see a smooth function; the
@@ -68,9 +67,12 @@ class Motion {
   // falls together with a row, the row comes first.
   virtual bool event(int lane, int which, bool rising, double time) = 0;
   // A switch that moves was met at the chart's origin: the lane is in the next piece, whose rates are asked for at once.
-  virtual void move(int lane, int which) {
+  // v and w may be changed there (a rate that comes to rest), of that lane alone.
+  virtual void move(int lane, int which, double time, double* y) {
     (void)lane;
     (void)which;
+    (void)time;
+    (void)y;
   }
 };
 

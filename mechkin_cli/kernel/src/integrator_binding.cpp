@@ -38,13 +38,13 @@ nb::dict lane_report(const LaneReport& r) {
 
 nb::tuple integrate_tape(const TapeStore& tape, int freedoms, int quadratures,
                          const std::vector<std::tuple<bool, bool, bool>>& switches, Row time, Rows state, Rows parameters,
-                         Row rows, const std::vector<double>& scales, double reach, double tolerance, double fixed_step,
+                         Row rows, const std::vector<double>& scales, double bounce, double reach, double tolerance, double fixed_step,
                          double least_step, long most_steps, int dense_rows, int method) {
   const std::size_t lanes = time.shape(0), size = 2 * (std::size_t)freedoms + quadratures;
   if (state.shape(0) != size || state.shape(1) != lanes || parameters.shape(1) != lanes)
     throw nb::value_error("one column for each lane");
   if (method < 0 || method > 2) throw nb::value_error("unknown method");
-  TapeMotion::Shape shape{(int)lanes, freedoms, quadratures, {}, {}, reach};
+  TapeMotion::Shape shape{(int)lanes, freedoms, quadratures, {}, {}, bounce, reach};
   for (const auto& [kink, moves, stop] : switches) {
     shape.switches.push_back({kink, moves});
     shape.stops.push_back(stop);
@@ -73,6 +73,6 @@ void bind_integrator(nb::module_& m) {
   // (states (rows, components, lanes), a report for each lane, events (lane, switch, rising, time, state), rows that
   // were interpolated)
   m.def("integrate_tape", &integrate_tape, "tape"_a, "freedoms"_a, "quadratures"_a, "switches"_a, "time"_a, "state"_a,
-        "parameters"_a, "rows"_a, "scales"_a, "reach"_a, "tolerance"_a, "fixed_step"_a, "least_step"_a, "most_steps"_a,
+        "parameters"_a, "rows"_a, "scales"_a, "bounce"_a, "reach"_a, "tolerance"_a, "fixed_step"_a, "least_step"_a, "most_steps"_a,
         "dense_rows"_a, "method"_a);
 }

@@ -8,6 +8,9 @@
 
 #include "integrator.hpp"
 
+// The fault where the stages of an implicit step cannot be solved for. Reported as 0: a shorter step has them.
+constexpr unsigned char NOT_SOLVED = 254;
+
 using Flags = std::vector<unsigned char>;
 
 bool any(const Flags& flags);

@@ -73,7 +73,7 @@ void March::finish(int lane, LaneEnd end, int which) {
   control_[lane].running = false;
   report.end = end;
   report.which = which;
-  report.fault = end == LaneEnd::STUCK ? states_.fault[lane] : 0;
+  report.fault = end == LaneEnd::STUCK && states_.fault[lane] != NOT_SOLVED ? states_.fault[lane] : 0;
   report.time = states_.time[lane];
   report.evaluations = states_.evaluations[lane];
 }

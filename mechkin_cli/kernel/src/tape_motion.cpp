@@ -89,6 +89,11 @@ void TapeMotion::row(const unsigned char* mask, const long* row, const double*, 
   }
 }
 
+void TapeMotion::move(int lane, int which, double, double* y) {
+  ++moved_[which * shape_.lanes + lane];
+  for (int k = shape_.freedoms; k < 2 * shape_.freedoms; ++k) y[k * shape_.lanes + lane] *= shape_.bounce;
+}
+
 bool TapeMotion::event(int lane, int which, bool rising, double time) {
   TapeEvent event{lane, which, rising, time, {}};
   for (int k = 0; k < size(); ++k) event.state.push_back(now_[k * shape_.lanes + lane]);

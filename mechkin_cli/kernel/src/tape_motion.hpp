@@ -25,6 +25,7 @@ class TapeMotion : public Motion {
     int lanes, freedoms, quadratures;
     std::vector<SwitchKind> switches;
     std::vector<bool> stops;  // switches: whether they end a lane
+    double bounce;            // what v is multiplied by where a switch moves
     double reach;             // distance from the chart's origin, in x, from which on a place is a fault OUT_OF_REACH
   };
   // `state` (x, v, w) and `parameters`, each x lanes. Throws std::invalid_argument where the tape has other numbers.
@@ -40,7 +41,7 @@ class TapeMotion : public Motion {
   void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) override;
   bool event(int lane, int which, bool rising, double time) override;
 
-  void move(int lane, int which) override { ++moved_[which * shape_.lanes + lane]; }
+  void move(int lane, int which, double time, double* y) override;
 
   // The first y.
   const std::vector<double>& start() const { return start_; }
