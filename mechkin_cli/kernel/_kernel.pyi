@@ -582,6 +582,8 @@ def respond(
     tangent: Floats,
     begin: float,
     times: Floats,
+    stops: Sequence[tuple[int, int, int, float]],
+    driven: DrivenLaws | None,
     tolerance: float,
     fixed_step: float,
     most_steps: int,
@@ -594,3 +596,16 @@ def respond(
     lanes: int,
     threads: int,
 ) -> tuple[Any, ...]: ...
+
+class DrivenLaws:
+    def __init__(
+        self,
+        tape: Tape | None,
+        edges: Sequence[float],
+        constants: Sequence[float],
+        ways: Sequence[float],
+        units: Sequence[float],
+        time_unit: float,
+        held: Sequence[float],
+    ) -> None: ...
+    def at(self, time: float) -> list[tuple[float, float, float]]: ...

@@ -45,11 +45,13 @@ class LoadLaw(NamedTuple):
 
 
 class Laws(NamedTuple):
-    """The laws of the loads that vary, and what the names in them stand for."""
+    """The laws of the loads that vary, and what the names in them stand for; `watched` are values
+    that a motion is watched for beside them."""
 
     laws: tuple[LoadLaw, ...]
     parameters: Mapping[str, Quantity]
     quantities: Mapping[str, Wanted]
+    watched: tuple[LoadLaw, ...] = ()
 
 
 def quantities_read(problem: Problem) -> list[str]:

@@ -74,11 +74,12 @@ class Problem:
     @property
     def laws(self) -> Laws | None:
         """The laws of the loads that vary, with what their names stand for; None without any."""
-        if not self.load_laws:
+        watched = () if self.response is None else self.response.watched
+        if not self.load_laws and not watched:
             return None
         from mechkin_cli.mechanism.load_laws import Laws
 
-        return Laws(self.load_laws, self.parameters, self.quantities())
+        return Laws(self.load_laws, self.parameters, self.quantities(), watched)
 
     def quantities(self) -> Mapping[str, Wanted]:
         """The quantities that the mechanism has, by name."""

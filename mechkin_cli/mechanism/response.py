@@ -8,12 +8,14 @@ moment.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
+from mechkin_cli.expressions import parse
 from mechkin_cli.mechanism.joint_table import dimension_of
-from mechkin_cli.mechanism.motion import DrivenInput, Moments, Motion
+from mechkin_cli.mechanism.motion import ORDERS, DrivenInput, Moments, Motion
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
@@ -146,11 +148,27 @@ class Response:
         """(joint, coordinate) of the start's values."""
         return [(one.joint, one.coordinate) for one in self.start if one.value is not None]
 
+    @cached_property
+    def watched(self) -> tuple[LoadLaw, ...]:
+        """What the stops watch, one value each, in SI."""
+        return tuple(_watched(stop) for stop in self.stops)
+
     @property
     def efforts_of(self) -> list[tuple[str, str]]:
         """(joint, coordinate) whose effort is told: those with efforts, then the driven ones."""
         given = [(one.joint, one.coordinate) for one in self.efforts]
         return list(dict.fromkeys([*given, *((d.joint, d.coordinate) for d in self.driven)]))
+
+
+def _watched(stop: Stop) -> LoadLaw:
+    if isinstance(stop, Crossing):
+        return stop.law
+    from mechkin_cli.mechanism.load_laws import LoadLaw
+
+    name = f"{stop.joint}.{stop.coordinate}"
+    if isinstance(stop, DeadCentre):
+        name += ORDERS[1]
+    return LoadLaw((name,), stop.place, parse(name))
 
 
 def first_motion(response: Response, units: UnitSystem) -> Motion:

@@ -111,9 +111,9 @@ def run(
         turned: (turn slots, rows) as `solver.closing_turns` has them; springs on angles and laws of
             loads go by them.
         whole: (inputs, rows) whole turns that the inputs are without, likewise.
+        chart: of a plan with one.
         full: (inputs, rows) the inputs with their whole turns, which laws of loads read.
         time: (rows,) s, likewise.
-        chart: of a plan with one.
         demand: what to compute beyond positions.
         outputs: quantities to write, of a plan of the same structure.
         derivatives: return the columns' first and second derivatives, as far as they are demanded.
@@ -149,9 +149,9 @@ def run(
         jerks=_contiguous(jerks),
         turned=_contiguous(turned),
         whole=_contiguous(whole),
+        **({} if chart is None else chart.arguments(demand)),
         full=_contiguous(full),
         time=_contiguous(time),
-        **({} if chart is None else chart.arguments(demand)),
         outputs=outputs,
         states=states,
         values=values,

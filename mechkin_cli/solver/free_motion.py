@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.kernel._kernel import DrivenLaws, Plan
 
 
 class MotionEnd(IntEnum):
@@ -45,9 +45,11 @@ class Fault(IntEnum):
 
 
 class MotionReport(NamedTuple):
-    """What a motion came to: its end, the fault of the last refused step, the switch that ended it
-    (-1: none), whether and from when the implicit method took over, the last time in s, and the
-    counts of rows, evaluations, steps and rejections."""
+    """What a motion came to: the stop that ended it (-1: none), its end, the fault of the last
+    refused step, the switch that held it, whether and from when the implicit method took over, the
+    last time in s, and the counts of rows, evaluations, steps and rejections."""
+
+    stop: int
 
     end: MotionEnd
     fault: int
@@ -73,6 +75,22 @@ class MotionRows:
     turns: Floats
     work: Floats
     flags: NDArray[np.uint8]
+
+    @property
+    def count(self) -> int:
+        """Rows that there are: those that were reached, and one where a stop lies between rows."""
+        return self.report.rows + bool(np.isfinite(self.states[:1, self.report.rows]).all())
+
+
+class WatchedStop(NamedTuple):
+    """What ends a motion, by a value that is watched: 0 it crosses `at`, upwards (1), downwards
+    (-1) or either way (0); 1 it changes its sign for the `times`th time; 2 it lies `times` turns
+    from where it began."""
+
+    kind: int
+    direction: int
+    times: int
+    at: float
 
 
 @dataclass(frozen=True)
@@ -105,6 +123,8 @@ def integrate(
     begin: float,
     times: Floats,
     *,
+    stops: Sequence[WatchedStop] = (),
+    driven: DrivenLaws | None = None,
     tolerance: float,
     fixed_step: float | None,
     packing: Packing,
@@ -112,6 +132,8 @@ def integrate(
 ) -> list[MotionRows]:
     """Integrates motions of plans of one structure, packed into lanes, from time `begin` (s) over
     the rows' `times` (rows,).
+
+    `stops` go with the values that the plans watch, in order; `driven` with their inputs.
 
     Raises:
         ValueError: times that do not rise from `begin` on.
@@ -123,6 +145,8 @@ def integrate(
         tangent=np.ascontiguousarray([start.tangents.ravel() for start in starts]),
         begin=begin,
         times=np.ascontiguousarray(times),
+        stops=[(s.kind, s.direction, s.times, s.at) for s in stops],
+        driven=driven,
         tolerance=tolerance,
         fixed_step=fixed_step or 0.0,
         most_steps=tolerances.MOST_RESPONSE_STEPS,

@@ -50,18 +50,19 @@ class Law(NamedTuple):
 
 
 def load_program(layout: Layout) -> list[Program]:
-    """The record of the values of the loads that vary; none where no load does."""
+    """The record of the values of the loads that vary, then of what a motion is watched for; none
+    where there is neither."""
     laws = layout.laws
     used = sorted({one.number for load in layout.mechanism.loads for one in varying(load)})
-    if laws is None or not used:
+    if laws is None or not (used or laws.watched):
         return []
-    recording = _Recording(
-        layout, laws.quantities, laws.parameters, [laws.laws[number] for number in used]
-    )
+    acting = [laws.laws[number] for number in used]
+    recording = _Recording(layout, laws.quantities, laws.parameters, [*acting, *laws.watched])
     found = recording.values()
     kinks = recording.kinks
-    values = dict(zip(used, map(recording.defined, found), strict=True))
-    return [recording.program(kernel_columns(layout, values), kinks)]
+    values = dict(zip(used, map(recording.defined, found[: len(used)]), strict=True))
+    columns = kernel_columns(layout, values)
+    return [recording.program([*columns, *found[len(used) :]], kinks)]
 
 
 def compile_quantity_expressions(

@@ -13,6 +13,7 @@ import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism.joint_table import is_angle
+from mechkin_cli.mechanism.load_laws import law_value
 from mechkin_cli.mechanism.model import (
     GROUND_NAME,
     Amount,
@@ -112,7 +113,10 @@ class _Acting:
         self.motion = motion
         self.result = result
         self.row = row
-        self.laws: Sequence[float] = [float(values[row]) for values in result.law_values]
+        laws = result.problem.load_laws
+        self.laws: Sequence[float] = [
+            float(law_value(law, result.quantity, result.rows)[row]) for law in laws
+        ]
 
     def on_links(self, load: Load) -> Iterator[tuple[str, Wrench]]:
         """What a load exerts, link by link."""

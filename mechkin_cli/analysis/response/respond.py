@@ -11,20 +11,29 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.response.beginning import Beginning, beginning
 from mechkin_cli.analysis.response.endings import ending
+from mechkin_cli.analysis.response.moments import rows_problem, watched_stop
 from mechkin_cli.analysis.response.result import ENERGIES, ResponseResult
 from mechkin_cli.analysis.sweep.rows import Rows
 from mechkin_cli.analysis.sweep.sweep import at_once, first_assembly, judge_condition, row_notes
-from mechkin_cli.mechanism.motion import Moments, Motion
+from mechkin_cli.mechanism.motion import Motion
 from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.solver.batch import Chart
 from mechkin_cli.solver.closing_turns import turn_slots
-from mechkin_cli.solver.free_motion import MotionRows, MotionStart, free_session, integrate
+from mechkin_cli.solver.driven_laws import driven_laws
+from mechkin_cli.solver.free_motion import (
+    MotionEnd,
+    MotionRows,
+    MotionStart,
+    free_session,
+    integrate,
+)
 from mechkin_cli.solver.session import Packing, Session
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.assembly.start import Start
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.kernel._kernel import DrivenLaws
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.mechanism.response import Response
@@ -61,14 +70,19 @@ def respond(
     if not isinstance(begun, Beginning):
         start.diagnostics.append(begun)
         return _nothing(chosen, free, start, response)
-    found = _integrated(free, begun, response, packing)
-    result = _rows(chosen, free, start, response, found)
+    driven = driven_laws(free, response)
+    found = _integrated(free, begun, response, driven, packing)
+    result = _rows(chosen, free, start, response, driven, found)
     _read(result, quantities)
     return result
 
 
 def _integrated(
-    free: Session, begun: Beginning, response: Response, packing: Packing
+    free: Session,
+    begun: Beginning,
+    response: Response,
+    driven: DrivenLaws | None,
+    packing: Packing,
 ) -> MotionRows:
     times = response.moments.values
     start = MotionStart(free.plan, begun.state, begun.first, begun.tangents)
@@ -76,6 +90,8 @@ def _integrated(
         [start],
         float(times[0]),
         times,
+        stops=[watched_stop(stop) for stop in response.stops],
+        driven=driven,
         tolerance=response.tolerance,
         fixed_step=response.fixed_step,
         packing=packing,
@@ -84,27 +100,38 @@ def _integrated(
 
 
 def _rows(
-    chosen: Session, free: Session, start: Start, response: Response, found: MotionRows
+    chosen: Session,
+    free: Session,
+    start: Start,
+    response: Response,
+    driven: DrivenLaws | None,
+    found: MotionRows,
 ) -> ResponseResult:
-    """The rows with their verdicts, before anything is read."""
-    count = response.rows
-    reached = np.arange(count) < found.report.rows
+    """The rows with their verdicts, before anything is read: those asked for, or up to a stop."""
+    stopped = found.report.end is MotionEnd.STOPPED
+    count = found.count if stopped else response.rows
+    part = slice(0, count)
+    reached = np.arange(count) < found.count
     rows = Rows.without_guesses(free.layout.states, 0, count)
-    rows.states = np.where(reached, found.states, 0.0)
+    rows.states = np.where(reached, found.states[:, part], 0.0)
     rows.reached, rows.nodes = reached, found.report.steps
-    rows.turns = _all_turns(free, found.turns)
+    rows.turns = _all_turns(free, found.turns[:, part])
     status, notes = ending(chosen, response, found.report)
     rows.status[~reached] = status
     rows.diagnostics += notes
     energy = free.layout.length * free.layout.length
+    events = [""] * count
+    if stopped:
+        events[-1] = response.stops[found.report.stop].words
+    chart = found.chart.at(part)
     return ResponseResult(
-        _with_moments(free, response, response.moments),
+        free.moved(rows_problem(free, response, driven, found, count)),
         chosen,
         start,
         rows,
-        _filled(found.chart, reached),
-        np.where(reached, energy * found.work, np.nan),
-        [""] * count,
+        Chart(*(np.where(reached, array, 0.0) for array in chart)),
+        np.where(reached, energy * found.work[:, part], np.nan),
+        events,
         response,
         found.report,
     )
@@ -118,19 +145,10 @@ def _nothing(chosen: Session, free: Session, start: Start, response: Response) -
     rows.status[:] = Status.not_assembled if start.state is None else Status.branch_lost
     zeros = np.zeros((charts, count))
     chart = Chart(np.zeros((charts * free.plan.columns, count)), zeros, zeros)
-    session = _with_moments(free, response, response.moments)
+    motion = Motion(response.driven, count, response.moments, response.course)
+    session = free.moved(replace(free.problem, motion=motion))
     lost = np.full((2, count), np.nan)
     return ResponseResult(session, chosen, start, rows, chart, lost, [""] * count, response, None)
-
-
-def _with_moments(free: Session, response: Response, moments: Moments) -> Session:
-    """The same session with the driven coordinates at the rows' moments."""
-    motion = Motion(response.driven, moments.values.size, moments, response.course)
-    return free.moved(replace(free.problem, motion=motion))
-
-
-def _filled(chart: Chart, reached: np.ndarray) -> Chart:
-    return Chart(*(np.where(reached, array, 0.0) for array in chart))
 
 
 def _all_turns(free: Session, closing: Floats) -> Floats:

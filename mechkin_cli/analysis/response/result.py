@@ -10,6 +10,7 @@ import numpy as np
 
 from mechkin_cli.analysis.sweep.result import Result
 from mechkin_cli.expressions import Quantity
+from mechkin_cli.mechanism.load_laws import law_value
 from mechkin_cli.mechanism.model import Varying
 from mechkin_cli.mechanism.quantities import response_quantities
 
@@ -182,7 +183,8 @@ class ResponseResult(Result):
         total = np.zeros(self.rows)
         for amount in given:
             if isinstance(amount, Varying):
-                total = total + self.law_values[amount.number]
+                law = self.problem.load_laws[amount.number]
+                total = total + law_value(law, self.quantity, self.rows)
             else:
                 total = total + amount
         return np.where(self.solved, total, np.nan)

@@ -205,13 +205,6 @@ class Result:
         return self._columns
 
     @cached_property
-    def law_values(self) -> Floats:
-        """Values of the laws of loads that vary (laws, rows) in SI, nan where one has none."""
-        from mechkin_cli.analysis.sweep.loads import values_of_laws
-
-        return values_of_laws(self)
-
-    @cached_property
     def alternatives(self) -> tuple[Result, ...]:
         """The same rows with other reactions in equilibrium (redundant constraints)."""
         return told_anew(self, "_alternative", len(self.shifts))
@@ -372,9 +365,9 @@ class Result:
             jerks=inputs.jerks if demand & Demand.JERK else None,
             turned=turned,
             whole=whole,
+            chart=chart,
             full=full,
             time=time,
-            chart=chart,
             shift=shift,
             iterations=iterations,
         )

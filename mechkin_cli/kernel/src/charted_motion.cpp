@@ -26,37 +26,44 @@ int slots_of(const std::vector<ClosingTurn>& turns) {
 }  // namespace
 
 ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionStart>& starts, const MotionLimits& limits,
-                             const std::vector<MotionRows>& rows)
+                             const std::vector<MotionRows>& rows, const std::vector<MotionStop>& stops,
+                             const DrivenLaws* driven)
     : unit_(unit), starts_(starts), lanes_(unit.lanes), plan_(*starts[0].plan), limits_(limits), rows_(rows),
       turns_(closing_turns(plan_, *kernel_unit(2))), turn_slots_(slots_of(turns_)), wide_(wide_plan(unit, starts)),
-      workspace_((std::size_t)unit.workspace_size(wide_.data())) {
+      workspace_((std::size_t)unit.workspace_size(wide_.data())), stops_(stops), driven_(driven) {
   for (int b = 0; b < plan_.blocks; ++b) entries_ += (long)plan_.block[b].rows * plan_.block[b].size;
   const auto make = [&](Packed& a, long count) { a.assign((std::size_t)(count * lanes_), 0.0); };
   make(origin_, plan_.states), make(origin_first_, plan_.columns), make(origin_second_, plan_.columns);
   make(direction_, (long)plan_.charts * plan_.columns), make(jacobian_, entries_), make(turn_, turn_slots_);
   make(elapsed_, 1), make(origin_time_, 1), make(place_, plan_.charts), make(rate_, plan_.charts);
   make(inputs_, plan_.inputs), make(input_rates_, plan_.inputs), make(input_seconds_, plan_.inputs);
-  make(time_, 1);
+  make(time_, 1), make(side_, plan_.law.kinks), make(done_, 2);
+  cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), next_row_.assign(lanes_, 0);
+  stop_start_.assign(stops_.size() * lanes_, 0.0), passed_.assign(stops_.size() * lanes_, 0);
   found_ = make_stage(), end_ = make_stage();
   for (int l = 0; l < lanes_; ++l) {
     const MotionStart& s = starts_[l];
     for (int k = 0; k < plan_.states; ++k) origin_[k * lanes_ + l] = s.state[k];
     for (int k = 0; k < plan_.columns; ++k) origin_first_[k * lanes_ + l] = s.first[k];
+    origin_time_[l] = time_[l] = s.time;
+    drive(l, s.time);
     for (int k = 0; k < plan_.charts * plan_.columns; ++k) end_.tangent[k * lanes_ + l] = s.tangent[k];
     lay_chart(l);
-    origin_time_[l] = time_[l] = s.begin;
   }
   const std::vector<double> y = start();
   std::copy(y.begin() + (long)plan_.charts * lanes_, y.begin() + 2L * plan_.charts * lanes_, rate_.begin());
+  std::fill(side_.begin(), side_.end(), 1.0);
   evaluate(place_.data(), rate_.data(), &found_);
   jacobian_ = found_.jacobian, origin_second_ = found_.second, turn_ = found_.turned;
+  for (std::size_t k = 0; k < stop_start_.size(); ++k)
+    stop_start_[k] = found_.watched[(std::size_t)plan_.law.kinks * lanes_ + k];
 }
 
 ChartedMotion::Stage ChartedMotion::make_stage() const {
   const auto make = [&](long count) { return Packed((std::size_t)(count * lanes_), 0.0); };
   const long n = plan_.charts;
   return {make(plan_.states), make(plan_.columns), make(plan_.columns), make(entries_), make(n * plan_.columns),
-          make(n), make(n * n), make(2), make(turn_slots_), std::vector<unsigned char>((std::size_t)lanes_)};
+          make(n), make(n * n), make(plan_.law.kinks + (plan_.law.outputs - plan_.load_values)), make(2), make(turn_slots_), std::vector<unsigned char>((std::size_t)lanes_)};
 }
 
 std::vector<double> ChartedMotion::start() const {
@@ -75,23 +82,42 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
   given.direction = direction_.data(), given.origin_jacobian = jacobian_.data(), given.elapsed = elapsed_.data();
   given.place = place, given.rate = rate;
   given.inputs = inputs_.data(), given.input_rates = input_rates_.data(), given.input_seconds = input_seconds_.data();
-  given.time = time_.data(), given.turned = turn_.data();
+  given.time = time_.data(), given.side = side_.data(), given.turned = turn_.data();
   given.turns = turns_.data(), given.turn_count = (int)turns_.size();
   given.tight = limits_.tight, given.coarse = limits_.coarse, given.accept = limits_.accept;
   given.iterations = limits_.iterations, given.jump = limits_.jump, given.radius = limits_.radius;
   const StageFound out = {found->state.data(), found->first.data(), found->second.data(), found->jacobian.data(),
                           found->tangent.data(), found->chart_second.data(), found->inertia.data(),
-                          found->power.data(), found->turned.data(), found->flags.data()};
+                          found->watched.data(), found->power.data(), found->turned.data(), found->flags.data()};
   unit_.evaluate(wide_.data(), given, out, workspace_.data());
+}
+
+std::vector<SwitchKind> ChartedMotion::switches() const {
+  std::vector<SwitchKind> kinds(plan_.law.kinks, {true});
+  if (driven_) kinds.insert(kinds.end(), driven_->edges().size(), {true});
+  kinds.insert(kinds.end(), stops_.size(), {false});
+  return kinds;
+}
+
+// The driven inputs of a lane at a time, on the piece of their laws that the lane is on.
+void ChartedMotion::drive(int lane, double time) {
+  if (!driven_) return;
+  driven_->at(cell_[lane], time, lane, lanes_, inputs_.data(), input_rates_.data(), input_seconds_.data());
 }
 
 // Lanes that are not asked for stand at their origin.
 void ChartedMotion::set_places(const Places& places) {
-  const int n = plan_.charts;
+  const int n = plan_.charts, kinks = plan_.law.kinks, edges = driven_ ? (int)driven_->edges().size() : 0;
   for (int l = 0; l < lanes_; ++l) {
     const bool active = places.active[l];
     time_[l] = active ? places.time[l] : origin_time_[l];
     elapsed_[l] = time_[l] - origin_time_[l];
+    if (active && places.side) {
+      for (int k = 0; k < kinks; ++k) side_[k * lanes_ + l] = places.side[k * lanes_ + l];
+      cell_[l] = 0;
+      for (int e = 0; e < edges; ++e) cell_[l] += places.side[(kinks + e) * lanes_ + l] > 0;
+    }
+    drive(l, time_[l]);
     for (int i = 0; i < n; ++i) {
       place_[i * lanes_ + l] = active ? places.y[i * lanes_ + l] : 0.0;
       rate_[i * lanes_ + l] = active ? places.y[(n + i) * lanes_ + l] : 0.0;
@@ -109,7 +135,24 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
     for (int i = 0; i < n; ++i) rates.rates[i * lanes_ + l] = found->chart_second[i * lanes_ + l];
     for (int k = 0; k < 2; ++k) rates.rates[(n + k) * lanes_ + l] = found->power[k * lanes_ + l];
     rates.fault[l] = found->flags[l];
+    write_switches(*found, l, time_[l], rates.switches);
   }
+}
+
+// What changes its sign where a stop is met.
+double ChartedMotion::stop_value(int stop, int lane, double watched) const {
+  const MotionStop& s = stops_[stop];
+  if (s.kind == STOP_CROSSING) return watched - s.at;
+  if (s.kind == STOP_TURNING) return watched;
+  return std::fabs(watched - stop_start_[(std::size_t)stop * lanes_ + lane]) - FULL * s.count;
+}
+
+void ChartedMotion::write_switches(const Stage& found, int lane, double time, double* switches) const {
+  const int kinks = plan_.law.kinks, edges = driven_ ? (int)driven_->edges().size() : 0;
+  for (int k = 0; k < kinks; ++k) switches[k * lanes_ + lane] = at(found.watched, k, lane);
+  for (int e = 0; e < edges; ++e) switches[(kinks + e) * lanes_ + lane] = time - driven_->edges()[e];
+  for (int s = 0; s < (int)stops_.size(); ++s)
+    switches[(kinks + edges + s) * lanes_ + lane] = stop_value(s, lane, at(found.watched, kinks + s, lane));
 }
 
 // The tangents of the old chart, made orthonormal in the columns in parts of their weights (Gram-Schmidt, twice).
@@ -169,6 +212,7 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
       for (long k = 0; k < count; ++k) to[k * lanes_ + l] = from[k * lanes_ + l];
     };
     origin_time_[l] = time[l];
+    for (int k = 0; k < 2; ++k) done_[k * lanes_ + l] = y[(2 * n + k) * lanes_ + l];
     take(end_.state, plan_.states, origin_), take(end_.first, columns, origin_first_);
     take(end_.second, columns, origin_second_), take(end_.jacobian, entries_, jacobian_);
     continue_turns(l, end_.turned);
@@ -188,7 +232,7 @@ void ChartedMotion::write_row(int lane, long row, const Stage& at_row, const dou
   const MotionRows& out = rows_[lane];
   if (!out.rows) return;
   const int n = plan_.charts, columns = plan_.columns;
-  const auto put = [&](double* to, long column, double x) { to[column * out.rows + row] = x; };
+  const auto put = [&](double* to, long column, double x) { to[column * (out.rows + 1) + row] = x; };
   for (int k = 0; k < plan_.states; ++k) put(out.state, k, at(at_row.state, k, lane));
   for (int i = 0; i < n; ++i) {
     double first = 0.0, second = 0.0;
@@ -200,7 +244,7 @@ void ChartedMotion::write_row(int lane, long row, const Stage& at_row, const dou
     put(out.chart_rate, i, first), put(out.chart_second, i, second);
   }
   for (int k = 0; k < turn_slots_; ++k) put(out.turn, k, at(turn_, k, lane));
-  for (int k = 0; k < 2; ++k) put(out.work, k, done[(long)k * lanes_ + lane]);
+  for (int k = 0; k < 2; ++k) put(out.work, k, done ? done[(long)k * lanes_ + lane] : at(done_, k, lane));
   out.flags[row] = at_row.flags[lane];
 }
 
@@ -215,7 +259,17 @@ void ChartedMotion::row(const unsigned char* lanes, const long* row, const doubl
     if (!lanes[l]) continue;
     if (inside) continue_turns(l, found_.turned);
     write_row(l, row[l], inside ? found_ : end_, done);
+    next_row_[l] = row[l] + 1;
   }
 }
 
-bool ChartedMotion::event(int, int, bool, double) { return true; }
+bool ChartedMotion::event(int lane, int which, bool rising, double) {
+  const int stop = which - plan_.law.kinks - (driven_ ? (int)driven_->edges().size() : 0);
+  if (stop < 0) return false;
+  const MotionStop& s = stops_[stop];
+  if (s.kind == STOP_CROSSING && s.direction * (rising ? 1 : -1) < 0) return false;
+  if (++passed_[(std::size_t)stop * lanes_ + lane] < (s.kind == STOP_TURNING ? s.count : 1)) return false;
+  stopped_[lane] = stop;
+  write_row(lane, next_row_[lane], end_, nullptr);
+  return true;
+}

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "aligned.hpp"
+#include "driven_laws.hpp"
 #include "integrator.hpp"
 #include "motion_unit.hpp"
 #include "stepper.hpp"
@@ -18,8 +19,20 @@ struct MotionStart {
   const Plan* plan;         // with a chart, valid as long as the motion
   const double* state;      // states, closed
   const double* first;      // columns: their rates
+  double time;              // s
   const double* tangent;    // charts x columns: rates that the loops allow, as many as freedoms, independent
-  double begin;             // s
+};
+
+enum StopKind : int {
+  STOP_CROSSING = 0,  // the value passes `at`, up (+1), down (-1) or either way (0)
+  STOP_TURNING = 1,   // the value, a rate, changes its sign the `count`th time
+  STOP_TURNS = 2      // the value lies `count` turns from where it began
+};
+
+// What ends a motion, by one of the watched values of the plan's program.
+struct MotionStop {
+  int kind, direction, count;
+  double at;
 };
 
 struct MotionLimits {
@@ -28,6 +41,7 @@ struct MotionLimits {
 };
 
 // Rows of a lane, column after column; rows that are not reached stay as they are. Without rows nothing is written.
+// One row more is for the place where a stop ends the motion between rows.
 struct MotionRows {
   long rows;
   double* state;          // states
@@ -43,29 +57,35 @@ class ChartedMotion : public Motion {
  public:
   // `unit` has as many lanes as there are starts; a lane without a variant of its own repeats another's.
   ChartedMotion(const MotionUnit& unit, const std::vector<MotionStart>& starts, const MotionLimits& limits,
-                const std::vector<MotionRows>& rows);
+                const std::vector<MotionRows>& rows, const std::vector<MotionStop>& stops, const DrivenLaws* driven);
 
   int lanes() const override { return lanes_; }
   int freedoms() const override { return plan_.charts; }
   int quadratures() const override { return 2; }
+  std::vector<SwitchKind> switches() const override;
   void rates(const Places& places, const Rates& rates) override;
   void accept(const unsigned char* lanes, const double* time, double* y, double* rates, double* longest) override;
   void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) override;
   bool event(int lane, int which, bool rising, double time) override;
 
+  // The stop that ended a lane, -1 without one.
+  int stopped_by(int lane) const { return stopped_[lane]; }
   // y at the start: u = 0, the rates of u, nothing done.
   std::vector<double> start() const;
 
  private:
   // Arrays of packs, as the unit takes them.
   struct Stage {
-    Packed state, first, second, jacobian, tangent, chart_second, inertia, power, turned;
+    Packed state, first, second, jacobian, tangent, chart_second, inertia, watched, power, turned;
     std::vector<unsigned char> flags;
   };
 
   Stage make_stage() const;
   void evaluate(const double* place, const double* rate, Stage* found);
   void set_places(const Places& places);
+  void drive(int lane, double time);
+  double stop_value(int stop, int lane, double watched) const;
+  void write_switches(const Stage& found, int lane, double time, double* switches) const;
   void lay_chart(int lane);
   void continue_turns(int lane, const Packed& found);
   void write_row(int lane, long row, const Stage& at, const double* done);
@@ -82,6 +102,14 @@ class ChartedMotion : public Motion {
   long entries_ = 0;
   std::vector<char, AlignedAllocator<char>> wide_, workspace_;
   Packed origin_, origin_first_, origin_second_, direction_, jacobian_, turn_, elapsed_, place_, rate_, origin_time_;
-  Packed inputs_, input_rates_, input_seconds_, time_;
+  Packed inputs_, input_rates_, input_seconds_, time_, side_;
+  const std::vector<MotionStop> stops_;
+  const DrivenLaws* driven_;
+  std::vector<int> cell_;           // lanes: of the driven laws
+  std::vector<double> stop_start_;  // stops x lanes: the values at the start
+  std::vector<int> passed_;         // stops x lanes: how often a stop's value has passed
+  std::vector<int> stopped_;        // lanes
+  std::vector<long> next_row_;      // lanes
+  Packed done_;                     // 2: work put in and lost at the origin
   Stage found_, end_;
 };

@@ -18,7 +18,7 @@ inline void copy(const Pack* from, int count, Pack* to) {
   for (int i = 0; i < count; ++i) to[i] = from[i];
 }
 
-// What loads and their laws read of a stage.
+// What loads read of a stage.
 struct StageValues {
   const StageGiven& given;
   MECHKIN_INLINE Pack time() const { return *packs(given.time); }
@@ -93,6 +93,22 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
   return placed;
 }
 
+// The values of loads, of kinks and of what else is watched; the lanes in which a load has none.
+inline Mask evaluate_program(const Plan& p, Workspace& w, const StageGiven& given, const StageValues& values,
+                             Pack* watched) {
+  Mask undefined = all_lanes(false);
+  if (!p.law.outputs) return undefined;
+  run_on_sides(p, w, p.law, values, packs(given.side), w.law);
+  for (int v = 0; v < p.load_values; ++v) {
+    w.load[v] = w.law[p.law.output[v]];
+    undefined = undefined | ~(w.load[v] == w.load[v]);
+  }
+  for (int k = 0; k < p.law.kinks; ++k) watched[k] = kink_value(p.law, k, w.law);
+  for (int v = p.load_values; v < p.law.outputs; ++v)
+    watched[p.law.kinks + v - p.load_values] = w.law[p.law.output[v]];
+  return undefined;
+}
+
 void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given, const StageFound& found) {
   copy(packs(given.direction), p.charts * p.columns, w.direction);
   copy(packs(given.origin), p.states, w.origin);
@@ -104,7 +120,7 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
   const Pack* const input_rate = packs(given.input_rates);
   move(p, w, m, packs(given.rate), input_rate, packs(given.input_seconds));
   const StageValues values = {given};
-  const Mask undefined = evaluate_loads(p, w, values);
+  const Mask undefined = evaluate_program(p, w, given, values, packs(found.watched));
   reduce_inertia(p, w, m);
   reduce_forces(p, w, m, values);
   Pack* const second = packs(found.chart_second);

@@ -12,10 +12,11 @@ struct StageGiven {
   const double* direction;        // charts x columns, see chart.hpp
   const double* origin_jacobian;  // blocks' entries, the chart's rows included
   const double* elapsed;          // 1: time since the origin
+  const double* time;             // 1
+  const double* side;             // kinks of the plan's program: +1 or -1
   const double* place;            // charts: u
   const double* rate;             // charts: its rate
   const double *inputs, *input_rates, *input_seconds;  // inputs: of what is driven
-  const double* time;             // 1: s, as laws of loads read it
   const double* turned;           // turn slots, see Request::turned, of the origin
   const ClosingTurn* turns;       // turn_count: what StageFound::turned holds
   int turn_count;
@@ -40,6 +41,7 @@ struct StageFound {
   double* tangent;    // charts x columns: rates of the columns by those of u
   double* chart_second;  // charts: u''
   double* inertia;    // charts x charts: reduced inertia
+  double* watched;    // kinks of the plan's program, then its outputs beyond the loads' values
   double* power;      // 2: of efforts and loads without a potential; lost in dampers
   double* turned;        // turn slots: angles and quaternions of the closing joints as the kernel finds them
   unsigned char* flags;  // lanes: StageFlag

@@ -136,11 +136,11 @@ void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
   const KernelUnit& narrow = *kernel_unit(2);
   r.turned = given.read("turned", turn_slots(p, narrow));
   r.whole = given.read("whole", p.inputs);
-  r.full = given.read("full", p.inputs);
-  r.time = given.read("time", Arguments::ONE_PER_ROW);
   r.chart = given.read("chart", p.charts * p.columns);
   r.chart_rates = given.read("chart_rates", p.charts);
   r.chart_accelerations = given.read("chart_accelerations", p.charts);
+  r.full = given.read("full", p.inputs);
+  r.time = given.read("time", Arguments::ONE_PER_ROW);
   const OutputList* outputs = nullptr;
   nb::object list = given.other("outputs");
   if (!list.is_none()) {

@@ -36,7 +36,8 @@ struct Workspace {
   Pack* saved;                    // states before a trial step
   Pack* kept;                     // largest block squared: factors of lanes that are done
   Mask* kept_swap;
-  Pack *load, *law;               // values of loads that vary; registers of Plan::law
+  Pack* load;                     // load values: of loads that vary
+  Pack* law;                      // registers of Plan::law
   bool* moves;                    // links: whether Newton on the link's block moves it (find_moving)
   Pack *direction, *origin;       // charts x columns, states: the chart's, see Chart
   Pack *place, *place_rate, *place_acceleration;  // charts
@@ -82,12 +83,13 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->across = (Vec3*)take((p.legs + 1) * sizeof(Vec3));
   w->holding = (Pack*)take((p.legs + 1) * pack);
   w->saved = (Pack*)take(p.states * pack);
-  w->load = (Pack*)take(p.load_values * pack), w->law = (Pack*)take(p.law.registers() * pack);
   w->direction = (Pack*)take(p.charts * p.columns * pack);
   w->origin = (Pack*)take((p.charts ? p.states : 0) * pack);
   w->place = (Pack*)take(p.charts * pack);
   w->place_rate = (Pack*)take(p.charts * pack);
   w->place_acceleration = (Pack*)take(p.charts * pack);
+  w->load = (Pack*)take(p.load_values * pack);
+  w->law = (Pack*)take((long)p.law.registers() * pack);
   return used;
 }
 

@@ -50,9 +50,9 @@ inline Pack curve_value(const ProgramCurve& c, const Knot* knot, Pack at) {
   return select(inside, value, Pack(__builtin_nan("")));
 }
 
-// Fills `r` (program.registers()); the reads' quantities are those that the workspace holds by then.
+// The registers of reads, curves and constants; the reads' quantities are those that the workspace holds by then.
 template <class Number, class RowValue>
-inline void run_program(const Plan& p, const Workspace& w, const ProgramOf<Number>& program, const RowValue& row_value,
+inline void read_program(const Plan& p, const Workspace& w, const ProgramOf<Number>& program, const RowValue& row_value,
                         Pack* r) {
   for (int k = 0; k < program.reads; ++k) {
     const ReadOf<Number>& read = program.read[k];
@@ -71,6 +71,13 @@ inline void run_program(const Plan& p, const Workspace& w, const ProgramOf<Numbe
   for (int c = 0; c < program.curves; ++c)
     curve[c] = curve_value(program.curve[c], program.knot, r[program.curve[c].over]);
   for (int c = 0; c < program.constants; ++c) r[program.inputs + c] = Pack(program.constant[c]);
+}
+
+// Fills `r` (program.registers()).
+template <class Number, class RowValue>
+inline void run_program(const Plan& p, const Workspace& w, const ProgramOf<Number>& program, const RowValue& row_value,
+                        Pack* r) {
+  read_program(p, w, program, row_value, r);
   replay_pack(instructions_of(program), r);
 }
 
@@ -87,13 +94,50 @@ inline Pack kink_value(const ProgramOf<Number>& program, int k, const Pack* r) {
   }
 }
 
+// The result of kink k on a side of it, +1 or -1: as on that side also beyond it.
+template <class Number>
+inline Pack value_on_side(const ProgramOf<Number>& program, int k, Pack side, const Pack* r) {
+  const int instruction = program.kink[k];
+  const std::int32_t* const o = program.operand + 3 * instruction;
+  const Mask up = side > Pack(0.0);
+  switch (program.operation[instruction]) {
+    case TAPE_MAGNITUDE: return side * r[o[0]];
+    case TAPE_LARGER: return select(up, r[o[0]], r[o[1]]);
+    case TAPE_SMALLER: return select(up, r[o[1]], r[o[0]]);
+    default: {  // TAPE_WHOLE: even numbers where the cosine is positive
+      const Pack odd = select(up, Pack(0.0), Pack(1.0));
+      return Pack(2.0) * nearest_integer(Pack(0.5) * (r[o[0]] - odd)) + odd;
+    }
+  }
+}
+
+// As run_program, with every kink's result taken on a side of it (kinks).
+template <class Number, class RowValue>
+inline void run_on_sides(const Plan& p, const Workspace& w, const ProgramOf<Number>& program, const RowValue& row_value,
+                         const Pack* side, Pack* r) {
+  read_program(p, w, program, row_value, r);
+  Tape part = instructions_of(program);
+  int done = 0;
+  const auto replay_to = [&](int end) {
+    part.instructions = end - done;
+    replay_pack(part, r);
+    part.constants += end - done, part.operation += end - done, part.operand += 3 * (end - done);
+    done = end;
+  };
+  for (int k = 0; k < program.kinks; ++k) {
+    replay_to(program.kink[k] + 1);
+    r[program.inputs + program.constants + program.kink[k]] = value_on_side(program, k, side[k], r);
+  }
+  replay_to(program.instructions);
+}
+
 // The values of loads that vary into `w.load`, before the forces; the lanes in which one has none.
 template <class RowValue>
 inline Mask evaluate_loads(const Plan& p, Workspace& w, const RowValue& row_value) {
   Mask undefined = all_lanes(false);
   if (!p.load_values) return undefined;
   run_program(p, w, p.law, row_value, w.law);
-  for (int v = 0; v < p.law.outputs; ++v) {
+  for (int v = 0; v < p.load_values; ++v) {
     w.load[v] = w.law[p.law.output[v]];
     undefined = undefined | ~(w.load[v] == w.load[v]);
   }

@@ -8,30 +8,30 @@
 namespace {
 
 // A pack of variants from `first` on; lanes beyond the last repeat it, into rows of their own.
-void respond_pack(const ResponseTask& task, const MotionUnit& unit, long first, std::vector<LaneReport>* reports) {
+void respond_pack(const ResponseTask& task, const MotionUnit& unit, long first, std::vector<ResponseReport>* reports) {
   const long count = (long)task.starts.size();
   std::vector<MotionStart> starts;
   std::vector<MotionRows> rows;
   for (int l = 0; l < unit.lanes; ++l) {
     const long v = std::min(first + l, count - 1);
     starts.push_back(task.starts[v]);
-    starts.back().begin = task.begin;
     rows.push_back(task.rows[v]);
     if (first + l >= count) rows.back().rows = 0;
   }
-  ChartedMotion motion(unit, starts, task.limits, rows);
-  const std::vector<double> begin((std::size_t)unit.lanes, task.begin);
+  ChartedMotion motion(unit, starts, task.limits, rows, task.stops, task.driven);
+  std::vector<double> begin;
+  for (const MotionStart& s : starts) begin.push_back(s.time);
   const long moments = rows[0].rows;
   const std::vector<LaneReport> found =
       integrate(motion, task.settings, begin.data(), motion.start(), {task.times, moments, 0});
-  for (int l = 0; l < unit.lanes && first + l < count; ++l) (*reports)[first + l] = found[l];
+  for (int l = 0; l < unit.lanes && first + l < count; ++l) (*reports)[first + l] = {found[l], motion.stopped_by(l)};
 }
 
 }  // namespace
 
-std::vector<LaneReport> respond(const ResponseTask& task, int lanes, int threads) {
+std::vector<ResponseReport> respond(const ResponseTask& task, int lanes, int threads) {
   const long count = (long)task.starts.size();
-  std::vector<LaneReport> reports((std::size_t)count);
+  std::vector<ResponseReport> reports((std::size_t)count);
   const MotionUnit& unit = *motion_unit(lanes);
   const long packs = (count + unit.lanes - 1) / unit.lanes;
   over_rows(packs, 1, (int)std::min<long>(threads, packs), [&](long begin, long end, int) {

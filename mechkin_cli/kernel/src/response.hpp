@@ -7,10 +7,16 @@ struct ResponseTask {
   std::vector<MotionStart> starts;  // one a variant, plans of one structure
   std::vector<MotionRows> rows;     // likewise
   const double* times;              // rows: all variants have the same
-  double begin;                     // time of the starts
+  std::vector<MotionStop> stops;
+  const DrivenLaws* driven;         // null: nothing is driven
   MotionLimits limits;
   IntegratorSettings settings;
 };
 
+struct ResponseReport {
+  LaneReport lane;
+  int stop;  // that ended it, -1: none
+};
+
 // How each variant ended; they do not depend on `lanes` and `threads`.
-std::vector<LaneReport> respond(const ResponseTask& task, int lanes, int threads);
+std::vector<ResponseReport> respond(const ResponseTask& task, int lanes, int threads);

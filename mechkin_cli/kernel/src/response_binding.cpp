@@ -26,8 +26,10 @@ const double* checked(const Table& a, std::size_t variants, long width, const ch
   return a.data();
 }
 
-nb::dict report_of(const LaneReport& r) {
+nb::dict report_of(const ResponseReport& report) {
+  const LaneReport& r = report.lane;
   nb::dict d;
+  d["stop"] = report.stop;
   d["end"] = (int)r.end, d["fault"] = (int)r.fault, d["which"] = r.which;
   d["stiff"] = r.stiff, d["stiff_from"] = r.stiff_from, d["time"] = r.time, d["rows"] = r.rows;
   d["evaluations"] = r.evaluations, d["steps"] = r.steps, d["rejections"] = r.rejections;
@@ -42,7 +44,9 @@ void check_plans(const std::vector<const FrozenPlan*>& plans) {
 }
 
 nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, const Table& first,
-              const Table& tangent, double begin, const Numbers& times, double tolerance,
+              const Table& tangent, double begin, const Numbers& times,
+              const std::vector<std::tuple<int, int, int, double>>& stops, const DrivenLaws* driven,
+              double tolerance,
               double fixed_step, long most_steps, int dense_rows, int method, const std::vector<double>& tests, int iterations,
               double jump, double radius, int lanes, int threads) {
   check_plans(plans);
@@ -57,42 +61,62 @@ nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, c
   const double* const given[3] = {checked(state, count, p.states, "state"), checked(first, count, p.columns, "first"),
                                   checked(tangent, count, (long)wide, "tangent")};
   ResponseTask task;
-  task.times = times.data(), task.begin = begin;
+  if (p.law.outputs - p.load_values != (int)stops.size()) throw nb::value_error("stops: one for each watched value");
+  if ((driven ? driven->inputs() : 0) != p.inputs) throw nb::value_error("driven: one law for each input");
+  task.times = times.data(), task.driven = driven;
+  for (const auto& [kind, direction, times_passed, at] : stops) task.stops.push_back({kind, direction, times_passed, at});
   task.limits = {tests[0], tests[1], tests[2], jump, radius, iterations};
   task.settings.tolerance = tolerance, task.settings.fixed_step = fixed_step;
   task.settings.dense_rows = dense_rows, task.settings.most_steps = most_steps, task.settings.method = (MethodChoice)method;
   MotionRows all = {};
-  auto states = new_array<double>(&all.state, {count, (std::size_t)p.states, rows});
-  auto directions = new_array<double>(&all.direction, {count, wide, rows});
-  auto rates = new_array<double>(&all.chart_rate, {count, (std::size_t)p.charts, rows});
-  auto seconds = new_array<double>(&all.chart_second, {count, (std::size_t)p.charts, rows});
-  auto turns = new_array<double>(&all.turn, {count, (std::size_t)slots, rows});
-  auto work = new_array<double>(&all.work, {count, 2, rows});
-  auto flags = new_array<unsigned char>(&all.flags, {count, rows});
+  auto states = new_array<double>(&all.state, {count, (std::size_t)p.states, rows + 1});
+  auto directions = new_array<double>(&all.direction, {count, wide, rows + 1});
+  auto rates = new_array<double>(&all.chart_rate, {count, (std::size_t)p.charts, rows + 1});
+  auto seconds = new_array<double>(&all.chart_second, {count, (std::size_t)p.charts, rows + 1});
+  auto turns = new_array<double>(&all.turn, {count, (std::size_t)slots, rows + 1});
+  auto work = new_array<double>(&all.work, {count, 2, rows + 1});
+  auto flags = new_array<unsigned char>(&all.flags, {count, rows + 1});
   for (std::size_t v = 0; v < count; ++v) {
     task.starts.push_back(
-        {&plans[v]->view(), given[0] + v * p.states, given[1] + v * p.columns, given[2] + v * wide});
-    task.rows.push_back({(long)rows, all.state + v * p.states * rows, all.direction + v * wide * rows,
-                         all.chart_rate + v * p.charts * rows, all.chart_second + v * p.charts * rows,
-                         all.turn + v * slots * rows, all.work + v * 2 * rows, all.flags + v * rows});
+        {&plans[v]->view(), given[0] + v * p.states, given[1] + v * p.columns, begin,
+         given[2] + v * wide});
+    task.rows.push_back({(long)rows, all.state + v * p.states * (rows + 1), all.direction + v * wide * (rows + 1),
+                         all.chart_rate + v * p.charts * (rows + 1), all.chart_second + v * p.charts * (rows + 1),
+                         all.turn + v * slots * (rows + 1), all.work + v * 2 * (rows + 1), all.flags + v * (rows + 1)});
   }
-  std::vector<LaneReport> reports;
+  std::vector<ResponseReport> reports;
   {
     nb::gil_scoped_release released;
     FloatingPointState floating;
     reports = respond(task, lanes, threads);
   }
   nb::list told;
-  for (const LaneReport& r : reports) told.append(report_of(r));
+  for (const ResponseReport& r : reports) told.append(report_of(r));
   return nb::make_tuple(told, states, directions, rates, seconds, turns, work, flags);
 }
 
 }  // namespace
 
 void bind_response(nb::module_& m) {
+  nb::class_<DrivenLaws>(m, "DrivenLaws", "Coordinates driven by laws of time.")
+      .def(nb::init<const TapeStore*, std::vector<double>, std::vector<double>, std::vector<double>, std::vector<double>,
+                    double, std::vector<double>>(),
+           "tape"_a.none(), "edges"_a, "constants"_a, "ways"_a, "units"_a, "time_unit"_a, "held"_a, nb::keep_alive<1, 2>())
+      .def("at", [](const DrivenLaws& laws, double time) {
+        // value, rate and acceleration of each input at a moment (s)
+        int cell = 0;
+        for (double edge : laws.edges()) cell += time >= edge;
+        std::vector<double> value(laws.inputs()), rate(laws.inputs()), second(laws.inputs());
+        FloatingPointState floating;
+        laws.at(cell, time, 0, 1, value.data(), rate.data(), second.data());
+        std::vector<std::tuple<double, double, double>> all;
+        for (int i = 0; i < laws.inputs(); ++i) all.emplace_back(value[i], rate[i], second[i]);
+        return all;
+      }, "time"_a);
   // Reports, then arrays (variants, columns, rows): states, chart directions, rates and accelerations of the chart,
-  // turns, work put in and lost; flags (variants, rows). Rows that were not reached hold nan.
-  m.def("respond", &run, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "tangent"_a, "begin"_a, "times"_a,
+  // turns, work put in and lost; flags (variants, rows). One row more is for the place of a stop. Rows that were not
+  // reached hold nan.
+  m.def("respond", &run, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "tangent"_a, "begin"_a, "times"_a, "stops"_a, "driven"_a.none(),
         "tolerance"_a, "fixed_step"_a, "most_steps"_a, "dense_rows"_a, "method"_a, "tests"_a, "iterations"_a, "jump"_a, "radius"_a,
         "lanes"_a, "threads"_a);
 }

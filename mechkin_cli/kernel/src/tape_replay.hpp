@@ -25,7 +25,7 @@ MECHKIN_INLINE Mask tape_condition(int operation, Pack a, Pack b) {
   return operation == TAPE_LESS ? a < b : operation == TAPE_NOT_MORE ? a <= b : a == b;
 }
 
-inline void replay_pack(const Tape& t, Pack* r) {
+void replay_pack(const Tape& t, Pack* r) {
   Pack* result = r + t.inputs + t.constants;
   const std::int32_t* o = t.operand;
   for (int i = 0; i < t.instructions; ++i, o += 3) {

@@ -139,18 +139,18 @@ inline void widen_masses_and_loads(const LanePlan& first, const Lanes& lanes, Pl
   w->column_weight = weight, w->inertia = inertia, w->load = load;
 }
 
-inline void widen_law(const LanePlan& first, const Lanes& lanes, Plan* w, Room& room) {
+inline void widen_program(const LanePlan& first, const Lanes& lanes, Plan* w, Room& room) {
   const ProgramOf<double>& from = first.law;
   ReadOf<Pack>* const read = room.take<ReadOf<Pack>>(from.reads);
   Pack* const constant = room.take<Pack>(from.constants);
   if (!room.memory) return;
   for (int k = 0; k < from.reads; ++k) {
-    const Output& o = from.read[k].output;
+    const OutputOf<double>& o = from.read[k].output;
     read[k] = {from.read[k].kind, from.read[k].turn, {o.type, o.index, o.order, o.freedom, o.slot, {}, {}}};
     lanes.numbers(read[k].output.data, 3, [&](const LanePlan& p) { return p.law.read[k].output.data; });
     read[k].output.factor = lanes.number([&](const LanePlan& p) { return p.law.read[k].output.factor; });
   }
-  lanes.numbers(constant, from.constants, [](const LanePlan& p) { return p.law.constant; });
+  lanes.numbers(constant, from.constants, [&](const LanePlan& p) { return p.law.constant; });
   w->law = {from.reads, from.curves, from.knots, from.constants, from.instructions, from.outputs, from.kinks,
             from.inputs, read, from.curve, from.knot, constant, from.operation, from.operand, from.output, from.kink};
 }
@@ -175,7 +175,7 @@ inline long widen(const LanePlan* const* plans, char* memory) {
   widen_joints(first, lanes, to, room);
   widen_places(first, lanes, to, room);
   widen_masses_and_loads(first, lanes, to, room);
-  widen_law(first, lanes, to, room);
+  widen_program(first, lanes, to, room);
   return room.used;
 }
 
