@@ -11,11 +11,13 @@ from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.response import Response, response_problem
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph, is_redundant
 from mechkin_cli.solver.graph.errors import listed
+from mechkin_cli.solver.graph.left_free import left_free
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from mechkin_cli.building.fields import Fields
+    from mechkin_cli.mechanism.model import Mechanism
     from mechkin_cli.mechanism.problem import Problem
 
 Graphs = dict[str, SolverGraph | Diagnostic]
@@ -57,15 +59,18 @@ def response_graph(
         if error.missing:
             return _too_few(response, error)._replace(place=place)
         return error.diagnostic._replace(place=place)
-    if not is_redundant(graph):
+    if not is_redundant(graph) and response.independent:
         return graph
+    at = [float(item.values[0]) for item in first.motion.inputs]
+    standing = dict(zip(driven, [*at, *first.held_at.values()], strict=True))
+    moving = left_free(mechanism, standing)
+    # the drawing alone may be a special position
+    if len(moving) > 1 and all(moving):
+        return _undetermined(response, mechanism, driven)._replace(place=place)
     for extra in reversed(response.independent):
-        fewer = [one for one in driven if one != extra]
-        try:
-            enough = not is_redundant(build_graph(mechanism, fewer))
-        except UnsolvableGraph:
-            continue
-        if enough:
+        fewer = {one: value for one, value in standing.items() if one != extra}
+        moving = left_free(mechanism, fewer)
+        if moving and not any(moving):
             return _too_many(response, extra)._replace(place=place)
     return graph
 
@@ -78,6 +83,25 @@ def _too_few(response: Response, error: UnsolvableGraph) -> Diagnostic:
         f"the start of {response.name} names {_coordinates(response.independent)}, but "
         f"{free} {'is' if free == 1 else 'are'} free; candidates: {listed(error.candidates)}",
         measured=f"{error.missing} more unknowns than closing equations",
+        hint=HINT,
+    )
+
+
+def _undetermined(
+    response: Response, mechanism: Mechanism, driven: Sequence[tuple[str, str]]
+) -> Diagnostic:
+    names = [
+        f"{joint.name}.{name}"
+        for joint in mechanism.joints.values()
+        for name in joint.type.coordinates
+        if (joint.name, name) not in driven
+    ]
+    return Diagnostic(
+        "start-count",
+        "error",
+        f"the start of {response.name} names {_coordinates(response.independent)}, but more are "
+        f"free; candidates: {listed(names)}",
+        measured="links move at every assembled place while these coordinates rest",
         hint=HINT,
     )
 

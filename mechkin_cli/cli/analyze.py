@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import Progress, Record, put, put_json, refusal, say, say_diagnostics
 from mechkin_cli.cli.parameters import parameters
+from mechkin_cli.cli.runs import run_all
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.tables.writers import USUAL_FORMATS, WRITERS, Results, written_files
 
@@ -47,7 +48,7 @@ def analyze_files(
     quiet: bool = False,
     strict: bool = False,
 ) -> ExitCode:
-    """Runs the sweep of each file and writes its tables.
+    """Runs the sweep and the responses of each file and writes their tables.
 
     The arguments are the options of the command, as `analyze_command` declares them.
 
@@ -79,27 +80,35 @@ def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]
     """Runs one file; what is wrong with it does not stop the others."""
     from mechkin_cli.interface import load
     from mechkin_cli.tables.files import OutputFolder
+    from mechkin_cli.tables.json_writer import runs_record
 
     try:
         model = load(path, request.settings)
         with OutputFolder(folder) as output:
-            analysis = model.analyze(tables=request.tables, mode=request.mode)
-            written = output.write(_files(analysis, request))
+            analyses = run_all(model, request.tables, request.mode)
+            results = [_results(analysis, request) for analysis in analyses]
+            written = output.write(written_files(results, request.formats))
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
-    say_diagnostics(analysis.diagnostics, str(path))
+    said = dict.fromkeys(found for analysis in analyses for found in analysis.diagnostics)
+    say_diagnostics(tuple(said), str(path))
     record: Record = {}
     if request.json:
-        record = {"file": str(path)} | _record(analysis)
+        record = {"file": str(path)} | runs_record(results)
         if request.explain:
             from mechkin_cli.cli.explanation import explanation
 
-            record["explanation"] = explanation(analysis).split("\n")
+            texts = [explanation(analysis) for analysis in analyses]
+            record["explanation"] = "\n".join(texts).split("\n")
     else:
-        _report(path, analysis, folder, written, request)
-    result = analysis.result
-    enough = result.complete and (result.sound or not request.strict)
+        _report(path, analyses, folder, written, request)
+    enough = all(_is_enough(analysis, request) for analysis in analyses)
     return ExitCode.OK if enough else ExitCode.ROWS_MISSING, record
+
+
+def _is_enough(analysis: Analysis, request: _Request) -> bool:
+    result = analysis.result
+    return result.complete and (result.sound or not request.strict)
 
 
 def _formats(given: list[str] | None) -> tuple[str, ...]:
@@ -129,36 +138,28 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
     return folders
 
 
-def _files(analysis: Analysis, request: _Request) -> dict[str, bytes]:
-    """The tables and rows.csv."""
+def _results(analysis: Analysis, request: _Request) -> Results:
     name, result = analysis.model.name, analysis.result
     tables = (*analysis.tables, *analysis.coefficients)
-    results = Results(name, tables, result, analysis.diagnostics, request.threads)
-    return written_files(results, request.formats)
-
-
-def _record(analysis: Analysis) -> Record:
-    from mechkin_cli.tables.json_writer import analysis_record
-
-    name = analysis.model.name
-    tables = (*analysis.tables, *analysis.coefficients)
-    return analysis_record(name, tables, analysis.result, analysis.diagnostics)
+    return Results(name, tables, result, analysis.diagnostics, request.threads, analysis.run)
 
 
 def _report(
-    path: Path, analysis: Analysis, folder: Path, written: list[Path], request: _Request
+    path: Path, analyses: list[Analysis], folder: Path, written: list[Path], request: _Request
 ) -> None:
-    from mechkin_cli.cli.summary import summary
+    from mechkin_cli.cli.show import shown_tables
+    from mechkin_cli.cli.summary import files_line, summary
 
-    if request.explain:
-        from mechkin_cli.cli.explanation import explanation
+    for analysis in analyses:
+        if request.explain:
+            from mechkin_cli.cli.explanation import explanation
 
-        put(f"{explanation(analysis)}\n")
+            put(f"{explanation(analysis)}\n")
+        for part in () if request.quiet else shown_tables(analysis, folder):
+            put(part)
     if request.quiet:
         return
-    from mechkin_cli.cli.show import shown_tables
-
-    for part in shown_tables(analysis, folder):
-        put(part)
-    for line in summary(path, analysis, folder, written):
-        say(line)
+    for analysis in analyses:
+        for line in summary(path, analysis):
+            say(line)
+    say(files_line(folder, written))

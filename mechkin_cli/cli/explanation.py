@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from mechkin_cli.kernel.width import INSTRUCTIONS, width, widths
 from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS, accelerated
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, POWER_KINDS
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS
 
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
 def explanation(analysis: Analysis) -> str:
     """Tree, closing joints, blocks and the demand plan."""
     graph = analysis.result.graph
-    lines = [f"solver graph of {analysis.model.name}", "  tree"]
+    of = analysis.model.name if analysis.run == SWEEP else f"the start of {analysis.run}"
+    lines = [f"solver graph of {of}", "  tree"]
     for edge in graph.edges:
         way = "" if edge.forward else ", passed from its second link to its first"
         way = ", hung between its spheres" if edge.hung else way
@@ -64,15 +66,16 @@ def _joint(joint: Joint, words: str) -> str:
 
 def _demand_lines(analysis: Analysis) -> list[str]:
     result = analysis.result
-    demand, mechanism = result.demand, analysis.model.problem.mechanism
+    problem = analysis.model.problem if analysis.run == SWEEP else result.problem
+    demand, mechanism = result.demand, problem.mechanism
     massless = not any(link.has_mass for link in mechanism.links.values())
     forces = bool(demand & Demand.FORCES)
-    known = analysis.model.problem.quantities()
+    known = problem.quantities()
     asked = [known[name] for name in result.columns if name in known]
     reactions = any(quantity.kind in WRENCH_KINDS for quantity in asked)
     lines = [
         f"first assembly: {result.how or 'none found'}",
-        f"positions: {result.rows} rows, {result.nodes} nodes followed, the rest filled in between",
+        _positions(analysis),
         _line("velocities", bool(demand & Demand.VELOCITY), "no column reads a rate"),
         _line("accelerations", bool(demand & Demand.ACCELERATION), _without(forces, massless)),
         _line("input efforts and closing wrenches", forces, "no column reads a force"),
@@ -84,15 +87,27 @@ def _demand_lines(analysis: Analysis) -> list[str]:
             "no rates are computed" if forces else "no column reads a force",
         ),
     ]
-    if forces and analysis.model.problem.load_laws:
+    if forces and problem.load_laws:
         from mechkin_cli.mechanism.load_laws import quantities_read
 
-        read = ", ".join(quantities_read(analysis.model.problem))
+        read = ", ".join(quantities_read(problem))
         lines.append(f"loads that vary: evaluated with the forces, from {read}")
     lines += _derived_lines(asked)
     if forces and massless:
         lines.append("inertia: skipped, no link has mass")
     return [*lines, _width_line()]
+
+
+def _positions(analysis: Analysis) -> str:
+    result = analysis.result
+    if analysis.run == SWEEP:
+        nodes = f"{result.nodes} nodes followed, the rest filled in between"
+        return f"positions: {result.rows} rows, {nodes}"
+    response = analysis.model.response(analysis.run)
+    step = f"a tolerance of {response.tolerance:g}"
+    if response.fixed_step is not None:
+        step = f"steps of {response.fixed_step:g} s"
+    return f"motion: {result.rows} rows, integrated in {result.nodes} steps with {step}"
 
 
 def _width_line() -> str:

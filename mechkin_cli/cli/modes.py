@@ -27,13 +27,17 @@ def modes(
             help="Input instead of the first row's; of several as O1.theta=VALUE, repeatable.",
         ),
     ] = None,
+    run: Annotated[
+        str | None,
+        typer.Option("--run", metavar="NAME", help="At the start of this response."),
+    ] = None,
     set_: Set = None,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """List the ways to assemble a mechanism."""
     question = Question(
-        ask=lambda model: model.modes(_place(at)),
+        ask=lambda model: model.modes(_place(at), run=run),
         is_answered=lambda found: bool(found.modes),
         record=_record,
         show=lambda model, found: _print(model, found, quiet),

@@ -16,20 +16,22 @@ if TYPE_CHECKING:
     from mechkin_cli.tables.errata import PrintedTable
 
 
-def overview_row(file: Path, analysis: Analysis, printed: Sequence[PrintedTable]) -> OverviewRow:
+def overview_row(
+    file: Path, analyses: Sequence[Analysis], printed: Sequence[PrintedTable]
+) -> OverviewRow:
     """One file in a line."""
-    from mechkin_cli.status import Status
     from mechkin_cli.tables.errata import counts
 
-    model = analysis.model
-    solved = sum(Status(int(code)).has_solution for code in analysis.result.status)
+    model = analyses[0].model
+    solved = sum(int(analysis.result.solved.sum()) for analysis in analyses)
+    rows = sum(analysis.rows for analysis in analyses)
     return OverviewRow(
         file.stem,
         model.name,
         " ".join(joint.letter for joint in model.problem.mechanism.joints.values()),
         _mobility(model),
         _modes(model),
-        str(solved) if solved == analysis.rows else f"{solved} of {analysis.rows}",
+        str(solved) if solved == rows else f"{solved} of {rows}",
         counts(one.agreement for one in printed) if printed else "",
         model.source,
     )
@@ -46,7 +48,8 @@ def _mobility(model: Model) -> str:
 
 
 def _modes(model: Model) -> str:
-    """Number of modes found, and whether it is proven to be all."""
+    """Number of modes found, and whether it is proven to be all; of a file of responses alone those
+    at the start of its first."""
     found = model.modes()
     count = len(found.modes)
     return f"{count} (all)" if found.complete else str(count)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from mechkin_cli.legible import legible
@@ -26,7 +27,8 @@ def shown_tables(analysis: Analysis, folder: Path) -> Iterator[str]:
     chosen = _chosen_rows(analysis.rows)
     for table in analysis.tables:
         title = _one_line(table.title)
-        lines = [f"{table.name}: {title}" if title != table.name else table.name]
+        heading = f"{table.name}: {title}" if title != table.name else table.name
+        lines = wrap(heading, width)
         for group in _grouped(table, chosen, width):
             lines += ["", *group]
         left_out = analysis.rows - len(chosen)

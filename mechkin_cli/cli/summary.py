@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,9 @@ import numpy as np
 
 from mechkin_cli.analysis.assembly.start import NEAR
 from mechkin_cli.mechanism.legs import find_legs
-from mechkin_cli.status import Status, has_solution
+from mechkin_cli.runs import SWEEP
+from mechkin_cli.status import Status
+from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
     from mechkin_cli.interface import Analysis
@@ -20,17 +23,64 @@ IDLE_SHOWN = 2
 """Idle freedoms that are named one by one."""
 
 
-def summary(path: Path, analysis: Analysis, folder: Path, written: list[Path]) -> list[str]:
-    """Lines: driven freedoms, loops, branch, rows, worst residual and power error, files."""
+def summary(path: Path, analysis: Analysis) -> list[str]:
+    """Lines: driven freedoms, loops, branch, rows, worst residual and power error; of a response
+    what is free, and how it ended."""
     result = analysis.result
-    rows = [("driven", _driven(analysis)), ("loops", _loops(analysis))]
+    name = analysis.model.name
+    if analysis.run == SWEEP:
+        rows = [("driven", _driven(analysis))]
+    else:
+        name = f"{name}, response {analysis.run}"
+        rows = [("free", _free(analysis))]
+    rows.append(("loops", _loops(analysis)))
     if result.mode:
         rows.append(("branch", _branch(analysis)))
     rows += [("rows", _rows(analysis)), ("worst", _worst(analysis))]
+    if analysis.run != SWEEP:
+        rows.insert(-1, ("ended", _ended(analysis)))
+    return [f"{name} ({path})", *(_line(*row) for row in rows)]
+
+
+def files_line(folder: Path, written: Sequence[Path]) -> str:
+    """Where the files are, and how many of each kind."""
     kinds = Counter(file.suffix.removeprefix(".") for file in written)
     counts = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
-    rows.append(("files", f"{folder} ({counts})"))
-    return [f"{analysis.model.name} ({path})", *(f"  {name:<9}{text}" for name, text in rows)]
+    return _line("files", f"{folder} ({counts})")
+
+
+def _line(name: str, text: str) -> str:
+    return f"  {name:<9}{text}"
+
+
+def _free(analysis: Analysis) -> str:
+    """How many freedoms move under forces, where they start, what is driven and what acts."""
+    response = analysis.model.response(analysis.run)
+    free = response.independent
+    noun = "freedom" if len(free) == 1 else "freedoms"
+    parts = [f"{len(free)} {noun} from {', '.join(f'{joint}.{name}' for joint, name in free)}"]
+    if response.efforts:
+        parts.append(f"efforts on {', '.join(one.name for one in response.efforts)}")
+    if response.driven:
+        parts.append(f"driven: {', '.join(one.name for one in response.driven)}")
+    return "; ".join(parts)
+
+
+def _ended(analysis: Analysis) -> str:
+    """By which stop, or at the last moment asked for, or before it."""
+    result = analysis.result
+    times = result.inputs["time"]
+    unit = result.units.label(TIME)
+    solved = np.flatnonzero(result.solved)
+    if not solved.size:
+        return "before it began"
+    last = int(solved[-1])
+    at = f"at {times[last]:.9g} {unit}"
+    if result.events[last]:
+        return f"{at}: {result.events[last]}"
+    if last == result.rows - 1:
+        return f"{at}, the last moment"
+    return f"after {times[last]:.9g} {unit}: {Status(int(result.status[last + 1])).label}"
 
 
 def _branch(analysis: Analysis) -> str:
@@ -73,7 +123,7 @@ def _loops(analysis: Analysis) -> str:
 
 def _rows(analysis: Analysis) -> str:
     result = analysis.result
-    text = f"{np.count_nonzero(has_solution(result.status))} of {result.rows} solved"
+    text = f"{np.count_nonzero(result.solved)} of {result.rows} solved"
     codes, first, counts = np.unique(result.status, return_index=True, return_counts=True)
     others = [
         f"{counts[k]} {Status(int(codes[k])).label}"
@@ -86,11 +136,14 @@ def _rows(analysis: Analysis) -> str:
 def _worst(analysis: Analysis) -> str:
     result = analysis.result
     parts = []
-    for name, values in (
-        ("residual", result.residual),
-        ("power error", result.power_error),
-        ("condition", result.condition),
-    ):
+    measured = {
+        "residual": result.residual,
+        "power error": result.power_error,
+        "condition": result.condition,
+    }
+    if analysis.run != SWEEP:
+        measured["energy error"] = np.asarray(result.quantity("row.energy_error").value)
+    for name, values in measured.items():
         finite = values[np.isfinite(values)]
         if finite.size:
             parts.append(f"{name} {float(finite.max()):.1e}")

@@ -12,6 +12,7 @@ import typer
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import Progress, Record, put, put_json, refusal, say, say_diagnostics
 from mechkin_cli.cli.options import Json, Quiet
+from mechkin_cli.cli.runs import run_all
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
@@ -117,15 +118,17 @@ def _made(
     from mechkin_cli.cli.overview import overview_row
     from mechkin_cli.tables.against_print import against_print
 
-    analysis = model.analyze()
-    say_diagnostics(analysis.diagnostics, str(file))
-    printed = against_print(file, analysis.layouts, analysis.tables)
-    row = overview_row(file, analysis, printed) if overview else None
-    fresh = _fresh_files(analysis, printed)
-    code = ExitCode.OK if analysis.result.complete else ExitCode.ROWS_MISSING
+    analyses = run_all(model)
+    said = tuple(dict.fromkeys(found for one in analyses for found in one.diagnostics))
+    say_diagnostics(said, str(file))
+    printed = [table for one in analyses for table in against_print(file, one.layouts, one.tables)]
+    row = overview_row(file, analyses, printed) if overview else None
+    fresh = _fresh_files(model, analyses, printed)
+    complete = all(one.result.complete for one in analyses)
+    code = ExitCode.OK if complete else ExitCode.ROWS_MISSING
     record: Record = {
         "file": str(file),
-        "diagnostics": [diagnostic.record() for diagnostic in analysis.diagnostics],
+        "diagnostics": [diagnostic.record() for diagnostic in said],
     }
     if output is None:
         outcome, compared = _compare(file.with_suffix(""), fresh, json, quiet)
@@ -136,7 +139,9 @@ def _made(
     return code, record | {"written": [str(path) for path in written]}, row
 
 
-def _fresh_files(analysis: Analysis, printed: Sequence[PrintedTable]) -> dict[str, bytes]:
+def _fresh_files(
+    model: Model, analyses: Sequence[Analysis], printed: Sequence[PrintedTable]
+) -> dict[str, bytes]:
     """All that stands beside a mechanism file, by name: tables, and the errata page."""
     from mechkin_cli.tables.csv_writer import COMMITTED_DIGITS, csv_bytes
     from mechkin_cli.tables.disagreements import NAME, disagreements_csv
@@ -144,11 +149,11 @@ def _fresh_files(analysis: Analysis, printed: Sequence[PrintedTable]) -> dict[st
     from mechkin_cli.tables.markdown import markdown_bytes
 
     fresh: dict[str, bytes] = {}
-    for table in (*analysis.tables, *analysis.coefficients):
-        fresh[f"{table.name}.csv"] = csv_bytes(table, COMMITTED_DIGITS)
-        fresh[f"{table.name}.md"] = markdown_bytes(table, analysis.result)
+    for analysis in analyses:
+        for table in (*analysis.tables, *analysis.coefficients):
+            fresh[f"{table.name}.csv"] = csv_bytes(table, COMMITTED_DIGITS)
+            fresh[f"{table.name}.md"] = markdown_bytes(table, analysis.result)
     if printed:
-        model = analysis.model
         fresh[PAGE] = errata_page(model.name, model.source, printed).encode()
         if listed := disagreements_csv(printed):
             fresh[NAME] = listed

@@ -1,4 +1,4 @@
-"""The results of one sweep: its tables, and any quantity or expression as an array."""
+"""The results of one run: its tables, and any quantity or expression as an array."""
 
 from __future__ import annotations
 
@@ -8,36 +8,45 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.analysis.sweep import Result, analyze
 from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.expressions import Expression, Vector, parse
 from mechkin_cli.interface.arguments import a_text
-from mechkin_cli.tables.columns import Columns, evaluate, mode_words, status_words
-from mechkin_cli.tables.layout import ROW_TEXTS, CoefficientsLayout, TableLayout
+from mechkin_cli.runs import SWEEP
+from mechkin_cli.tables.columns import Columns, evaluate, row_words
+from mechkin_cli.tables.layout import CoefficientsLayout, TableLayout, row_texts
 from mechkin_cli.tables.uniqueness import unique_cells
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.analysis.sweep import Result
     from mechkin_cli.interface.model import Model
-    from mechkin_cli.solver.session import Session
 
 
 class Analysis:
-    """Results of a sweep: `r["O2.theta"]` is an array over the rows, in the file's units."""
+    """Results of a sweep or a response: `r["O2.theta"]` is an array over the rows, in the file's
+    units.
+
+    Attributes:
+        model: of the file.
+        layouts: of the tables that were asked for.
+        result: states and verdicts of all rows.
+        run: `sweep`, or the name of the response.
+    """
 
     def __init__(
         self,
         model: Model,
         layouts: tuple[TableLayout, ...],
-        session: Session,
-        names: Iterable[str],
+        result: Result,
+        run: str = SWEEP,
         coefficients: tuple[CoefficientsLayout, ...] = (),
     ) -> None:
         self.model = model
         self.layouts = layouts
+        self.result = result
+        self.run = run
         self.chosen_coefficients = coefficients
-        self.result = analyze(session, names)
 
     @property
     def rows(self) -> int:
@@ -71,18 +80,17 @@ class Analysis:
     def __getitem__(self, text: str) -> NDArray[Any]:
         """A quantity or an expression of quantities, in the file's units.
 
-        Returns (rows,), for a vector (rows, 3); nan where a row has no solution; `row.status` and
-        `row.mode` are arrays of words. What the run did
-        not compute is computed now.
+        Returns (rows,), for a vector (rows, 3); nan where a row has no solution; `row.status`,
+        `row.mode` and, of a response, `row.event` are arrays of words. What the run did not compute
+        is computed now.
 
         Raises:
             ExpressionError: no such quantity, or dimensions that do not fit.
             UsageError: it belongs to loops that `follow:` has left out of this run.
         """
         a_text("a quantity or expression", text, '"O4.theta"')
-        if text in ROW_TEXTS:
-            words = mode_words if text == "row.mode" else status_words
-            return words(self.result).array()
+        if text in row_texts(self.run):
+            return row_words(text, self.result).array()
         for given in (self.result.inputs, self.result.input_rates):
             if text in given:
                 return given[text].copy()
@@ -115,7 +123,7 @@ class Analysis:
             UsageError: one belongs to loops that `follow:` has left out of this run.
         """
         here = self.result.problem.quantities()
-        known = self.model.problem.quantities()
+        known = self.model.problem.quantities() if self.run == SWEEP else here
         wanted = [name if name in known else name.rpartition(".")[0] for name in names]
         for name in wanted:
             if name in known and name not in here:

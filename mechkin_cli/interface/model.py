@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mechkin_cli.building.build import Built, build
-from mechkin_cli.building.columns import used_quantities
 from mechkin_cli.building.source import open_text
-from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.interface.analysis import Analysis
-from mechkin_cli.interface.arguments import Setting, a_text, a_whole_number, texts
+from mechkin_cli.interface.arguments import Setting, a_text, texts
+from mechkin_cli.interface.asking import run_name
 from mechkin_cli.interface.settings import input_values
-from mechkin_cli.kernel.width import check_threads, check_width
-from mechkin_cli.mechanism.derived_quantities import hint_of
-from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.problem import Problem
-from mechkin_cli.nearest import nearest_hint
+from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.runs import SWEEP
-from mechkin_cli.solver.demand import needs_all_links
-from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph
-from mechkin_cli.solver.session import Packing, Session
-from mechkin_cli.tables.layout import ROW_TEXTS, TableLayout, chosen
+from mechkin_cli.solver.graph import SolverGraph
+from mechkin_cli.solver.session import Session
+from mechkin_cli.tables.layout import TableLayout
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -35,12 +30,7 @@ if TYPE_CHECKING:
     from mechkin_cli.interface.positions import Position, Solver
     from mechkin_cli.interface.variants import Reduce, Variants
     from mechkin_cli.interface.varied import Base
-
-
-QUANTITIES = (
-    "quantities are such as J.theta, J.force of a joint J, or p.position of a point p; components "
-    'and expressions are read from the analysis: r["J.force.x"]'
-)
+    from mechkin_cli.mechanism.response import Response
 
 
 class Model:
@@ -80,6 +70,10 @@ class Model:
             InvalidFile: the mechanism cannot be solved as it is driven.
         """
         return self._sound(self.built.graph)
+
+    def response(self, name: str) -> Response:
+        """What one of the file's responses asks for, in SI."""
+        return self.built.problem.responses[name]
 
     def response_graph(self, name: str) -> SolverGraph:
         """Tree, closing joints and blocks at the start of a response.
@@ -147,60 +141,42 @@ class Model:
             InvalidFile: the mechanism cannot be solved as it is driven.
             UsageError: an unknown table, quantity or mode, or a width that the machine lacks.
         """
-        lanes = a_whole_number("lanes", lanes, "rows at a time")
-        threads = a_whole_number("threads", threads, "how many split the rows")
-        check_width(lanes)
-        check_threads(threads)
-        session, problem = self.session, self.problem
-        if closed_at is not None:
-            session = self._closed_at(closed_at)
-        if mode is not None:
-            a_text("mode", mode, '"A"')
-            session = session.assembled(replace(problem.assembly, mode=mode))
-        layouts = self._chosen_tables(tables, SWEEP)
-        asked = () if quantities is None else texts("quantities", quantities, '["O4.theta"]')
-        asked = tuple(name for name in asked if name not in ROW_TEXTS)  # always there
-        used = used_quantities(layouts, problem.quantities()) if layouts else []
-        names = [*used, *asked]
-        for name in names:
-            if name not in self.quantities:
-                hint = hint_of(name) or nearest_hint(name, self.quantities) or QUANTITIES
-                raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
-        self._refuse_loaded_spin(problem, names)
-        packed = session.packed(Packing(lanes, threads))
-        analysis = Analysis(self, layouts, packed, names, chosen(self.built.coefficients, tables))
-        for diagnostic in analysis.diagnostics if mode is not None else ():
-            if diagnostic.code == "no-such-mode":
-                raise UsageError(f"{diagnostic.message}: {diagnostic.measured}")
-        return analysis
+        from mechkin_cli.interface.sweeps import run_sweep
 
-    def _closed_at(self, names: Sequence[str]) -> Session:
-        """The session whose loops are closed at some joints."""
-        closings = list(texts("closed_at", names, '["O3"]'))
-        joints = self.problem.mechanism.joints
-        for name in closings:
-            if name not in joints:
-                known = ", ".join(joints)
-                raise UsageError(
-                    f"closed_at: there is no joint {name[:LONGEST_NAME]}; joints are {known}"
-                )
-        try:
-            return Session(self.problem, closed_at=closings)
-        except UnsolvableGraph as error:
-            why = f"closed_at {', '.join(closings) or 'nothing'}: {error.diagnostic.message}"
-            cure = "leave out closed_at, or choose other closing joints"
-            raise UsageError(f"{why}; {cure}") from None
+        return run_sweep(self, quantities, tables, mode, closed_at, lanes, threads)
 
-    def _refuse_loaded_spin(self, problem: Problem, names: Sequence[str]) -> None:
-        """Forces and energies need what spins freely to have no cause to spin."""
-        if not (find_legs(problem.mechanism) or problem.held):
-            return
-        known = problem.quantities() if names else {}
-        if needs_all_links(problem.mechanism, [known[name] for name in names]):
-            from mechkin_cli.mechanism.idle import spin_errors
+    def respond(
+        self,
+        name: str | None = None,
+        quantities: Iterable[str] | None = None,
+        *,
+        tables: Sequence[str] | None = None,
+        mode: str | None = None,
+        lanes: int = 0,
+        threads: int = 0,
+    ) -> Analysis:
+        """Runs one of the file's responses: the motion under its loads and efforts.
 
-            for _, diagnostic in spin_errors(problem):
-                raise UsageError(str(diagnostic))
+        Args:
+            name: of the response; None: the only one.
+            quantities: names to compute beside what its tables read.
+            tables: names of its tables that are wanted; None: all, [] none.
+            mode: assembly mode at the start instead of the file's choice.
+            lanes: width of the kernel's packs, 0 for the widest (no answer depends on it).
+            threads: how many split the rows, 0 for all cores where that pays (nor on this).
+
+        Returns:
+            As `analyze`; the rows end with that of the stop that was met, and `row.event` says
+            which.
+
+        Raises:
+            InvalidFile: the start names too few coordinates or too many.
+            UsageError: an unknown response, table, quantity or mode, or a width that the machine
+                lacks.
+        """
+        from mechkin_cli.interface.responses import respond
+
+        return respond(self, name, quantities, tables, mode, lanes, threads)
 
     @cached_property
     def _variants(self) -> Base:
@@ -317,17 +293,32 @@ class Model:
             solver = self._solvers[names] = solver_of(self, names)
         return solver.solve(inputs)
 
-    def modes(self, at: Setting | Mapping[str, Setting] | None = None) -> Modes:
+    def session_of(self, run: str) -> Session:
+        """The mechanism in the kernel at the first row of a run: that of a response is driven by
+        the coordinates that its start names.
+
+        Raises:
+            InvalidFile: the mechanism cannot be solved as it is driven.
+        """
+        if run == SWEEP:
+            return self.session
+        graph = self.response_graph(run)
+        return Session(response_problem(self.problem, self.problem.responses[run]), graph)
+
+    def modes(
+        self, at: Setting | Mapping[str, Setting] | None = None, *, run: str | None = None
+    ) -> Modes:
         """All assembly modes at the first row, or at another place.
 
         Args:
+            run: `sweep`, or a response, whose start is the first row; None: the file's first run.
             at: the input there (of several, the first that the file sweeps), or inputs by name;
                 a number is in the file's units, a text may carry its own ("0.5 rad"). Inputs that
                 are not given keep their value of the first row.
 
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
-            UsageError: an unknown input, or a value that is none.
+            UsageError: an unknown input or run, or a value that is none.
 
         Example:
             >>> from mechkin_cli import load
@@ -336,8 +327,9 @@ class Model:
         """
         from mechkin_cli.analysis.modes import find_modes
 
-        places = None if at is None else input_values(self.problem, at)
-        return find_modes(self.session, places)
+        session = self.session_of(run_name(self.runs, run))
+        places = None if at is None else input_values(session.problem, at)
+        return find_modes(session, places)
 
     def ranges(self, input: str | None = None, outputs: Iterable[str] = ()) -> Ranges:
         """The ranges of an input over which each mode assembles, and the circuits they form.
@@ -372,22 +364,6 @@ class Model:
 
         solvable = not isinstance(self.built.graph, Diagnostic)
         return find_mobility(self.problem, self.session if solvable else None)
-
-    def _chosen_tables(self, names: Sequence[str] | None, run: str) -> tuple[TableLayout, ...]:
-        own = self.built.tables_of(run)
-        if names is None:
-            return own
-        known = {table.name: table for table in own}
-        of_systems = {one.name for one in self.built.coefficients}
-        names = texts("tables", names, '["table_03"]')
-        names = [name for name in names if name not in of_systems]
-        for name in names:
-            if name not in known:
-                raise UsageError(
-                    f"there is no table {name[:LONGEST_NAME]}; "
-                    f"tables are {', '.join([*known, *sorted(of_systems)])}"
-                )
-        return tuple(known[name] for name in dict.fromkeys(names))
 
 
 def _rebuilt(

@@ -23,6 +23,7 @@ from mechkin_cli.expressions import Quantity
 from mechkin_cli.interface.given import parameter_values
 from mechkin_cli.interface.model import Model
 from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.solver.session import Session
 from mechkin_cli.solver.variation import FirstAssembly, Variation
@@ -33,7 +34,9 @@ from mechkin_cli.tape.traced import TraceLost
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.building.build import Built
+    from mechkin_cli.interface.analysis import Analysis
     from mechkin_cli.interface.variants import Reduce, Variants
+    from mechkin_cli.mechanism.response import Response
 
 
 class Base:
@@ -159,6 +162,39 @@ class VariedModel(Model):
     def graph(self) -> SolverGraph:
         """Tree, closing joints and blocks."""
         return super().graph if self._variation is None else self.session.graph
+
+    @cached_property
+    def _fresh(self) -> Model:
+        """The same model built anew: no recording holds responses."""
+        built = self.built if self._variation is None else self._base.built(self._values)
+        return Model(built, self.stem)
+
+    def response(self, name: str) -> Response:
+        """What one of the file's responses asks for, in SI."""
+        return self._fresh.response(name)
+
+    def response_graph(self, name: str) -> SolverGraph:
+        """Tree, closing joints and blocks at the start of a response."""
+        return self._fresh.response_graph(name)
+
+    def session_of(self, run: str) -> Session:
+        """As `Model.session_of`."""
+        return self.session if run == SWEEP else self._fresh.session_of(run)
+
+    def respond(
+        self,
+        name: str | None = None,
+        quantities: Iterable[str] | None = None,
+        *,
+        tables: Sequence[str] | None = None,
+        mode: str | None = None,
+        lanes: int = 0,
+        threads: int = 0,
+    ) -> Analysis:
+        """As `Model.respond`; the assembly at the start is chosen for these parameters."""
+        return self._fresh.respond(
+            name, quantities, tables=tables, mode=mode, lanes=lanes, threads=threads
+        )
 
     def with_parameters(self, parameters: Mapping[str, Any]) -> Model:
         """As `Model.with_parameters`; values of before stay unless they are given anew."""

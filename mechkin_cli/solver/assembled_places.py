@@ -7,7 +7,7 @@ little follow. If nothing closes, the drawing has to do as it is.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,6 +32,16 @@ Poses = Callable[[str], Frame]
 
 def assembled_places(mechanism: Mechanism, graph: Callable[[], SolverGraph]) -> Iterator[Poses]:
     """Where the links' drawings stand; `graph` closes all loops of a component at once."""
+    yield from closed_places(mechanism, graph)
+    if not is_drawn_assembled(mechanism):
+        yield _as_drawn
+
+
+def closed_places(
+    mechanism: Mechanism, graph: Callable[[], SolverGraph], at: Sequence[float] = ()
+) -> Iterator[Poses]:
+    """As `assembled_places`, without a drawing that is not assembled; beside it the inputs stand
+    `at` these values (rad, m), or at zero."""
     drawn = is_drawn_assembled(mechanism)
     if drawn:
         yield _as_drawn
@@ -39,11 +49,9 @@ def assembled_places(mechanism: Mechanism, graph: Callable[[], SolverGraph]) -> 
     if session is not None:
         moves = [(move, off) for off in (1.0, 0.0) for move in tolerances.PLACE_MOVES]
         for move, off in moves if drawn else [(0.0, 0.0), *moves]:
-            poses = _closed(session, move, off * move)
+            poses = _closed(session, at, move, off * move)
             if poses is not None:
                 yield poses
-    if not drawn:
-        yield _as_drawn
 
 
 def is_drawn_assembled(mechanism: Mechanism) -> bool:
@@ -96,16 +104,23 @@ def _displaced(layout: Layout, move: float) -> Floats:
     return state
 
 
-def _closed(session: Session, move: float, off: float) -> Poses | None:
-    """The poses that Newton's method reaches with all inputs moved, from a guess that is `off` the
-    drawing; None where it does not close."""
+def _closed(session: Session, at: Sequence[float], move: float, off: float) -> Poses | None:
+    """The poses that Newton's method reaches with all inputs moved from where they stand, from a
+    guess that is `off` the drawing; None where it does not close."""
     layout = session.layout
+    joints = layout.mechanism.joints
+    stand = [
+        value / joints[name].unit_of(coordinate, layout.length)
+        for (name, coordinate), value in zip(session.driven, at, strict=bool(at))
+    ]
     origin, length = layout.origin, layout.length
     ends = (ZERO, scale(length, GROUND.x), scale(length, GROUND.y))
     links = [name for name in layout.mechanism.links if name != GROUND_NAME]
     points = [Attached(name, add(origin, end)) for name in links for end in ends]
     readout = session.readout((), points)
     inputs: Floats = np.full((len(layout.graph.inputs), 1), move)
+    if at:
+        inputs += np.array(stand)[:, None]
     batch = session.run(inputs, _displaced(layout, off)[:, None], readout=readout)
     if not batch.good[0] or batch.outputs is None:
         return None

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from mechkin_cli.expressions import ExpressionError, Quantity, Vector
 from mechkin_cli.status import Status, has_solution
-from mechkin_cli.tables.layout import ROW_NUMBERS, ROW_TEXTS, ColumnLayout, TableLayout
+from mechkin_cli.tables.layout import ROW_EVENT, ROW_NUMBERS, ColumnLayout, TableLayout
 from mechkin_cli.tables.source import FloatArray, Source
 from mechkin_cli.tables.uniqueness import unique_cells
 from mechkin_cli.units import DIMENSIONLESS
@@ -93,6 +93,21 @@ def mode_words(source: Source) -> Words:
     return Words(np.zeros(source.rows, dtype=np.int32), (source.letter,))
 
 
+def event_words(source: Source) -> Words:
+    """What happened at every row of a response; "" where nothing did."""
+    known = tuple(dict.fromkeys(source.events))
+    numbers = {text: number for number, text in enumerate(known)}
+    return Words(np.array([numbers[text] for text in source.events], dtype=np.int32), known)
+
+
+_WORDS = {"row.mode": mode_words, "row.status": status_words, ROW_EVENT: event_words}
+
+
+def row_words(name: str, source: Source) -> Words:
+    """A quantity of the rows that is a text, by its name."""
+    return _WORDS[name](source)
+
+
 def solved_rows(source: Source) -> NDArray[np.bool_]:
     """Which rows have a solution, shape (rows,)."""
     return has_solution(source.status)
@@ -100,10 +115,8 @@ def solved_rows(source: Source) -> NDArray[np.bool_]:
 
 def _column(layout: ColumnLayout, source: Source) -> Column:
     name = layout.expression.text.strip()
-    if name == "row.mode":
-        return Column(layout.label, "", mode_words(source))
-    if name == "row.status":
-        return Column(layout.label, "", status_words(source))
+    if name in _WORDS:
+        return Column(layout.label, "", row_words(name, source))
     given = source.inputs.get(name, source.input_rates.get(name))
     if given is not None:
         unit = source.units.label(source.quantity(name).dimension)
@@ -132,7 +145,7 @@ def _evaluated(layout: ColumnLayout, source: Source) -> Column:
 
 
 def _resolve(name: str, source: Source) -> Quantity:
-    if name in ROW_TEXTS:
+    if name in _WORDS:
         raise ExpressionError(
             f"{name} is a text and cannot be computed with", 0, "make it a column of its own"
         )

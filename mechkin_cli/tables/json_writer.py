@@ -1,4 +1,4 @@
-"""JSON record of an analysis: tables, rows with their verdicts, diagnostics.
+"""JSON record of an analysis: tables, rows with their verdicts, diagnostics; and its responses.
 
 Every list of cells has one entry per row; null is an empty cell. The order of keys is fixed, and
 each list stands on a line of its own.
@@ -8,15 +8,20 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.legible import SURROGATES, escape
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.tables.columns import Columns, Words
 from mechkin_cli.tables.native_columns import number_column, threads_for, word_column
 from mechkin_cli.tables.rows_table import rows_table
 from mechkin_cli.tables.source import FloatArray, Source
+
+if TYPE_CHECKING:
+    from mechkin_cli.tables.writers import Results
 
 Plain = dict[str, object]
 
@@ -50,16 +55,30 @@ def analysis_record(
     source: Source,
     diagnostics: Iterable[Diagnostic] = (),
     threads: int = 0,
+    run: str = SWEEP,
 ) -> Plain:
-    """The analysis as plain data and `Cells`; values are in file units, each column names its
-    own."""
+    """One run as plain data and `Cells`; values are in file units, each column names its own."""
     return {
         "name": name,
         "row_count": source.rows,
         "tables": [table_record(table, threads) for table in tables],
-        "rows": _column_records(rows_table(source), threads),
+        "rows": _column_records(rows_table(source, run), threads),
         "diagnostics": [diagnostic.record() for diagnostic in diagnostics],
     }
+
+
+def runs_record(runs: Sequence[Results]) -> Plain:
+    """All runs of a mechanism: the record of its sweep and, under `responses`, those of its
+    responses with names of their own."""
+    records = {
+        results.run: analysis_record(
+            results.name if results.run == SWEEP else results.run, *results[1:]
+        )
+        for results in runs
+    }
+    sweep = records.pop(SWEEP, None)
+    top = {"name": runs[0].name} if sweep is None else sweep
+    return top | ({"responses": list(records.values())} if records else {})
 
 
 def table_record(columns: Columns, threads: int = 0) -> Plain:

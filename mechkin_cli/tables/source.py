@@ -52,6 +52,11 @@ class Source(Protocol):
         ...
 
     @property
+    def events(self) -> Sequence[str]:
+        """What happened at each row of a response, "" where nothing did; () of a sweep."""
+        ...
+
+    @property
     def status(self) -> StatusArray:
         """Codes of `mechkin_cli.status.Status`."""
         ...

@@ -6,8 +6,10 @@ the table.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
+
+from mechkin_cli.runs import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Diagnostic
@@ -16,41 +18,44 @@ if TYPE_CHECKING:
 
 
 class Results(NamedTuple):
-    """What there is to write of one analysis; `threads` 0: as many as a table is worth."""
+    """What there is to write of one run of a mechanism; `threads` 0: as many as a table is
+    worth."""
 
     name: str
     tables: tuple[Columns, ...]
     source: Source
     diagnostics: tuple[Diagnostic, ...] = ()
     threads: int = 0
+    run: str = SWEEP
 
 
 File = tuple[str, bytes]
 """A file's name and content."""
 
 
-def _csv(results: Results) -> Iterator[File]:
+def _csv(runs: Sequence[Results]) -> Iterator[File]:
     from mechkin_cli.tables.csv_writer import csv_bytes
 
-    for table in results.tables:
-        yield f"{table.name}.csv", csv_bytes(table, threads=results.threads)
+    for results in runs:
+        for table in results.tables:
+            yield f"{table.name}.csv", csv_bytes(table, threads=results.threads)
 
 
-def _markdown(results: Results) -> Iterator[File]:
+def _markdown(runs: Sequence[Results]) -> Iterator[File]:
     from mechkin_cli.tables.markdown import markdown_bytes
 
-    for table in results.tables:
-        yield f"{table.name}.md", markdown_bytes(table, results.source, results.threads)
+    for results in runs:
+        for table in results.tables:
+            yield f"{table.name}.md", markdown_bytes(table, results.source, results.threads)
 
 
-def _json(results: Results) -> Iterator[File]:
-    from mechkin_cli.tables.json_writer import analysis_record, json_bytes
+def _json(runs: Sequence[Results]) -> Iterator[File]:
+    from mechkin_cli.tables.json_writer import json_bytes, runs_record
 
-    record = analysis_record(*results)
-    yield "analysis.json", json_bytes(record)
+    yield "analysis.json", json_bytes(runs_record(runs))
 
 
-WRITERS: Mapping[str, Callable[[Results], Iterator[File]]] = {
+WRITERS: Mapping[str, Callable[[Sequence[Results]], Iterator[File]]] = {
     "csv": _csv,
     "md": _markdown,
     "json": _json,
@@ -60,11 +65,13 @@ WRITERS: Mapping[str, Callable[[Results], Iterator[File]]] = {
 USUAL_FORMATS = ("csv", "md")
 
 
-def written_files(results: Results, formats: Iterable[str]) -> dict[str, bytes]:
-    """All files of the formats by name, and `rows.csv`."""
+def written_files(runs: Sequence[Results], formats: Iterable[str]) -> dict[str, bytes]:
+    """All files of the formats by name, and `rows.csv`, of a response `NAME.rows.csv`."""
     from mechkin_cli.tables.csv_writer import csv_bytes
     from mechkin_cli.tables.rows_table import rows_table
 
-    files = dict(file for name in formats for file in WRITERS[name](results))
-    files["rows.csv"] = csv_bytes(rows_table(results.source), threads=results.threads)
+    files = dict(file for name in formats for file in WRITERS[name](runs))
+    for results in runs:
+        rows = rows_table(results.source, results.run)
+        files[f"{rows.name}.csv"] = csv_bytes(rows, threads=results.threads)
     return files

@@ -19,25 +19,26 @@ def test_each_format_writes_its_files(results):
     kinds = {"csv": ["table.csv"], "md": ["table.md"], "json": ["analysis.json"]}
     assert list(writers.WRITERS) == list(kinds)
     for name, files in kinds.items():
-        assert list(writers.written_files(results, [name])) == [*files, "rows.csv"]
+        assert list(writers.written_files([results], [name])) == [*files, "rows.csv"]
 
 
 def test_rows_come_with_every_format_and_alone(results):
-    found = writers.written_files(results, [])
+    found = writers.written_files([results], [])
     assert found == {"rows.csv": csv_bytes(rows_table(results.source))}
 
 
 def test_a_new_format_is_one_entry(results, monkeypatch):
     """Tabs between cells: known to the command, and written."""
 
-    def tsv(results):
-        for table in results.tables:
-            yield f"{table.name}.tsv", csv_bytes(table).replace(b",", b"\t")
+    def tsv(runs):
+        for results in runs:
+            for table in results.tables:
+                yield f"{table.name}.tsv", csv_bytes(table).replace(b",", b"\t")
 
     monkeypatch.setattr(analyze, "WRITERS", {**writers.WRITERS, "tsv": tsv})
     monkeypatch.setattr(writers, "WRITERS", {**writers.WRITERS, "tsv": tsv})
     assert analyze._formats(["tsv", "csv"]) == ("tsv", "csv")
-    assert list(writers.written_files(results, ["tsv", "csv"])) == [
+    assert list(writers.written_files([results], ["tsv", "csv"])) == [
         "table.tsv",
         "table.csv",
         "rows.csv",

@@ -63,6 +63,7 @@ class Result:
         self.session = session
         self.start = start
         self.row_states = rows
+        self.events: tuple[str, ...] = ()
         self.demand = Demand.POSITION
         self.residual = np.full(rows.reached.size, np.nan)
         self.shifts: tuple[int, ...] = SHIFTS if session.is_redundant else ()

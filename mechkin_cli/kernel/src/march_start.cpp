@@ -76,32 +76,32 @@ void March::size_up(const Flags& mask) {
   }
 }
 
-// Hairer's first step (Hairer, Norsett, Wanner I, II.4, p. 169), from y and its first two derivatives.
+// Hairer's first step (Hairer, Norsett, Wanner I, II.4, p. 169) from y and its first two derivatives, the second one by a
+// step of a hundredth of the time in which the motion goes 1 (rad, part of the size) at its rate or from rest.
 void March::first_steps(const Flags& mask) {
   const int lanes = states_.lanes;
+  const long moved = (long)states_.freedoms * lanes, moving = 2 * moved;
   std::vector<double> scale(states_.entries), slope(states_.entries), first(lanes, 0.0), second(lanes, 0.0);
-  states_.error_scales(states_.y.data(), states_.y.data(), scale.data());
-  std::vector<double> of_y(lanes, 0.0);
-  const auto part = [&](double x, long k) { return x == 0.0 ? 0.0 : std::fabs(x) / scale[k]; };
-  const long moving = 2L * states_.freedoms * lanes;
-  for (long k = 0; k < moving; ++k) {
-    of_y[k % lanes] = std::max(of_y[k % lanes], part(states_.y[k], k));
-    first[k % lanes] = std::max(first[k % lanes], part(states_.slope[k], k));
-  }
   for (int i = 0; i < lanes; ++i) {
-    const bool is_told = of_y[i] > 1e-5 && first[i] > 1e-5;
-    part_[i] = std::min(is_told ? 0.01 * of_y[i] / first[i] : 1e-6 * states_.duration[i], states_.duration[i]);
+    const double rate = states_.speed_in(states_.y.data(), i), bend = states_.speed_in(states_.slope.data(), i);
+    const double quickest = std::max(1.0 / states_.duration[i], std::max(rate, std::sqrt(bend)));
+    part_[i] = 0.01 / quickest;
     at_[i] = states_.time[i] + part_[i];
   }
   for (long k = 0; k < states_.entries; ++k) place_[k] = states_.y[k] + part_[k % lanes] * states_.slope[k];
   Flags ahead = mask;
   states_.evaluate(at_.data(), place_.data(), false, &ahead, slope.data(), values_.data());
-  for (long k = 0; k < moving; ++k)
+  // rates that begin at zero count against what they come to
+  states_.error_scales(states_.y.data(), place_.data(), scale.data());
+  const auto part = [&](double x, long k) { return x == 0.0 ? 0.0 : std::fabs(x) / scale[k]; };
+  for (long k = 0; k < moving; ++k) {
+    first[k % lanes] = std::max(first[k % lanes], part(states_.slope[k], k));
     second[k % lanes] = std::max(second[k % lanes], part(slope[k] - states_.slope[k], k));
+  }
   for (int i = 0; i < lanes; ++i) {
     if (!mask[i]) continue;
-    const double most = ahead[i] ? std::max(first[i], second[i] / part_[i]) : 0.0;
-    const double told = most > 1e-15 ? eighth_root(0.01 / most) : std::max(1e-6 * states_.duration[i], 1e-3 * part_[i]);
+    const double most = ahead[i] ? std::max(first[i], second[i] / part_[i]) : first[i];
+    const double told = most > 1e-15 ? eighth_root(0.01 / most) : states_.duration[i];
     control_[i].wanted = std::min({100.0 * part_[i], told, states_.duration[i]});
     states_.fault[i] = 0;
   }

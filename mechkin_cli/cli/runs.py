@@ -1,0 +1,52 @@
+"""The runs of one file: its sweep and its responses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
+from mechkin_cli.runs import SWEEP
+
+if TYPE_CHECKING:
+    from mechkin_cli.interface import Analysis, Model
+
+
+def run_all(
+    model: Model, tables: Sequence[str] | None = None, mode: str | None = None
+) -> list[Analysis]:
+    """Every run that has one of the tables wanted (None: all), the sweep first.
+
+    Raises:
+        UsageError: no run has a table of a name.
+        InvalidFile: a run cannot be solved as it is driven.
+    """
+    runs = dict.fromkeys(model.runs)
+    wanted = None if tables is None else {run: _of_run(model, tables, run) for run in runs}
+    if wanted is not None:
+        _refuse_unknown(model, tables or ())
+        runs = {run: None for run in runs if wanted[run]}
+    found = []
+    for run in runs:
+        chosen = None if wanted is None else wanted[run]
+        if run == SWEEP:
+            found.append(model.analyze(tables=chosen, mode=mode))
+        else:
+            found.append(model.respond(run, tables=chosen, mode=mode))
+    return found
+
+
+def _of_run(model: Model, tables: Sequence[str], run: str) -> list[str]:
+    own = {table.name for table in model.tables if table.run == run}
+    own |= {one.name for one in model.built.coefficients} if run == SWEEP else set()
+    return [name for name in tables if name in own]
+
+
+def _refuse_unknown(model: Model, tables: Sequence[str]) -> None:
+    known = [table.name for table in model.tables]
+    known += sorted(one.name for one in model.built.coefficients)
+    for name in tables:
+        if name not in known:
+            raise UsageError(
+                f"there is no table {name[:LONGEST_NAME]}; tables are {', '.join(known)}"
+            )

@@ -1,0 +1,62 @@
+"""`Model.respond`: one of the file's responses, by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from mechkin_cli.analysis.response import respond as run_response
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
+from mechkin_cli.interface.analysis import Analysis
+from mechkin_cli.interface.arguments import a_text
+from mechkin_cli.interface.asking import a_packing, chosen_tables, known_mode, wanted_names
+from mechkin_cli.mechanism.response import response_problem
+from mechkin_cli.nearest import nearest_hint
+
+if TYPE_CHECKING:
+    from mechkin_cli.interface.model import Model
+
+
+def respond(
+    model: Model,
+    name: str | None,
+    quantities: Iterable[str] | None,
+    tables: Sequence[str] | None,
+    mode: str | None,
+    lanes: int,
+    threads: int,
+) -> Analysis:
+    """Runs a response of a model; arguments and errors are those of `Model.respond`."""
+    packing = a_packing(lanes, threads)
+    run = _response_name(model, name)
+    model.response_graph(run)
+    problem = model.problem
+    response = problem.responses[run]
+    if mode is not None:
+        a_text("mode", mode, '"A"')
+        assembly = replace(response.assembly, near={}, mode=mode)
+        response = replace(response, assembly=assembly)
+    layouts = chosen_tables(model.built, tables, run)
+    known = response_problem(problem, response).quantities()
+    names = wanted_names(layouts, quantities, known, run)
+    analysis = Analysis(model, layouts, run_response(problem, response, names, packing), run)
+    return analysis if mode is None else known_mode(analysis)
+
+
+def _response_name(model: Model, name: str | None) -> str:
+    """The response that is meant; without a name the only one."""
+    known = list(model.built.problem.responses)
+    if not known:
+        raise UsageError(
+            "the file has no responses; add responses: {NAME: {start: {...}, time: {...}}}"
+        )
+    if name is None:
+        if len(known) > 1:
+            raise UsageError(f"respond() needs a name; responses are {', '.join(known)}")
+        return known[0]
+    a_text("name", name, f'"{known[0]}"')
+    if name not in known:
+        hint = nearest_hint(name, known) or f"responses are {', '.join(known)}"
+        raise UsageError(f"there is no response {name[:LONGEST_NAME]}; {hint}")
+    return name
