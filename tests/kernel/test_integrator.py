@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from kernel.closed_motions import PENDULUM, exact_pendulum, oscillator, wall
-from kernel.forced import BORDER, EVENT, KINK, NOT_FINITE, STOP, End, System
+from kernel.forced import BORDER, EVENT, EXPLICIT, IMPLICIT, KINK, NOT_FINITE, STOP, End, System
 
 ROWS = [0.0, 1.0, 2.0, 10.0]
 
@@ -46,6 +46,25 @@ def test_order_of_steps() -> None:
         assert answer.reports[0]["evaluations"] == 1 + 12 * count
     slopes = np.log2(np.array(errors[:-1]) / errors[1:])
     assert np.all((slopes > 7.4) & (slopes < 8.6)), slopes
+
+
+@pytest.mark.parametrize(
+    ("method", "tolerances", "least"),
+    [(EXPLICIT, (1e-6, 1e-9), 7.0), (IMPLICIT, (1e-5, 1e-8), 3.5)],
+)
+def test_order_of_interpolation(method: int, tolerances: tuple[float, float], least: float) -> None:
+    rows = np.linspace(0.0, 6.0, 1201)
+    exact = [exact_pendulum(t, 1.5, 1.0) for t in rows[::10]]
+    steps, errors = [], []
+    for tolerance in tolerances:
+        answer = PENDULUM.integrate(
+            [0.0, 1.5], rows, parameters=[1.0], tolerance=tolerance, method=method
+        )
+        assert answer.inside > 950
+        steps.append(answer.reports[0]["steps"])
+        errors.append(np.abs(answer.states[::10, 0, 0] - exact).max())
+        assert errors[-1] < 3.0 * tolerance
+    assert np.log(errors[0] / errors[1]) / np.log(steps[1] / steps[0]) > least
 
 
 def test_steps_are_those_of_another_implementation() -> None:
