@@ -7,6 +7,7 @@
 
 namespace {
 
+constexpr double PART_OF_FORCE = 0.1;
 constexpr double FULL = 2.0 * 3.14159265358979323846;
 
 std::vector<char, AlignedAllocator<char>> wide_plan(const MotionUnit& unit, const std::vector<MotionStart>& starts) {
@@ -63,7 +64,8 @@ ChartedMotion::Stage ChartedMotion::make_stage() const {
   const auto make = [&](long count) { return Packed((std::size_t)(count * lanes_), 0.0); };
   const long n = plan_.charts;
   return {make(plan_.states), make(plan_.columns), make(plan_.columns), make(entries_), make(n * plan_.columns),
-          make(n), make(n * n), make(plan_.law.kinks + (plan_.law.outputs - plan_.load_values)), make(2), make(turn_slots_), std::vector<unsigned char>((std::size_t)lanes_)};
+          make(n), make(n), make(n * n), make(plan_.law.kinks + plan_.law.outputs - plan_.load_values), make(2),
+          make(turn_slots_), std::vector<unsigned char>((std::size_t)lanes_)};
 }
 
 std::vector<double> ChartedMotion::start() const {
@@ -130,6 +132,7 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
   set_places(places);
   Stage* const found = places.is_end ? &end_ : &found_;
   evaluate(place_.data(), rate_.data(), found);
+  found->chart_rate = rate_;
   for (int l = 0; l < lanes_; ++l) {
     if (!places.active[l]) continue;
     for (int i = 0; i < n; ++i) rates.rates[i * lanes_ + l] = found->chart_second[i * lanes_ + l];
@@ -225,6 +228,25 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
       }
       y[i * lanes_ + l] = 0.0, y[(n + i) * lanes_ + l] = first, rates[i * lanes_ + l] = second;
     }
+  }
+}
+
+// Works matter in parts of the energy that the motion has, or that its forces would give it over a tenth of a unit of its
+// chart: what a damper within a rigid part takes is rounding.
+void ChartedMotion::sizes(const unsigned char* lanes, double* size) {
+  const int n = plan_.charts;
+  for (int l = 0; l < lanes_; ++l) {
+    if (!lanes[l]) continue;
+    double energy = 0.0;
+    for (int i = 0; i < n; ++i) {
+      double rate = 0.0, force = 0.0;
+      for (int j = 0; j < n; ++j) {
+        const double m = at(end_.inertia, i * n + j, l);
+        rate += m * at(end_.chart_rate, j, l), force += m * at(end_.chart_second, j, l);
+      }
+      energy += 0.5 * at(end_.chart_rate, i, l) * rate + PART_OF_FORCE * std::fabs(force);
+    }
+    for (int k = 1; k < 3; ++k) size[k * lanes_ + l] = std::max(size[k * lanes_ + l], energy);
   }
 }
 

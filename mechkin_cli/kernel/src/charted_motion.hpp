@@ -65,6 +65,7 @@ class ChartedMotion : public Motion {
   std::vector<SwitchKind> switches() const override;
   void rates(const Places& places, const Rates& rates) override;
   void accept(const unsigned char* lanes, const double* time, double* y, double* rates, double* longest) override;
+  void sizes(const unsigned char* lanes, double* size) override;
   void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) override;
   bool event(int lane, int which, bool rising, double time) override;
 
@@ -76,7 +77,7 @@ class ChartedMotion : public Motion {
  private:
   // Arrays of packs, as the unit takes them.
   struct Stage {
-    Packed state, first, second, jacobian, tangent, chart_second, inertia, watched, power, turned;
+    Packed state, first, second, jacobian, tangent, chart_rate, chart_second, inertia, watched, power, turned;
     std::vector<unsigned char> flags;
   };
 

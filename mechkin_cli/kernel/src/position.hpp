@@ -5,93 +5,9 @@
 // frozen, so its bits do not depend on its neighbours.
 #pragma once
 
-#include "chart.hpp"
-#include "factors.hpp"
-#include "legs.hpp"
-#include "pairs.hpp"
+#include "workspace.hpp"
 
 namespace {
-
-constexpr int MAX_CLOSING_ROWS = 6;
-
-// Data of one pack of rows; every array lies in one allocation, see workspace_size.
-struct Workspace {
-  Pack *q, *rate, *acceleration, *jerk;  // states, columns, columns, columns
-  Pose* pose;                     // links
-  Twist* screw;                   // columns
-  Motion* motion;                 // links
-  Twist* link_jerk;               // links: second derivative of the twist
-  Wrench* carried;                // links: wrench on the link and all that the tree hangs on it
-  Closure* closure;               // closing joints
-  Wrench* reaction;               // closing joints: on the second link
-  Pack* jacobian;                 // per block rows x size, factored in place
-  Mask* swap;
-  Pack* reflector;                // per block 2 x size: pivots and betas of a QR
-  Pack* multiplier;               // closing rows
-  Pack* right;                    // largest block
-  Pack* scratch;                  // three times the largest block squared
-  Pack* effort;                   // inputs
-  Vec3* across;                   // legs: what its end needs across its line
-  Pack* holding;                  // legs: couple about its line
-  Pack* saved;                    // states before a trial step
-  Pack* kept;                     // largest block squared: factors of lanes that are done
-  Mask* kept_swap;
-  Pack* load;                     // load values: of loads that vary
-  Pack* law;                      // registers of Plan::law
-  bool* moves;                    // links: whether Newton on the link's block moves it (find_moving)
-  Pack *direction, *origin;       // charts x columns, states: the chart's, see Chart
-  Pack *place, *place_rate, *place_acceleration;  // charts
-
-  MECHKIN_INLINE Chart chart() const { return {direction, origin, place, place_rate, place_acceleration}; }
-};
-
-// Gives the arrays of a workspace their places from `at` on; returns the bytes used.
-inline long lay_out(const Plan& p, char* at, Workspace* w) {
-  long used = 0;
-  const auto take = [&](long bytes) {
-    char* here = at + used;
-    used += (bytes + 63) / 64 * 64;
-    return here;
-  };
-  long squares = 0, pairs = 0, rows = 0, unknowns = 0;
-  for (int b = 0; b < p.blocks; ++b) {
-    const long n = p.block[b].size, m = p.block[b].rows;
-    squares += m * n, pairs += n * (n - 1) / 2, rows += m, unknowns += n;
-  }
-  const long pack = sizeof(Pack), largest = p.largest_block;
-  w->q = (Pack*)take(p.states * pack);
-  w->rate = (Pack*)take(p.columns * pack);
-  w->acceleration = (Pack*)take(p.columns * pack);
-  w->jerk = (Pack*)take(p.columns * pack);
-  w->link_jerk = (Twist*)take((p.links + 1) * sizeof(Twist));
-  w->pose = (Pose*)take(p.links * sizeof(Pose));
-  w->screw = (Twist*)take(p.columns * sizeof(Twist));
-  w->motion = (Motion*)take((p.links + 1) * sizeof(Motion));
-  w->carried = (Wrench*)take(p.links * sizeof(Wrench));
-  w->closure = (Closure*)take(p.closings * sizeof(Closure));
-  w->reaction = (Wrench*)take(p.closings * sizeof(Wrench));
-  w->jacobian = (Pack*)take(squares * pack);
-  w->swap = (Mask*)take(pairs * sizeof(Mask));
-  w->reflector = (Pack*)take(2 * unknowns * pack);
-  w->multiplier = (Pack*)take(rows * pack);
-  w->right = (Pack*)take((largest + MAX_CLOSING_ROWS) * pack);
-  w->scratch = (Pack*)take(3 * largest * largest * pack);
-  w->kept = (Pack*)take(largest * largest * pack);
-  w->kept_swap = (Mask*)take(largest * largest * sizeof(Mask));
-  w->moves = (bool*)take(p.links * sizeof(bool));
-  w->effort = (Pack*)take((p.inputs + 1) * pack);
-  w->across = (Vec3*)take((p.legs + 1) * sizeof(Vec3));
-  w->holding = (Pack*)take((p.legs + 1) * pack);
-  w->saved = (Pack*)take(p.states * pack);
-  w->direction = (Pack*)take(p.charts * p.columns * pack);
-  w->origin = (Pack*)take((p.charts ? p.states : 0) * pack);
-  w->place = (Pack*)take(p.charts * pack);
-  w->place_rate = (Pack*)take(p.charts * pack);
-  w->place_acceleration = (Pack*)take(p.charts * pack);
-  w->load = (Pack*)take(p.load_values * pack);
-  w->law = (Pack*)take((long)p.law.registers() * pack);
-  return used;
-}
 
 MECHKIN_INLINE const Pose* pose_of(const Workspace& w, int link) { return link < 0 ? nullptr : &w.pose[link]; }
 
