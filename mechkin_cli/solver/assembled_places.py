@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism.frames import GROUND, Frame
 from mechkin_cli.mechanism.legs import find_legs, frame_on
