@@ -50,6 +50,8 @@ class Base:
     def _assembled(self) -> tuple[Session, FirstAssembly] | None:
         if self.model.problem.follow is not None:
             return None  # which loops are followed depends on what is asked
+        if SWEEP not in self.model.runs:
+            return None  # there is no first row to continue
         session, start = first_assembly(self.model.session)
         if start.state is None or session.size is None:
             return None
