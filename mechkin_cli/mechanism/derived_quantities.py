@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
 from mechkin_cli.mechanism.joint_table import JOINT_TYPES, dimension_of
 from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism, is_written
+from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.quantities import Kind, Wanted
 from mechkin_cli.mechanism.vectors import ZERO
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, Dimension
@@ -87,6 +88,8 @@ def hint_of(name: str) -> str | None:
     'joints of type S, Sp, Sg have an orientation'
     """
     words = name.split(".")[1:]
+    if words and (words[-1] == "jerk" or words[-1].endswith(ORDERS[3])):
+        return "a jerk is known where a motion is prescribed; a response has none"
     return next((_HINTS[word] for word in reversed(words) if word in _HINTS), None)
 
 

@@ -97,10 +97,13 @@ class Problem:
         if self.response is not None:
             efforts = self.response.efforts_of
             found = catalogue(mechanism, efforts, timed=True, held=self.held)
+            # the rates of forces, and with them jerks, are not known
+            found = {name: known for name, known in found.items() if known.order < 3}
             # efforts are given here, and linear in nothing
             linear = {name: known for name, known in found.items() if known.kind != "effort"}
-            if motion.driven:
-                found |= coefficient_catalogue(linear, motion.driven, motion.driven[0])
+            moving = [*self.response.independent, *self.response.driven_at]
+            if moving:
+                found |= coefficient_catalogue(linear, moving, moving[0])
             return found | response_quantities() | derived_catalogue(mechanism, (), None)
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
         found = catalogue(mechanism, self.acting, timed=motion.time is not None, held=self.held)
