@@ -16,6 +16,7 @@ from mechkin_cli.interface.given import parameter_arrays
 from mechkin_cli.interface.variant_runs import Reductions, Study, sample_of
 from mechkin_cli.interface.varied import Base, file_values
 from mechkin_cli.kernel.width import check_threads, check_width
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.status import Status
 from mechkin_cli.tables.layout import ROW_TEXTS
 from mechkin_cli.tolerances import MOST_KEPT
@@ -104,6 +105,11 @@ def vary(
     threads = a_whole_number("threads", threads, "how many split the variants")
     check_width(lanes)
     check_threads(threads)
+    if SWEEP not in base.model.runs:
+        raise UsageError(
+            f"{base.model.name} has no sweep to vary; vary a response one by one: "
+            f'with_parameters({{...}}).respond("{base.model.runs[0]}")'
+        )
     problem = base.model.problem
     names, values = parameter_arrays(problem, parameters)
     given = file_values(values, problem, names)
