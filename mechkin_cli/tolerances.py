@@ -417,6 +417,10 @@ LOOP_RANK: Final = 1e-6
 """Pivot of a loop's screws (moments in sizes) below which they are dependent as drawn: written
 numbers leave 1e-9, and loops that close only by their dimensions are drawn more exactly still."""
 
+LARGEST_FLANK: Final = 1.4
+"""Angle (rad) of a thread's flank against the plane square to the axis, some 80 degrees: no thread
+is nearly a cylinder, and the normal load goes with 1 / cos."""
+
 PARALLEL: Final = 1e-9
 """Sine of the angle below which a reference direction is parallel to the axis it should stand
 square to."""
