@@ -417,6 +417,10 @@ LOOP_RANK: Final = 1e-6
 """Pivot of a loop's screws (moments in sizes) below which they are dependent as drawn: written
 numbers leave 1e-9, and loops that close only by their dimensions are drawn more exactly still."""
 
+LARGEST_FLANK: Final = 1.4
+"""Angle (rad) of a thread's flank against the plane square to the axis, some 80 degrees: no thread
+is nearly a cylinder, and the normal load goes with 1 / cos."""
+
 PARALLEL: Final = 1e-9
 """Sine of the angle below which a reference direction is parallel to the axis it should stand
 square to."""
@@ -719,3 +723,7 @@ kept ones needs (8 to 600)."""
 DENSE_ROWS: Final = 10
 """Rows within one step of a response from which on they are interpolated instead of stepped to:
 interpolation costs 18 to 50 times in energy, so it is for rows that are much denser than steps."""
+
+SAME_MOMENT: Final = 1e-15
+"""A stop so near to the last row, in parts of its moment, ends the response at that row: a few
+roundings of the time, which would print as two rows of one moment."""

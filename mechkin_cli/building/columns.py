@@ -12,13 +12,12 @@ from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vect
 from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.mechanism.drives import Drives, without_effort
 from mechkin_cli.mechanism.problem import Problem
-from mechkin_cli.mechanism.quantities import Wanted, response_quantities
+from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.schema import tables as written
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.tables.layout import (
-    ROW_EVENT,
     ColumnLayout,
     PrintedRemark,
     PublishedValues,
@@ -157,17 +156,10 @@ class _Sample:
         if wanted is None:
             known = [*self.parameters, *self.quantities, *self.texts]
             passive = without_effort(self.drives, name)
-            raise UnknownName(name, known, passive or hint_of(name) or _of_responses(name))
+            raise UnknownName(name, known, passive or hint_of(name))
         one = np.ones(1)
         value = Vector(one, one, one) if wanted.vector else one
         return Quantity(value, wanted.dimension)
-
-
-def _of_responses(name: str) -> str | None:
-    """What to do where a table of the sweep reads what responses have."""
-    if name == ROW_EVENT or name in response_quantities():
-        return f"{name} is told of a response: add run: and its name to the table"
-    return None
 
 
 def used_quantities(tables: Sequence[TableLayout], quantities: Mapping[str, Wanted]) -> list[str]:

@@ -112,6 +112,11 @@ def vary(
     threads = a_whole_number("threads", threads, "how many split the variants")
     check_width(lanes)
     check_threads(threads)
+    if SWEEP not in base.model.runs:
+        raise UsageError(
+            f"{base.model.name} has no sweep to vary; vary a response one by one: "
+            f'with_parameters({{...}}).respond("{base.model.runs[0]}")'
+        )
     problem = base.model.problem
     names, values = parameter_arrays(problem, parameters)
     given = file_values(values, problem, names)

@@ -44,7 +44,12 @@ _SCREWS: tuple[tuple[Kind, Dimension, bool, int], ...] = (
     ("finite_angle", ANGLE, False, 0),
     ("finite_slide", LENGTH, False, 0),
 )
+_OF_RESPONSES = (
+    "is told of the rows of a response: name it in the table, run: NAME, or respond(NAME)"
+)
 _HINTS = {
+    **{word: f"row.{word} {_OF_RESPONSES}" for word in ("event", "work", "dissipated")},
+    "energy_error": f"row.energy_error {_OF_RESPONSES}",
     **dict.fromkeys(
         TRANSMISSION_KINDS,
         f"a transmission angle has theta or s, unless an input, of an {_either(_GUIDES)} between "

@@ -112,6 +112,8 @@ def test_bad_use_says_what_there_is(model: mk.Model) -> None:
         model.respond("spinn")
     with pytest.raises(mk.UsageError, match=r"has no sweep: its file has no motion:.*spin"):
         model.analyze()
+    with pytest.raises(mk.UsageError, match="has no sweep to vary; vary a response one by one"):
+        model.vary({"mass": [1.0, 2.0]})
     with pytest.raises(mk.UsageError, match="there is no table fall; tables are spin"):
         model.respond("spin", tables=["fall"])
     with pytest.raises(mk.UsageError, match=r"there is no quantity A\.thetta"):
@@ -123,3 +125,10 @@ def test_bad_use_says_what_there_is(model: mk.Model) -> None:
 def test_the_bytes_do_not_depend_on_lanes_or_threads(model: mk.Model) -> None:
     first = model.respond("fall")["A.theta"].tobytes()
     assert model.respond("fall", lanes=2, threads=1)["A.theta"].tobytes() == first
+
+
+def test_a_sweep_has_nothing_that_only_responses_have() -> None:
+    sweep = mk.load("mechanisms/rcsr.yaml").analyze(tables=[])
+    for name in ("row.event", "row.work", "row.dissipated", "row.energy_error"):
+        with pytest.raises(mk.ExpressionError, match=f"{name} is told of the rows of a response"):
+            sweep[name]
