@@ -38,6 +38,8 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   make(direction_, (long)plan_.charts * plan_.columns), make(jacobian_, entries_), make(turn_, turn_slots_);
   make(elapsed_, 1), make(origin_time_, 1), make(place_, plan_.charts), make(rate_, plan_.charts);
   make(inputs_, plan_.inputs), make(input_rates_, plan_.inputs), make(input_seconds_, plan_.inputs);
+  make(miss_, plan_.columns), make(miss_elapsed_, 1);
+  unit_.prepare(wide_.data(), workspace_.data());
   make(time_, 1), make(side_, plan_.law.kinks), make(done_, 2);
   cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), next_row_.assign(lanes_, 0);
   stop_start_.assign(stops_.size() * lanes_, 0.0), passed_.assign(stops_.size() * lanes_, 0);
@@ -63,7 +65,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
 ChartedMotion::Stage ChartedMotion::make_stage() const {
   const auto make = [&](long count) { return Packed((std::size_t)(count * lanes_), 0.0); };
   const long n = plan_.charts;
-  return {make(plan_.states), make(plan_.columns), make(plan_.columns), make(entries_), make(n * plan_.columns),
+  return {make(plan_.states), make(plan_.columns), make(plan_.columns), make(plan_.columns), make(entries_), make(n * plan_.columns),
           make(n), make(n), make(n * n), make(plan_.law.kinks + plan_.law.outputs - plan_.load_values), make(2),
           make(turn_slots_), std::vector<unsigned char>((std::size_t)lanes_)};
 }
@@ -81,6 +83,7 @@ std::vector<double> ChartedMotion::start() const {
 void ChartedMotion::evaluate(const double* place, const double* rate, Stage* found) {
   StageGiven given = {};
   given.origin = origin_.data(), given.origin_rate = origin_first_.data(), given.origin_second = origin_second_.data();
+  given.miss = miss_.data(), given.miss_elapsed = miss_elapsed_.data();
   given.direction = direction_.data(), given.origin_jacobian = jacobian_.data(), given.elapsed = elapsed_.data();
   given.place = place, given.rate = rate;
   given.inputs = inputs_.data(), given.input_rates = input_rates_.data(), given.input_seconds = input_seconds_.data();
@@ -88,7 +91,7 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
   given.turns = turns_.data(), given.turn_count = (int)turns_.size();
   given.tight = limits_.tight, given.coarse = limits_.coarse, given.accept = limits_.accept;
   given.iterations = limits_.iterations, given.jump = limits_.jump, given.radius = limits_.radius;
-  const StageFound out = {found->state.data(), found->first.data(), found->second.data(), found->jacobian.data(),
+  const StageFound out = {found->state.data(), found->first.data(), found->second.data(), found->miss.data(), found->jacobian.data(),
                           found->tangent.data(), found->chart_second.data(), found->inertia.data(),
                           found->watched.data(), found->power.data(), found->turned.data(), found->flags.data()};
   unit_.evaluate(wide_.data(), given, out, workspace_.data());
@@ -138,8 +141,15 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
     for (int i = 0; i < n; ++i) rates.rates[i * lanes_ + l] = found->chart_second[i * lanes_ + l];
     for (int k = 0; k < 2; ++k) rates.rates[(n + k) * lanes_ + l] = found->power[k * lanes_ + l];
     rates.fault[l] = found->flags[l];
+    if (!found->flags[l]) keep_miss(l, *found);
     write_switches(*found, l, time_[l], rates.switches);
   }
+}
+
+// The next stage is predicted with what the prediction of this one missed.
+void ChartedMotion::keep_miss(int lane, const Stage& found) {
+  miss_elapsed_[lane] = elapsed_[lane];
+  for (int c = 0; c < plan_.columns; ++c) miss_[(long)c * lanes_ + lane] = at(found.miss, c, lane);
 }
 
 // What changes its sign where a stop is met.
@@ -214,7 +224,7 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
     const auto take = [&](const Packed& from, long count, Packed& to) {
       for (long k = 0; k < count; ++k) to[k * lanes_ + l] = from[k * lanes_ + l];
     };
-    origin_time_[l] = time[l];
+    origin_time_[l] = time[l], miss_elapsed_[l] = 0.0;
     for (int k = 0; k < 2; ++k) done_[k * lanes_ + l] = y[(2 * n + k) * lanes_ + l];
     take(end_.state, plan_.states, origin_), take(end_.first, columns, origin_first_);
     take(end_.second, columns, origin_second_), take(end_.jacobian, entries_, jacobian_);

@@ -77,7 +77,7 @@ class ChartedMotion : public Motion {
  private:
   // Arrays of packs, as the unit takes them.
   struct Stage {
-    Packed state, first, second, jacobian, tangent, chart_rate, chart_second, inertia, watched, power, turned;
+    Packed state, first, second, miss, jacobian, tangent, chart_rate, chart_second, inertia, watched, power, turned;
     std::vector<unsigned char> flags;
   };
 
@@ -87,6 +87,7 @@ class ChartedMotion : public Motion {
   void drive(int lane, double time);
   double stop_value(int stop, int lane, double watched) const;
   void write_switches(const Stage& found, int lane, double time, double* switches) const;
+  void keep_miss(int lane, const Stage& found);
   void lay_chart(int lane);
   void continue_turns(int lane, const Packed& found);
   void write_row(int lane, long row, const Stage& at, const double* done);
@@ -102,7 +103,7 @@ class ChartedMotion : public Motion {
   int turn_slots_;
   long entries_ = 0;
   std::vector<char, AlignedAllocator<char>> wide_, workspace_;
-  Packed origin_, origin_first_, origin_second_, direction_, jacobian_, turn_, elapsed_, place_, rate_, origin_time_;
+  Packed origin_, origin_first_, origin_second_, direction_, jacobian_, turn_, elapsed_, miss_, miss_elapsed_, place_, rate_, origin_time_;
   Packed inputs_, input_rates_, input_seconds_, time_, side_;
   const std::vector<MotionStop> stops_;
   const DrivenLaws* driven_;

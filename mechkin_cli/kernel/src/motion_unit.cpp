@@ -31,8 +31,9 @@ struct StageValues {
   MECHKIN_INLINE Pack input(int, Pack, Pack angle) const { return angle; }
 };
 
-// Where the states would be by the origin's derivatives, moved along the chart to the wanted place.
-inline void predict(const Plan& p, Workspace& w, const StageGiven& given) {
+// Where the states would be by the origin's derivatives, moved along the chart to the wanted place; what that missed at
+// another stage grows with the third power of the time. `missing` keeps where they would be without it.
+inline void predict(const Plan& p, Workspace& w, const StageGiven& given, Pack* missing) {
   const Pack* const q = packs(given.origin);
   const Pack t = *packs(given.elapsed), half = Pack(0.5) * t * t;
   for (int c = 0; c < p.columns; ++c)
@@ -43,6 +44,12 @@ inline void predict(const Plan& p, Workspace& w, const StageGiven& given) {
     for (int c = 0; c < p.columns; ++c) off -= along[c] * w.rate[c];
     // the directions are orthonormal in the weighted columns
     for (int c = 0; c < p.columns; ++c) w.rate[c] += off * along[c] * p.column_weight[c] * p.column_weight[c];
+  }
+  const Pack other = *packs(given.miss_elapsed), part = t / select(other > Pack(0.0), other, Pack(1.0));
+  const Pack cube = select(other > Pack(0.0), part * part * part, Pack(0.0));
+  for (int c = 0; c < p.columns; ++c) {
+    missing[c] = -w.rate[c];
+    w.rate[c] += cube * packs(given.miss)[c];
   }
   copy(q, p.states, w.q);
   for (int k = 0; k < p.links; ++k) {
@@ -113,8 +120,13 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
   copy(packs(given.direction), p.charts * p.columns, w.direction);
   copy(packs(given.origin), p.states, w.origin);
   copy(packs(given.place), p.charts, w.place);
-  predict(p, w, given);
+  predict(p, w, given, packs(found.miss));
   const Placed placed = close_stage(p, w, m, given, found);
+  for (int c = 0; c < p.columns; ++c) {
+    const int s = p.column_state[c];
+    Pack& missed = packs(found.miss)[c];
+    missed = s < 0 ? Pack(0.0) : missed + (w.q[s] - packs(given.origin)[s]);
+  }
 
   for (int d = 0; d < directions(p); ++d) move_along(p, w, m, d);
   const Pack* const input_rate = packs(given.input_rates);
@@ -153,24 +165,35 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
 
 const Plan& plan_at(const char* wide) { return *reinterpret_cast<const Plan*>(wide); }
 
+// What stands at the beginning of a workspace.
+struct Laid {
+  Workspace w;
+  ReducedMotion m;
+};
+constexpr long LAID = (sizeof(Laid) + 63) / 64 * 64;
+Laid& laid_at(char* memory) { return *reinterpret_cast<Laid*>(memory + (64 - (std::uintptr_t)memory % 64) % 64); }
+
 long workspace_size(const char* wide) {
   Workspace w;
   ReducedMotion m;
-  return lay_out(plan_at(wide), nullptr, &w) + lay_out_motion(plan_at(wide), nullptr, &m) + 128;
+  return lay_out(plan_at(wide), nullptr, &w) + lay_out_motion(plan_at(wide), nullptr, &m) + LAID + 128;
+}
+
+void prepare(const char* wide, char* memory) {
+  const Plan& p = plan_at(wide);
+  Laid& laid = laid_at(memory);
+  char* const at = reinterpret_cast<char*>(&laid) + LAID;
+  const long used = lay_out(p, at, &laid.w);
+  lay_out_motion(p, at + used, &laid.m);
+  find_moving(p, laid.w);
 }
 
 void evaluate(const char* wide, const StageGiven& given, const StageFound& found, char* memory) {
-  const Plan& p = plan_at(wide);
-  char* const at = memory + (64 - (std::uintptr_t)memory % 64) % 64;
-  Workspace w;
-  ReducedMotion m;
-  const long used = lay_out(p, at, &w);
-  lay_out_motion(p, at + used, &m);
-  find_moving(p, w);
-  evaluate_stage(p, w, m, given, found);
+  Laid& laid = laid_at(memory);
+  evaluate_stage(plan_at(wide), laid.w, laid.m, given, found);
 }
 
-const MotionUnit unit = {LANES, widen, workspace_size, evaluate};
+const MotionUnit unit = {LANES, widen, workspace_size, prepare, evaluate};
 
 }  // namespace
 

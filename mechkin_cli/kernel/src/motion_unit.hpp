@@ -9,6 +9,8 @@ struct StageGiven {
   const double* origin;           // states
   const double* origin_rate;      // columns
   const double* origin_second;    // columns: their derivatives
+  const double* miss;             // columns: what the prediction missed at another stage since the origin, and
+  const double* miss_elapsed;     // 1: its time since then, zero for none
   const double* direction;        // charts x columns, see chart.hpp
   const double* origin_jacobian;  // blocks' entries, the chart's rows included
   const double* elapsed;          // 1: time since the origin
@@ -37,6 +39,7 @@ struct StageFound {
   double* state;      // states
   double* first;      // columns
   double* second;     // columns
+  double* miss;       // columns: closed less predicted, of scalar coordinates
   double* jacobian;   // blocks' entries, not factored
   double* tangent;    // charts x columns: rates of the columns by those of u
   double* chart_second;  // charts: u''
@@ -52,6 +55,8 @@ struct MotionUnit {
   // Bytes of the wide plan of some plans (lanes) of one structure; writes it, where there is memory.
   long (*widen)(const PlanOf<double>* const* plans, char* memory);
   long (*workspace_size)(const char* wide);
+  // Before the first stage in a workspace.
+  void (*prepare)(const char* wide, char* workspace);
   void (*evaluate)(const char* wide, const StageGiven&, const StageFound&, char* workspace);
 };
 
