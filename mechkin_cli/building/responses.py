@@ -83,7 +83,7 @@ class _Builder:
             moments=timed.time,
             stops=stops.build(path, section.stop),
             tolerance=self._tolerance(path, section.tolerance),
-            fixed_step=self._fixed_step(path, section.fixed_step),
+            fixed_step=self._fixed_step(path, section.fixed_step, timed.time),
             mechanism=replace(
                 self.problem.mechanism, loads=acting.loads, gravity=acting.gravity, drives=None
             ),
@@ -157,12 +157,25 @@ class _Builder:
             )
         return value
 
-    def _fixed_step(self, path: Path, text: str | None) -> float | None:
+    def _fixed_step(self, path: Path, text: str | None, moments: Moments) -> float | None:
         if text is None:
             return None
-        errors = self.fields.error_count
-        value = self.fields.number((*path, "fixed_step"), text, TIME)
-        if self.fields.error_count == errors and not value > 0.0:
+        path, errors = (*path, "fixed_step"), self.fields.error_count
+        value = self.fields.number(path, text, TIME)
+        if self.fields.error_count > errors:
+            return value
+        most = tolerances.MOST_RESPONSE_STEPS
+        span = float(moments.values[-1] - moments.values[0])
+        if not value > 0.0:
             message = "a step takes a positive time"
-            self.fields.error("zero-step", (*path, "fixed_step"), message, "write 1e-3 s")
+            self.fields.error("zero-step", path, message, "write 1e-3 s")
+        elif span > most * value:
+            self.fields.error(
+                "too-many-steps",
+                path,
+                "steps of this length are too many for the time of the response",
+                "write a longer step, or a tolerance",
+                measured=f"{span / value:.3g} steps",
+                limit=f"{most} steps",
+            )
         return value
