@@ -450,6 +450,14 @@ only shifts: 5e-17."""
 
 # --- numbers of the file ------------------------------------------------------------------------
 
+EQUAL_STEPS: Final = 1e-9
+"""Parts of a step by which rows of a cycle may be unequal, and of a turn by which it may be open:
+rows by from and step differ by rounding, 1e-15 of their values."""
+
+REPEATS: Final = 1e-9
+"""Parts of its largest value by which what repeats may differ between the first row of a cycle and
+the last: rounding leaves 1e-12, what is open is open by far more."""
+
 LAST_ROW: Final = 1e-9
 """Steps by which the last row may lie beyond the end of a sweep, part of format 1: the quotient of
 written numbers is wrong by 1e-16 times the number of rows, of which there are at most 1e7."""
