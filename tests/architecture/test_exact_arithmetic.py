@@ -62,11 +62,13 @@ INEXACT_METHODS |= {"standard_normal", "normal", "standard_exponential", "expone
 
 FRACTIONS = "exact fractions and whole exponents"
 ACCEPTED = {
+    ("analysis/response/weakest.py", "np.linalg"): "eigenvectors for a message",
     ("building/links.py", "np.linalg"): "eigenvalues for a warning",
     (
         "building/sequences.py",
         "10 ** max(0, *(-exponent for exponent in exponents))",
     ): "whole numbers",
+    ("analysis/response/driven_rows.py", "TIME ** order"): FRACTIONS,
     ("analysis/response/moments.py", "TIME ** order"): FRACTIONS,
     ("building/coordinates.py", "TIME ** order"): FRACTIONS,
     ("building/laws.py", "TIME ** (have - want)"): FRACTIONS,

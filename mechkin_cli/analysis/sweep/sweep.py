@@ -12,6 +12,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.start import choose_start
 from mechkin_cli.analysis.sweep.actuation import actuation_notes, watched
 from mechkin_cli.analysis.sweep.following import follow_rows
+from mechkin_cli.analysis.sweep.locked_poses import locked_pose_notes
 from mechkin_cli.analysis.sweep.notes import (
     condition_notes,
     not_converged_note,
@@ -74,7 +75,7 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
         result = _closed(session, start, asked, verdicts=verdicts, every_row=True)
     result.read(asked)
     result.row_states.diagnostics += row_notes(result, asked)
-    result.row_states.diagnostics += actuation_notes(result)
+    result.row_states.diagnostics += [*actuation_notes(result), *locked_pose_notes(result)]
     return result
 
 
@@ -122,6 +123,7 @@ def _closed(
     if not rows.reached.any():
         return result
     wanted, demand = at_once(session, asked, verdicts)
+    wanted += result.friction.beside(result.problem, wanted, demand)
     batch = result.run(wanted, demand, iterations=tolerances.NEWTON_ITERATIONS)
     failed = _failed(batch, rows)
     if failed.any():
@@ -232,6 +234,10 @@ def row_notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
 
         said = {diagnostic.code for diagnostic in rows.diagnostics}
         notes += [fault for fault in input_faults(session) if fault.code not in said]
+    if problem.mechanism.frictions and result.demand & Demand.FORCES:
+        from mechkin_cli.analysis.sweep.friction import uncounted_notes
+
+        notes += uncounted_notes(result)
     note = open_turn_note(session, rows.states, rows.reached)
     notes += [note] if note else []
     if (
