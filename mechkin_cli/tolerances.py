@@ -360,6 +360,14 @@ CONDITION_RANK_UNCLEAR: Final = 1e12
 """Above it rates and reactions of a row have no digit that means anything; its position still
 has."""
 
+POSE_LOCKED: Final = 1e-6
+"""Cosine of the middle turn of a pose below which the other two go about one axis."""
+
+ACTUATORS_AT_REST: Final = 1e-10
+"""Rate of the actuators, all together, in parts of the motion (rad, sizes), below which some motion
+leaves them at rest: rounding leaves 1e-16 by the condition of the loops, a position written with
+ten digits 1e-10. The kernel has the same (actuation.hpp)."""
+
 REACTION_ROUNDING: Final = 1e-12
 """Rounding of reactions in parts of the largest in the mechanism, in whatever joint it is met: a
 cell that moves no more than with this keeps its value. Measured: 1e-15 to 1e-13; what depends on

@@ -17,6 +17,10 @@ from pathlib import Path
 FOLDER = Path(__file__).parent / "reference"
 MECHANISMS = Path(__file__).parent.parent / "mechanisms"
 RCSR = MECHANISMS / "rcsr.yaml"
+SWEPT = sorted(
+    path for path in MECHANISMS.glob("*.yaml") if "\nmotion:\n" in path.read_text(encoding="utf-8")
+)
+"""Mechanism files that have a sweep; others have responses alone."""
 
 
 @cache

@@ -8,6 +8,7 @@ from math import cos, radians, sin, sqrt
 
 import pytest
 import typer
+from mpmath import ellipk
 from references import RCSR, exact, published
 
 import mechkin_cli as mk
@@ -100,7 +101,7 @@ def test_the_gate_runs_the_command_lines_of_the_readme(marker: str) -> None:
 
 
 def test_the_example_file_against_the_closed_form_of_the_slider_crank() -> None:
-    (text,) = blocks("yaml")
+    text, _ = blocks("yaml")
     model = mk.loads(text, "readme.yaml")
     analysis = model.analyze()
     assert analysis.diagnostics == ()
@@ -116,6 +117,35 @@ def test_the_example_file_against_the_closed_form_of_the_slider_crank() -> None:
         reach = sqrt(rod**2 - y**2)
         assert s == pytest.approx(x + reach - 120.0, abs=1e-11)
         assert v == pytest.approx(rate * (-y - y * x / reach), abs=1e-9)
+
+
+def test_the_example_of_responses_against_elliptic_functions_and_a_balance_of_power() -> None:
+    _, text = blocks("yaml")
+    model = mk.loads(text, "readme.yaml")
+    assert model.runs == ("swing", "start_up")
+    swing = model.respond("swing")
+    half = 2.0 * ellipk(sin(radians(40.0)) ** 2) / sqrt(9.81 / 0.25)
+    assert swing["time"][-1] == pytest.approx(float(half), rel=1e-9)
+    assert swing["A.theta"][-1] == pytest.approx(-80.0, abs=1e-6)
+    assert swing["row.event"][-1] == "dead centre of A.theta"
+    assert max(swing["row.energy_error"]) < 1e-9
+    (table,) = swing.tables
+    assert table.name == "half_swing"
+    start_up = model.respond("start_up")
+    assert start_up["row.event"][-1] == "3 turns of A.theta"
+    assert start_up["A.theta"][-1] == pytest.approx(3.0 * 360.0, rel=1e-12)
+    torque = 8000.0 - 400.0 * start_up["A.theta_dot"]
+    assert start_up["A.effort"] == pytest.approx(torque, rel=1e-12)
+    weight, arm, inertia = 2.0 * 9.81, 250.0, 2.0 * 0.25**2 * 1e3
+    for effort, angle, rate, acceleration in zip(
+        start_up["A.effort"],
+        start_up["A.theta"],
+        start_up["A.theta_dot"],
+        start_up["A.theta_ddot"],
+        strict=True,
+    ):
+        left = effort - weight * arm * sin(radians(angle)) - 20.0 * rate
+        assert acceleration * inertia == pytest.approx(left, rel=1e-9, abs=1e-9)
 
 
 def test_the_python_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -31,7 +31,7 @@ def near_values(
     for name, text in texts.items():
         place = (*path, name)
         if is_coordinate(fields, place, name, joints):
-            near[name] = fields.number(place, text, dimension_of(name.partition(".")[2]))
+            near[name] = fields.number(place, text, dimension_of(name.rpartition(".")[2]))
     return near
 
 

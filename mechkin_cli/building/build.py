@@ -8,6 +8,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import NamedTuple
 
+from mechkin_cli.building.actuators import build_drives, note_own_motors
 from mechkin_cli.building.assembly import build_assembly, build_follow
 from mechkin_cli.building.coefficients import build_coefficients
 from mechkin_cli.building.columns import build_tables, used_quantities
@@ -17,6 +18,7 @@ from mechkin_cli.building.linkage import build_linkage, is_link
 from mechkin_cli.building.loads import LoadBuilder
 from mechkin_cli.building.memory import row_limit
 from mechkin_cli.building.motion import build_motion
+from mechkin_cli.building.point_inputs import point_guides
 from mechkin_cli.building.run_names import runs_of
 from mechkin_cli.building.sizes import check_blocks, check_size
 from mechkin_cli.building.source import Source
@@ -71,8 +73,11 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
     tables = build_tables(fields, file, problem)
     own = [table for table in tables if table.run == SWEEP]
     coefficients = build_coefficients(fields, file.coefficients, problem, tables)
-    if file.loads or file.responses or coefficients or needs_forces(problem, own):
+    forces = needs_forces(problem, own)
+    if file.loads or file.responses or coefficients or forces:
         note_force_unit(fields)
+    if forces:
+        note_own_motors(fields, file.motion, file.actuators)
     follow = build_follow(fields, file.follow, problem.mechanism.joints)
     problem = replace(problem, follow=follow)
     if not fields.error_count:
@@ -106,11 +111,14 @@ def build_problem(fields: Fields, file: MechanismFile, *, responses: bool = True
     """The mechanism with its loads, its motion and assembly, and the file's `responses`."""
     links, joints = build_linkage(fields, file)
     points, directions = _points(fields, file, links), _directions(fields, file, links)
+    guides = point_guides(fields, file.motion, points)
+    links, joints = links | guides.links, joints | guides.joints
     limit = row_limit(file, joints)
     motion = build_motion(fields, file.motion, joints, limit)
     assembly = build_assembly(fields, file.assembly, joints)
     name = file.name or fields.document.file
-    mechanism = Mechanism(name, links, joints, points, directions)
+    drives = build_drives(fields, file.actuators, file.motion, joints, motion)
+    mechanism = Mechanism(name, links, joints, points, directions, drives=drives)
     problem = Problem(mechanism, motion, assembly, fields.units, dict(fields.parameters))
     loads = LoadBuilder(fields, links, joints, points, _quantities_of_runs(file, problem))
     loads.add_all(file.loads)

@@ -10,14 +10,14 @@ from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
 from mechkin_cli.building.run_names import runs_of, unknown_run
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector, parse
 from mechkin_cli.mechanism.derived_quantities import hint_of
+from mechkin_cli.mechanism.drives import Drives, without_effort
 from mechkin_cli.mechanism.problem import Problem
-from mechkin_cli.mechanism.quantities import Wanted, response_quantities
+from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.schema import tables as written
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.tables.layout import (
-    ROW_EVENT,
     ColumnLayout,
     PrintedRemark,
     PublishedValues,
@@ -32,11 +32,13 @@ def build_tables(fields: Fields, file: MechanismFile, problem: Problem) -> tuple
     in `fields`."""
     runs = runs_of(file)
     known = {run: quantities_of(problem, run) for run in runs}
+    drives = problem.mechanism.drives
     tables = []
     for i, section in enumerate(file.tables):
         run = _run_of(fields, ("tables", i), section, runs)
         if run is not None:
-            tables.append(_table(fields, ("tables", i), section, run, known[run]))
+            sample = _Sample(fields, known[run], run, drives if run == SWEEP else None)
+            tables.append(_table(fields, ("tables", i), section, run, sample))
     read = {table.run for table in tables}
     named = {section.run for section in file.tables}
     for run in runs:
@@ -67,14 +69,14 @@ def _run_of(fields: Fields, path: Path, section: written.Table, runs: Sequence[s
 
 
 def _table(
-    fields: Fields, path: Path, section: written.Table, run: str, known: Mapping[str, Wanted]
+    fields: Fields, path: Path, section: written.Table, run: str, sample: _Sample
 ) -> TableLayout:
     columns = []
     for k, column in enumerate(section.columns):
         place: Path = (*path, "columns", k)
         if fields.document.node((*place, "value")) is not None:
             place = (*place, "value")
-        layout = _column(fields, place, column, _Sample(fields, known, run))
+        layout = _column(fields, place, column, sample)
         if layout is not None:
             columns.append(layout)
     title = section.title or section.name
@@ -85,7 +87,7 @@ def _default(problem: Problem, run: str) -> TableLayout:
     """The table of a run that has none."""
     if run == SWEEP:
         timed = problem.motion.time is not None
-        efforts = [driven.name for driven in problem.motion.inputs]
+        efforts = [".".join(pair) for pair in problem.acting]
     else:
         timed = True
         efforts = [f"{joint}.{name}" for joint, name in problem.responses[run].efforts_of]
@@ -130,8 +132,15 @@ def _column(
 class _Sample:
     """Resolves names to one-row stand-ins of the right dimension."""
 
-    def __init__(self, fields: Fields, quantities: Mapping[str, Wanted], run: str) -> None:
+    def __init__(
+        self,
+        fields: Fields,
+        quantities: Mapping[str, Wanted],
+        run: str,
+        drives: Drives | None = None,
+    ) -> None:
         self.texts = row_texts(run)
+        self.drives = drives
         self.fields = fields
         self.parameters = fields.parameters
         self.quantities = quantities
@@ -146,17 +155,11 @@ class _Sample:
         wanted = self.quantities.get(name)
         if wanted is None:
             known = [*self.parameters, *self.quantities, *self.texts]
-            raise UnknownName(name, known, hint_of(name) or _of_responses(name))
+            passive = without_effort(self.drives, name)
+            raise UnknownName(name, known, passive or hint_of(name))
         one = np.ones(1)
         value = Vector(one, one, one) if wanted.vector else one
         return Quantity(value, wanted.dimension)
-
-
-def _of_responses(name: str) -> str | None:
-    """What to do where a table of the sweep reads what responses have."""
-    if name == ROW_EVENT or name in response_quantities():
-        return f"{name} is told of a response: add run: and its name to the table"
-    return None
 
 
 def used_quantities(tables: Sequence[TableLayout], quantities: Mapping[str, Wanted]) -> list[str]:

@@ -21,15 +21,33 @@ def dimension_of(coordinate: str, order: int = 0) -> Dimension:
 
 def is_coordinate(fields: Fields, path: Path, name: str, joints: Mapping[str, Joint]) -> bool:
     """Whether the key at `path` names a coordinate, such as `O2.theta`; if not, that is noted."""
-    joint, _, coordinate = name.partition(".")
+    wrong = _wrong(fields, name, joints)
+    if wrong:
+        fields.key_error(CODE, path, *wrong)
+    return wrong is None
+
+
+def is_coordinate_at(fields: Fields, path: Path, name: str, joints: Mapping[str, Joint]) -> bool:
+    """The same of the value at `path`."""
+    wrong = _wrong(fields, name, joints)
+    if wrong:
+        fields.error(CODE, path, *wrong)
+    return wrong is None
+
+
+def _wrong(
+    fields: Fields, name: str, joints: Mapping[str, Joint]
+) -> tuple[str, str | None] | tuple[()] | None:
+    """Message and hint where a name is no coordinate; none where that is said elsewhere."""
+    joint, _, coordinate = name.rpartition(".")
     if joint in joints:
         if coordinate in joints[joint].type.coordinates:
-            return True
-        fields.key_error(CODE, path, *without(joints[joint], coordinate))
-    elif not fields.is_refused(joint):
-        known = [c for joint in joints.values() for c in joint.coordinates]
-        fields.key_error(CODE, path, f"{name} is no coordinate", nearest_hint(name, known))
-    return False
+            return None
+        return without(joints[joint], coordinate)
+    if fields.is_refused(joint):
+        return ()
+    known = [c for joint in joints.values() for c in joint.coordinates]
+    return f"{name} is no coordinate", nearest_hint(name, known)
 
 
 def without(joint: Joint, coordinate: str) -> tuple[str, str]:

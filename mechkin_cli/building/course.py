@@ -89,7 +89,7 @@ def _sources(
     time, clock = written.time, written.clock
     if time is not None and clock is not None:
         laws = {
-            name: law_pieces(fields, (*written.path, name), item, name.partition(".")[2], clock)
+            name: law_pieces(fields, (*written.path, name), item, name.rpartition(".")[2], clock)
             for name, item in written.inputs.items()
             if not isinstance(item, _NO_LAWS)
         }
@@ -142,7 +142,7 @@ def _recorded(
         known["time"] = Quantity(fields.units.to_si(moment, TIME), TIME)
     used = 1
     for name, pieces in sources.pieces.items():
-        dimension = dimension_of(name.partition(".")[2])
+        dimension = dimension_of(name.rpartition(".")[2])
         written: Any = pieces.value(registers[0], registers[used : used + counts[name]])
         known[name] = Quantity(fields.units.to_si(written, dimension), dimension)
         used += counts[name]
@@ -204,7 +204,7 @@ def _tape(
         if item.name not in known and item.name not in expressions:
             known[item.name] = Quantity(float(item.values[0]), dimension_of(item.coordinate))
     for name, expression in expressions.items():
-        dimension = dimension_of(name.partition(".")[2])
+        dimension = dimension_of(name.rpartition(".")[2])
         value = scalar(expression, dimension, fields.units, _lookup(fields, known))
         known[name] = Quantity(value, dimension)
     outputs = [register(recorder, known[item.name].value) for item in inputs]

@@ -34,7 +34,8 @@ class Following:
 
     `orders` holds value, rate, acceleration and jerk (4, rows) in the file's units of the inputs
     that are known, by name, and `path` leads to their section; `expressions` gets those of inputs
-    that follow, in the order in which they are evaluated.
+    that follow, in the order in which they are evaluated; `tied` are those that the motors of
+    others move.
     """
 
     def __init__(
@@ -51,6 +52,7 @@ class Following:
         self.time = time
         self.path = path
         self.expressions: dict[str, Expression] = {}
+        self.tied: set[str] = set()
 
     def add_all(self, sections: Mapping[str, FollowingInput], coordinates: frozenset[str]) -> None:
         """Adds all inputs of some sections to `orders`; errors are noted in `fields`.
@@ -59,6 +61,8 @@ class Following:
         """
         waiting: dict[str, Expression] = {}
         for name, section in sections.items():
+            if section.drive == "tie":
+                self.tied.add(name)
             if literal(section.value) is not None:
                 self._hold(name, section.value)
                 continue
@@ -74,8 +78,39 @@ class Following:
             for name in ready:
                 self._follow(name, waiting.pop(name))
 
+    def tie_rates(self) -> dict[tuple[str, str], Floats]:
+        """Rates (rows,) in SI of each tied input by each input that is not tied and that it
+        follows, through others or not; what follows none is noted in `fields`."""
+        found: dict[str, dict[str, Floats]] = {}
+        for name, expression in self.expressions.items():
+            if name not in self.tied:
+                continue
+            own = found[name] = {}
+            for used in sorted(expression.names & self.orders.keys()):
+                rate = self._partial(expression, used)
+                leaders = found.get(used) or {used: np.ones(self.rows)}
+                for leader, through in leaders.items():
+                    own[leader] = own.get(leader, np.zeros(self.rows)) + rate * through
+        for name in sorted(self.tied - {name for name, own in found.items() if own}):
+            text = f"{name} follows no input whose motor could move it"
+            self.fields.error(
+                "tied-to-nothing", (*self.path, name, "drive"), text, "remove drive: tie"
+            )
+        return {(name, leader): r for name, own in found.items() for leader, r in own.items()}
+
+    def _partial(self, expression: Expression, name: str) -> Floats:
+        """Rate (rows,) of an expression by one of its inputs, in SI."""
+        jets = {}
+        for used in expression.names:
+            jet = np.zeros_like(np.broadcast_to(self._jet(used), (4, self.rows)))
+            jet[0] = self._jet(used)[0]
+            jet[1] = 1.0 if used == name else 0.0
+            jets[used] = jet
+        found: Floats = np.broadcast_to(derivatives(expression, jets), (4, self.rows))[1].copy()
+        return found
+
     def _hold(self, name: str, text: str) -> None:
-        value = self.fields.written(self._path(name), text, dimension_of(name.partition(".")[2]))
+        value = self.fields.written(self._path(name), text, dimension_of(name.rpartition(".")[2]))
         self.orders[name] = np.zeros((4, self.rows))
         self.orders[name][0] = value
 
@@ -86,7 +121,7 @@ class Following:
         sections: Mapping[str, FollowingInput],
         coordinates: frozenset[str],
     ) -> Expression:
-        expression = parse(text)
+        expression = parse(text).taking_whole(coordinates)
         for used in sorted(expression.names, key=expression.offset_of):
             if used == name:
                 message, hint = f"{name} follows itself", "name the inputs that it follows"
@@ -119,7 +154,7 @@ class Following:
         self._refuse(circle[-1], error)
 
     def _follow(self, name: str, expression: Expression) -> None:
-        coordinate = name.partition(".")[2]
+        coordinate = name.rpartition(".")[2]
         units = self.fields.units
         try:
             value = scalar(expression, dimension_of(coordinate), units, self._quantity)
@@ -167,13 +202,13 @@ class Following:
         if name == "time" and self.time is not None:
             t = self.time.values
             return np.stack([t, np.ones_like(t), np.zeros_like(t), np.zeros_like(t)])
-        to_si, coordinate = self.fields.units.to_si, name.partition(".")[2]
+        to_si, coordinate = self.fields.units.to_si, name.rpartition(".")[2]
         orders = self._rows_of(name)
         return np.stack([to_si(orders[k], dimension_of(coordinate, k)) for k in range(4)])
 
     def _quantity(self, name: str) -> Quantity:
         if name in self.orders:
-            return Quantity(self._jet(name)[0], dimension_of(name.partition(".")[2]))
+            return Quantity(self._jet(name)[0], dimension_of(name.rpartition(".")[2]))
         if name == "time" and self.time is not None:
             return Quantity(self.time.values, TIME)
         if self.fields.is_refused(name):

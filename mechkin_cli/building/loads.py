@@ -108,7 +108,7 @@ class LoadBuilder:
     def add_effort(self, path: Path, name: str, value: str | TableValue, run: str) -> Amount:
         """The effort along a coordinate that exists, in one run."""
         self._acting = (run,)
-        joint, _, coordinate = name.partition(".")
+        joint, _, coordinate = name.rpartition(".")
         dimension = MOMENT if is_angle(coordinate) else FORCE
         amount = self._value(path, value, dimension, name)
         self._put(JointLoad(joint, coordinate, amount))
@@ -259,5 +259,10 @@ class LoadBuilder:
             named = (*path, "coordinate")
             place = named if self.fields.document.node(named) else (*path, "joint")
             self.fields.error(CODE, place, *without(joint, coordinate))
+            return False
+        if not joint.carries:
+            text = f"{name} is no joint of the machine and carries no load"
+            hint = "put the load on a link, or between points"
+            self.fields.error("load-on-pose", (*path, "joint"), text, hint)
             return False
         return True

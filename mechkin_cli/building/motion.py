@@ -79,6 +79,7 @@ def build_inputs(
     if fields.error_count == errors:
         limit.is_exceeded(fields, written.path, rows)
     expressions: dict[str, Expression] = {}
+    tie_rates: dict[tuple[str, str], Floats] = {}
     if fields.error_count == errors and following:
         from mechkin_cli.building.following import Following
 
@@ -86,6 +87,8 @@ def build_inputs(
         tied = Following(fields, orders, rows, time, written.path)
         tied.add_all(following, coordinates)
         expressions = tied.expressions
+        if fields.error_count == errors:
+            tie_rates = tied.tie_rates()
     if fields.error_count > errors:
         return None
     inputs = [
@@ -97,7 +100,17 @@ def build_inputs(
     ]
     if fields.error_count > errors:
         return None
-    return _with_course(fields, written, Motion(tuple(inputs), rows, time), expressions)
+    moving = _tied(Motion(tuple(inputs), rows, time), tie_rates)
+    return _with_course(fields, written, moving, expressions)
+
+
+def _tied(motion: Motion, rates: Mapping[tuple[str, str], Floats]) -> Motion:
+    """A motion with the inputs that motors of others move."""
+    if not rates:
+        return motion
+    number = {item.name: k for k, item in enumerate(motion.inputs)}
+    pairs = tuple((number[tied], number[leader]) for tied, leader in rates)
+    return motion._replace(tied=pairs, tie_rates=np.array(list(rates.values())))
 
 
 def _with_course(
@@ -146,7 +159,7 @@ def _orders(
         path: Path = (*written.path, name)
         if not is_coordinate(fields, path, name, joints) or _driven_twice(fields, path, joints):
             continue
-        coordinate = name.partition(".")[2]
+        coordinate = name.rpartition(".")[2]
         if isinstance(item, FollowingInput):
             following[name] = item
         elif isinstance(item, HeldCoordinate):
@@ -186,10 +199,10 @@ def _constant_rates(
 def _driven_twice(fields: Fields, path: Path, joints: Mapping[str, Joint]) -> bool:
     """Whether the key at `path` is the s of a helical joint whose theta is an input as well."""
     name = str(path[-1])
-    joint = joints[name.partition(".")[0]]
+    joint = joints[name.rpartition(".")[0]]
     turn = f"{joint.name}.theta"
     twice = (
-        joint.type.coordinate[name.partition(".")[2]].on_thread
+        joint.type.coordinate[name.rpartition(".")[2]].on_thread
         and fields.document.node((*path[:-1], turn)) is not None
     )
     if twice:
@@ -234,7 +247,7 @@ def _driven(fields: Fields, path: Path, orders: Floats, rows: int) -> DrivenInpu
     """The input of the key at `path`, in SI and as written; numbers too large to compute with are
     noted."""
     name = str(path[-1])
-    joint, _, coordinate = name.partition(".")
+    joint, _, coordinate = name.rpartition(".")
     written = np.broadcast_to(orders, (4, rows)).copy()
     in_si = [
         np.asarray(fields.units.to_si(written[k].copy(), dimension_of(coordinate, k)))

@@ -84,7 +84,9 @@ class _Builder:
             stops=stops.build(path, section.stop),
             tolerance=self._tolerance(path, section.tolerance),
             fixed_step=self._fixed_step(path, section.fixed_step),
-            mechanism=replace(self.problem.mechanism, loads=acting.loads, gravity=acting.gravity),
+            mechanism=replace(
+                self.problem.mechanism, loads=acting.loads, gravity=acting.gravity, drives=None
+            ),
             load_laws=acting.laws,
         )
 
@@ -133,7 +135,7 @@ class _Builder:
                 text = f"{name} is driven: what its drive has to do follows from the motion"
                 self.fields.key_error("effort-and-drive", place, text, "remove one of the two")
                 continue
-            joint, _, coordinate = name.partition(".")
+            joint, _, coordinate = name.rpartition(".")
             amount = self.loads.add_effort(place, name, value, run)
             found.append(Effort(joint, coordinate, amount))
         return tuple(found)

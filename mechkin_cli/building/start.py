@@ -34,7 +34,7 @@ def build_start(
             continue
         if _is_prescribed(fields, place, name, section, joints):
             continue
-        coordinate = name.partition(".")[2]
+        coordinate = name.rpartition(".")[2]
         if key.endswith(RATE):
             rates[name] = fields.number(place, text, dimension_of(coordinate, 1))
         elif not _is_same_freedom(fields, place, name, values, joints):
@@ -50,7 +50,7 @@ def build_start(
 
 
 def _split(name: str) -> tuple[str, str]:
-    joint, _, coordinate = name.partition(".")
+    joint, _, coordinate = name.rpartition(".")
     return joint, coordinate
 
 

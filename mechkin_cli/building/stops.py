@@ -48,12 +48,12 @@ class StopBuilder:
             words = f"dead centre {count} of {name}" if count > 1 else f"dead centre of {name}"
             if not self._is_known((*path, "dead_centre"), name):
                 return None
-            joint, _, coordinate = name.partition(".")
+            joint, _, coordinate = name.rpartition(".")
             return DeadCentre(words, place, joint, coordinate, count)
         name = section.turns
         if not self._is_known((*path, "turns"), name):
             return None
-        joint, _, coordinate = name.partition(".")
+        joint, _, coordinate = name.rpartition(".")
         if not is_angle(coordinate):
             text, hint = f"{name} is a slide and does not turn", "write value: and at: for a slide"
             self.fields.error("no-angle", (*path, "turns"), text, hint)
@@ -74,7 +74,7 @@ class StopBuilder:
 
     def _is_known(self, path: Path, name: str) -> bool:
         """Whether the value at `path` names a coordinate; if not, that is noted."""
-        owner, _, coordinate = name.partition(".")
+        owner, _, coordinate = name.rpartition(".")
         joint = self.joints.get(owner)
         if joint is not None and coordinate in joint.type.coordinates:
             return True

@@ -10,6 +10,7 @@ import typer
 
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import Record, put, put_json, refusal, say, say_diagnostics
+from mechkin_cli.cli.runs import run_all
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
@@ -46,9 +47,10 @@ def _printed(file: Path) -> list[PrintedTable]:
     model = load(file)
     if not any(table.published for table in model.tables):
         return []
-    analysis = model.analyze()
-    say_diagnostics(analysis.diagnostics, str(file))
-    return against_print(file, analysis.layouts, analysis.tables)
+    analyses = run_all(model)
+    said = tuple(dict.fromkeys(found for one in analyses for found in one.diagnostics))
+    say_diagnostics(said, str(file))
+    return [table for one in analyses for table in against_print(file, one.layouts, one.tables)]
 
 
 def _told(file: Path, printed: Sequence[PrintedTable], json: bool, quiet: bool) -> Record:

@@ -108,7 +108,7 @@ def _table(model: Model, found: Modes) -> Columns:
     names = tuple(mode.name + ("*" if mode.name == found.picked else " ") for mode in modes)
     columns = [Column("mode", "", Words(np.arange(len(modes), dtype=np.int32), names))]
     for name in modes[0].coordinates:
-        unit = units.label(dimension_of(name.partition(".")[2]))
+        unit = units.label(dimension_of(name.rpartition(".")[2]))
         columns.append(Column(name, unit, np.array([mode.coordinates[name] for mode in modes])))
     columns.append(Column("residual", "", np.array([mode.residual for mode in modes])))
     columns.append(Column("condition", "", np.array([mode.condition for mode in modes])))

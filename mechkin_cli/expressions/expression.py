@@ -10,7 +10,7 @@ Example:
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -67,6 +67,14 @@ class Expression(NamedTuple):
         """The number literal, with or without unit, that the whole expression consists of."""
         only = self.nodes[0]
         return only if len(self.nodes) == 1 and isinstance(only, Number) else None
+
+    def taking_whole(self, names: Collection[str]) -> Expression:
+        """The same where some names are no components of others."""
+        nodes = (
+            node._replace(whole=True) if isinstance(node, Name) and node.text in names else node
+            for node in self.nodes
+        )
+        return Expression(self.text, tuple(nodes))
 
     def offset_of(self, name: str) -> int:
         """Where a name, or a dotted name that begins with it, first stands in the text."""
@@ -131,6 +139,8 @@ def parse(text: str) -> Expression:
 
 def _asked_for(node: Name) -> str:
     prefix, _, axis = node.text.rpartition(".")
+    if node.whole:
+        return node.text
     return prefix if axis in _AXES and "." in prefix else node.text
 
 

@@ -22,10 +22,12 @@ class Number(NamedTuple):
 
 
 class Name(NamedTuple):
-    """A name with dots; a last part `x`, `y` or `z` may be a component of what comes before it."""
+    """A name with dots; a last part `x`, `y` or `z` may be a component of what comes before it,
+    unless it is `whole`."""
 
     text: str
     offset: int
+    whole: bool = False
 
 
 class Operation(NamedTuple):

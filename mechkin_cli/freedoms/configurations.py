@@ -218,12 +218,12 @@ def assembled(body: Body) -> Configuration | None:
 
 def _scattered(body: Body, random: RandomStarts) -> Configuration:
     """Turns and orientations anywhere, slides within the size."""
-    state = np.zeros(body.layout.states)
+    state = home_state(body.layout)
     for carrier in body.layout.carriers:
         if carrier.part.type.is_ball:
             state[carrier.state : carrier.state + 4] = random.quaternions(1)[:, 0]
             continue
         for k, freedom in enumerate(carrier.part.type.freedoms):
             half = body.size / body.layout.length if freedom.is_slide else np.pi
-            state[carrier.state + k] = random.between(half, 1)[0]
+            state[carrier.state + k] += random.between(half, 1)[0]
     return Configuration(body, state)

@@ -214,6 +214,7 @@ class Model:
         quantities: Iterable[str] | None = None,
         reduce: Reduce | Sequence[Reduce] | Mapping[str, Any] | None = None,
         *,
+        run: str = SWEEP,
         lanes: int = 0,
         threads: int = 0,
     ) -> Variants:
@@ -229,6 +230,8 @@ class Model:
             reduce: what is kept of the rows: "max", "min", "peak" (largest magnitude), "range",
                 "mean", "rms", a function from (variants, rows) to (variants,), several of these, or
                 any of it by quantity. Rows without a solution (nan) do not count.
+            run: a response instead of the sweep, as `with_parameters(...).respond(run)` gives it;
+                where a stop ends it, its row takes the place of the next moment.
             lanes: width of the kernel's packs, 0 for the widest.
             threads: how many threads split the variants, 0 for as many as pay.
 
@@ -256,7 +259,7 @@ class Model:
         """
         from mechkin_cli.interface.variants import vary
 
-        return vary(self._variants, {}, parameters, quantities, reduce, lanes, threads)
+        return vary(self._variants, {}, parameters, quantities, reduce, run, lanes, threads)
 
     def solve(
         self,

@@ -29,7 +29,7 @@ def respond(
 ) -> Analysis:
     """Runs a response of a model; arguments and errors are those of `Model.respond`."""
     packing = a_packing(lanes, threads)
-    run = _response_name(model, name)
+    run = response_name(model, name)
     model.response_graph(run)
     problem = model.problem
     response = problem.responses[run]
@@ -44,8 +44,12 @@ def respond(
     return analysis if mode is None else known_mode(analysis)
 
 
-def _response_name(model: Model, name: str | None) -> str:
-    """The response that is meant; without a name the only one."""
+def response_name(model: Model, name: str | None) -> str:
+    """The response that is meant; without a name the only one.
+
+    Raises:
+        UsageError: there is none, or none of this name.
+    """
     known = list(model.built.problem.responses)
     if not known:
         raise UsageError(

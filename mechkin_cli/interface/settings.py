@@ -50,7 +50,7 @@ def input_values(problem: Problem, at: Setting | Mapping[str, Setting]) -> dict[
 def _input_value(problem: Problem, name: str, value: Setting) -> float:
     """A value of an input in the file's units."""
     text = value if isinstance(value, str) else repr(value)
-    dimension = dimension_of(name.partition(".")[2])
+    dimension = dimension_of(name.rpartition(".")[2])
     resolve = lookup(problem.parameters)
     try:
         found = constant_in_file_units(text, dimension, problem.units, resolve)

@@ -176,7 +176,7 @@ class Study:
             alone = np.flatnonzero(runs.end != int(VariantEnd.COMPLETE))
         for number in alone:
             self._alone(values[:, number], int(begin + number), int(number), found, codes)
-        return {text: self._reduced(text, array) for text, array in found.items()}
+        return {text: reduced(text, array, self.reductions[text]) for text, array in found.items()}
 
     def _evaluated(
         self,
@@ -255,33 +255,40 @@ class Study:
         shape = (count, self.rows, 3) if isinstance(value, Vector) else (count, self.rows)
         return np.full(shape, np.nan)
 
-    def _reduced(self, text: str, values: Floats) -> Floats:
-        reduction = self.reductions[text]
-        if reduction is None:
-            return values
-        if isinstance(reduction, tuple):
-            return np.stack([self._by(each, text, values) for each in reduction], axis=-1)
-        return self._by(reduction, text, values)
 
-    def _by(self, reduction: Reduction, text: str, values: Floats) -> Floats:
-        if values.ndim == 3:
-            parts = [self._by(reduction, text, values[:, :, k]) for k in range(3)]
-            return np.stack(parts, axis=1)
-        given = values.view()
-        given.flags.writeable = False  # the next reduction reads the same
-        try:
-            found = np.asarray(reduction(given), dtype=np.float64)
-        except Exception as error:
-            raise UsageError(
-                f"the reduction of {text} failed with {type(error).__name__}: "
-                f"{str(error)[:LONGEST_NAME]}; it takes (variants, rows) = {values.shape}"
-            ) from error
-        if found.shape[:1] != values.shape[:1]:
-            raise UsageError(
-                f"the reduction of {text} gives an array of shape {found.shape}; it takes "
-                f"(variants, rows) = {values.shape} and gives one value a variant"
-            )
-        return found
+def reduced(text: str, values: Floats, reduction: Reductions) -> Floats:
+    """What is kept of (variants, rows) or (variants, rows, 3), the reductions last where there are
+    several.
+
+    Raises:
+        UsageError: a function of the caller fails, or gives something else.
+    """
+    if reduction is None:
+        return values
+    if isinstance(reduction, tuple):
+        return np.stack([_by(each, text, values) for each in reduction], axis=-1)
+    return _by(reduction, text, values)
+
+
+def _by(reduction: Reduction, text: str, values: Floats) -> Floats:
+    if values.ndim == 3:
+        parts = [_by(reduction, text, values[:, :, k]) for k in range(3)]
+        return np.stack(parts, axis=1)
+    given = values.view()
+    given.flags.writeable = False  # the next reduction reads the same
+    try:
+        found = np.asarray(reduction(given), dtype=np.float64)
+    except Exception as error:
+        raise UsageError(
+            f"the reduction of {text} failed with {type(error).__name__}: "
+            f"{str(error)[:LONGEST_NAME]}; it takes (variants, rows) = {values.shape}"
+        ) from error
+    if found.shape[:1] != values.shape[:1]:
+        raise UsageError(
+            f"the reduction of {text} gives an array of shape {found.shape}; it takes "
+            f"(variants, rows) = {values.shape} and gives one value a variant"
+        )
+    return found
 
 
 class _Resolve:

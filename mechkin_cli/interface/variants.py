@@ -13,9 +13,11 @@ from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
 from mechkin_cli.expressions import Expression, ExpressionError, parse
 from mechkin_cli.interface.arguments import a_whole_number, shown, texts
 from mechkin_cli.interface.given import parameter_arrays
+from mechkin_cli.interface.responses import response_name
 from mechkin_cli.interface.variant_runs import Reductions, Study, sample_of
 from mechkin_cli.interface.varied import Base, file_values
 from mechkin_cli.kernel.width import check_threads, check_width
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.status import Status
 from mechkin_cli.tables.layout import ROW_TEXTS
 from mechkin_cli.tolerances import MOST_KEPT
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.interface.model import Model
+    from mechkin_cli.mechanism.problem import Problem
 
 LONGEST_MESSAGE = 400
 """Characters of an expression's error that a message repeats."""
@@ -96,20 +98,33 @@ def vary(
     parameters: Mapping[str, Any],
     quantities: Iterable[str] | None,
     reduce: Reduce | Sequence[Reduce] | Mapping[str, Any] | None,
+    run: str,
     lanes: int,
     threads: int,
 ) -> Variants:
     """`Model.vary`, whose arguments these are; `held` are values (SI) that are set already."""
+    if run != SWEEP:
+        from mechkin_cli.interface.response_variants import vary_response
+
+        name = response_name(base.model, run)
+        return vary_response(base, held, parameters, quantities, reduce, name, lanes, threads)
     lanes = a_whole_number("lanes", lanes, "rows at a time")
     threads = a_whole_number("threads", threads, "how many split the variants")
     check_width(lanes)
     check_threads(threads)
+    if SWEEP not in base.model.runs:
+        raise UsageError(
+            f"{base.model.name} has no sweep to vary; vary a response one by one: "
+            f'with_parameters({{...}}).respond("{base.model.runs[0]}")'
+        )
     problem = base.model.problem
     names, values = parameter_arrays(problem, parameters)
     given = file_values(values, problem, names)
-    names, values = _with_held(list(problem.parameters), names, values, held)
-    asked = _parsed(problem.mechanism.coordinates if quantities is None else quantities, base.model)
-    study = Study(base, names, asked, _reductions(asked, reduce), lanes, threads)
+    names, values = with_held(list(problem.parameters), names, values, held)
+    asked = expressions_of(
+        problem.mechanism.coordinates if quantities is None else quantities, problem
+    )
+    study = Study(base, names, asked, reductions_of(asked, reduce), lanes, threads)
     _check_memory(values.shape[1], study)
     return Variants(given, *study.run(values))
 
@@ -124,9 +139,10 @@ def _check_memory(variants: int, study: Study) -> None:
         )
 
 
-def _with_held(
+def with_held(
     order: Sequence[str], names: tuple[str, ...], values: Floats, held: Mapping[str, float]
 ) -> tuple[tuple[str, ...], Floats]:
+    """Names and values of all parameters that are set, in the file's order."""
     rows = dict(zip(names, values, strict=True))
     count = values.shape[1]
     rows = {name: np.full(count, value) for name, value in held.items()} | rows
@@ -134,14 +150,19 @@ def _with_held(
     return names, np.stack([rows[name] for name in names])
 
 
-def _parsed(quantities: Iterable[str], model: Model) -> dict[str, Expression]:
+def expressions_of(quantities: Iterable[str], problem: Problem) -> dict[str, Expression]:
+    """What is asked for, by its text.
+
+    Raises:
+        UsageError: no such quantity, or a text.
+    """
     found = {}
     for text in texts("quantities", quantities, '["O4.theta"]'):
         if text.strip() in ROW_TEXTS:
             raise UsageError(f"{text} is a text, no number; read .status of the result")
         try:
             found[text] = parse(text)
-            found[text].evaluate(sample_of(model.problem), model.problem.units)
+            found[text].evaluate(sample_of(problem), problem.units)
         except ExpressionError as error:
             hint = error.hint or "write an expression of quantities and parameters"
             shortened = text[:LONGEST_NAME]
@@ -149,8 +170,12 @@ def _parsed(quantities: Iterable[str], model: Model) -> dict[str, Expression]:
     return found
 
 
-def _reductions(asked: Iterable[str], reduce: Any) -> dict[str, Reductions]:
-    """What is done with each quantity."""
+def reductions_of(asked: Iterable[str], reduce: Any) -> dict[str, Reductions]:
+    """What is done with each quantity.
+
+    Raises:
+        UsageError: no such reduction.
+    """
     if isinstance(reduce, Mapping):
         for text in reduce:
             if text not in asked:

@@ -50,6 +50,8 @@ class Base:
     def _assembled(self) -> tuple[Session, FirstAssembly] | None:
         if self.model.problem.follow is not None:
             return None  # which loops are followed depends on what is asked
+        if SWEEP not in self.model.runs:
+            return None  # there is no first row to continue
         session, start = first_assembly(self.model.session)
         if start.state is None or session.size is None:
             return None
@@ -209,13 +211,14 @@ class VariedModel(Model):
         quantities: Iterable[str] | None = None,
         reduce: Reduce | Sequence[Reduce] | Mapping[str, Any] | None = None,
         *,
+        run: str = SWEEP,
         lanes: int = 0,
         threads: int = 0,
     ) -> Variants:
         """As `Model.vary`; values of before stay unless they are given anew."""
         from mechkin_cli.interface.variants import vary
 
-        return vary(self._base, self._values, parameters, quantities, reduce, lanes, threads)
+        return vary(self._base, self._values, parameters, quantities, reduce, run, lanes, threads)
 
 
 def _revaried(model: Model, values: Mapping[str, float]) -> Model:

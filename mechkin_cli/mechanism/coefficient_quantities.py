@@ -57,7 +57,7 @@ def base_name(coefficient: Wanted) -> str:
 
 def accelerated(coefficient: Wanted) -> Input | None:
     """The input by whose acceleration it is; None: no input is accelerated."""
-    joint, _, coordinate = coefficient.coordinate.partition(_AT)[2].partition(".")
+    joint, _, coordinate = coefficient.coordinate.partition(_AT)[2].rpartition(".")
     return (joint, coordinate) if joint else None
 
 
@@ -65,7 +65,7 @@ def base_quantity(known: Mapping[str, Wanted], name: str) -> Wanted:
     """The quantity of a coefficient's base name; inputs have efforts, whatever else is known."""
     if name in known:
         return known[name]
-    joint, coordinate, _ = name.split(".")
+    joint, coordinate, _ = name.rsplit(".", 2)
     return effort_quantity(joint, coordinate)
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 
 from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
 from mechkin_cli.mechanism.joint_table import JOINT_TYPES, dimension_of
-from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism
+from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism, is_written
 from mechkin_cli.mechanism.quantities import Kind, Wanted
 from mechkin_cli.mechanism.vectors import ZERO
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, Dimension
@@ -43,7 +43,12 @@ _SCREWS: tuple[tuple[Kind, Dimension, bool, int], ...] = (
     ("finite_angle", ANGLE, False, 0),
     ("finite_slide", LENGTH, False, 0),
 )
+_OF_RESPONSES = (
+    "is told of the rows of a response: name it in the table, run: NAME, or respond(NAME)"
+)
 _HINTS = {
+    **{word: f"row.{word} {_OF_RESPONSES}" for word in ("event", "work", "dissipated")},
+    "energy_error": f"row.energy_error {_OF_RESPONSES}",
     **dict.fromkeys(
         TRANSMISSION_KINDS,
         f"a transmission angle has theta or s, unless an input, of an {_either(_GUIDES)} between "
@@ -113,7 +118,7 @@ def reference_point(mechanism: Mechanism, link: str) -> Attached:
 
 def _of_orientations(mechanism: Mechanism) -> Iterator[Wanted]:
     for joint in mechanism.joints.values():
-        if joint.type.is_oriented:
+        if joint.type.is_oriented and is_written(joint.name):
             for word in QUATERNION:
                 name = f"{joint.name}.{word}"
                 yield Wanted(name, "quaternion", joint.name, DIMENSIONLESS, False, word)
@@ -122,7 +127,7 @@ def _of_orientations(mechanism: Mechanism) -> Iterator[Wanted]:
 
 def _of_screws(mechanism: Mechanism) -> Iterator[Wanted]:
     for link in mechanism.links:
-        if link != GROUND_NAME:
+        if link != GROUND_NAME and is_written(link):
             for kind, dimension, vector, order in _SCREWS:
                 yield Wanted(f"{link}.{kind}", kind, link, dimension, vector, order=order)
 

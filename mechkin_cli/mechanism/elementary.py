@@ -81,11 +81,12 @@ ELEMENTARY = {
 
 class Part(NamedTuple):
     """An elementary displacement of a joint's chain; its frame as drawn on the body before and
-    after it."""
+    after it, and its coordinate where these are as drawn (m)."""
 
     letter: str
     before: Frame
     after: Frame
+    drawn: float = 0.0
 
     @property
     def type(self) -> Elementary:
@@ -95,8 +96,8 @@ class Part(NamedTuple):
     def reversed(self) -> Part:
         """The same part passed the other way: the same coordinate about the reversed axis."""
         if not self.type.has_axis:
-            return Part(self.letter, self.after, self.before)
-        return Part(self.letter, self.after.flipped(), self.before.flipped())
+            return Part(self.letter, self.after, self.before, self.drawn)
+        return Part(self.letter, self.after.flipped(), self.before.flipped(), self.drawn)
 
     def screws(self, pitch: float) -> tuple[Screw, ...]:
         """The unit screws of its freedoms as drawn on the body before it; `pitch` in m per rad."""

@@ -7,6 +7,7 @@ that tells an assembly from a false root of them, are composed in the kernel's e
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 from mechkin_cli.mechanism.joint_type import (
@@ -134,13 +135,28 @@ _TABLE = (
         point_on=FIRST,
         closing="Cp",
     ),
+    # the pose of the second link against the first: it holds nothing
+    JointType(
+        "F",
+        (
+            *(Step("P", axis) for axis in (_X1, _Y1, _Z1)),
+            Step("R"),
+            Step("R", _Y2, between=True),
+            Step("R", _X2),
+        ),
+        (
+            *(_length(name, freedom, _Z1) for freedom, name in enumerate(("x", "y", "z"))),
+            *(_angle(name, freedom, None) for freedom, name in enumerate(("rz", "ry", "rx"), 3)),
+        ),
+        Drawing("ball"),
+    ),
 )
 
 JOINT_TYPES = {entry.letter: entry for entry in _TABLE}
 """The pairs that a file may have, by letter."""
 
 FREE = JointType(
-    "F",
+    "free",
     (Step("P", _X1), Step("P", _Y1), Step("P", _Z1), Step("S")),
     (_length("x", 0, _X1), _length("y", 1, _Y1), _length("z", 2, _Z1)),
     Drawing("ball"),
@@ -148,10 +164,40 @@ FREE = JointType(
 """The pair without constraints by which the solver hangs a body that only legs hold."""
 
 
+_ALONG = {"x": _X1, "y": _Y1, "z": _Z1}
+_SEATS = {1: "Sp", 2: "Sg", 3: "S"}
+
+
+def guide_letter(axes: str) -> str:
+    """Stands for the slide along some of the axes x, y and z that guides a point which is an
+    input."""
+    return f"along {axes}"
+
+
+def seat_letter(axes: str) -> str:
+    """Stands for how that slide carries the point: on a plane, in a groove or in a socket."""
+    return f"seat {_SEATS[len(axes)]}"
+
+
 @cache
 def joint_type(letter: str) -> JointType:
     """The entry of a letter."""
+    kind, _, rest = letter.partition(" ")
+    if kind == "along":
+        return _guide(rest)
+    if kind == "seat":
+        return replace(JOINT_TYPES[rest], letter=letter, named=())
     return FREE if letter == FREE.letter else JOINT_TYPES[letter]
+
+
+def _guide(axes: str) -> JointType:
+    return JointType(
+        guide_letter(axes),
+        tuple(Step("P", _ALONG[axis]) for axis in axes),
+        tuple(_length(axis, freedom, _ALONG[axis]) for freedom, axis in enumerate(axes)),
+        Drawing("weld"),
+        point_on=None,
+    )
 
 
 def dimension_of(coordinate: str) -> Dimension:

@@ -30,19 +30,21 @@ class Step(NamedTuple):
     """A part of a pair: its letter, and along what it is drawn.
 
     Without `along` it is the one that leads from the drawing of the first link to that of the
-    second; the parts before and behind it stand on one link.
+    second; the parts before and behind it stand on one link. `between`: it rides on neither link,
+    but square to the turn before it and the turn behind it.
     """
 
     letter: str
     along: Drawn | None = None
+    between: bool = False
 
 
 class Coordinate(NamedTuple):
     """A coordinate that users name: its dimension, its freedom along the chain, and its axis.
 
     `axis` None: one of two turns, about z of the first frame and then about z of the second, whose
-    axes may be oblique. `on_thread`: a length by a freedom that is an angle; the pitch is its
-    scale.
+    axes may be oblique, or any of a pair that holds nothing. `on_thread`: a length by a freedom
+    that is an angle; the pitch is its scale.
     """
 
     name: str
@@ -186,7 +188,7 @@ class JointType:
 
     @property
     def is_free(self) -> bool:
-        """Whether it holds nothing."""
+        """Whether it holds nothing: it is no part of the machine, but tells or drives a pose."""
         return self.freedoms == 6
 
 

@@ -12,6 +12,7 @@ from functools import cached_property
 from math import pi
 from typing import Literal, NamedTuple
 
+from mechkin_cli.mechanism.drives import Drives
 from mechkin_cli.mechanism.elementary import Part, Screw
 from mechkin_cli.mechanism.frames import Frame
 from mechkin_cli.mechanism.joint_table import joint_type
@@ -37,6 +38,11 @@ class Link(NamedTuple):
     def has_mass(self) -> bool:
         """Whether the link has inertia of any kind."""
         return any(moment != 0.0 for moment in (self.mass, *self.inertia))
+
+
+def is_written(name: str) -> bool:
+    """Whether a link or joint stands in the file: names of what guides a point have a dot."""
+    return "." not in name
 
 
 class Joint(NamedTuple):
@@ -66,6 +72,11 @@ class Joint(NamedTuple):
     def coordinates(self) -> tuple[str, ...]:
         """Full names of the coordinates: `O2.theta`, `O2.s`."""
         return tuple(f"{self.name}.{coordinate}" for coordinate in self.type.coordinates)
+
+    @property
+    def carries(self) -> bool:
+        """Whether it is a joint of the machine, at which an effort can act."""
+        return is_written(self.name) and not self.type.is_free
 
     @property
     def point(self) -> Attached:
@@ -241,7 +252,8 @@ def _renumbered(amount: Amount, numbers: Mapping[int, int]) -> Amount:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """Links and joints by name in the order written; gravity in m/s^2."""
+    """Links and joints by name in the order written; gravity in m/s^2; what drives it, where it is
+    known."""
 
     name: str
     links: Mapping[str, Link]
@@ -250,6 +262,7 @@ class Mechanism:
     directions: Mapping[str, Attached] = field(default_factory=dict)
     loads: tuple[Load, ...] = ()
     gravity: Vector = ZERO
+    drives: Drives | None = None
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -287,7 +300,7 @@ class Mechanism:
     def _joint_points(self) -> tuple[tuple[str, Attached], ...]:
         found = []
         for joint in self.joints.values():
-            if joint.type.has_point:
+            if joint.type.has_point and is_written(joint.name):
                 found.append((joint.name, Attached(joint.first, joint.on_first.o)))
                 found.append((joint.name, Attached(joint.second, joint.on_second.o)))
         return tuple(found)

@@ -60,13 +60,16 @@ class Moments(NamedTuple):
 class Motion(NamedTuple):
     """All inputs; a mechanism without inputs has one row. `time` is there where the file has it,
     `course` where inputs move by laws or follow others; `ties` are all inputs as functions of each
-    one that others follow (`building.course`)."""
+    one that others follow (`building.course`). `tied` are pairs (input, leader) of inputs of which
+    the leader's motor moves both, `tie_rates` (tied, rows) the rates of the first by the second."""
 
     inputs: tuple[DrivenInput, ...]
     rows: int
     time: Moments | None = None
     course: Course | None = None
     ties: tuple[tuple[str, Tape], ...] = ()
+    tied: tuple[tuple[int, int], ...] = ()
+    tie_rates: Floats | None = None
 
     @property
     def driven(self) -> list[tuple[str, str]]:

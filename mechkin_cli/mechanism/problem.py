@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -47,6 +47,12 @@ class Problem:
     def driven(self) -> list[tuple[str, str]]:
         """The inputs (joint, coordinate), then the coordinates at which idle freedoms are held."""
         return [*self.motion.driven, *self.held_at]
+
+    @property
+    def acting(self) -> Sequence[tuple[str, str]]:
+        """Where efforts act (joint, coordinate): at actuators, else at the inputs."""
+        drives = self.mechanism.drives
+        return self.motion.driven if drives is None else drives.acting
 
     @cached_property
     def held_at(self) -> dict[tuple[str, str], float]:
@@ -97,7 +103,7 @@ class Problem:
                 found |= coefficient_catalogue(linear, motion.driven, motion.driven[0])
             return found | response_quantities() | derived_catalogue(mechanism, (), None)
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
-        found = catalogue(mechanism, motion.driven, timed=motion.time is not None, held=self.held)
+        found = catalogue(mechanism, self.acting, timed=motion.time is not None, held=self.held)
         if leading is not None:
             found |= coefficient_catalogue(found, motion.driven, leading)
         return found | derived_catalogue(mechanism, motion.driven, leading)

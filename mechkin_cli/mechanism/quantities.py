@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 from mechkin_cli.mechanism.held import Held
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.legs import find_legs
-from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism
+from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism, is_written
 from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.units import (
     ACCELERATION,
@@ -74,10 +74,13 @@ Kind = Literal[
     "dynamic_transmission_angle",
     "kinetic_energy",
     "potential_energy",
+    "total_force",
+    "total_moment",
     "link_direction",
     "link_point",
     "reaction_level",
     "load_power",
+    "actuation",
 ]
 """The last four are of no use to users: what derived quantities are computed from, and what cells
 are judged by."""
@@ -101,6 +104,9 @@ TIME_OF_ROW = Wanted("time", "time", "row", TIME, False)
 REACTION_LEVEL = Wanted("reaction level", "reaction_level", GROUND_NAME, FORCE, False)
 """The largest component of force, or moment in length units, of all joints."""
 
+ACTUATION = Wanted("actuation", "actuation", GROUND_NAME, DIMENSIONLESS, False)
+"""The least rate of the actuators, all together, in a motion of length one."""
+
 _OF_ANGLES = (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION, ANGULAR_JERK)
 _OF_LENGTHS = (LENGTH, VELOCITY, ACCELERATION, JERK)
 _GROUND: dict[str, tuple[Kind, Dimension]] = {
@@ -120,22 +126,25 @@ _JOINT_WRENCH: dict[str, tuple[Kind, Dimension]] = {
     "force": ("force", FORCE),
     "moment": ("moment", MOMENT),
     "moment_about_origin": ("moment_about_origin", MOMENT),
+    "total_force": ("total_force", FORCE),
+    "total_moment": ("total_moment", MOMENT),
 }
 
 
 def catalogue(
     mechanism: Mechanism,
-    inputs: Sequence[tuple[str, str]],
+    driven: Sequence[tuple[str, str]],
     *,
     timed: bool = False,
     held: Sequence[Held] = (),
 ) -> dict[str, Wanted]:
-    """Every quantity by name; `inputs` (joint, coordinate) have efforts, `timed` rows a time, and
-    what is `held` that which holds it."""
+    """Every quantity by name; efforts act at what is `driven` (joint, coordinate), `timed` rows
+    have a time, and what is `held` that which holds it."""
     found = {}
     for wanted in (
+        *_of_coordinates(mechanism),
         *_of_joints(mechanism),
-        *_of_efforts(inputs),
+        *_of_efforts(driven),
         *_of_points(mechanism),
         *_of_links(mechanism),
         *_of_held(held),
@@ -156,12 +165,18 @@ def coordinate_quantities(mechanism: Mechanism) -> list[Wanted]:
     ]
 
 
-def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
+def _of_coordinates(mechanism: Mechanism) -> Iterator[Wanted]:
     for joint in mechanism.joints.values():
         for known in joint.type.named:
             for order, dimension in enumerate(_OF_ANGLES if known.is_angle else _OF_LENGTHS):
                 name = f"{joint.name}.{known.name}{ORDERS[order]}"
                 yield Wanted(name, "coordinate", joint.name, dimension, False, known.name, order)
+
+
+def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
+    for joint in mechanism.joints.values():
+        if not is_written(joint.name):
+            continue
         if joint.type.has_point:
             yield Wanted(f"{joint.name}.point", "joint_point", joint.name, LENGTH, True)
         if joint.type.has_slip:
@@ -169,7 +184,7 @@ def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
         if joint.type.axis is not None:
             yield Wanted(f"{joint.name}.axis", "axis", joint.name, DIMENSIONLESS, True)
         for word, (kind, dimension) in _JOINT_WRENCH.items():
-            if kind == "moment" and not joint.type.has_point:
+            if kind in ("moment", "total_moment") and not joint.type.has_point:
                 continue
             yield Wanted(f"{joint.name}.{word}", kind, joint.name, dimension, True)
 
@@ -180,9 +195,9 @@ def effort_quantity(joint: str, coordinate: str) -> Wanted:
     return Wanted(f"{joint}.{coordinate}.effort", "effort", joint, dimension, False, coordinate)
 
 
-def _of_efforts(inputs: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
-    joints = [joint for joint, _ in inputs]
-    for joint, coordinate in inputs:
+def _of_efforts(driven: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
+    joints = [joint for joint, _ in driven]
+    for joint, coordinate in driven:
         effort = effort_quantity(joint, coordinate)
         if joints.count(joint) == 1:
             yield effort._replace(name=f"{joint}.effort")
@@ -205,7 +220,7 @@ def _of_points(mechanism: Mechanism) -> Iterator[Wanted]:
 
 def _of_links(mechanism: Mechanism) -> Iterator[Wanted]:
     for name in mechanism.links:
-        if name != GROUND_NAME:
+        if name != GROUND_NAME and is_written(name):
             yield Wanted(f"{name}.omega", "omega", name, ANGULAR_RATE, True)
             yield Wanted(f"{name}.alpha", "alpha", name, ANGULAR_ACCELERATION, True)
     for leg in find_legs(mechanism):

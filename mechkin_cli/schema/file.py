@@ -14,7 +14,7 @@ from mechkin_cli.schema.points import DirectionOfLink, PointOfLink
 from mechkin_cli.schema.responses import Response
 from mechkin_cli.schema.rules import After, Before
 from mechkin_cli.schema.runs import free_run_names
-from mechkin_cli.schema.scalars import AnyDimension, Name, Text
+from mechkin_cli.schema.scalars import AnyDimension, Coordinate, Name, Text
 from mechkin_cli.schema.tables import Table, differing_names
 from mechkin_cli.schema.units_section import METRIC, UnitsSection
 
@@ -59,6 +59,8 @@ class MechanismFile(Section):
     """Which way of assembling the mechanism is meant."""
     responses: Annotated[dict[Name, Response], After(free_run_names)] = NOTHING
     """Motions under forces, by name."""
+    actuators: tuple[Coordinate, ...] = ()
+    """Where efforts act, when not at the inputs: [leg1.s, leg2.s]; at least as many as freedoms."""
     loads: tuple[Load, ...] = ()
     """Gravity, forces, torques, springs and dampers."""
     tables: Annotated[tuple[Table, ...], After(differing_names)] = ()

@@ -11,7 +11,7 @@ from mechkin_cli.schema.base import Section, refuse
 from mechkin_cli.schema.rules import Limits, Named
 from mechkin_cli.schema.scalars import DirectionVector, Length, LengthVector, Name
 
-JOINT_TYPES: Final = ("R", "P", "C", "H", "S", "Sp", "Sg", "U", "E", "Ss", "Sc", "Cp", "W")
+JOINT_TYPES: Final = ("R", "P", "C", "H", "S", "Sp", "Sg", "U", "E", "Ss", "Sc", "Cp", "F", "W")
 _PER_LINK_FIELDS = ("point", "axis", "normal", "groove", "slot", "pin", "x", "zero")
 
 
@@ -189,6 +189,16 @@ class CylinderPlaneJoint(PointJoint):
     """Normal of the plane, fixed in the second link."""
 
 
+class FreePose(PointJoint):
+    """F: no joint, but the pose of the second link against the first; it holds nothing.
+
+    Slides by x, y and z along the axes of the drawing, then turns by rz about z, by ry about the y
+    and by rx about the x that turn with it. Its coordinates may be inputs, or be read.
+    """
+
+    type: Literal["F"]
+
+
 class WeldJoint(JointBase):
     """W: the two links are one body."""
 
@@ -204,6 +214,7 @@ AnyJoint = (
     | SpherePlaneJoint
     | SphereGrooveJoint
     | PlanarJoint
+    | FreePose
     | WeldJoint
 )
 
@@ -226,6 +237,7 @@ Joint = Annotated[
     | Annotated[SlottedSphereJoint, Tag("(Ss)")]
     | Annotated[SphereCylinderJoint, Tag("(Sc)")]
     | Annotated[CylinderPlaneJoint, Tag("(Cp)")]
+    | Annotated[FreePose, Tag("(F)")]
     | Annotated[WeldJoint, Tag("(W)")],
     by_word("type", _tag, ", ".join(JOINT_TYPES)),
 ]

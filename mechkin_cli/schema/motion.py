@@ -5,7 +5,7 @@ others are held (`at`), follow (`with`) or run in step through equally many valu
 moments of `time`, and inputs move by laws.
 """
 
-from typing import Annotated, Any, ClassVar, Final
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 from mechkin_cli.schema.alternatives import Tag, by_word
 from mechkin_cli.schema.base import NOTHING, Key, Section, refuse
@@ -85,6 +85,8 @@ class FollowingInput(Section):
 
     value: Annotated[AnyDimension, Key("with")]
     """An expression of other inputs, and of `time` where there is one: `2*O1.theta`."""
+    drive: Literal["own", "tie"] | None = None
+    """`tie`: the motors of the inputs that it follows move it, too; else it has one of its own."""
 
 
 class TimeSection(Section):

@@ -12,7 +12,7 @@ from mechkin_cli.schema.base import refuse
 from mechkin_cli.schema.rules import Before, Dimension, Limits, Named, Shown
 
 NAME_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*$"
-COORDINATE_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*\.[a-z][a-z0-9]*$"
+COORDINATE_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*\.([a-z][a-z0-9]*|position\.[xyz])$"
 START_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*\.[a-z][a-z0-9]*(_dot)?$"
 TABLE_NAME_PATTERN: Final = r"^[A-Za-z0-9_-]{1,100}$"
 CSV_PATH_PATTERN: Final = r"^[A-Za-z0-9_-][A-Za-z0-9_. -]*(/[A-Za-z0-9_-][A-Za-z0-9_. -]*)*\.csv$"

@@ -18,7 +18,7 @@ from mechkin_cli.mechanism.legs import find_legs, frame_on
 from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Mechanism
 from mechkin_cli.mechanism.vectors import ZERO, add, cross, norm, scale, subtract
 from mechkin_cli.solver.graph.records import SolverGraph, UnsolvableGraph
-from mechkin_cli.solver.home import home_state
+from mechkin_cli.solver.home import home_inputs, home_state
 from mechkin_cli.solver.random_starts import RandomStarts
 from mechkin_cli.solver.reduction import whole_link
 
@@ -66,7 +66,10 @@ def is_drawn_assembled(mechanism: Mechanism) -> bool:
         if not part.type.is_ball
         for one, other in zip(part.before[:3], part.after[:3], strict=True)
     ]
-    apart = [norm(subtract(part.before.o, part.after.o)) for part in parts]
+    apart = [
+        norm(subtract(add(part.before.o, scale(part.drawn, part.before.z)), part.after.o))
+        for part in parts
+    ]
     for leg in find_legs(mechanism):
         foot, head = frame_on(leg.start, leg.first).o, frame_on(leg.end, leg.second).o
         apart.append(abs(norm(subtract(head, foot)) - norm(leg.span)))
@@ -100,7 +103,7 @@ def _displaced(layout: Layout, move: float) -> Floats:
     for carrier in layout.carriers:
         if not carrier.part.type.is_ball:
             count = len(carrier.part.type.freedoms)
-            state[carrier.state : carrier.state + count] = move + random.between(move, count)
+            state[carrier.state : carrier.state + count] += move + random.between(move, count)
     return state
 
 
@@ -118,9 +121,8 @@ def _closed(session: Session, at: Sequence[float], move: float, off: float) -> P
     links = [name for name in layout.mechanism.links if name != GROUND_NAME]
     points = [Attached(name, add(origin, end)) for name in links for end in ends]
     readout = session.readout((), points)
-    inputs: Floats = np.full((len(layout.graph.inputs), 1), move)
-    if at:
-        inputs += np.array(stand)[:, None]
+    home = np.array(stand) if at else home_inputs(layout)
+    inputs: Floats = home[:, None] + move
     batch = session.run(inputs, _displaced(layout, off)[:, None], readout=readout)
     if not batch.good[0] or batch.outputs is None:
         return None

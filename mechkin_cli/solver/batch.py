@@ -83,6 +83,7 @@ def run(
     *,
     rates: Floats | None = None,
     accelerations: Floats | None = None,
+    ties: Floats | None = None,
     jerks: Floats | None = None,
     turned: Floats | None = None,
     whole: Floats | None = None,
@@ -108,6 +109,8 @@ def run(
         rates: needed for velocities.
         accelerations: needed for accelerations.
         jerks: needed for third derivatives.
+        ties: rates of tied inputs by those of their leaders (ties, rows), needed for forces where
+            there are any.
         turned: (turn slots, rows) as `solver.closing_turns` has them; springs on angles and laws of
             loads go by them.
         whole: (inputs, rows) whole turns that the inputs are without, likewise.
@@ -147,6 +150,7 @@ def run(
         rates=_contiguous(rates),
         accelerations=_contiguous(accelerations),
         jerks=_contiguous(jerks),
+        ties=_contiguous(ties),
         turned=_contiguous(turned),
         whole=_contiguous(whole),
         **({} if chart is None else chart.arguments(demand)),

@@ -147,10 +147,15 @@ def pose_keys(
         for carrier in (layout.carriers if carriers is None else carriers)
         if (carrier.edge, carrier.first_freedom) not in left_out
     ]
+    told = _told_poses(layout, kept)
     turns = _cosines_and_sines(states, kept)
     keys: list[Floats] = []
+    for turn in told:
+        keys.extend(_rotation_keys(states, turn))
     for carrier in kept:
         state = carrier.state
+        if any(state in turn for turn in told):
+            continue
         if carrier.part.type.is_ball:
             q = states[state : state + 4]
             keys.extend(q[i] * q[j] for i in range(4) for j in range(i, 4))
@@ -158,6 +163,28 @@ def pose_keys(
         for number, freedom in enumerate(carrier.part.type.freedoms, start=state):
             keys.extend(turns[number] if freedom.is_cyclic else (states[number],))
     return np.array(keys) if keys else np.zeros((0, states.shape[1]))
+
+
+def _told_poses(layout: Layout, carriers: Sequence[Carrier]) -> list[list[int]]:
+    """States of three turns rz, ry, rx that tell an orientation: two sets of them tell the same."""
+    found: dict[int, list[int]] = {}
+    for carrier in sorted(carriers, key=lambda carrier: carrier.first_freedom):
+        turns = any(freedom.is_cyclic for freedom in carrier.part.type.freedoms)
+        if turns and layout.graph.edges[carrier.edge].joint.type.is_free:
+            found.setdefault(carrier.edge, []).append(carrier.state)
+    return [turns for turns in found.values() if len(turns) == 3]
+
+
+def _rotation_keys(states: Floats, turns: Sequence[int]) -> list[Floats]:
+    """Entries of the rotation that turns about z, y and x make, one after the other."""
+    (cz, sz), (cy, sy), (cx, sx) = (
+        (functions.cos(states[n]), functions.sin(states[n])) for n in turns
+    )
+    return [
+        *(cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx),
+        *(sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx),
+        *(-sy, cy * sx, cy * cx),
+    ]
 
 
 def _cosines_and_sines(

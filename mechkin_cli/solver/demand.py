@@ -14,17 +14,20 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, reference_point
 from mechkin_cli.mechanism.frames import GROUND
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.model import Attached, Damper, Load, Mechanism, varying
 from mechkin_cli.mechanism.quantities import Wanted
 from mechkin_cli.mechanism.vectors import ZERO, Vector
 from mechkin_cli.solver.codes import Demand, OutputCode
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.records import Output, hand_over_outputs
+from mechkin_cli.units import FORCE
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Outputs, Plan
 
-WRENCH_KINDS = {"force", "moment", "moment_about_origin"}
+_TOTAL_KINDS = {"total_force", "total_moment"}
+WRENCH_KINDS = {"force", "moment", "moment_about_origin"} | _TOTAL_KINDS
 _SHAKING_KINDS = {"shaking_force", "shaking_moment"}
 _INERTIA_KINDS = {"inertia_force", "inertia_moment"}
 _HOLDING_KINDS = {"holding_moment", "holding_force"}
@@ -34,7 +37,7 @@ _FORCE_KINDS = (
     | _INERTIA_KINDS
     | _HOLDING_KINDS
     | COEFFICIENT_KINDS
-    | {"effort", "reaction_level", "dynamic_transmission_angle"}
+    | {"effort", "reaction_level", "dynamic_transmission_angle", "actuation"}
 )
 _ENERGY_KINDS = {"kinetic_energy", "potential_energy"}
 
@@ -181,17 +184,15 @@ class OutputPlan:
             code = OutputCode.OMEGA if kind == "omega" else OutputCode.ALPHA
             return self._output(code, layout.link_number[owner], 1.0)
         if kind in WRENCH_KINDS:
-            code = {
-                "force": OutputCode.JOINT_FORCE,
-                "moment": OutputCode.JOINT_MOMENT,
-                "moment_about_origin": OutputCode.JOINT_MOMENT_ORIGIN,
-            }[kind]
-            factor = length if kind == "force" else length * length
+            factor = length if wanted.dimension == FORCE else length * length
+            code = self._wrench_code(owner, kind)
             return self._output(code, layout.place_number[owner], factor)
         if kind == "effort":
-            return self._effort(owner, wanted.coordinate)
+            return self._motor(owner, wanted.coordinate)
+        if kind == "actuation":
+            return self._output(OutputCode.ACTUATION, 0, 1.0)
         if kind in _HOLDING_KINDS and wanted.coordinate:
-            joint_name, _, coordinate = wanted.coordinate.partition(".")
+            joint_name, _, coordinate = wanted.coordinate.rpartition(".")
             return self._effort(joint_name, coordinate)
         if kind == "holding_moment":
             number = layout.leg_number[owner]
@@ -205,13 +206,40 @@ class OutputPlan:
         code = OutputCode[kind.upper()]
         return self._output(code, 0, length if kind.endswith("force") else length * length)
 
-    def _effort(self, joint: str, coordinate: str) -> int:
+    def _wrench_code(self, joint: str, kind: str) -> OutputCode:
+        """What gives a joint's wrench. A pair that holds nothing has only what its drives exert,
+        and where actuators act instead nothing."""
+        if self.layout.mechanism.joints[joint].type.is_free:
+            drives, force = self.layout.drives, kind.endswith("force")
+            if kind in _TOTAL_KINDS and (drives is None or not drives.actuators):
+                return OutputCode.CARRIED_FORCE if force else OutputCode.CARRIED_MOMENT
+            return OutputCode.JOINT_FORCE if force else OutputCode.JOINT_MOMENT
+        return {
+            "force": OutputCode.JOINT_FORCE,
+            "moment": OutputCode.JOINT_MOMENT,
+            "moment_about_origin": OutputCode.JOINT_MOMENT_ORIGIN,
+            "total_force": OutputCode.TOTAL_FORCE,
+            "total_moment": OutputCode.TOTAL_MOMENT,
+        }[kind]
+
+    def _motor(self, joint: str, coordinate: str) -> int:
+        """The effort where it acts: at an input with what its ties transmit, or at an actuator."""
+        drives = self.layout.drives
+        if drives is None or not drives.actuators:
+            code = OutputCode.EFFORT if drives is None else OutputCode.MOTOR
+            return self._effort(joint, coordinate, code)
+        number = drives.actuators.index((joint, coordinate))
+        length = self.layout.length
+        factor = length * length if is_angle(coordinate) else length
+        return self._output(OutputCode.MOTOR, number, factor)
+
+    def _effort(self, joint: str, coordinate: str, code: OutputCode = OutputCode.EFFORT) -> int:
         """The effort at a driven or held coordinate."""
         length = self.layout.length
         number = self.inputs.index((joint, coordinate))
         # a force along a thread does the work of the torque force * slide per radian
         unit = self.layout.mechanism.joints[joint].unit_of(coordinate, length)
-        return self._output(OutputCode.EFFORT, number, length * length / unit)
+        return self._output(code, number, length * length / unit)
 
     def add_point(self, at: Attached, order: int) -> int:
         """Plans a position (order 0) or a derivative of it; returns its first slot."""

@@ -1,4 +1,5 @@
-"""The home drawing as states of the kernel."""
+"""The home drawing as states of the kernel: every coordinate is zero there but those of guided
+points (`building.point_inputs`)."""
 
 from __future__ import annotations
 
@@ -12,9 +13,21 @@ if TYPE_CHECKING:
 
 
 def home_state(layout: Layout) -> Floats:
-    """States of the home drawing: every coordinate zero."""
+    """States of the home drawing (states,)."""
     state = np.zeros(layout.states)
     for carrier in layout.carriers:
         if carrier.part.type.is_ball:
             state[carrier.state] = 1.0
+        elif carrier.part.drawn != 0.0:
+            state[carrier.state] = carrier.part.drawn / layout.length
     return state
+
+
+def home_inputs(layout: Layout) -> Floats:
+    """The inputs of the home drawing (inputs,)."""
+    state = home_state(layout)
+    found = [
+        state[layout.state(edge, freedom)] if edge >= 0 else 0.0
+        for edge, freedom in layout.graph.inputs
+    ]
+    return np.array(found, dtype=np.float64)

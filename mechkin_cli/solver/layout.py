@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli import tolerances
+from mechkin_cli.mechanism.drives import Drives
 from mechkin_cli.mechanism.elementary import Part
 from mechkin_cli.mechanism.frames import GROUND, Frame, upright
 from mechkin_cli.mechanism.legs import frame_on
@@ -126,10 +127,11 @@ class Layout:
 
     @cached_property
     def axis_number(self) -> dict[tuple[str, str], int]:
-        """Number of the axis of each coordinate (joint, name)."""
+        """Number of the axis of each coordinate (joint, name) that something may act along."""
         pairs = [
             (joint.name, coordinate)
             for joint in self.mechanism.joints.values()
+            if not joint.type.is_free
             for coordinate in joint.type.coordinates
         ]
         return {pair: k for k, pair in enumerate(pairs)}
@@ -178,6 +180,15 @@ class Layout:
         """A frame drawn on a body, in the body's frame and length units, as the kernel takes it."""
         inner = self.body_frame[body].of(frame)
         return [*inner.x, *inner.y, *inner.z, *scale(1.0 / self.length, inner.o)]
+
+    @cached_property
+    def drives(self) -> Drives | None:
+        """What drives the inputs, where those of the graph are the mechanism's own and some of them
+        have no drive of their own."""
+        drives = self.mechanism.drives
+        if drives is None or drives.are_plain:
+            return None
+        return drives if self.graph.driven[: len(drives.inputs)] == drives.inputs else None
 
     def build(self, size: float | None = None) -> Plan:
         """The kernel's plan without outputs; `size` (m) normalises residual and condition."""

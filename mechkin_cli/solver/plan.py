@@ -13,11 +13,13 @@ from mechkin_cli.mechanism.vectors import ZERO, cross, norm, scale
 from mechkin_cli.solver.axes import coordinate_axis
 from mechkin_cli.solver.codes import FreeCode
 from mechkin_cli.solver.graph import Closing
-from mechkin_cli.solver.plan_loads import load_record
+from mechkin_cli.solver.plan_loads import load_coordinate, load_record
 from mechkin_cli.solver.records import (
+    Actuator,
     Axis,
     Block,
     ClosingJoint,
+    Driven,
     FreeMotion,
     Gravity,
     Inertia,
@@ -28,6 +30,7 @@ from mechkin_cli.solver.records import (
     Program,
     Rest,
     SizePoint,
+    Tie,
     TreeJoint,
     Units,
     hand_over,
@@ -40,8 +43,8 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.layout import Layout
 
 NO_AXIS = -1
-"""Stands for the axis of a coordinate that no user knows: it is driven only while a dead centre is
-looked for."""
+"""Stands for the axis of a coordinate that no user knows, which is driven only while a dead centre
+is looked for, and of the coordinates of a pose, which holds nothing."""
 
 
 def build_plan(layout: Layout, size: float | None = None) -> Plan:
@@ -68,6 +71,7 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
         *_inertias(layout),
         *(load_record(layout, load) for load in layout.mechanism.loads),
         *_load_program(layout),
+        *_drives(layout),
         *_size_points(layout),
     ]
 
@@ -228,6 +232,17 @@ def _load_program(layout: Layout) -> list[Program]:
     from mechkin_cli.solver.quantity_program import load_program
 
     return load_program(layout)
+
+
+def _drives(layout: Layout) -> Iterator[Driven | Actuator | Tie]:
+    drives = layout.drives
+    if drives is None:
+        return
+    yield Driven(len(drives.inputs))
+    for joint, coordinate in drives.actuators:
+        axis, reference, freedom, _ = load_coordinate(layout, joint, coordinate)
+        yield Actuator(axis, reference, freedom)
+    yield from (Tie(*pair) for pair in drives.ties)
 
 
 def _size_points(layout: Layout) -> Iterator[SizePoint]:

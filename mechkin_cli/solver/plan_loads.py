@@ -31,7 +31,7 @@ def load_record(layout: Layout, load: LinkLoad | JointLoad | Spring | Damper) ->
     if isinstance(load, LinkLoad):
         return _link_load(layout, load)
     if isinstance(load, JointLoad):
-        axis, reference, freedom, slide = _coordinate(layout, load.joint, load.coordinate)
+        axis, reference, freedom, slide = load_coordinate(layout, load.joint, load.coordinate)
         varies = isinstance(load.value, Varying)
         constant = 0.0 if isinstance(load.value, Varying) else load.value
         value = (constant / (unit if slide else (unit * unit)), 0.0, 0.0)
@@ -66,7 +66,7 @@ def _link_load(layout: Layout, load: LinkLoad) -> AppliedLoad:
     return AppliedLoad(code, link, -1, 0, point, ZERO, value, varies)
 
 
-def _coordinate(layout: Layout, name: str, coordinate: str) -> tuple[int, int, int, bool]:
+def load_coordinate(layout: Layout, name: str, coordinate: str) -> tuple[int, int, int, bool]:
     """Axis, kernel joint and freedom there of a joint's coordinate, and whether it is a
     slide."""
     joint = layout.mechanism.joints[name]
@@ -80,7 +80,9 @@ def _coordinate(layout: Layout, name: str, coordinate: str) -> tuple[int, int, i
 
 
 def _joint_spring(layout: Layout, load: Spring | Damper) -> AppliedLoad:
-    axis, reference, freedom, slide = _coordinate(layout, load.joint or "", load.coordinate or "")
+    axis, reference, freedom, slide = load_coordinate(
+        layout, load.joint or "", load.coordinate or ""
+    )
     per = 1.0 if slide else (layout.length * layout.length)
     if isinstance(load, Spring):
         code = LoadCode.COORDINATE_SPRING

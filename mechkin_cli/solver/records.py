@@ -183,6 +183,27 @@ class Program(NamedTuple):
     kinks: Sequence[int]
 
 
+class Driven(NamedTuple):
+    """How many inputs, the first ones, motors or actuators answer for."""
+
+    inputs: int
+
+
+class Actuator(NamedTuple):
+    """A coordinate at which an effort acts instead of at the inputs: as that of an applied load."""
+
+    axis: int
+    reference: int
+    freedom: int
+
+
+class Tie(NamedTuple):
+    """An input that is moved by the motor of another, its leader."""
+
+    input: int
+    leader: int
+
+
 class SizePoint(NamedTuple):
     """A joint's point whose place in the first assembly tells the mechanism's size; of ground in
     m."""
@@ -217,6 +238,9 @@ PlanRecord = (
     | Gravity
     | AppliedLoad
     | Program
+    | Driven
+    | Actuator
+    | Tie
     | SizePoint
 )
 
@@ -235,6 +259,9 @@ _VERBS: dict[type, str] = {
     Gravity: "set_gravity",
     AppliedLoad: "add_load",
     Program: "set_load_program",
+    Driven: "set_driven",
+    Actuator: "add_actuator",
+    Tie: "add_tie",
     SizePoint: "add_size_point",
 }
 """The builder's call for each record."""

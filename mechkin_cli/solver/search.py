@@ -22,6 +22,7 @@ from mechkin_cli.solver.block_search import (
 )
 from mechkin_cli.solver.clusters import first_of_each, pose_keys
 from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.home import home_state
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.random_starts import RandomStarts
 from mechkin_cli.solver.start_box import Within, unknown_states, upstream_states
@@ -217,8 +218,7 @@ def _different(states: Floats) -> tuple[list[int], list[int]]:
 
 def _nearest_home(layout: Layout, partial: Floats, count: int) -> NDArray[np.int64]:
     """The columns of the assemblies whose joints are nearest to the drawing, in their order."""
-    home = np.zeros((layout.states, 1))
-    home[_quaternion_scalars(layout)] = 1.0
+    home = home_state(layout)[:, None]
     away = np.zeros(partial.shape[1])
     keys = pose_keys(layout, partial)
     for key, drawn in zip(keys, pose_keys(layout, home), strict=True):

@@ -138,6 +138,17 @@ class Session:
 
         return self.once(("tie", number, row), lambda: Tie(self, tapes[name], number, row))
 
+    @cached_property
+    def tie_rates(self) -> Floats | None:
+        """Rates of tied inputs by those of their leaders in kernel units (ties, rows)."""
+        drives, motion = self.layout.drives, self.problem.motion
+        if drives is None or motion.tie_rates is None:
+            return None
+        units = [input_unit(self.layout, item) for item in motion.inputs]
+        factors = [units[leader] / units[tied] for tied, leader in motion.tied]
+        rates: Floats = motion.tie_rates * np.array(factors)[:, None]
+        return rates
+
     @property
     def is_redundant(self) -> bool:
         """Whether some loop has more closing equations than unknowns."""
@@ -278,7 +289,7 @@ class Session:
         """States (states,): the turns of threads that the assembly's `near` names, else zero."""
         states: Floats = np.zeros(self.layout.states)
         for name, value in self.problem.assembly.near.items():
-            owner, _, coordinate = name.partition(".")
+            owner, _, coordinate = name.rpartition(".")
             joint, edge = self.layout.mechanism.joints[owner], self.layout.edge_number.get(owner)
             if edge is not None and joint.type.is_threaded:
                 number = self.layout.state(edge, joint.type.freedom_of[coordinate])
@@ -295,6 +306,7 @@ class Session:
         rates: Floats | None = None,
         accelerations: Floats | None = None,
         jerks: Floats | None = None,
+        ties: Floats | None = None,
         turned: Floats | None = None,
         whole: Floats | None = None,
         chart: Chart | None = None,
@@ -314,6 +326,7 @@ class Session:
             rates=rates,
             accelerations=accelerations,
             jerks=jerks,
+            ties=ties,
             turned=turned,
             whole=whole,
             chart=chart,

@@ -119,7 +119,7 @@ def default_table(
 
 def effort_names(inputs: Collection[str]) -> list[str]:
     """Name of each input's effort: `O1.effort`, or `O2.s.effort` where O2 has several inputs."""
-    joints = [name.partition(".")[0] for name in inputs]
+    joints = [name.rpartition(".")[0] for name in inputs]
     return [
         f"{joint}.effort" if joints.count(joint) == 1 else f"{name}.effort"
         for name, joint in zip(inputs, joints, strict=True)

@@ -204,3 +204,29 @@ def test_what_cannot_be_is_told_with_its_place(text):
     assert WRONG[text] in found.message
     assert found.place is not None
     assert found.place.line == head.count("\n") + 2
+
+
+def test_a_joint_written_the_other_way_round():
+    """Its reactions change their sign, all others and the count stay."""
+    data = document(MECHANISMS / "sevenr.yaml")
+    data.pop("coefficients")
+    turned = data | {"joints": data["joints"] | {}}
+    turned["joints"]["J3"] = data["joints"]["J3"] | {"links": ["three", "two"]}
+    found = {}
+    for name, text in (("as it is", data), ("turned", turned)):
+        run = mk.loads(to_text(text), "sevenr").analyze(tables=[])
+        system = dense_system(run.result, 4)
+        names = [unknown.name for unknown in system.unknowns]
+        found[name] = dict(zip(names, solved(system), strict=True))
+    largest = max(abs(value) for value in found["as it is"].values())
+    assert set(found["turned"]) == set(found["as it is"])
+    for name, value in found["as it is"].items():
+        # the axis along which FA3 counts is that of the drawing
+        sign = -1.0 if name.startswith("J3.") else 1.0
+        assert abs(found["turned"][name] - sign * value) <= LIMIT * largest, name
+
+
+def test_what_holds_idle_freedoms_has_no_coefficients():
+    text = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8") + "\nidle: hold\n"
+    with pytest.raises(InvalidFile, match="cannot be told where idle freedoms are held"):
+        mk.loads(text, str(MECHANISMS / "rcsr.yaml"))

@@ -119,8 +119,8 @@ RUNS = [
         "name-clash",
         "case",
     ),
-    column("O.theta, »row.event", "expression", "row.event is told of a response"),
-    column("O.theta, »row.work", "expression", "row.work is told of a response"),
+    column("O.theta, »row.event", "expression", "row.event is told of the rows of a response"),
+    column("O.theta, »row.work", "expression", "row.work is told of the rows"),
     BadMechanism("name: t,", "name: t, run: »go,", "unknown-run", ("there is no run go", "sweep")),
     BadMechanism("name: t,", "name: t, run: »a b,", "wrong-form", ("a b",)),
 ]

@@ -1,6 +1,6 @@
 """Mistakes in what uses the parts: motion, assembly, loads and columns."""
 
-from building.sound import added, column, inputs, load
+from building.sound import added, changed, column, inputs, load
 
 MOTION = [
     inputs(
@@ -189,4 +189,34 @@ COLUMNS = [
     column("»row.residuum", "expression", "row.residual"),
 ]
 
-BAD_USES = [*MOTION, *ASSEMBLY, *LOADS, *COLUMNS]
+ACTUATORS = [
+    added("actuators: [»A.s]", "unknown-coordinate", "A is of type S", "its coordinates: none"),
+    added("actuators: [»Q.theta]", "unknown-coordinate", "Q.theta is no coordinate", "O.theta"),
+    added("actuators: [D.s, »D.s]", "actuator-twice", "D.s is an actuator already"),
+    added("actuators: [»D]", "wrong-form", "a joint coordinate", "joint.coordinate"),
+    changed(
+        "{O.theta: {from: -70, to: 70, step: 5}}}",
+        "{O.theta: {at: 0}, D.s: {at: 0}}}\nactuators: »[D.theta]",
+        "too-few-actuators",
+        "1 actuator cannot carry",
+        "O.theta, D.s",
+        "drive: tie",
+    ),
+    changed(
+        "columns: [O.theta]}]",
+        "columns: [»O.effort]}]\nactuators: [D.s]",
+        "expression",
+        "no effort acts at the input O.theta",
+        "ask for D.effort, or add O.theta to actuators",
+    ),
+    inputs("{»pp.position.z: {at: 0}}", "unknown-point", "there is no point pp"),
+    inputs("{»q.position.z: {at: 0}}", "point-on-ground", "q is a point of ground"),
+    inputs("{»p.position.w: {at: 0}}", "wrong-form", "a joint coordinate"),
+    inputs(
+        "{O.theta: {at: 0}, D.s: {with: 3 mm, drive: »tie}}",
+        "tied-to-nothing",
+        "D.s follows no input whose motor could move it",
+    ),
+]
+
+BAD_USES = [*MOTION, *ASSEMBLY, *LOADS, *COLUMNS, *ACTUATORS]

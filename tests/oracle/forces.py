@@ -11,6 +11,7 @@ by one more unknown, a moment along the line; it is zero where the leg is symmet
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any
@@ -40,7 +41,8 @@ Wrench = tuple[list[Number], list[Number]]
 
 @dataclass(frozen=True)
 class Reactions:
-    """By joint: the wrench that the first link exerts on the second; by input: the effort.
+    """By joint: the wrench that the first link exerts on the second; by driven coordinate: the
+    effort.
 
     The wrench is the constraint's alone, without drive efforts and loads on the joint's coordinate.
     `power` is the sum of the powers of all inputs and loads less the rate of kinetic energy;
@@ -57,15 +59,21 @@ class Reactions:
     power_size: Number
 
 
-def newton_euler(mechanism: Mechanism, solution: Solution) -> Reactions:
-    """Reactions and efforts of a solution; raises `UnsolvableError` where they are not unique."""
+def newton_euler(
+    mechanism: Mechanism, solution: Solution, drives: Sequence[str] | None = None
+) -> Reactions:
+    """Reactions and efforts of a solution; raises `UnsolvableError` where they are not unique.
+
+    Efforts act at the coordinates `drives`, or else at the inputs.
+    """
+    drives = solution.inputs if drives is None else tuple(drives)
     columns = {
         f"{name}.{i}": 6 * k + i for k, name in enumerate(mechanism.joints) for i in range(6)
     }
-    columns |= {name: len(columns) + k for k, name in enumerate(solution.inputs)}
+    columns |= {name: len(columns) + k for k, name in enumerate(drives)}
     lines = _lines(mechanism, solution)
     columns |= {f"leg {k}": len(columns) + k for k in range(len(lines))}
-    matrix, right = _free_bodies(mechanism, solution, columns)
+    matrix, right = _free_bodies(mechanism, solution, columns, drives)
     for k, (link, direction) in enumerate(lines):
         first = 6 * list(mechanism.links).index(link) + 3
         for i in range(3):
@@ -77,7 +85,7 @@ def newton_euler(mechanism: Mechanism, solution: Solution) -> Reactions:
     found = linear_solve(matrix, right)
     force = {n: found[columns[f"{n}.0"] : columns[f"{n}.3"]] for n in mechanism.joints}
     moment = {n: found[columns[f"{n}.3"] : columns[f"{n}.5"] + 1] for n in mechanism.joints}
-    effort = {name: found[columns[name]] for name in solution.inputs}
+    effort = {name: found[columns[name]] for name in drives}
     about_origin = {
         n: add(moment[n], cross(solution.joint_point(n), force[n])) for n in mechanism.joints
     }
@@ -104,7 +112,7 @@ def _spread(width: int, places: list[int], values: list[Number]) -> list[Number]
 
 
 def _free_bodies(
-    mechanism: Mechanism, solution: Solution, columns: dict[str, int]
+    mechanism: Mechanism, solution: Solution, columns: dict[str, int], drives: Sequence[str]
 ) -> tuple[list[list[Number]], list[Number]]:
     """Six equations per moving link: unknown wrenches = inertia less applied loads."""
     matrix: list[list[Number]] = []
@@ -120,7 +128,7 @@ def _free_bodies(
                 rows[i][push] = rows[3 + i][twist] = mp.mpf(sign)
                 for k, lever in enumerate(cross(places[name], IDENTITY[i])):
                     rows[3 + k][push] = sign * lever
-        for coordinate in solution.inputs:
+        for coordinate in drives:
             name, kind = coordinate.split(".")
             joint = mechanism.joints[name]
             sign = (joint.second == link) - (joint.first == link)

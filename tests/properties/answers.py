@@ -39,7 +39,7 @@ _ANGULAR = {c + r: k for c in ("theta", "theta1", "theta2") for r, k in _RATES.i
 _ANGULAR |= {"omega": 1, "alpha": 2, "axis": 0}
 _LINEAR = {c + r: k for c in ("s", "x", "y") for r, k in _RATES.items()}
 _LINEAR |= {"position": 0, "velocity": 1, "acceleration": 2, "jerk": 3, "point": 0, "slip": 0}
-_FORCES = ("force", "shaking_force", "inertia_force")
+_FORCES = ("force", "total_force", "shaking_force", "inertia_force")
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,9 @@ def expected(mechanism: Mechanism, solution: Solution, loads: Reactions) -> dict
         if joint.type != "W":
             found[f"{name}.point"] = solution.joint_point(name)
             found[f"{name}.moment"] = loads.moment[name]
+            found[f"{name}.total_moment"] = _total(solution, loads, name)[3:]
         found[f"{name}.force"] = loads.force[name]
+        found[f"{name}.total_force"] = _total(solution, loads, name)[:3]
         found[f"{name}.moment_about_origin"] = loads.moment_about_origin[name]
     for name in mechanism.points:
         words = ("position", "velocity", "acceleration", "jerk")
@@ -43,6 +45,19 @@ def expected(mechanism: Mechanism, solution: Solution, loads: Reactions) -> dict
     found["row.kinetic_energy"] = _kinetic_energy(mechanism, solution)
     found["row.potential_energy"] = _potential_energy(mechanism, solution)
     return {name: np.array(value, dtype=object, ndmin=1) for name, value in found.items()}
+
+
+def _total(solution: Solution, loads: Reactions, name: str) -> list[Any]:
+    """Force, and moment about the joint's point, of constraint and drives together."""
+    total: list[Any] = [*loads.force[name], *loads.moment_about_origin[name]]
+    for driven, effort in loads.effort.items():
+        joint, _, coordinate = driven.partition(".")
+        if joint == name:
+            total = add(total, scale(unit_effort(solution, name, coordinate), effort))
+    if solution.mechanism.joints[name].type == "W":
+        return total
+    lever = cross(solution.joint_point(name), total[:3])
+    return [*total[:3], *subtract(total[3:], lever)]
 
 
 def _kinetic_energy(mechanism: Mechanism, solution: Solution) -> Any:

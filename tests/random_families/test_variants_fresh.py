@@ -33,9 +33,10 @@ SUFFIXES = ("theta", "s", "theta_dot", "s_dot", "theta_ddot", "position", "effor
 
 
 def kept() -> list[str]:
-    """Files with parameters."""
+    """Files with parameters and a sweep."""
     texts = {path.stem: path.read_text(encoding="utf-8") for path in MECHANISMS.glob("*.yaml")}
-    return sorted(stem for stem, text in texts.items() if re.search("^parameters:", text, re.M))
+    needed = {"parameters:", "motion:"}
+    return sorted(stem for stem, text in texts.items() if needed <= set(text.splitlines()))
 
 
 def without_tables(stem: str) -> str:

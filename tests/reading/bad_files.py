@@ -193,6 +193,23 @@ SECTION_MISTAKES = [
         "the table has no column 'b'",
         editor=False,
     ),
+    _after(
+        "tables: [{name: t, columns: [a], published: {file: a.csv, rows_by: time}}]",
+        68,
+        "no column 'time' to find its rows by",
+        editor=False,
+    ),
+    _after(
+        "tables: [{name: t, columns: [a], published: {file: a.csv, remarks: "
+        "[{data: [], text: c}]}}]",
+        76,
+        "at least 1",
+    ),
+    _after("tables: [{name: Disagreements, columns: [a]}]", 17, "written to a table disagreements"),
+    _after("coefficients: [{row: 1}]", 16, "the key name is missing"),
+    _after("coefficients: [{name: t, row: 0}]", 31, "below the limit 1"),
+    _after("coefficients: [{name: t, along: {O3: [B]}}]", 38, "at least 2"),
+    _after("coefficients: [{name: t, sphere: O3}]", 26, "there is no key 'sphere' here"),
     _after("tables: [{name: ../t, columns: [O1.theta]}]", 17, "not a name for a file"),
     _after("tables: [{name: a/b, columns: [O1.theta]}]", 17, "not a name for a file"),
     _after('tables: [{name: "a\\n", columns: [O1.theta]}]', 17, "not a name for a file"),

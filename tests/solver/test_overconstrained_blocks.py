@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from references import SWEPT
 
 import mechkin_cli as mk
 from mechkin_cli.mechanism.frames import GROUND
@@ -22,7 +23,6 @@ from mechkin_cli.solver.graph.network import connections_of
 from mechkin_cli.solver.graph.rates import Rates, unit_of
 from mechkin_cli.solver.reduction import reduce
 
-MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 KINDS = ("RRR", "RSR", "SSR", "CSR", "SCR", "SRR")
 UNKNOWNS = {"RRR": 2, "RSR": 2, "SSR": 1, "CSR": 3, "SCR": 3, "SRR": 2}
 
@@ -187,7 +187,7 @@ DRAWN_FLAT = {"parallelogram"}
 """Drawn in a branch point."""
 
 
-@pytest.mark.parametrize("path", sorted(MECHANISMS.glob("*.yaml")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", SWEPT, ids=lambda path: path.stem)
 def test_inputs_hold_a_mechanism_and_one_less_does_not(path: Path) -> None:
     """Of every pair, in mechanisms of which all rows are solved."""
     problem = mk.load(path).problem

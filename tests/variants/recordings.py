@@ -29,7 +29,7 @@ MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 WITH_PARAMETERS = [
     path.stem
     for path in sorted(MECHANISMS.glob("*.yaml"))
-    if "\nparameters:" in path.read_text(encoding="utf-8")
+    if {"parameters:", "motion:"} <= set(path.read_text(encoding="utf-8").splitlines())
 ]
 
 

@@ -28,7 +28,7 @@ def far_notes(session: Session, inputs: Floats, state: Floats) -> list[Diagnosti
     far = []
     for name, target in problem.assembly.near.items():
         if abs(_miss(problem, name, places[name], target)) > tolerances.NEAR_FAR:
-            dimension = dimension_of(name.partition(".")[2])
+            dimension = dimension_of(name.rpartition(".")[2])
             value = float(problem.units.from_si(places[name], dimension))
             far.append(Number(name, value, problem.units.label(dimension)))
     if not far:
@@ -51,7 +51,7 @@ def _miss(problem: Problem, name: str, value: float, target: float) -> float:
     miss = value - target
     if is_cyclic(problem.mechanism, name):
         return wrapped(miss)
-    if is_angle(name.partition(".")[2]):
+    if is_angle(name.rpartition(".")[2]):
         return miss
     return miss / problem.mechanism.box_diagonal()
 

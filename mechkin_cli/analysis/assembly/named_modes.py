@@ -79,7 +79,7 @@ def _key(mechanism: Mechanism, coordinates: dict[str, Floats], number: int) -> t
     for name, values in coordinates.items():
         value = float(values[number])
         angle = is_cyclic(mechanism, name)
-        if not is_angle(name.partition(".")[2]):
+        if not is_angle(name.rpartition(".")[2]):
             value /= size
         part = round((wrapped(value) if angle else value) / tolerances.MODE_ORDER)
         key.append(half_turn if angle and part == -half_turn else part)
@@ -103,7 +103,7 @@ def mode_name(rank: int) -> str:
 
 def is_cyclic(mechanism: Mechanism, name: str) -> bool:
     """Whether a turn more of a coordinate is the same place: angles but for those of threads."""
-    name, _, coordinate = name.partition(".")
+    name, _, coordinate = name.rpartition(".")
     joint = mechanism.joints[name]
     return joint.type.chain[joint.freedom_number(coordinate)].is_cyclic
 

@@ -76,7 +76,7 @@ def named_by(session: Session) -> Named:
 
 def _unknown(session: Session, name: str) -> tuple[tuple[int, int], float] | None:
     """The freedom (edge, freedom) of a coordinate in the tree and the SI value of its unit."""
-    joint_name, _, coordinate = name.partition(".")
+    joint_name, _, coordinate = name.rpartition(".")
     joint = session.problem.mechanism.joints[joint_name]
     edge = session.layout.edge_number.get(joint_name)
     if edge is None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.analysis.assembly.home import follow_from_home
+from mechkin_cli.analysis.assembly.home import follow_from_home, from_home
 from mechkin_cli.analysis.assembly.named_modes import is_cyclic
 from mechkin_cli.solver.follow import TrackEnd
 
@@ -47,7 +47,7 @@ def _places(session: Session) -> Iterator[tuple[int, Floats, bool]]:
     """Rows to try, their inputs (inputs,), and whether these leave whole turns out."""
     leading, tried = _leading(session), set()
     for path, rows, turned in _paths(session, leading):
-        for row in _two_sides(path[leading], rows):
+        for row in _two_sides(from_home(session, path)[leading], rows):
             inputs = np.ascontiguousarray(path[:, row])
             if (row, inputs.tobytes()) not in tried:
                 tried.add((row, inputs.tobytes()))
@@ -78,8 +78,8 @@ def _leading(session: Session) -> Bools:
 
 
 def _two_sides(path: Floats, rows: NDArray[np.intp]) -> list[int]:
-    """Of some rows (of inputs, rows) the nearest to the drawing, and of all rows the nearest on its
-    other side."""
+    """Of some rows (of inputs from the drawing's, rows) the nearest to the drawing, and of all rows
+    the nearest on its other side."""
     if not path.size:
         return [0]
     distance = np.max(np.abs(path), axis=0)

@@ -34,15 +34,23 @@ if TYPE_CHECKING:
 def coefficients(run: Reading, wanted: Sequence[Wanted]) -> dict[str, Floats]:
     """Coefficients by name, (1, rows) or (3, rows) in SI; nan where reactions are not unique."""
     found: dict[str, Floats] = {}
-    for by in dict.fromkeys(accelerated(quantity) for quantity in wanted):
-        own = [quantity for quantity in wanted if accelerated(quantity) == by]
-        values = _values(run, by, [base_name(quantity) for quantity in own])
+    known = run.session.problem.quantities()
+
+    def group(quantity: Wanted) -> tuple[Input | None, bool]:
+        return accelerated(quantity), base_name(quantity) in known
+
+    for by, acts in dict.fromkeys(map(group, wanted)):
+        own = [quantity for quantity in wanted if group(quantity) == (by, acts)]
+        values = _values(run, by, [base_name(quantity) for quantity in own], at_inputs=not acts)
         found |= {q.name: value for q, value in zip(own, values, strict=True)}
     return found
 
 
-def _values(run: Reading, by: Input | None, names: Sequence[str]) -> list[Floats]:
-    """The named quantities where one input, or none, is accelerated."""
+def _values(
+    run: Reading, by: Input | None, names: Sequence[str], *, at_inputs: bool
+) -> list[Floats]:
+    """The named quantities where one input, or none, is accelerated; `at_inputs`: efforts of inputs
+    in whose place actuators act."""
     session, inputs, unit = run.session, run.session.inputs.without_accelerations(), 1.0
     known = session.problem.quantities()
     bases = list(dict.fromkeys(base_quantity(known, name) for name in names))
@@ -51,7 +59,7 @@ def _values(run: Reading, by: Input | None, names: Sequence[str]) -> list[Floats
         number = session.driven.index(by)
         joint = session.problem.mechanism.joints[by[0]]
         unit = joint.unit_of(by[1], session.layout.length)
-        inputs, other = session.inputs.at_unit_acceleration(number), _unloaded(session)
+        inputs, other = session.inputs.at_unit_acceleration(number), _unloaded(session, at_inputs)
     reactions = [base for base in bases if base.kind in WRENCH_KINDS]
     shifts = run.result.shifts if reactions else ()
     bases += [REACTION_LEVEL] if shifts else []
@@ -65,15 +73,16 @@ def _values(run: Reading, by: Input | None, names: Sequence[str]) -> list[Floats
     return [columns[name] / unit for name in names]
 
 
-def _unloaded(session: Session) -> Session:
-    """The mechanism with its masses alone."""
+def _unloaded(session: Session, at_inputs: bool) -> Session:
+    """The mechanism with its masses alone, its efforts where they act or at the inputs."""
 
     def made() -> Session:
         problem = session.problem
-        mechanism = replace(problem.mechanism, loads=(), gravity=ZERO)
+        drives = None if at_inputs else problem.mechanism.drives
+        mechanism = replace(problem.mechanism, loads=(), gravity=ZERO, drives=drives)
         return session.loaded(replace(problem, mechanism=mechanism, load_laws=()))
 
-    return session.once("unloaded", made)
+    return session.once(("unloaded", at_inputs), made)
 
 
 def _rounding(levels: Sequence[Floats]) -> Floats:

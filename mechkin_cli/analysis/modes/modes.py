@@ -243,7 +243,7 @@ def _in_file_units(problem: Problem, name: str, value: float) -> float:
 
 
 def _dimension(name: str) -> Dimension:
-    return dimension_of(name.partition(".")[2])
+    return dimension_of(name.rpartition(".")[2])
 
 
 def _free_note(found: Found) -> Diagnostic:

@@ -94,7 +94,7 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
     path, row = session.inputs.values, 0
     named = name_modes(session, path[:, row])
     if named.number == 0 and is_home_assembled(session):
-        row = nearest_to_home(path)
+        row = nearest_to_home(session, path)
         named = name_modes(session, path[:, row])
     item, first = problem.motion.inputs[number], path[:, row]
     leader, tied = _leader(session, number)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.analysis.assembly.anew import structure_of
 from mechkin_cli.analysis.response.beginning import Beginning, beginning
 from mechkin_cli.analysis.response.endings import ending
 from mechkin_cli.analysis.response.moments import rows_problem, watched_stop
@@ -18,7 +19,7 @@ from mechkin_cli.analysis.sweep.sweep import at_once, first_assembly, judge_cond
 from mechkin_cli.mechanism.motion import Motion
 from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.solver.batch import Chart
-from mechkin_cli.solver.closing_turns import turn_slots
+from mechkin_cli.solver.closing_turns import tree_slots, turn_count
 from mechkin_cli.solver.driven_laws import driven_laws
 from mechkin_cli.solver.free_motion import (
     MotionEnd,
@@ -61,53 +62,100 @@ def respond(
             the place.
         KeyError: an unknown quantity.
     """
+    prepared = prepare(problem, response, packing)
+    (result,) = integrated([prepared], packing)
+    read(result, quantities)
+    return result
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A response before it is integrated: the session that its assembly was `chosen` in, that of
+    the `free` motion, and how it begins; None where it cannot."""
+
+    response: Response
+    chosen: Session
+    start: Start
+    free: Session
+    begun: Beginning | None
+    driven: DrivenLaws | None
+
+
+def prepare(problem: Problem, response: Response, packing: Packing = ANY_PACKING) -> Prepared:
+    """The first assembly of a response, and how it moves there.
+
+    Raises:
+        UnsolvableGraph: as `respond`.
+    """
     chosen = Session(response_problem(problem, response), packing=packing)
     chosen, start = first_assembly(chosen)
     free = free_session(chosen, response.independent)
     if start.state is None:
-        return _nothing(chosen, free, start, response)
+        return Prepared(response, chosen, start, free, None, None)
     begun = beginning(chosen, response, start.state)
     if not isinstance(begun, Beginning):
         start.diagnostics.append(begun)
-        return _nothing(chosen, free, start, response)
-    driven = driven_laws(free, response)
-    found = _integrated(free, begun, response, driven, packing)
-    result = _rows(chosen, free, start, response, driven, found)
-    _read(result, quantities)
-    return result
+        return Prepared(response, chosen, start, free, None, None)
+    return Prepared(response, chosen, start, free, begun, driven_laws(free, response))
 
 
-def _integrated(
-    free: Session,
-    begun: Beginning,
-    response: Response,
-    driven: DrivenLaws | None,
-    packing: Packing,
-) -> MotionRows:
-    times = response.moments.values
-    start = MotionStart(free.plan, begun.state, begun.first, begun.tangents)
-    (found,) = integrate(
-        [start],
+def integrated(variants: Sequence[Prepared], packing: Packing) -> list[ResponseResult]:
+    """The rows of variants of one response, before anything is read; those that share what the
+    kernel takes once march together in lanes."""
+    found: dict[int, ResponseResult] = {}
+    groups: dict[object, list[int]] = {}
+    for number, one in enumerate(variants):
+        if one.begun is None:
+            found[number] = _nothing(one)
+        else:
+            groups.setdefault(_shared(one, number), []).append(number)
+    for numbers in groups.values():
+        together = [variants[number] for number in numbers]
+        for number, rows in zip(numbers, _integrated(together, packing), strict=True):
+            found[number] = _rows(variants[number], rows)
+    return [found[number] for number in range(len(variants))]
+
+
+def _shared(one: Prepared, number: int) -> object:
+    """Equal for variants that the kernel takes in one call: it is given laws of drives, stops and
+    moments once, and plans of one structure."""
+    if one.driven is not None:
+        return number
+    response, plan = one.response, one.free.plan
+    return (
+        response.moments.values.tobytes(),
+        tuple(watched_stop(stop) for stop in response.stops),
+        (response.tolerance, response.fixed_step),
+        (structure_of(one.free.graph), one.free.layout.length, plan.constants.size),
+    )
+
+
+def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRows]:
+    first = together[0]
+    response, times = first.response, first.response.moments.values
+    starts = []
+    for one in together:
+        assert one.begun is not None
+        plan = first.free.plan
+        if one is not first:
+            # of the same structure: plans of one call share it
+            plan = plan.with_constants(one.free.plan.constants).with_size(one.free.plan.size)
+        starts.append(MotionStart(plan, one.begun.state, one.begun.first, one.begun.tangents))
+    return integrate(
+        starts,
         float(times[0]),
         times,
         stops=[watched_stop(stop) for stop in response.stops],
-        driven=driven,
+        driven=first.driven,
         tolerance=response.tolerance,
         fixed_step=response.fixed_step,
         packing=packing,
     )
-    return found
 
 
-def _rows(
-    chosen: Session,
-    free: Session,
-    start: Start,
-    response: Response,
-    driven: DrivenLaws | None,
-    found: MotionRows,
-) -> ResponseResult:
+def _rows(one: Prepared, found: MotionRows) -> ResponseResult:
     """The rows with their verdicts, before anything is read: those asked for, or up to a stop."""
+    response, chosen, free = one.response, one.chosen, one.free
     stopped = found.report.end is MotionEnd.STOPPED
     count = found.count if stopped else response.rows
     part = slice(0, count)
@@ -125,9 +173,9 @@ def _rows(
         events[-1] = response.stops[found.report.stop].words
     chart = found.chart.at(part)
     return ResponseResult(
-        free.moved(rows_problem(free, response, driven, found, count)),
+        free.moved(rows_problem(free, response, one.driven, found, count)),
         chosen,
-        start,
+        one.start,
         rows,
         Chart(*(np.where(reached, array, 0.0) for array in chart)),
         np.where(reached, energy * found.work[:, part], np.nan),
@@ -137,29 +185,28 @@ def _rows(
     )
 
 
-def _nothing(chosen: Session, free: Session, start: Start, response: Response) -> ResponseResult:
+def _nothing(one: Prepared) -> ResponseResult:
     """Rows without a place: there is no first assembly."""
+    response, free, start = one.response, one.free, one.start
     count, charts = response.rows, len(response.independent)
-    slots = turn_slots(free.plan)
-    rows = Rows.without_guesses(free.layout.states, len(slots), count)
+    rows = Rows.without_guesses(free.layout.states, turn_count(free.plan), count)
     rows.status[:] = Status.not_assembled if start.state is None else Status.branch_lost
     zeros = np.zeros((charts, count))
     chart = Chart(np.zeros((charts * free.plan.columns, count)), zeros, zeros)
     motion = Motion(response.driven, count, response.moments, response.course)
     session = free.moved(replace(free.problem, motion=motion))
     lost = np.full((2, count), np.nan)
-    return ResponseResult(session, chosen, start, rows, chart, lost, [""] * count, response, None)
+    events = [""] * count
+    return ResponseResult(session, one.chosen, start, rows, chart, lost, events, response, None)
 
 
 def _all_turns(free: Session, closing: Floats) -> Floats:
     """Turns of closing joints, and no whole turns of the tree's angles, whose states have them."""
-    from mechkin_cli.solver.closing_turns import tree_slots
-
     tree = np.zeros((len(tree_slots(free.plan)), closing.shape[1]))
     return np.concatenate([closing, tree])
 
 
-def _read(result: ResponseResult, quantities: Iterable[str]) -> None:
+def read(result: ResponseResult, quantities: Iterable[str]) -> None:
     """Closes the rows once more, judges them, and reads what is asked for."""
     known = result.problem.quantities()
     asked: list[Wanted] = [known[name] for name in dict.fromkeys(quantities)]

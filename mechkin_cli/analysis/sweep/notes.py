@@ -9,6 +9,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.named_modes import is_cyclic
 from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.mechanism.model import is_written
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.status import Status
 
@@ -78,7 +79,7 @@ def redundancy_note(graph: SolverGraph) -> Diagnostic:
     """Redundant constraints leave some reactions arbitrary."""
     count = sum(block.equations - len(block.unknowns) for block in graph.blocks)
     joints = sorted({graph.edges[k].joint.name for c in graph.closings for k, _ in c.loop})
-    joints = sorted({*joints, *(c.joint.name for c in graph.closings)})
+    joints = sorted(filter(is_written, {*joints, *(c.joint.name for c in graph.closings)}))
     constraints = "one redundant constraint" if count == 1 else f"{count} redundant constraints"
     return Diagnostic(
         "not-unique",

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.analysis.sweep.actuation import is_held
 from mechkin_cli.analysis.sweep.admissible import (
     DISTURBANCES,
     SHIFTS,
@@ -23,6 +24,7 @@ from mechkin_cli.analysis.sweep.closing_angles import make_continuous
 from mechkin_cli.analysis.sweep.read_off import read_off
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
+from mechkin_cli.mechanism.drives import without_effort
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of, forces_demand
 from mechkin_cli.solver.inputs import input_rest
@@ -166,8 +168,9 @@ class Result:
 
     @property
     def complete(self) -> bool:
-        """Whether every row has a solution, and a value of every load that forces need."""
-        return bool(self.solved.all()) and not self._unloaded
+        """Whether every row has a solution, a value of every load that forces need, and actuators
+        that hold the mechanism."""
+        return bool(self.solved.all()) and not self._unloaded and is_held(self)
 
     @property
     def sound(self) -> bool:
@@ -232,7 +235,8 @@ class Result:
             return Quantity(self._verdict(ROW_NUMBERS[name]), DIMENSIONLESS)
         wanted = problem.quantities().get(name)
         if wanted is None:
-            raise UnknownName(name, sorted(self._columns), hint_of(name))
+            passive = without_effort(problem.mechanism.drives, name)
+            raise UnknownName(name, sorted(self._columns), passive or hint_of(name))
         given = self._given(name)
         if given is not None:
             return Quantity(given, wanted.dimension, input_rest(self.session, name))
@@ -348,6 +352,7 @@ class Result:
         turned, whole, full = rows.turns, self.session.inputs.whole, self.session.inputs.values
         moments = self.problem.motion.time
         time = None if moments is None else moments.values
+        ties = session.tie_rates if demand & Demand.FORCES else None
         if not rows.reached.all():
             first = int(np.argmax(rows.reached))
             stand_in = np.where(rows.reached, np.arange(rows.reached.size), first)
@@ -356,6 +361,7 @@ class Result:
             time = None if time is None else time[stand_in]
             if chart is not None:
                 chart = chart.at(stand_in)
+            ties = None if ties is None else ties[:, stand_in]
         return session.run(
             values,
             states,
@@ -364,6 +370,7 @@ class Result:
             rates=inputs.rates if demand & Demand.VELOCITY else None,
             accelerations=inputs.accelerations if demand & Demand.ACCELERATION else None,
             jerks=inputs.jerks if demand & Demand.JERK else None,
+            ties=ties,
             turned=turned,
             whole=whole,
             chart=chart,

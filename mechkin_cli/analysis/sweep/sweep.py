@@ -10,6 +10,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.start import choose_start
+from mechkin_cli.analysis.sweep.actuation import actuation_notes, watched
 from mechkin_cli.analysis.sweep.following import follow_rows
 from mechkin_cli.analysis.sweep.notes import (
     condition_notes,
@@ -66,12 +67,14 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
 
         start = replace(start, diagnostics=input_faults(session) or start.diagnostics)
     asked += held_moments(session.problem, asked)
+    asked += watched(session.problem, asked)
     result = _closed(session, start, asked, verdicts=verdicts)
     if result.row_states.has_failed:
         # a filled-in row ended away from its guess: take every row as a careful step
         result = _closed(session, start, asked, verdicts=verdicts, every_row=True)
     result.read(asked)
     result.row_states.diagnostics += row_notes(result, asked)
+    result.row_states.diagnostics += actuation_notes(result)
     return result
 
 

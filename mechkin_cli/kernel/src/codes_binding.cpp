@@ -52,7 +52,13 @@ void bind_plan_codes(nb::module_& m) {
       .value("REACTION_LEVEL", OUT_REACTION_LEVEL)
       .value("KINETIC_ENERGY", OUT_KINETIC_ENERGY)
       .value("POTENTIAL_ENERGY", OUT_POTENTIAL_ENERGY)
-      .value("LOAD_POWER", OUT_LOAD_POWER);
+      .value("LOAD_POWER", OUT_LOAD_POWER)
+      .value("MOTOR", OUT_MOTOR)
+      .value("ACTUATION", OUT_ACTUATION)
+      .value("TOTAL_FORCE", OUT_TOTAL_FORCE)
+      .value("TOTAL_MOMENT", OUT_TOTAL_MOMENT)
+      .value("CARRIED_FORCE", OUT_CARRIED_FORCE)
+      .value("CARRIED_MOMENT", OUT_CARRIED_MOMENT);
   nb::enum_<ReadCode>(m, "ReadCode", nb::is_arithmetic(), "What programs of quantities read.")
       .value("OUTPUT", READ_OUTPUT)
       .value("ANGLE", READ_ANGLE)

@@ -146,8 +146,9 @@ constexpr double NOTHING_WORKS = 1e-12;
 
 // |sum of powers| / sum of their magnitudes; nan where nothing moves or works, for then no balance is told. `level` is
 // that of the wrenches, see reaction_level.
-template <class RowValue>
-inline Pack power_error(const Plan& p, const Workspace& w, bool accelerating, Pack level, const RowValue& row_value) {
+template <class RowValue, class More>
+inline Pack power_error(const Plan& p, const Workspace& w, bool accelerating, Pack level, const RowValue& row_value,
+                        const More& add_more) {
   Powers powers = {Pack(0.0), Pack(0.0)};
   for (int k = 0; k < p.links; ++k) {
     if (!p.inertia[k].present) continue;
@@ -156,6 +157,7 @@ inline Pack power_error(const Plan& p, const Workspace& w, bool accelerating, Pa
   }
   for (int l = 0; l < p.loads; ++l) add_load_power(powers, p, w, p.load[l], row_value);
   for (int i = 0; i < p.inputs; ++i) powers.add(w.effort[i] * w.rate[p.input_column[i]]);
+  add_more(powers);
   const Mask none = powers.size <= Pack(NOTHING_WORKS) * level * twist_level(p, w);
   const Pack size = select(none, Pack(1.0), powers.size);
   return select(none, Pack(__builtin_nan("")), abs(powers.sum) / size);

@@ -38,15 +38,21 @@ void check_output(const Plan& p, const OutputRecord& r) {
     case OUT_SLIP:
     case OUT_JOINT_FORCE:
     case OUT_JOINT_MOMENT:
+    case OUT_TOTAL_FORCE:
+    case OUT_TOTAL_MOMENT:
+    case OUT_CARRIED_FORCE:
+    case OUT_CARRIED_MOMENT:
     case OUT_JOINT_MOMENT_ORIGIN: return check_index(r.index, 0, p.places, "place");
     case OUT_HOLDING_MOMENT: return check_index(r.index, 0, p.legs, "leg");
     case OUT_EFFORT: return check_index(r.index, 0, p.inputs, "input");
     case OUT_LOAD_POWER: return check_index(r.index, -1, p.loads, "load");
+    case OUT_MOTOR: return check_index(r.index, 0, p.actuators ? p.actuators : p.inputs, "motor");
+    case OUT_ACTUATION: return require(p.actuators && r.index == 0, "an output of actuators, of which there are none");
     default: return require(r.index == 0, "an output of the whole mechanism has index 0");
   }
 }
 
-bool is_output(int type) { return type >= 0 && type <= OUT_LOAD_POWER; }
+bool is_output(int type) { return type >= 0 && type <= OUT_CARRIED_MOMENT; }
 
 int output_width(int type) {
   switch (type) {
@@ -60,6 +66,8 @@ int output_width(int type) {
     case OUT_KINETIC_ENERGY:
     case OUT_POTENTIAL_ENERGY:
     case OUT_LOAD_POWER:
+    case OUT_MOTOR:
+    case OUT_ACTUATION:
     case OUT_EFFORT: return 1;
     default: return 3;
   }
@@ -79,6 +87,12 @@ unsigned output_demand(int type, int order) {
     case OUT_JOINT_FORCE:
     case OUT_JOINT_MOMENT:
     case OUT_JOINT_MOMENT_ORIGIN:
+    case OUT_MOTOR:
+    case OUT_ACTUATION:
+    case OUT_TOTAL_FORCE:
+    case OUT_TOTAL_MOMENT:
+    case OUT_CARRIED_FORCE:
+    case OUT_CARRIED_MOMENT:
     case OUT_EFFORT:
     case OUT_SHAKING_FORCE:
     case OUT_SHAKING_MOMENT:

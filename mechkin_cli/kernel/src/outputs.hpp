@@ -1,7 +1,7 @@
 // The quantities that were asked for, from the workspace into the output columns.
 #pragma once
 
-#include "energy.hpp"
+#include "actuation.hpp"
 
 namespace {
 
@@ -44,6 +44,17 @@ inline Vec3 output_joint(const Plan& p, const Workspace& w, int type, int index)
   if (type == OUT_JOINT_MOMENT)
     return without_free(p, w, j, false, r.moment - cross(carried_point(w, j.point_on, j.point), r.force));
   return ground_moment(p, r);
+}
+
+inline Vec3 output_total(const Plan& p, const Workspace& w, int type, int index) {
+  const JointPlace& j = p.place[index];
+  if (type == OUT_TOTAL_FORCE || type == OUT_TOTAL_MOMENT) {
+    const Wrench r = total_wrench(p, w, j);
+    return type == OUT_TOTAL_FORCE ? r.force : r.moment;
+  }
+  const Wrench r = joint_wrench(p, w, j);
+  if (type == OUT_CARRIED_FORCE) return r.force;
+  return r.moment - cross(carried_point(w, j.point_on, j.point), r.force);
 }
 
 template <class Number>
@@ -89,6 +100,12 @@ inline int output_value(const Plan& p, const Workspace& w, const Balance* balanc
     case OUT_JOINT_MOMENT_ORIGIN: return three(factor * output_joint(p, w, o.type, o.index));
     case OUT_HOLDING_MOMENT: return one(factor * w.holding[o.index]);
     case OUT_REACTION_LEVEL: return one(factor * balance->level);
+    case OUT_MOTOR: return one(factor * w.actuation.motor[o.index]);
+    case OUT_ACTUATION: return one(factor * *w.actuation.least);
+    case OUT_TOTAL_FORCE:
+    case OUT_TOTAL_MOMENT:
+    case OUT_CARRIED_FORCE:
+    case OUT_CARRIED_MOMENT: return three(factor * output_total(p, w, o.type, o.index));
     case OUT_EFFORT: return one(factor * w.effort[o.index]);
     case OUT_SHAKING_FORCE: return three(factor * (balance->outside - balance->inertia).force);
     case OUT_SHAKING_MOMENT: return three(factor * ground_moment(p, balance->outside - balance->inertia));

@@ -181,12 +181,26 @@ struct DriveOf {
   Number scale;
 };
 
+// An input that the motor of another one, which follows none, moves through a tie.
+struct Tie {
+  int input, leader;
+};
+
+// A coordinate at which an effort acts instead of at the inputs (actuation.hpp): its axis, and where its value is.
+struct Actuator {
+  int axis, reference, freedom;
+};
+
 // What plans of one structure share.
 struct PlanShape {
   int links, states, columns, closings, legs, blocks, inputs, loads, load_values;
   int places, axes, drives, frees, loop_entries, order_count, unknowns, size_points;
   int largest_block;  // rows
   int charts;         // coordinates of the one block's chart, whose unknowns they determine; 0: inputs do
+  int driven;         // inputs, the first ones, that motors or actuators answer for; the others are held
+  int actuators, ties;
+  const Actuator* actuator;
+  const Tie* tie;
   const LoopEntry* loop;
   const Block* block;
   const int* order;
@@ -268,6 +282,8 @@ struct Request {
   const double* accelerations;  // inputs x rows, likewise
   const double* jerks;          // inputs x rows, with DEMAND_JERK
   const double* guess;          // states x rows
+  const double* ties;           // ties x rows: rates of tied inputs by those of their leaders, may be null without
+                                // DEMAND_FORCES
   const double* turned;         // turn slots x rows, may be null: closing joints' continuous angles to less than half a
                                 // turn, whole turns of the tree's angles; springs go by them
   const double* whole;          // inputs x rows, may be null: whole turns that the inputs are without, likewise

@@ -92,6 +92,7 @@ void check_demand(const Request& r, const OutputList* outputs, const Plan& p) {
   refuse(r.demand & DEMAND_JERK && (!acceleration || !r.jerks), "jerks need accelerations, and jerks of the inputs");
   refuse((r.loads || r.undefined) && !(r.demand & DEMAND_FORCES), "the values of loads go with forces");
   refuse(r.demand & DEMAND_FORCES && program_demand(p.law) & ~r.demand, "loads that vary need more than is demanded");
+  refuse(r.demand & DEMAND_FORCES && p.ties && !r.ties, "forces need the rates of tied inputs");
   refuse(r.demand & DEMAND_POWER && !(r.demand & DEMAND_FORCES), "the power error needs forces");
   refuse(!(r.demand & DEMAND_CONDITION) != !r.condition, "an array for the condition goes with its demand");
   refuse(!(r.demand & DEMAND_POWER) != !r.power_error, "an array for the power error goes with its demand");
@@ -133,6 +134,7 @@ void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.rates = given.read("rates", p.inputs);
   r.accelerations = given.read("accelerations", p.inputs);
   r.jerks = given.read("jerks", p.inputs);
+  r.ties = given.read("ties", p.ties);
   const KernelUnit& narrow = *kernel_unit(2);
   r.turned = given.read("turned", turn_slots(p, narrow));
   r.whole = given.read("whole", p.inputs);
@@ -276,6 +278,9 @@ void bind_builder(nb::module_& m) {
                  program_record(reads, numbers, curves, constants, operations, operands, outputs, kinks));
            },
            "reads"_a, "numbers"_a, "curves"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "kinks"_a)
+      .def("set_driven", &PlanBuilder::set_driven, "inputs"_a)
+      .def("add_actuator", &PlanBuilder::add_actuator, "axis"_a, "reference"_a, "freedom"_a)
+      .def("add_tie", &PlanBuilder::add_tie, "input"_a, "leader"_a)
       .def("add_size_point", &PlanBuilder::add_size_point, "link"_a, "point"_a)
       .def("finish", &PlanBuilder::finish)
       .def_prop_ro("states", &PlanBuilder::states)
@@ -316,6 +321,7 @@ void bind_plan(nb::module_& m) {
       .def_prop_ro("inputs", [](const FrozenPlan& p) { return p.view().inputs; })
       .def_prop_ro("charts", [](const FrozenPlan& p) { return p.view().charts; })
       .def_prop_ro("load_values", [](const FrozenPlan& p) { return p.view().load_values; })
+      .def_prop_ro("ties", [](const FrozenPlan& p) { return p.view().ties; })
       .def_prop_ro("blocks", [](const FrozenPlan& p) { return p.view().blocks; })
       .def_prop_ro("size", [](const FrozenPlan& p) { return p.view().size; })
       .def_prop_ro("constants", &constants_of<FrozenPlan>, nb::rv_policy::automatic)

@@ -110,6 +110,18 @@ void PlanBuilder::check_order() const {
   }
 }
 
+// At least as many actuators as freedoms that they answer for, or none.
+void PlanBuilder::check_actuators() const {
+  int freedoms = plan_.driven;
+  for (int i = 0; i < plan_.driven; ++i) {
+    bool tied = false;
+    for (const Tie& t : tie_) tied = tied || t.input == i;
+    freedoms -= tied;
+  }
+  require(actuator_.empty() || (freedoms > 0 && freedoms <= (int)actuator_.size()),
+          "actuators must be at least as many as the freedoms that they drive");
+}
+
 // Drives grouped by the place of their axis; those without an axis last.
 void PlanBuilder::sort_drives() {
   std::vector<int> order;
@@ -162,6 +174,7 @@ FrozenPlan PlanBuilder::finish() {
     require(posed || input != (column_block_[c] >= 0), "every column must be an input or an unknown, not both");
   }
   check_order();
+  check_actuators();
   sort_drives();
   find_turns();
   require(program_.view().outputs >= plan_.load_values, "one output of the load program for each value that varies");
@@ -179,6 +192,9 @@ Plan PlanBuilder::arrays() const {
   p.blocks = (int)block_.size();
   p.inputs = (int)input_column_.size();
   p.loads = (int)load_.size();
+  p.driven = driven_set_ ? plan_.driven : p.inputs;
+  p.actuators = (int)actuator_.size();
+  p.ties = (int)tie_.size();
   p.places = (int)place_.size();
   p.axes = (int)axis_.size();
   p.frees = (int)free_.size();
@@ -199,6 +215,7 @@ Plan PlanBuilder::arrays() const {
   p.column_block = column_block_.data(), p.column_place = column_place_.data();
   p.column_weight = column_weight_.data();
   p.inertia = inertia_.data(), p.load = load_.data(), p.size_point = size_point_.data();
+  p.actuator = actuator_.data(), p.tie = tie_.data();
   p.law = program_.view();
   return p;
 }

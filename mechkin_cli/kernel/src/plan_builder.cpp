@@ -250,6 +250,33 @@ void PlanBuilder::add_load(int type, int link, int other, int freedom, const Tri
   number(ARRAY_LOAD, at + offsetof(Load, vector), 3);
 }
 
+void PlanBuilder::set_driven(int inputs) {
+  open();
+  require(!driven_set_, "the driven inputs are said once");
+  require(inputs >= 0 && inputs <= (int)input_column_.size(), "more driven inputs than inputs");
+  plan_.driven = inputs;
+  driven_set_ = true;
+}
+
+void PlanBuilder::add_actuator(int axis, int reference, int freedom) {
+  open();
+  require(driven_set_, "actuators come after the driven inputs");
+  check_load(LOAD_COORDINATE, axis, reference, freedom, false);
+  actuator_.push_back({axis, reference, freedom});
+}
+
+void PlanBuilder::add_tie(int input, int leader) {
+  open();
+  require(driven_set_, "ties come after the driven inputs");
+  require(input >= 0 && input < plan_.driven && leader >= 0 && leader < plan_.driven && input != leader,
+          "a tie joins two driven inputs");
+  for (const Tie& t : tie_) {
+    require(t.leader != input && t.input != leader, "a tied input leads no other");
+    require(t.input != input || t.leader != leader, "a tie is said once");
+  }
+  tie_.push_back({input, leader});
+}
+
 void PlanBuilder::set_load_program(const ProgramRecord& program) {
   open();
   require(!program_set_, "the load program is set once");

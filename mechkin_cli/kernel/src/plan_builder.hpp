@@ -46,6 +46,12 @@ class PlanBuilder {
                 const Triple& vector, bool varying);
   // The values of the loads that vary.
   void set_load_program(const ProgramRecord& program);
+  // The first `inputs` inputs are driven by motors; the others are held.
+  void set_driven(int inputs);
+  // The next actuator: a coordinate as that of a load along it.
+  void add_actuator(int axis, int reference, int freedom);
+  // Input `input` is moved by the motor of input `leader`, see Tie.
+  void add_tie(int input, int leader);
   // A joint's point, see Plan::size_point: in the link's frame and length units, of ground in m.
   void add_size_point(int link, const Triple& point);
   // Checks that the parts fit together; the builder is spent after it.
@@ -66,12 +72,13 @@ class PlanBuilder {
   void number(int array, std::size_t offset, int count);
   void place_joints(int block, const std::vector<int>& joints);
   void check_order() const;
+  void check_actuators() const;
   void sort_drives();
   void find_turns();
   Plan arrays() const;
 
   Plan plan_{};
-  bool spent_ = false, gravity_ = false, rest_set_ = false, program_set_ = false;
+  bool spent_ = false, gravity_ = false, rest_set_ = false, program_set_ = false, driven_set_ = false;
   std::vector<ConstantPlace> constants_;
   std::vector<std::pair<int, ConstantPlace>> repeated_;
   std::vector<TreeJoint> joints_;
@@ -89,6 +96,8 @@ class PlanBuilder {
   std::vector<double> column_weight_;
   std::vector<LinkInertia> inertia_;
   std::vector<Load> load_;
+  std::vector<Actuator> actuator_;
+  std::vector<Tie> tie_;
   std::vector<Output> size_point_;
   ProgramStore program_;
 };

@@ -35,6 +35,7 @@ Positions::Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRow
   require(rows_.turn.size() == n * turn_slots_, "turns: wrong shape");
   require(!(outputs.demand() & ~demand), "the outputs need more than is demanded");
   require(!(demand & DEMAND_FORCES) || !(program_demand(p.law) & ~demand), "loads that vary need more than is demanded");
+  require(!(demand & DEMAND_FORCES) || p.ties == 0, "rates of tied inputs by row have no place here");
   require(!(demand & (DEMAND_POWER | DEMAND_CONDITION)), "no place for condition and power error");
   require(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
   require(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");

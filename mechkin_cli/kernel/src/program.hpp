@@ -26,7 +26,13 @@ enum OutputCode : int {
   OUT_REACTION_LEVEL = 19,  // largest component of force or moment (in length units) of all joints
   OUT_KINETIC_ENERGY = 20,
   OUT_POTENTIAL_ENERGY = 21,  // of gravity from the ground's origin, of springs from their free length or angle
-  OUT_LOAD_POWER = 22         // index: load, -1: gravity; what it puts in
+  OUT_LOAD_POWER = 22,        // index: load, -1: gravity; what it puts in
+  OUT_MOTOR = 23,             // index: actuator, or where there are none input; with what ties transmit
+  OUT_ACTUATION = 24,         // least rate of the actuators, all together, in a motion of length one
+  OUT_TOTAL_FORCE = 25,       // index: place; constraint, drive and actuators
+  OUT_TOTAL_MOMENT = 26,      // about the joint's point
+  OUT_CARRIED_FORCE = 27,     // index: place of a joint that holds nothing: what its drives exert
+  OUT_CARRIED_MOMENT = 28
 };
 
 // One quantity that a run writes; outputs are no part of the plan (OutputsView).

@@ -107,20 +107,26 @@ inline void closing_turn(const Plan& p, const Workspace& w, const ClosingTurn& t
   out[2][0] = second.x, out[2][1] = second.y, out[2][2] = second.z, out[2][3] = 0.0;
 }
 
-// Value and rate of the coordinate that a spring or damper works on.
-inline void joint_coordinate(const Plan& p, const Workspace& w, const Load& l, bool moving, Pack* value, Pack* rate) {
+// Value and rate of the coordinate along an axis, a freedom of the joint that `reference` tells as JointPlace does.
+inline void joint_coordinate(const Plan& p, const Workspace& w, int axis, int reference, int freedom, bool moving,
+                             Pack* value, Pack* rate) {
   *rate = 0.0;
-  if (l.other < 0) {
+  if (reference < 0) {
     Pack k[4];
-    closing_coordinate(p, w, -1 - l.other, l.freedom, moving ? 1 : 0, k);
+    closing_coordinate(p, w, -1 - reference, freedom, moving ? 1 : 0, k);
     *value = k[0];
     if (moving) *rate = k[1];
     return;
   }
-  const TreeJoint& j = p.joints[l.other];
-  const Pack scale = j.type == TREE_H && p.axis[l.link].slide ? Pack(j.pitch) : Pack(1.0);
-  *value = scale * w.q[j.state + l.freedom];
-  if (moving) *rate = scale * w.rate[j.column + l.freedom];
+  const TreeJoint& j = p.joints[reference];
+  const Pack scale = j.type == TREE_H && p.axis[axis].slide ? Pack(j.pitch) : Pack(1.0);
+  *value = scale * w.q[j.state + freedom];
+  if (moving) *rate = scale * w.rate[j.column + freedom];
+}
+
+// Of the coordinate that a spring or damper works on.
+inline void joint_coordinate(const Plan& p, const Workspace& w, const Load& l, bool moving, Pack* value, Pack* rate) {
+  joint_coordinate(p, w, l.link, l.other, l.freedom, moving, value, rate);
 }
 
 inline void apply_along_coordinate(Balance& balance, int axis, Pack value) {
@@ -260,13 +266,15 @@ inline void closing_wrenches(const Plan& p, Workspace& w, int shift, Pack level)
 }
 
 // Applies everything, solves for the closing wrenches and the efforts; the values of loads that vary stand in
-// `w.load` (quantity_program.hpp).
+// `w.load` (quantity_program.hpp). `acting`: the actuators' efforts are known loads.
 template <class RowValue>
 inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool accelerating, int shift,
-                              const RowValue& row_value) {
+                              const RowValue& row_value, bool acting = false) {
   Balance balance = {p, w, zero_wrench(), zero_wrench(), moving, Pack(0.0)};
   apply_inertia(balance, accelerating);
   for (int l = 0; l < p.loads; ++l) apply_load(balance, p.load[l], row_value);
+  if (acting)
+    for (int a = 0; a < p.actuators; ++a) apply_along_coordinate(balance, p.actuator[a].axis, w.actuation.motor[a]);
   for (int k = p.links - 1; k >= 0; --k)
     if (p.joints[k].type == TREE_L)
       hang_on_ends(p, w, k);

@@ -136,10 +136,12 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     if (r.pivot) writer(r.pivot).put(b, matrices_of(p, w, b).least());
   }
   const int rest_count = r.held && !r.held->complete ? 0 : p.rest_count;
+  const auto tie_value = [&](int t) { return in.get(r.ties, t); };
   for (int k = 0; k < rest_count; ++k) {
     place_joint(p, w, p.rest[k]);
     find_screws(p, w, p.rest[k]);
   }
+  if (r.demand & DEMAND_FORCES && p.actuators) find_influence(p, w, tie_value);
   if (velocities) {
     for (int i = 0; i < p.inputs; ++i) w.rate[p.input_column[i]] = in.get(r.rates, i);
     for (int b = 0; b < p.blocks; ++b)
@@ -191,10 +193,13 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
       for (int v = 0; v < p.load_values; ++v) writer(r.loads).put(v, w.load[v]);
     if (r.undefined)
       for (int i = 0; i < in.count; ++i) r.undefined[in.row + i] = lane(undefined, i);
-    const Balance balance = balance_forces(p, w, velocities, accelerations, r.shift, row_values);
+    const Balance balance =
+        balance_with_actuators(p, w, velocities, accelerations, r.shift, row_values, tie_value);
+    const auto actuators = [&](Powers& powers) { add_actuator_power(powers, p, w); };
     if (r.demand & DEMAND_POWER)
       writer(r.power_error)
-          .put(0, velocities ? power_error(p, w, accelerations, balance.level, row_values) : Pack(__builtin_nan("")));
+          .put(0, velocities ? power_error(p, w, accelerations, balance.level, row_values, actuators)
+                             : Pack(__builtin_nan("")));
     if (r.outputs) outputs(&balance);
   } else if (r.outputs) {
     outputs(nullptr);

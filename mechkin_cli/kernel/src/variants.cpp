@@ -276,6 +276,7 @@ Variants::Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputLi
   require(base_.size > 0.0 && std::isfinite(base_.size), "size: not positive");
   require(!(outputs.demand() & ~base_.demand), "the outputs need more than is demanded");
   require(!(base_.demand & DEMAND_FORCES) || !(program_demand(p.law) & ~base_.demand), "loads that vary need more than is demanded");
+  require(!(base_.demand & DEMAND_FORCES) || p.ties == 0, "rates of tied inputs by row have no place here");
   require(base_.time.empty() || (long)base_.time.size() == base_.rows, "time: one for each row");
   require(!(base_.demand & DEMAND_POWER), "no place for the power error");
   const unsigned demand = base_.demand;

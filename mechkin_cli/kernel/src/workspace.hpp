@@ -1,6 +1,7 @@
 // What a pack of rows is computed in: poses, screws, motions, Jacobians and wrenches, all in one allocation.
 #pragma once
 
+#include "actuation_memory.hpp"
 #include "chart.hpp"
 #include "factors.hpp"
 #include "legs.hpp"
@@ -27,6 +28,7 @@ struct Workspace {
   Pack* right;                    // largest block
   Pack* scratch;                  // three times the largest block squared
   Pack* effort;                   // inputs
+  Actuation actuation;
   Vec3* across;                   // legs: what its end needs across its line
   Pack* holding;                  // legs: couple about its line
   Pack* saved;                    // states before a trial step
@@ -76,6 +78,7 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->kept_swap = (Mask*)take(largest * largest * sizeof(Mask));
   w->moves = (bool*)take(p.links * sizeof(bool));
   w->effort = (Pack*)take((p.inputs + 1) * pack);
+  lay_out_actuation(p, take, &w->actuation);
   w->across = (Vec3*)take((p.legs + 1) * sizeof(Vec3));
   w->holding = (Pack*)take((p.legs + 1) * pack);
   w->saved = (Pack*)take(p.states * pack);

@@ -16,6 +16,7 @@ import numpy as np
 
 from mechkin_cli.mechanism.elementary import ELEMENTARY, Part
 from mechkin_cli.mechanism.frames import GROUND, Frame
+from mechkin_cli.mechanism.joint_type import SECOND, Drawn
 from mechkin_cli.mechanism.legs import Leg, frame_on
 from mechkin_cli.mechanism.model import Attached, Joint, Mechanism
 from mechkin_cli.mechanism.vectors import ZERO, Vector, add, cross, norm, scale, subtract
@@ -137,7 +138,7 @@ class Rates:
         """The screws of all freedoms: turns go through the joint's point."""
         at = self.unit.place(self._point(joint.point))
         pitch = joint.pitch / self.unit.length
-        found = []
+        found: list[list[float]] = []
         parts = iter(joint.parts)
         for step in joint.type.steps:
             part = next(parts)
@@ -146,8 +147,11 @@ class Rates:
                 found += [[*turn, *cross(at, turn)] for turn in turns]
                 continue
             for freedom in part.type.freedoms:
-                if freedom.motion == "ball":
-                    direction: Vector = getattr(GROUND, freedom.axis)
+                direction: Vector
+                if step.between:
+                    direction = self._square_turn(joint, found[-1][:3])
+                elif freedom.motion == "ball":
+                    direction = getattr(GROUND, freedom.axis)
                 elif step.along is None:
                     # it leads from one drawing to the other, behind slides alone
                     direction = self._direction(Attached(joint.first, part.before.z))
@@ -159,6 +163,15 @@ class Rates:
                 along = pitch if freedom.motion == "thread" else 0.0
                 found.append([*direction, *add(cross(at, direction), scale(along, direction))])
         return found
+
+    def _square_turn(self, joint: Joint, before: Sequence[float]) -> Vector:
+        """The axis of a turn between two others: that before it, and x of the second link."""
+        x, y, z = before
+        across = cross((x, y, z), self._direction(joint.drawn(Drawn(SECOND, "x"))))
+        length = norm(across)
+        if length > LOOP_RANK:
+            return scale(1.0 / length, across)
+        return self._direction(joint.drawn(Drawn(SECOND, "y")))
 
     def _told_turns(self, joint: Joint, parts: tuple[Part, Part, Part]) -> list[Vector]:
         """The axes of a ball that is told as three turns: on its links, and square to both."""

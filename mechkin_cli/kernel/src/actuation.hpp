@@ -1,0 +1,155 @@
+// Efforts at actuators instead of at the inputs (docs/numerics.md, Actuators).
+//
+// The motion is prescribed at inputs x and balanced there by generalised efforts Q. Actuators at coordinates y, of
+// rates dy = J dx, do the same virtual work with efforts t where
+//
+//     J^T t = Q
+//
+// Inputs that one motor moves through a tie, dx_k = c dx_i, add c Q_k to Q_i and c J_k to J_i. Both sides are taken for
+// motions that are orthonormal over all coordinates of the tree, lengths in parts of the size, so that neither rank nor
+// solution knows which coordinates are the inputs. More actuators than freedoms have the efforts of least norm, forces
+// by the size beside moments.
+#pragma once
+
+#include "energy.hpp"
+
+namespace {
+
+// Rates of the actuators in parts of the motion below which some motion leaves them all at rest: rounding leaves 1e-16
+// by the condition of the loops.
+constexpr double ACTUATORS_AT_REST = 1e-10;
+
+// Whether a motor of its own, or an actuator, answers for an input.
+MECHKIN_INLINE bool is_tied(const Plan& p, int input) {
+  for (int t = 0; t < p.ties; ++t)
+    if (p.tie[t].input == input) return true;
+  return false;
+}
+
+// The freedoms that actuators answer for: inputs of the motion that follow no other through a tie.
+MECHKIN_INLINE int free_inputs(const Plan& p) {
+  int count = 0;
+  for (int i = 0; i < p.driven; ++i) count += !is_tied(p, i);
+  return count;
+}
+
+MECHKIN_INLINE Pack actuator_rate(const Plan& p, const Workspace& w, int a) {
+  Pack value, rate;
+  const Actuator& at = p.actuator[a];
+  joint_coordinate(p, w, at.axis, at.reference, at.freedom, true, &value, &rate);
+  return rate;
+}
+
+MECHKIN_INLINE Pack actuator_weight(const Plan& p, int a) {
+  return p.axis[p.actuator[a].axis].slide ? Pack(p.row_weight) : Pack(1.0);
+}
+
+// Influence coefficients (columns + actuators + 1, free inputs): rates of the tree's coordinates, then of the actuators,
+// for a unit rate of each free input, lengths in parts of the size. Leaves rates and velocities of the last input behind.
+template <class TieValue>
+inline void find_influence(const Plan& p, Workspace& w, const TieValue& tie_value) {
+  const int n = free_inputs(p);
+  int f = 0;
+  for (int input = 0; input < p.driven; ++input) {
+    if (is_tied(p, input)) continue;
+    for (int i = 0; i < p.inputs; ++i) w.rate[p.input_column[i]] = i == input ? 1.0 : 0.0;
+    for (int t = 0; t < p.ties; ++t)
+      if (p.tie[t].leader == input) w.rate[p.input_column[p.tie[t].input]] = tie_value(t);
+    for (int b = 0; b < p.blocks; ++b) block_velocities(p, w, b);
+    for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], false);
+    Pack* const out = w.actuation.influence + f++;
+    for (int c = 0; c < p.columns; ++c) out[c * n] = w.rate[c] / Pack(p.column_weight[c]);
+    for (int a = 0; a < p.actuators; ++a)
+      out[(p.columns + a) * n] = actuator_weight(p, a) * actuator_rate(p, w, a);
+  }
+}
+
+// Turns the columns of the first `motion` rows of a (rows x n) orthonormal, all rows with them (Gram and Schmidt, twice).
+inline void orthonormalise(Pack* a, int motion, int rows, int n) {
+  for (int k = 0; k < n; ++k) {
+    for (int pass = 0; pass < 2; ++pass)
+      for (int j = 0; j < k; ++j) {
+        Pack along = 0.0;
+        for (int i = 0; i < motion; ++i) along += a[i * n + j] * a[i * n + k];
+        for (int i = 0; i < rows; ++i) a[i * n + k] -= along * a[i * n + j];
+      }
+    const Pack inverse = Pack(1.0) / sqrt(column_square(a, motion, n, k));
+    for (int i = 0; i < rows; ++i) a[i * n + k] *= inverse;
+  }
+}
+
+// The generalised effort of each free input with what its ties transmit, for the inputs' own motors.
+template <class TieValue>
+inline void find_motors(const Plan& p, Workspace& w, const TieValue& tie_value) {
+  Pack* const motor = w.actuation.motor;
+  for (int i = 0; i < p.inputs; ++i) motor[i] = w.effort[i];
+  for (int t = 0; t < p.ties; ++t) motor[p.tie[t].leader] += tie_value(t) * w.effort[p.tie[t].input];
+}
+
+// The actuators' efforts in the place of the motors' that find_motors leaves; not a number where the set is singular.
+// Returns the least rate of the actuators, all together, in a motion of length one.
+inline Pack solve_actuators(const Plan& p, const Actuation& at) {
+  const int n = free_inputs(p), m = p.actuators, rows = p.columns + m + 1;
+  Pack* const jacobian = at.influence + p.columns * n;
+  Pack* const wanted = jacobian + m * n;
+  int f = 0;
+  for (int i = 0; i < p.driven; ++i)
+    if (!is_tied(p, i)) wanted[f++] = at.motor[i];
+  orthonormalise(at.influence, p.columns, rows, n);
+  // the rows of the motion have done their duty
+  Pack *const copy = at.influence_factors, *const pivot = copy + m * n, *const beta = pivot + n;
+  for (int e = 0; e < m * n; ++e) copy[e] = jacobian[e];
+  const Pack least = smallest_singular_value(copy, m, n, pivot);
+  for (int k = 0; k < n; ++k) at.motor[k] = wanted[k];
+  const Reflectors qr = {jacobian, pivot, beta, m, n};
+  reflect(qr);
+  solve_transposed(qr, at.motor, 0);
+  const Mask known = least > Pack(ACTUATORS_AT_REST);
+  for (int a = 0; a < m; ++a) at.motor[a] = select(known, at.motor[a] * actuator_weight(p, a), Pack(__builtin_nan("")));
+  return least;
+}
+
+// The balance of a row with the efforts where they act: at the inputs, or at the actuators, whose loads leave nothing to
+// the inputs that they answer for but rounding.
+template <class RowValue, class TieValue>
+inline Balance balance_with_actuators(const Plan& p, Workspace& w, bool moving, bool accelerating, int shift,
+                                      const RowValue& row_value, const TieValue& tie_value) {
+  if (!p.actuators) {
+    const Balance balance = balance_forces(p, w, moving, accelerating, shift, row_value);
+    find_motors(p, w, tie_value);
+    return balance;
+  }
+  balance_forces(p, w, moving, accelerating, 0, row_value);
+  find_motors(p, w, tie_value);
+  *w.actuation.least = solve_actuators(p, w.actuation);
+  return balance_forces(p, w, moving, accelerating, shift, row_value, true);
+}
+
+// What the actuators put in, for the balance of powers.
+inline void add_actuator_power(Powers& powers, const Plan& p, const Workspace& w) {
+  for (int a = 0; a < p.actuators; ++a) powers.add(w.actuation.motor[a] * actuator_rate(p, w, a));
+}
+
+// What a joint's first link exerts on the second in all, the moment about the joint's point: constraint, drives and
+// actuators, without joint loads.
+inline Wrench total_wrench(const Plan& p, const Workspace& w, const JointPlace& j) {
+  const Wrench held = joint_wrench(p, w, j);
+  const Vec3 at = carried_point(w, j.point_on, j.point);
+  Wrench r = {without_free(p, w, j, false, held.moment - cross(at, held.force)),
+              without_free(p, w, j, true, held.force)};
+  const auto add = [&](int axis, Pack effort) {
+    const Wrench own = along_coordinate(p, w, axis, effort);
+    r.force += own.force;
+    r.moment += own.moment - cross(at, own.force);
+  };
+  for (int d = j.drive_begin; d < j.drive_end; ++d) {
+    const Drive& drive = p.drive[d];
+    const bool answered = p.actuators && drive.input < p.driven && !is_tied(p, drive.input);
+    if (!answered) add(drive.axis, Pack(drive.scale) * w.effort[drive.input]);
+  }
+  for (int a = 0; a < p.actuators; ++a)
+    if (&p.place[p.axis[p.actuator[a].axis].place] == &j) add(p.actuator[a].axis, w.actuation.motor[a]);
+  return r;
+}
+
+}  // namespace

@@ -1,0 +1,26 @@
+// What a pack of rows keeps of the efforts where they act (actuation.hpp).
+#pragma once
+
+#include "pack.hpp"
+#include "plan.hpp"
+
+namespace {
+
+struct Actuation {
+  Pack* motor;              // actuators, or inputs where there are none: efforts where they act
+  Pack* influence;          // (columns + actuators + 1) x inputs, where there are actuators
+  Pack* influence_factors;  // (actuators + 2) x inputs, likewise
+  Pack* least;              // one: least rate of the actuators, all together, in a motion of length one
+};
+
+// Gives the arrays their places; `take(bytes)` is room for some bytes.
+template <class Take>
+inline void lay_out_actuation(const Plan& p, const Take& take, Actuation* a) {
+  const long pack = sizeof(Pack), inputs = p.actuators ? p.inputs : 0;
+  a->motor = (Pack*)take((p.inputs + p.actuators + 1) * pack);
+  a->influence = (Pack*)take((p.columns + p.actuators + 1) * inputs * pack);
+  a->influence_factors = (Pack*)take((p.actuators + 2) * inputs * pack);
+  a->least = (Pack*)take(pack);
+}
+
+}  // namespace

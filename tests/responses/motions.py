@@ -1,0 +1,35 @@
+"""Responses of short files, and what every one of them must keep."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import mechkin_cli as mk
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+ENERGY = 1e-11
+"""Limit of `row.energy_error`."""
+
+
+def respond(text: str, name: str = "run", *, ends: str = "ok") -> Any:
+    """The response of a text, whose rows are all `ok` but a last one that ends otherwise."""
+    found = mk.loads(text).respond(name)
+    status = [str(word) for word in found["row.status"]]
+    assert set(status) in ({"ok"}, {"ok", ends}), status
+    assert np.nanmax(found["row.energy_error"]) <= ENERGY
+    return found
+
+
+def off(found: Any, expected: Any) -> float:
+    """The largest difference in parts of the largest value, at least one."""
+    found, expected = np.array(found, dtype=float), np.array(expected, dtype=float)
+    assert found.shape == expected.shape
+    size = max(1.0, float(np.max(np.abs(expected))))
+    return float(np.max(np.abs(found - expected))) / size
+
+
+def last_time(found: Any) -> float:
+    return float(found["time"][-1])

@@ -1,0 +1,65 @@
+"""Responses that end before their time, each with its verdict; their rows stay, empty."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from responses.motions import off
+from responses.oscillators import lines, slider
+
+import mechkin_cli as mk
+
+
+def statuses(found: Any) -> list[str]:
+    return [str(word) for word in found["row.status"]]
+
+
+def test_a_motion_that_runs_away_is_cut_off() -> None:
+    """m x'' = 6 m x^2, x = 1 / (1 - t)^2: there is nothing at t = 1."""
+    text = slider(
+        lines("- {type: force, joint: S, value: '12 N/m^2*S.s^2'}"),
+        lines(
+            "start: {S.s: 1, S.s_dot: 2}",
+            "time: {from: 0, to: 2, step: 0.125}",
+            "tolerance: 1e-12",
+            indent=4,
+        ),
+    )
+    found = mk.loads(text).respond("run")
+    t, words = found["time"], statuses(found)
+    assert off(t, 0.125 * np.arange(17)) == 0
+    good = t < 1
+    assert words[: int(np.sum(good))] == ["ok"] * 8
+    assert set(words[8:]) == {"step-limit"}
+    assert off(found["S.s"][good], 1 / (1 - t[good]) ** 2) < 1e-8
+    assert np.all(np.isnan(found["S.s"][~good]))
+
+
+MASSLESS = """format: 1
+name: a link without mass
+links:
+  arm: {{mass: 1, center_of_mass: [0.5, 0, 0], inertia: {{zz: 0.1}}}}
+  hand: {{{hand}}}
+joints:
+  A: {{type: R, links: [ground, arm], point: [0, 0, 0], axis: [0, 0, 1]}}
+  B: {{type: R, links: [arm, hand], point: [1, 0, 0], axis: [0, 0, 1]}}
+responses:
+  run:
+    start: {{A.theta: 0, B.theta: 0}}
+    efforts: {{A.theta: 1}}
+    time: {{from: 0, to: 1, step: 0.25}}
+"""
+
+
+def test_a_freedom_without_inertia_leaves_no_row() -> None:
+    found = mk.loads(MASSLESS.format(hand="")).respond("run")
+    assert set(statuses(found)) == {"singular-inertia"}
+
+
+def test_the_same_freedom_with_inertia_moves() -> None:
+    """The check above can fail: a little inertia, and every row is there."""
+    found = mk.loads(
+        MASSLESS.format(hand="mass: 0.1, center_of_mass: [1, 0, 0], inertia: {zz: 0.01}")
+    ).respond("run")
+    assert set(statuses(found)) == {"ok"}

@@ -1,0 +1,114 @@
+"""Stop events against closed forms: their moments to rounding, and what their rows hold."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from mpmath import mp
+from responses.motions import last_time, off, respond
+
+EXACT = 1e-12
+FALL = """format: 1
+name: fall
+links:
+  stone: {{mass: 2, center_of_mass: [0, 0, 0]}}
+joints:
+  S: {{type: P, links: [ground, stone], point: [0, 0, 0], axis: [0, 0, 1]}}
+points:
+  top: {{link: stone, at: [0, 0, 0.25]}}
+loads:
+  - {{type: gravity, g: [0, 0, -9.81]}}
+responses:
+  run:
+    start: {{S.s: 3, S.s_dot: {rate}}}
+    time: {{from: 0, to: 5, step: 0.25}}
+    stop: [{stop}]
+    tolerance: 1e-12
+"""
+
+
+@pytest.mark.parametrize(
+    ("stop", "rate", "moment"),
+    [
+        ("{value: S.s, at: 0}", 0, math.sqrt(6 / 9.81)),
+        ("{value: S.s, at: 3.5, direction: up}", 8, (8 - math.sqrt(64 - 9.81)) / 9.81),
+        ("{value: S.s, at: 3.5, direction: down}", 8, (8 + math.sqrt(64 - 9.81)) / 9.81),
+        ("{value: top.position.z, at: 1.25}", 0, math.sqrt(4 / 9.81)),
+        ("{value: S.s_dot, at: -4}", 0, 4 / 9.81),
+        ("{dead_centre: S.s}", 8, 8 / 9.81),
+        ("{value: 'S.s - 3 m', at: -1 m}, {value: S.s, at: -1}", 0, math.sqrt(2 / 9.81)),
+        (
+            "{value: S.s, at: 2.999, direction: down}",
+            8,
+            8 / 9.81 + math.sqrt(64 + 2 * 9.81e-3) / 9.81,
+        ),
+    ],
+)
+def test_a_stone_is_stopped(stop: str, rate: float, moment: float) -> None:
+    found = respond(FALL.format(stop=stop, rate=rate))
+    assert last_time(found) == pytest.approx(moment, rel=EXACT)
+    assert off(found["time"][:-1], 0.25 * np.arange(len(found["time"]) - 1)) == 0
+    assert found["S.s"][-1] == pytest.approx(
+        3 + rate * moment - 9.81 * moment**2 / 2, abs=EXACT * 10
+    )
+    assert str(found["row.event"][-1])
+
+
+def test_what_never_happens_ends_nothing() -> None:
+    found = respond(FALL.format(stop="{value: S.s, at: 4, direction: up}", rate=0))
+    assert last_time(found) == 5
+    assert not any(str(word) for word in found["row.event"])
+
+
+PENDULUM = """format: 1
+name: pendulum
+units: {angle: rad}
+links:
+  bob: {mass: 2, center_of_mass: [0, 0, -0.5], inertia: {yy: 0.2}}
+joints:
+  A: {type: R, links: [ground, bob], point: [0, 0, 0], axis: [0, 1, 0]}
+loads:
+  - {type: gravity, g: [0, 0, -9.81]}
+responses:
+  run:
+    start: {A.theta: 0, A.theta_dot: 5 rad/s}
+    time: {from: 0, to: 20, step: 1}
+    stop: [{dead_centre: A.theta, count: COUNT}]
+    tolerance: 1e-13
+"""
+
+
+@pytest.mark.parametrize("count", [1, 2, 7])
+def test_a_pendulum_is_stopped_at_a_dead_centre(count: int) -> None:
+    """(2 count - 1) quarters of its period, 4 K(k) / w with k = rate / (2 w)."""
+    found = respond(PENDULUM.replace("COUNT", str(count)))
+    with mp.workdps(30):
+        w = mp.sqrt(mp.mpf("9.81") / mp.mpf("0.7"))
+        moment = (2 * count - 1) * mp.ellipk((5 / (2 * w)) ** 2) / w
+    assert last_time(found) == pytest.approx(float(moment), rel=1e-12 * (1 + count))
+    assert abs(found["A.theta_dot"][-1]) < 1e-10
+
+
+ROTOR = """format: 1
+name: rotor
+units: {angle: rad}
+links:
+  disc: {mass: 2, center_of_mass: [0, 0, 0], inertia: {zz: 0.5}}
+joints:
+  A: {type: R, links: [ground, disc], point: [0, 0, 0], axis: [0, 0, 1]}
+responses:
+  run:
+    start: {A.theta: 1}
+    efforts: {A.theta: EFFORT}
+    time: {from: 0, to: 20, step: 1}
+    stop: [{turns: A.theta, count: 3}]
+"""
+
+
+@pytest.mark.parametrize("effort", [2.0, -2.0])
+def test_a_rotor_is_stopped_after_three_turns(effort: float) -> None:
+    found = respond(ROTOR.replace("EFFORT", repr(effort)))
+    assert last_time(found) == pytest.approx(math.sqrt(2 * 6 * math.pi / 4), rel=EXACT)
+    assert found["A.theta"][-1] == pytest.approx(1 + math.copysign(6 * math.pi, effort), rel=EXACT)
