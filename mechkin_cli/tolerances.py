@@ -719,3 +719,7 @@ kept ones needs (8 to 600)."""
 DENSE_ROWS: Final = 10
 """Rows within one step of a response from which on they are interpolated instead of stepped to:
 interpolation costs 18 to 50 times in energy, so it is for rows that are much denser than steps."""
+
+SAME_MOMENT: Final = 1e-15
+"""A stop so near to the last row, in parts of its moment, ends the response at that row: a few
+roundings of the time, which would print as two rows of one moment."""

@@ -62,6 +62,7 @@ INEXACT_METHODS |= {"standard_normal", "normal", "standard_exponential", "expone
 
 FRACTIONS = "exact fractions and whole exponents"
 ACCEPTED = {
+    ("analysis/response/weakest.py", "np.linalg"): "eigenvectors for a message",
     ("building/links.py", "np.linalg"): "eigenvalues for a warning",
     (
         "building/sequences.py",

@@ -52,9 +52,11 @@ responses:
 """
 
 
-def test_a_freedom_without_inertia_leaves_no_row() -> None:
+def test_a_freedom_without_inertia_is_named() -> None:
     found = mk.loads(MASSLESS.format(hand="")).respond("run")
     assert set(statuses(found)) == {"singular-inertia"}
+    words = " ".join(str(d) for d in found.diagnostics)
+    assert "B.theta has no inertia" in words
 
 
 def test_the_same_freedom_with_inertia_moves() -> None:
@@ -63,3 +65,25 @@ def test_the_same_freedom_with_inertia_moves() -> None:
         MASSLESS.format(hand="mass: 0.1, center_of_mass: [1, 0, 0], inertia: {zz: 0.01}")
     ).respond("run")
     assert set(statuses(found)) == {"ok"}
+
+
+def test_a_motion_of_two_without_inertia_names_both() -> None:
+    """Two hinges on one line with nothing between them: only their sum has an inertia."""
+    text = """format: 1
+name: two hinges on one line
+links:
+  ring: {}
+  disc: {mass: 1, center_of_mass: [0, 0, 0], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}
+joints:
+  A: {type: R, links: [ground, ring], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: R, links: [ring, disc], point: [0, 0, 1], axis: [0, 0, 1]}
+responses:
+  run:
+    start: {A.theta: 0, B.theta: 0}
+    efforts: {A.theta: 1}
+    time: {from: 0, to: 1, step: 0.25}
+"""
+    found = mk.loads(text).respond("run")
+    assert set(statuses(found)) == {"singular-inertia"}
+    words = " ".join(str(d) for d in found.diagnostics)
+    assert "A.theta and B.theta together" in words

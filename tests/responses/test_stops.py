@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from mpmath import mp
 from responses.motions import last_time, off, respond
+from responses.oscillators import lines, slider
 
 EXACT = 1e-12
 FALL = """format: 1
@@ -60,6 +61,22 @@ def test_what_never_happens_ends_nothing() -> None:
     found = respond(FALL.format(stop="{value: S.s, at: 4, direction: up}", rate=0))
     assert last_time(found) == 5
     assert not any(str(word) for word in found["row.event"])
+
+
+def test_an_event_at_a_row_is_that_row() -> None:
+    """A constant speed passes 0.5 at the row of 0.5 s: no row stands there twice."""
+    text = slider(
+        "  []",
+        lines(
+            "start: {S.s: 0, S.s_dot: 1}",
+            "time: {from: 0, to: 2, step: 0.25}",
+            "stop: [{value: S.s, at: 0.5}]",
+            indent=4,
+        ),
+    ).replace("loads:\n  []", "loads: []")
+    found = respond(text)
+    assert off(found["time"], [0, 0.25, 0.5]) < 1e-14
+    assert str(found["row.event"][-1])
 
 
 PENDULUM = """format: 1

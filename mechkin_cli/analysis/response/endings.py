@@ -4,21 +4,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mechkin_cli.analysis.response.weakest import weakest_coordinates
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.solver.free_motion import Fault, MotionEnd
 from mechkin_cli.status import Status
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.mechanism.response import Response
     from mechkin_cli.solver.free_motion import MotionReport
     from mechkin_cli.solver.session import Session
 
 
 def ending(
-    session: Session, response: Response, report: MotionReport
+    session: Session, response: Response, report: MotionReport, last: Floats
 ) -> tuple[Status, list[Diagnostic]]:
-    """The verdict of rows that were not reached, and what is to say about the motion."""
+    """The verdict of rows that were not reached, and what is to say about the motion; `last`
+    (states,) is the last state that is known."""
     notes = []
     if report.stiff:
         text = f"from {_moment(session, report.stiff_from)} on the motion is stiff"
@@ -28,10 +31,22 @@ def ending(
         return Status.ok, notes
     at = _moment(session, report.time)
     status, code, text, hint = _reason(report)
+    if status is Status.singular_inertia:
+        text = _without_inertia(weakest_coordinates(session, response, last))
     notes.append(
         Diagnostic(code, "error", f"the response ends at {at}: {text}", response.place, hint=hint)
     )
     return status, notes
+
+
+def _without_inertia(names: list[str]) -> str:
+    if not names:
+        whose = "some freedom has"
+    elif len(names) == 1:
+        whose = f"{names[0]} has"
+    else:
+        whose = f"a motion of {', '.join(names[:-1])} and {names[-1]} together has"
+    return f"{whose} no inertia, so that no acceleration follows from the forces"
 
 
 def _moment(session: Session, time: float) -> str:
@@ -53,9 +68,8 @@ def _reason(report: MotionReport) -> tuple[Status, str, str, str]:
         text = "a load or a rate has no finite value beyond"
         return Status.step_limit, "load-undefined", text, "write loads that hold along the motion"
     if report.fault & Fault.SINGULAR_INERTIA:
-        text = "some freedom has no inertia, so that no acceleration follows from the forces"
         hint = "give the links that it moves a mass, or drive it"
-        return Status.singular_inertia, "singular-inertia", text, hint
+        return Status.singular_inertia, "singular-inertia", "", hint
     if report.fault:
         text = "no step, however short, is told to stay on the branch"
         hint = (

@@ -158,13 +158,17 @@ def _rows(one: Prepared, found: MotionRows) -> ResponseResult:
     response, chosen, free = one.response, one.chosen, one.free
     stopped = found.report.end is MotionEnd.STOPPED
     count = found.count if stopped else response.rows
+    if stopped and _stops_at_row(response, found):
+        count -= 1
     part = slice(0, count)
     reached = np.arange(count) < found.count
     rows = Rows.without_guesses(free.layout.states, 0, count)
     rows.states = np.where(reached, found.states[:, part], 0.0)
     rows.reached, rows.nodes = reached, found.report.steps
     rows.turns = _all_turns(free, found.turns[:, part])
-    status, notes = ending(chosen, response, found.report)
+    assert one.begun is not None
+    last = found.states[:, found.count - 1] if found.count else one.begun.state
+    status, notes = ending(chosen, response, found.report, last)
     rows.status[~reached] = status
     rows.diagnostics += notes
     energy = free.layout.length * free.layout.length
@@ -183,6 +187,14 @@ def _rows(one: Prepared, found: MotionRows) -> ResponseResult:
         response,
         found.report,
     )
+
+
+def _stops_at_row(response: Response, found: MotionRows) -> bool:
+    """Whether the stop's moment is that of the last row before it, which then is its row."""
+    if not found.report.rows:
+        return False
+    row = float(response.moments.values[found.report.rows - 1])
+    return abs(found.report.time - row) <= tolerances.SAME_MOMENT * abs(row)
 
 
 def _nothing(one: Prepared) -> ResponseResult:
