@@ -417,6 +417,10 @@ LOOP_RANK: Final = 1e-6
 """Pivot of a loop's screws (moments in sizes) below which they are dependent as drawn: written
 numbers leave 1e-9, and loops that close only by their dimensions are drawn more exactly still."""
 
+LARGEST_FLANK: Final = 1.4
+"""Angle (rad) of a thread's flank against the plane square to the axis, some 80 degrees: no thread
+is nearly a cylinder, and the normal load goes with 1 / cos."""
+
 PARALLEL: Final = 1e-9
 """Sine of the angle below which a reference direction is parallel to the axis it should stand
 square to."""
@@ -445,6 +449,14 @@ standing still: rounding leaves 1e-16 times the condition of the row. Measured o
 only shifts: 5e-17."""
 
 # --- numbers of the file ------------------------------------------------------------------------
+
+EQUAL_STEPS: Final = 1e-9
+"""Parts of a step by which rows of a cycle may be unequal, and of a turn by which it may be open:
+rows by from and step differ by rounding, 1e-15 of their values."""
+
+REPEATS: Final = 1e-9
+"""Parts of its largest value by which what repeats may differ between the first row of a cycle and
+the last: rounding leaves 1e-12, what is open is open by far more."""
 
 LAST_ROW: Final = 1e-9
 """Steps by which the last row may lie beyond the end of a sweep, part of format 1: the quotient of

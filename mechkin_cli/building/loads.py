@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -11,6 +12,7 @@ from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.gravity import gravity_of
 from mechkin_cli.building.run_names import unknown_run
 from mechkin_cli.expressions import ExpressionError, parse
+from mechkin_cli.mechanism.friction import Rubbing
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.model import (
     GROUND_NAME,
@@ -22,6 +24,7 @@ from mechkin_cli.mechanism.model import (
     Link,
     LinkLoad,
     Load,
+    Mechanism,
     Spring,
     renumbered,
     varying,
@@ -35,6 +38,7 @@ from mechkin_cli.schema.loads import (
     DamperBetweenPoints,
     ForceOnJoint,
     ForceOnLink,
+    FrictionAtJoint,
     Gravity,
     SpringAtJoint,
     SpringBetweenPoints,
@@ -60,11 +64,16 @@ if TYPE_CHECKING:
 
 
 class RunLoads(NamedTuple):
-    """What acts in one run: loads, gravity, and the laws of the loads that vary."""
+    """What acts in one run: loads, gravity, the laws of the loads that vary, friction."""
 
     loads: tuple[Load, ...]
     gravity: Vector
     laws: tuple[LoadLaw, ...]
+    frictions: tuple[Rubbing, ...]
+
+    def on(self, mechanism: Mechanism) -> Mechanism:
+        """The mechanism with these loads."""
+        return replace(mechanism, loads=self.loads, gravity=self.gravity, frictions=self.frictions)
 
 
 class LoadBuilder:
@@ -90,7 +99,7 @@ class LoadBuilder:
         self.points = points
         self.runs = runs
         self._acting: Collection[str] = runs.keys()
-        self._of_runs: list[tuple[Collection[str], Load | Vector]] = []
+        self._of_runs: list[tuple[Collection[str], Load | Vector | Rubbing]] = []
 
     @cached_property
     def _laws(self) -> LoadLaws:
@@ -117,9 +126,13 @@ class LoadBuilder:
     def of_run(self, run: str) -> RunLoads:
         """What acts in a run; its laws are numbered in the order of its loads."""
         loads: list[Load] = []
+        frictions: list[Rubbing] = []
         gravity, numbers = ZERO, dict[int, int]()
         for runs, item in self._of_runs:
             if run not in runs:
+                continue
+            if isinstance(item, Rubbing):
+                frictions.append(item)
                 continue
             if not isinstance(item, Load):
                 gravity = add(gravity, item)
@@ -129,7 +142,7 @@ class LoadBuilder:
             loads.append(renumbered(item, numbers))
         known = [] if self.fields.error_count else numbers
         laws = tuple(self._laws.laws[number] for number in known)
-        return RunLoads(tuple(loads), gravity, laws)
+        return RunLoads(tuple(loads), gravity, laws, tuple(frictions))
 
     def _runs_of(self, path: Path, names: Sequence[str] | None) -> Collection[str]:
         """The runs in which a load acts; unknown ones are noted."""
@@ -138,7 +151,7 @@ class LoadBuilder:
                 unknown_run(self.fields, (*path, "runs", i), name, self.runs)
         return self.runs.keys() if names is None else names
 
-    def _put(self, load: Load | Vector) -> None:
+    def _put(self, load: Load | Vector | Rubbing) -> None:
         self._of_runs.append((self._acting, load))
 
     def _add(self, path: Path, section: AnyLoad) -> None:
@@ -150,6 +163,8 @@ class LoadBuilder:
             self._add_to_link(path, section)
         elif isinstance(section, (SpringBetweenPoints, DamperBetweenPoints)):
             self._add_between(path, section)
+        elif isinstance(section, FrictionAtJoint):
+            self._add_friction(path, section)
         else:
             self._add_at_joint(path, section)
 
@@ -247,13 +262,33 @@ class LoadBuilder:
         self.fields.error(f"unknown-{what}", (*path, key), f"there is no {what} {name}", hint)
         return False
 
-    def _has_coordinate(self, path: Path, name: str, coordinate: str) -> bool:
-        joint = self.joints.get(name)
-        if self.fields.is_refused(name):
-            return False
+    def _add_friction(self, path: Path, section: FrictionAtJoint) -> None:
+        from mechkin_cli.building.friction import build_friction
+
+        joint = self._joint(path, section.joint)
         if joint is None:
+            return
+        if any(
+            isinstance(item, Rubbing) and item.joint == joint.name and set(runs) & set(self._acting)
+            for runs, item in self._of_runs
+        ):
+            text = f"the friction of {joint.name} is given twice"
+            self.fields.error("friction", (*path, "joint"), text, "keep one of the two")
+        elif (rubbing := build_friction(self.fields, path, section, joint)) is not None:
+            self._put(rubbing)
+
+    def _joint(self, path: Path, name: str) -> Joint | None:
+        """The joint of a name; None, and an error, where there is none."""
+        if self.fields.is_refused(name):
+            return None
+        if name not in self.joints:
             hint = nearest_hint(name, list(self.joints))
             self.fields.error("unknown-joint", (*path, "joint"), f"there is no joint {name}", hint)
+        return self.joints.get(name)
+
+    def _has_coordinate(self, path: Path, name: str, coordinate: str) -> bool:
+        joint = self._joint(path, name)
+        if joint is None:
             return False
         if coordinate not in joint.type.coordinates:
             named = (*path, "coordinate")

@@ -11,6 +11,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.building.assembly import near_values
 from mechkin_cli.building.coordinates import is_coordinate
+from mechkin_cli.building.friction import refuse_response
 from mechkin_cli.building.laws import Clock
 from mechkin_cli.building.motion import Written, build_inputs, spaced_moments
 from mechkin_cli.building.start import build_start
@@ -69,6 +70,8 @@ class _Builder:
         driven = build_inputs(self.fields, timed, self.joints, self.limit) or Motion((), 1)
         efforts = self._efforts(path, section, name)
         acting = self.loads.of_run(name)
+        if acting.frictions:
+            refuse_response(self.fields, acting.frictions, name)
         known: Mapping[str, Wanted] = self.loads.runs[name]
         stops = StopBuilder(self.fields, self.joints, name, known)
         assert timed.time is not None
@@ -84,9 +87,7 @@ class _Builder:
             stops=stops.build(path, section.stop),
             tolerance=self._tolerance(path, section.tolerance),
             fixed_step=self._fixed_step(path, section.fixed_step),
-            mechanism=replace(
-                self.problem.mechanism, loads=acting.loads, gravity=acting.gravity, drives=None
-            ),
+            mechanism=replace(acting.on(self.problem.mechanism), drives=None),
             load_laws=acting.laws,
         )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +17,8 @@ from mechkin_cli.interface.varied import Base, VariedModel
 from mechkin_cli.kernel._kernel import VariantEnd
 from mechkin_cli.kernel.width import threads_for
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
+from mechkin_cli.mechanism.legs import find_legs
+from mechkin_cli.mechanism.quantities import friction_states
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
 from mechkin_cli.solver.inputs import input_rest
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.solver.session import Session
 
 CHUNK_NUMBERS = 2_000_000
 """Numbers that a chunk of variants holds at most: memory stays flat."""
@@ -129,6 +132,7 @@ class Study:
         if (
             any(q.kind in DERIVED_KINDS or q.kind == "power_error" for q in self.wanted)
             or (session.is_redundant and any(q.kind in WRENCH_KINDS for q in self.wanted))
+            or self._friction_takes_more(session)
             or (variation.moving_inputs and given & {q.name for q in self.wanted})
         ):
             return None
@@ -138,10 +142,23 @@ class Study:
             demand |= Demand.CONDITION
         return reading, reading.runs(demand, self.base.start)
 
+    def _friction_takes_more(self, session: Session) -> bool:
+        """Whether friction may go by reactions that are arbitrary, or drive an idle freedom."""
+        mechanism = self.problem.mechanism
+        if not (mechanism.frictions and demand_of(mechanism, self.wanted) & Demand.FORCES):
+            return False
+        return bool(session.is_redundant or find_legs(mechanism) or self.problem.held)
+
+    def _states(self, reading: Reading) -> list[Wanted]:
+        """What tells the rows without an answer of friction."""
+        return [q for q in friction_states(self.problem.mechanism) if q.name in reading.slots]
+
     def _computed(self) -> list[Wanted]:
-        """What the kernel computes: no verdicts, and nothing that is given."""
+        """What the kernel computes: no verdicts but on friction, and nothing that is given."""
         given = self._given()
         found = [q for q in self.wanted if q.owner != "row" and q.name not in given]
+        if demand_of(self.problem.mechanism, found) & Demand.FORCES:
+            found += friction_states(self.problem.mechanism)
         if any(map(PERIODIC.search, self.asked)):
             # angles within a turn, which the kernel gives before it adds whole turns
             found += [q._replace(name=q.name + REST) for q in found if has_turns(q)]
@@ -171,7 +188,8 @@ class Study:
             reading, kernel = native
             threads = threads_for(count * self.rows, self.threads)
             runs = run_variants(kernel, values, self.lanes, threads)
-            codes[begin : begin + count] = _verdicts(runs)
+            states = [reading.slots[q.name].first for q in self._states(reading)]
+            codes[begin : begin + count] = _verdicts(runs, states)
             found = self._evaluated(variation, reading, runs, values, codes[begin : begin + count])
             alone = np.flatnonzero(runs.end != int(VariantEnd.COMPLETE))
         for number in alone:
@@ -349,13 +367,18 @@ class _Resolve:
         return column.reshape(-1)
 
 
-def _verdicts(runs: Runs) -> NDArray[np.int8]:
-    """Codes of `Status` (variants, rows) of those that are complete; others are not read."""
+def _verdicts(runs: Runs, states: Sequence[int] = ()) -> NDArray[np.int8]:
+    """Codes of `Status` (variants, rows) of those that are complete; others are not read.
+
+    `states` are the slots that tell the rows without an answer of friction.
+    """
     codes = np.full(runs.condition.shape, int(Status.ok), dtype=np.int8)
-    if np.isnan(runs.condition).all():
-        return codes
-    codes[~(runs.condition <= tolerances.CONDITION_NEAR_SINGULAR)] = int(Status.near_singular)
-    codes[~(runs.condition <= tolerances.CONDITION_RANK_UNCLEAR)] = int(Status.rank_unclear)
+    if not np.isnan(runs.condition).all():
+        codes[~(runs.condition <= tolerances.CONDITION_NEAR_SINGULAR)] = int(Status.near_singular)
+        codes[~(runs.condition <= tolerances.CONDITION_RANK_UNCLEAR)] = int(Status.rank_unclear)
+    for slot in states:
+        undecided = ~(runs.outputs[:, slot, :] == 0.0) & (codes != int(Status.rank_unclear))
+        codes[undecided] = int(Status.friction_undecided)
     return codes
 
 

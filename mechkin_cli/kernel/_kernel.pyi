@@ -85,6 +85,23 @@ class OutputCode(IntEnum):
     CARRIED_FORCE = ...
     CARRIED_MOMENT = ...
     JERK = 18
+    NORMAL_LOAD = ...
+    FRICTION_FORCE = ...
+    FRICTION_MOMENT = ...
+    FRICTION_POWER = ...
+    FRICTION_STATE = ...
+    SELF_LOCKING = ...
+
+class ContactCode(IntEnum):
+    RADIAL = 0
+    ALONG = 1
+    TOTAL = 2
+
+class FrictionState(IntEnum):
+    DECIDED = 0
+    AT_REST = 1
+    NOT_UNIQUE = 2
+    NOT_SOLVED = 3
 
 class Demand(IntFlag):
     POSITION = 0
@@ -258,6 +275,28 @@ class PlanBuilder:
     def set_driven(self, inputs: int) -> None: ...
     def add_actuator(self, axis: int, reference: int, freedom: int) -> None: ...
     def add_tie(self, input: int, leader: int) -> None: ...
+    def add_friction(
+        self,
+        place: int,
+        turns: int,
+        slides: int,
+        link: int,
+        falls: bool,
+        axis: Triple,
+        radius: float,
+        at_rest: float,
+        sliding: float,
+        speed: float,
+    ) -> None: ...
+    def add_contact(
+        self,
+        code: int,
+        weight: float,
+        share: float,
+        tilt: float,
+        roll: float,
+        direction: Triple,
+    ) -> None: ...
     def add_size_point(self, link: int, point: Triple) -> None: ...
     def finish(self) -> Plan: ...
 

@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
+from mechkin_cli.mechanism import friction
+from mechkin_cli.mechanism.friction import FrictionLaw
 from mechkin_cli.mechanism.joint_type import (
     FIRST,
     SECOND,
@@ -51,8 +53,29 @@ _TABLE = (
         axis=_Z2,
         closing="R",
         softer=("S", "C"),
+        friction=FrictionLaw(
+            friction.journal,
+            turns="along",
+            needs=("radius",),
+            may=("length", "collar"),
+            missed=(("length", "tilting moment"), ("collar", "axial force")),
+        ),
     ),
-    JointType("P", (Step("P"),), (_length("s", 0),), _AXIS, axis=_Z2, closing="P", softer=("C",)),
+    JointType(
+        "P",
+        (Step("P"),),
+        (_length("s", 0),),
+        _AXIS,
+        axis=_Z2,
+        closing="P",
+        softer=("C",),
+        friction=FrictionLaw(
+            friction.guide,
+            slides="along",
+            may=("length", "width", "across"),
+            missed=(("length", "tilting moment"), ("width", "moment about it")),
+        ),
+    ),
     # a closing joint would lose the count of its turns
     JointType(
         "H",
@@ -60,11 +83,34 @@ _TABLE = (
         (_angle("theta", 0), _length("s", 0, on_thread=True)),
         _AXIS,
         axis=_Z2,
+        friction=FrictionLaw(
+            friction.thread, turns="along", slides="along", needs=("radius",), may=("flank",)
+        ),
     ),
     JointType(
-        "C", (Step("C"),), (_angle("theta", 0), _length("s", 1)), _AXIS, axis=_Z2, closing="C"
+        "C",
+        (Step("C"),),
+        (_angle("theta", 0), _length("s", 1)),
+        _AXIS,
+        axis=_Z2,
+        closing="C",
+        friction=FrictionLaw(
+            friction.journal,
+            turns="along",
+            slides="along",
+            needs=("radius",),
+            may=("length",),
+            missed=(("length", "tilting moment"),),
+        ),
     ),
-    JointType("S", (Step("S"),), (), Drawing("ball"), closing="S"),
+    JointType(
+        "S",
+        (Step("S"),),
+        (),
+        Drawing("ball"),
+        closing="S",
+        friction=FrictionLaw(friction.ball, turns="all", needs=("radius",)),
+    ),
     JointType(
         "Sp",
         (Step("S"), Step("P", _X2), Step("P", _Y2)),
@@ -73,6 +119,7 @@ _TABLE = (
         axis=_Z2,
         point_on=FIRST,
         closing="Sp",
+        friction=FrictionLaw(friction.plane, slides="square"),
     ),
     # where s grows, the second link runs back along its groove
     JointType(
@@ -83,6 +130,7 @@ _TABLE = (
         axis=_Z2,
         point_on=FIRST,
         closing="Sg",
+        friction=FrictionLaw(friction.groove, slides="along"),
     ),
     JointType(
         "U",

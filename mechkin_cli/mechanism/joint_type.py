@@ -11,6 +11,7 @@ from functools import cache, cached_property
 from typing import Literal, NamedTuple
 
 from mechkin_cli.mechanism.elementary import ELEMENTARY, Freedom
+from mechkin_cli.mechanism.friction import FrictionLaw
 from mechkin_cli.units import ANGLE, Dimension
 
 FIRST, SECOND = 0, 1
@@ -74,7 +75,8 @@ class JointType:
     `named`: its coordinates; `axis`: what users see as its axis (normal, groove), None without
     one; `point_on`: the link that carries its point, None without one; `closing`: its kernel
     entry, None where it closes no loop; `parameter`: what that entry has to know of the drawing
-    (`Joint.parameter`); `softer`: pairs on the same frames that cure a redundant constraint.
+    (`Joint.parameter`); `softer`: pairs on the same frames that cure a redundant constraint;
+    `friction`: how it rubs, None where no law is known.
     """
 
     letter: str
@@ -86,6 +88,7 @@ class JointType:
     closing: str | None = None
     parameter: Literal["", "between axes", "from axis to pin"] = ""
     softer: tuple[str, ...] = ()
+    friction: FrictionLaw | None = None
 
     @cached_property
     def parts(self) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from typing import Literal, NamedTuple
 from mechkin_cli.mechanism.drives import Drives
 from mechkin_cli.mechanism.elementary import Part, Screw
 from mechkin_cli.mechanism.frames import Frame
+from mechkin_cli.mechanism.friction import Rubbing
 from mechkin_cli.mechanism.joint_table import joint_type
 from mechkin_cli.mechanism.joint_type import FIRST, SECOND, Drawn, JointType
 from mechkin_cli.mechanism.vectors import ZERO, Vector, dot, scale
@@ -263,6 +264,7 @@ class Mechanism:
     loads: tuple[Load, ...] = ()
     gravity: Vector = ZERO
     drives: Drives | None = None
+    frictions: tuple[Rubbing, ...] = ()
 
     @property
     def coordinates(self) -> tuple[str, ...]:

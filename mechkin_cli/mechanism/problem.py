@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.coefficient_quantities import coefficient_catalogue
-from mechkin_cli.mechanism.derived_quantities import derived_catalogue
+from mechkin_cli.mechanism.derived_quantities import derived_catalogue, ledger_catalogue
 from mechkin_cli.mechanism.held import Held
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
@@ -97,13 +97,18 @@ class Problem:
         if self.response is not None:
             efforts = self.response.efforts_of
             found = catalogue(mechanism, efforts, timed=True, held=self.held)
+            # the rates of forces, and with them jerks, are not known
+            found = {name: known for name, known in found.items() if known.order < 3}
             # efforts are given here, and linear in nothing
             linear = {name: known for name, known in found.items() if known.kind != "effort"}
-            if motion.driven:
-                found |= coefficient_catalogue(linear, motion.driven, motion.driven[0])
+            moving = [*self.response.independent, *self.response.driven_at]
+            if moving:
+                found |= coefficient_catalogue(linear, moving, moving[0])
             return found | response_quantities() | derived_catalogue(mechanism, (), None)
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
         found = catalogue(mechanism, self.acting, timed=motion.time is not None, held=self.held)
         if leading is not None:
             found |= coefficient_catalogue(found, motion.driven, leading)
+        if motion.time is not None and leading is not None:
+            found |= ledger_catalogue()
         return found | derived_catalogue(mechanism, motion.driven, leading)

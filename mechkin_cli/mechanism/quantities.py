@@ -27,6 +27,7 @@ from mechkin_cli.units import (
     JERK,
     LENGTH,
     MOMENT,
+    POWER,
     TIME,
     VELOCITY,
     Dimension,
@@ -72,17 +73,26 @@ Kind = Literal[
     "per_acceleration",
     "without_acceleration",
     "dynamic_transmission_angle",
+    "ledger_work",
+    "ledger_dissipated",
+    "ledger_energy_error",
     "kinetic_energy",
     "potential_energy",
     "total_force",
     "total_moment",
     "link_direction",
     "link_point",
+    "normal_load",
+    "friction_force",
+    "friction_moment",
+    "friction_power",
+    "friction_state",
+    "self_locking",
     "reaction_level",
     "load_power",
     "actuation",
 ]
-"""The last four are of no use to users: what derived quantities are computed from, and what cells
+"""Some are of no use to users: what derived quantities are computed from, and what cells
 are judged by."""
 
 
@@ -100,6 +110,9 @@ class Wanted(NamedTuple):
 
 TIME_OF_ROW = Wanted("time", "time", "row", TIME, False)
 """The moment of a row."""
+
+SELF_LOCKING = Wanted("self locking", "self_locking", GROUND_NAME, DIMENSIONLESS, False)
+"""1 where a drive that would brake without friction has to push."""
 
 REACTION_LEVEL = Wanted("reaction level", "reaction_level", GROUND_NAME, FORCE, False)
 """The largest component of force, or moment in length units, of all joints."""
@@ -147,6 +160,7 @@ def catalogue(
         *_of_efforts(driven),
         *_of_points(mechanism),
         *_of_links(mechanism),
+        *_of_frictions(mechanism),
         *_of_held(held),
         *_of_ground(),
     ):
@@ -193,6 +207,25 @@ def effort_quantity(joint: str, coordinate: str) -> Wanted:
     """The effort at a coordinate, by its long name."""
     dimension = MOMENT if is_angle(coordinate) else FORCE
     return Wanted(f"{joint}.{coordinate}.effort", "effort", joint, dimension, False, coordinate)
+
+
+def _of_frictions(mechanism: Mechanism) -> Iterator[Wanted]:
+    for rubbing in mechanism.frictions:
+        owner = rubbing.joint
+        yield Wanted(f"{owner}.normal_load", "normal_load", owner, FORCE, False)
+        yield Wanted(f"{owner}.friction_force", "friction_force", owner, FORCE, True)
+        yield Wanted(f"{owner}.friction_moment", "friction_moment", owner, MOMENT, True)
+        yield Wanted(f"{owner}.friction_power", "friction_power", owner, POWER, False)
+
+
+def friction_states(mechanism: Mechanism) -> list[Wanted]:
+    """What the kernel says of each friction's answer, codes of its `FrictionState`."""
+    return [
+        Wanted(
+            f"{rubbing.joint} friction state", "friction_state", rubbing.joint, DIMENSIONLESS, False
+        )
+        for rubbing in mechanism.frictions
+    ]
 
 
 def _of_efforts(driven: Sequence[tuple[str, str]]) -> Iterator[Wanted]:

@@ -148,6 +148,11 @@ class Response:
         """(joint, coordinate) of the start's values."""
         return [(one.joint, one.coordinate) for one in self.start if one.value is not None]
 
+    @property
+    def driven_at(self) -> list[tuple[str, str]]:
+        """(joint, coordinate) of what is driven."""
+        return [(item.joint, item.coordinate) for item in self.driven]
+
     @cached_property
     def watched(self) -> tuple[LoadLaw, ...]:
         """What the stops watch, one value each, in SI."""

@@ -1,4 +1,4 @@
-"""`loads:` - gravity, forces, torques, springs and dampers.
+"""`loads:` - gravity, forces, torques, springs, dampers and friction.
 
 A value may be an expression of coordinates, their rates and `time`, or `{table: file.csv}`.
 """
@@ -11,9 +11,11 @@ from mechkin_cli.schema.rules import Limits, Named
 from mechkin_cli.schema.runs import RunNames
 from mechkin_cli.schema.scalars import (
     AccelerationVector,
+    Angle,
     AngleOrLength,
     CsvPath,
     Damping,
+    Dimensionless,
     DirectionVector,
     Force,
     ForceOrTorque,
@@ -23,6 +25,7 @@ from mechkin_cli.schema.scalars import (
     Stiffness,
     Text,
     Torque,
+    Velocity,
 )
 
 
@@ -189,6 +192,50 @@ class DamperAtJoint(_InRuns):
     """Force per speed, or moment per angular rate (bare numbers: per rad/s)."""
 
 
+class FallingCoefficient(Section):
+    """A coefficient of friction that falls from rest to sliding."""
+
+    static: Dimensionless
+    """At rest."""
+    sliding: Dimensionless
+    """Of surfaces that slide."""
+    speed: Velocity | None = None
+    """Speed over which it falls, by exp(-(v / speed)^2); left out, it falls at once."""
+
+
+def _number_or_falling(value: Any) -> str:
+    return "(falling)" if isinstance(value, (dict, FallingCoefficient)) else "(number)"
+
+
+Coefficient = Annotated[
+    Annotated[Dimensionless, Tag("(number)")] | Annotated[FallingCoefficient, Tag("(falling)")],
+    Choice(_number_or_falling),
+    Named("Coefficient"),
+]
+
+
+class FrictionAtJoint(_InRuns):
+    """Coulomb friction of a joint, from the joint's own reaction."""
+
+    type: Literal["friction"]
+    joint: Name
+    """The joint: R, P, C, H, S, Sp or Sg."""
+    coefficient: Coefficient
+    """Friction force per normal load; or static, sliding and the speed between them."""
+    radius: Length | None = None
+    """R, C, S: radius of the surfaces that turn; H: mean radius of the thread."""
+    length: Length | None = None
+    """R, C, P: distance of the two bearings (shoes) along the axis; they take tilting moments."""
+    collar: Length | None = None
+    """R: mean radius of the face that takes axial force."""
+    width: Length | None = None
+    """P: distance of the shoes across the axis; they take the moment about it."""
+    across: DirectionVector | None = None
+    """P: direction of the width; left out, the shoes take forces alike in all directions."""
+    flank: Angle | None = None
+    """H: angle of the flank against the plane square to the axis, half the thread's angle."""
+
+
 AnyLoad = (
     Gravity
     | ForceOnLink
@@ -199,16 +246,17 @@ AnyLoad = (
     | SpringAtJoint
     | DamperBetweenPoints
     | DamperAtJoint
+    | FrictionAtJoint
 )
-_WORDS = ("gravity", "force", "torque", "spring", "damper")
+_WORDS = ("gravity", "force", "torque", "spring", "damper", "friction")
 
 
 def _tag(mapping: dict[str, Any]) -> str | None:
     word = mapping.get("type")
     if word not in _WORDS:
         return None
-    if word == "gravity":
-        return "(gravity)"
+    if word in ("gravity", "friction"):
+        return f"({word})"
     return f"({word} at joint)" if "joint" in mapping else f"({word})"
 
 
@@ -221,6 +269,7 @@ Load = Annotated[
     | Annotated[SpringBetweenPoints, Tag("(spring)")]
     | Annotated[SpringAtJoint, Tag("(spring at joint)")]
     | Annotated[DamperBetweenPoints, Tag("(damper)")]
-    | Annotated[DamperAtJoint, Tag("(damper at joint)")],
+    | Annotated[DamperAtJoint, Tag("(damper at joint)")]
+    | Annotated[FrictionAtJoint, Tag("(friction)")],
     by_word("type", _tag, ", ".join(_WORDS)),
 ]

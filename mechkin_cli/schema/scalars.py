@@ -130,6 +130,7 @@ CoordinateJerk = Annotated[
     Dimension("third rate of the coordinate", ("0.3 rad/s^3", 0)),
     Named("CoordinateJerk"),
 ]
+Velocity = Annotated[Expression, Dimension("velocity", ("5 mm/s", 0.1)), Named("Velocity")]
 Stiffness = Annotated[
     Expression,
     Dimension("force per length, or moment per angle (bare: per rad)", ("200 N/m", "5 N*m/rad")),

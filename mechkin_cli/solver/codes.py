@@ -6,10 +6,16 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import (
+        ContactCode as ContactCode,
+    )
+    from mechkin_cli.kernel._kernel import (
         Demand as Demand,
     )
     from mechkin_cli.kernel._kernel import (
         FreeCode as FreeCode,
+    )
+    from mechkin_cli.kernel._kernel import (
+        FrictionState as FrictionState,
     )
     from mechkin_cli.kernel._kernel import (
         LoadCode as LoadCode,
@@ -35,8 +41,10 @@ if TYPE_CHECKING:
 else:
     from mechkin_cli.kernel import _kernel
 
+    ContactCode = _kernel.ContactCode
     Demand = _kernel.Demand
     FreeCode = _kernel.FreeCode
+    FrictionState = _kernel.FrictionState
     LoadCode = _kernel.LoadCode
     OutputCode = _kernel.OutputCode
     PassageEnd = _kernel.PassageEnd

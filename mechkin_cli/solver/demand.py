@@ -12,7 +12,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, reference_point
+from mechkin_cli.mechanism.derived_quantities import (
+    DERIVED_KINDS,
+    LEDGER_KINDS,
+    reference_point,
+)
 from mechkin_cli.mechanism.frames import GROUND
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.model import Attached, Damper, Load, Mechanism, varying
@@ -21,7 +25,7 @@ from mechkin_cli.mechanism.vectors import ZERO, Vector
 from mechkin_cli.solver.codes import Demand, OutputCode
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.records import Output, hand_over_outputs
-from mechkin_cli.units import FORCE
+from mechkin_cli.units import DIMENSIONLESS, FORCE
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Outputs, Plan
@@ -31,13 +35,17 @@ WRENCH_KINDS = {"force", "moment", "moment_about_origin"} | _TOTAL_KINDS
 _SHAKING_KINDS = {"shaking_force", "shaking_moment"}
 _INERTIA_KINDS = {"inertia_force", "inertia_moment"}
 _HOLDING_KINDS = {"holding_moment", "holding_force"}
-_FORCE_KINDS = (
+FRICTION_KINDS = {"normal_load", "friction_force", "friction_moment", "friction_power"}
+_VERDICT_KINDS = {"friction_state", "self_locking", "reaction_level"}
+FORCE_KINDS = (
     WRENCH_KINDS
     | _SHAKING_KINDS
     | _INERTIA_KINDS
     | _HOLDING_KINDS
     | COEFFICIENT_KINDS
-    | {"effort", "reaction_level", "dynamic_transmission_angle", "actuation"}
+    | FRICTION_KINDS
+    | _VERDICT_KINDS
+    | {"effort", "dynamic_transmission_angle", "actuation"}
 )
 _ENERGY_KINDS = {"kinetic_energy", "potential_energy"}
 
@@ -52,11 +60,11 @@ def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
             demand |= Demand.VELOCITY | Demand.ACCELERATION
         elif quantity.order == 3:
             demand |= Demand.VELOCITY | Demand.ACCELERATION | Demand.JERK
-        elif quantity.kind in _FORCE_KINDS:
+        elif quantity.kind in FORCE_KINDS:
             demand |= forces_demand(mechanism)
         elif quantity.kind == "kinetic_energy":
             demand |= Demand.VELOCITY
-        elif quantity.kind == "load_power":
+        elif quantity.kind == "load_power" or quantity.kind in LEDGER_KINDS:
             demand |= forces_demand(mechanism) | Demand.VELOCITY
         elif quantity.kind == "condition":
             demand |= Demand.CONDITION
@@ -66,10 +74,10 @@ def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
 
 
 def forces_demand(mechanism: Mechanism) -> Demand:
-    """What forces need: accelerations if a link has mass, velocities if something is damped or a
-    load reads rates."""
+    """What forces need: accelerations if a link has mass or a joint rubs, velocities if something
+    is damped or a load reads rates."""
     demand = Demand.FORCES
-    if any(link.has_mass for link in mechanism.links.values()):
+    if mechanism.frictions or any(link.has_mass for link in mechanism.links.values()):
         demand |= Demand.VELOCITY | Demand.ACCELERATION
     elif any(isinstance(load, Damper) or _reads_rates(load) for load in mechanism.loads):
         demand |= Demand.VELOCITY
@@ -203,8 +211,19 @@ class OutputPlan:
             return self._output(OutputCode[kind.upper()], 0, length * length)
         if kind == "load_power":
             return self._output(OutputCode.LOAD_POWER, int(wanted.coordinate), length * length)
+        if kind in FRICTION_KINDS or kind == "friction_state":
+            return self._friction(wanted)
+        if kind == "self_locking":
+            return self._output(OutputCode.SELF_LOCKING, 0, 1.0)
         code = OutputCode[kind.upper()]
         return self._output(code, 0, length if kind.endswith("force") else length * length)
+
+    def _friction(self, wanted: Wanted) -> int:
+        length = self.layout.length
+        names = [rubbing.joint for rubbing in self.layout.mechanism.frictions]
+        code = OutputCode[wanted.kind.upper()]
+        factor = {FORCE: length, DIMENSIONLESS: 1.0}.get(wanted.dimension, length * length)
+        return self._output(code, names.index(wanted.owner), factor)
 
     def _wrench_code(self, joint: str, kind: str) -> OutputCode:
         """What gives a joint's wrench. A pair that holds nothing has only what its drives exert,

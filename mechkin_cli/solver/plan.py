@@ -13,6 +13,7 @@ from mechkin_cli.mechanism.vectors import ZERO, cross, norm, scale
 from mechkin_cli.solver.axes import coordinate_axis
 from mechkin_cli.solver.codes import FreeCode
 from mechkin_cli.solver.graph import Closing
+from mechkin_cli.solver.plan_friction import friction_records
 from mechkin_cli.solver.plan_loads import load_coordinate, load_record
 from mechkin_cli.solver.records import (
     Actuator,
@@ -70,6 +71,7 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
         Gravity(scale(1.0 / layout.length, layout.mechanism.gravity)),
         *_inertias(layout),
         *(load_record(layout, load) for load in layout.mechanism.loads),
+        *friction_records(layout),
         *_load_program(layout),
         *_drives(layout),
         *_size_points(layout),

@@ -204,6 +204,32 @@ class Tie(NamedTuple):
     leader: int
 
 
+class Friction(NamedTuple):
+    """The friction of the joint at a place; see the kernel's `Friction`."""
+
+    place: int
+    turns: int
+    slides: int
+    link: int
+    falls: bool
+    axis: Triple
+    radius: Number
+    at_rest: Number
+    sliding: Number
+    speed: Number
+
+
+class Contact(NamedTuple):
+    """The next contact of the friction before it; see the kernel's `Contact`."""
+
+    type: int
+    weight: Number
+    share: Number
+    tilt: Number
+    roll: Number
+    direction: Triple
+
+
 class SizePoint(NamedTuple):
     """A joint's point whose place in the first assembly tells the mechanism's size; of ground in
     m."""
@@ -241,6 +267,8 @@ PlanRecord = (
     | Driven
     | Actuator
     | Tie
+    | Friction
+    | Contact
     | SizePoint
 )
 
@@ -262,6 +290,8 @@ _VERBS: dict[type, str] = {
     Driven: "set_driven",
     Actuator: "add_actuator",
     Tie: "add_tie",
+    Friction: "add_friction",
+    Contact: "add_contact",
     SizePoint: "add_size_point",
 }
 """The builder's call for each record."""
@@ -279,6 +309,8 @@ _CONSTANTS: dict[type, tuple[str, ...]] = {
     Gravity: ("g",),
     AppliedLoad: ("point", "other_point", "vector"),
     Program: ("numbers", "constants"),
+    Friction: ("axis", "radius", "at_rest", "sliding", "speed"),
+    Contact: ("weight", "share", "tilt", "roll", "direction"),
     SizePoint: ("point",),
     Output: ("data", "factor"),
 }

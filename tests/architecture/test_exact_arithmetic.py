@@ -68,6 +68,7 @@ ACCEPTED = {
         "building/sequences.py",
         "10 ** max(0, *(-exponent for exponent in exponents))",
     ): "whole numbers",
+    ("analysis/response/driven_rows.py", "TIME ** order"): FRACTIONS,
     ("analysis/response/moments.py", "TIME ** order"): FRACTIONS,
     ("building/coordinates.py", "TIME ** order"): FRACTIONS,
     ("building/laws.py", "TIME ** (have - want)"): FRACTIONS,

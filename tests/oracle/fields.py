@@ -56,6 +56,7 @@ def vectors(data: Document) -> Iterator[tuple[Place, str, str]]:
             ("point", "length", "point"),
             ("force", "force", "polar"),
             ("torque", "torque", "pseudo"),
+            ("across", "number", "polar"),
         ):
             if key in load:
                 yield (load, key), kind, behaviour
@@ -74,7 +75,12 @@ def scalars(data: Document) -> Iterator[tuple[Place, str]]:
         if "lead" in joint:
             yield (joint, "lead"), "length"
     for load in data.get("loads", []):
-        if "joint" in load:
+        if load["type"] == "friction":
+            lengths = ("radius", "length", "collar", "width")
+            yield from (((load, key), "length") for key in lengths if key in load)
+            if "speed" in load["coefficient"]:
+                yield (load["coefficient"], "speed"), "speed"
+        elif "joint" in load:
             yield (load, "value"), load["type"]
     for name, place in coordinates(data):
         container, key = place

@@ -103,7 +103,7 @@ def swapped_links(data: Document, joint: str) -> Document:
     if drawn["type"] == "U":
         drawn["axis"], drawn["axis2"] = drawn["axis2"], drawn["axis"]
     for load in data.get("loads", []):
-        if load.get("joint") == joint:
+        if load.get("joint") == joint and "value" in load:
             load["value"] = _negated(load["value"])
     _negate_coordinates(data, lambda name: name.startswith(joint + "."))
     return data

@@ -59,7 +59,10 @@ def _values(
         number = session.driven.index(by)
         joint = session.problem.mechanism.joints[by[0]]
         unit = joint.unit_of(by[1], session.layout.length)
-        inputs, other = session.inputs.at_unit_acceleration(number), _unloaded(session, at_inputs)
+        inputs, other = (
+            session.inputs.at_unit_acceleration(number),
+            unloaded(session, at_inputs=at_inputs),
+        )
     reactions = [base for base in bases if base.kind in WRENCH_KINDS]
     shifts = run.result.shifts if reactions else ()
     bases += [REACTION_LEVEL] if shifts else []
@@ -73,7 +76,7 @@ def _values(
     return [columns[name] / unit for name in names]
 
 
-def _unloaded(session: Session, at_inputs: bool) -> Session:
+def unloaded(session: Session, *, at_inputs: bool) -> Session:
     """The mechanism with its masses alone, its efforts where they act or at the inputs."""
 
     def made() -> Session:

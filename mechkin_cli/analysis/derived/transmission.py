@@ -88,7 +88,8 @@ def _with_unit_load(mechanism: Mechanism, quantity: Wanted) -> Mechanism:
     """The mechanism without masses and loads but one on a coordinate."""
     load = JointLoad(quantity.owner, quantity.coordinate, 1.0)
     links = {name: Link(name) for name in mechanism.links}
-    return replace(mechanism, links=links, loads=(load,), gravity=ZERO, drives=None)
+    bare = replace(mechanism, links=links, loads=(load,), gravity=ZERO)
+    return replace(bare, drives=None, frictions=())
 
 
 def _velocity(

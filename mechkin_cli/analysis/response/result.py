@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.analysis.response.driven_rows import driven_rows
 from mechkin_cli.analysis.sweep.result import Result
 from mechkin_cli.expressions import Quantity
+from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
 from mechkin_cli.mechanism.load_laws import law_value
 from mechkin_cli.mechanism.model import Varying
 from mechkin_cli.mechanism.quantities import response_quantities
@@ -106,6 +108,12 @@ class ResponseResult(Result):
             chart=self.chart if chart is None else chart,
         )
 
+    @cached_property
+    def as_driven(self) -> Result:
+        """The same rows as a sweep of the start's coordinates, by whose accelerations the
+        coefficients of the equations of motion are; near a dead centre of them there are none."""
+        return driven_rows(self)
+
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by name, in SI.
 
@@ -116,6 +124,8 @@ class ResponseResult(Result):
         if of_response is not None:
             return Quantity(getattr(self, of_response.kind), of_response.dimension)
         wanted = self.problem.quantities().get(name)
+        if wanted is not None and wanted.kind in COEFFICIENT_KINDS:
+            return self.as_driven.quantity(name)
         if wanted is not None and wanted.kind == "effort":
             given = self._given_effort(wanted)
             if given is not None:
@@ -128,7 +138,9 @@ class ResponseResult(Result):
         super().read(
             quantity
             for quantity in wanted
-            if quantity.name not in own and not self.is_given(quantity)
+            if quantity.name not in own
+            and quantity.kind not in COEFFICIENT_KINDS
+            and not self.is_given(quantity)
         )
 
     def is_given(self, quantity: Wanted) -> bool:

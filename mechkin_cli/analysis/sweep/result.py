@@ -21,6 +21,7 @@ from mechkin_cli.analysis.sweep.admissible import (
     told_anew,
 )
 from mechkin_cli.analysis.sweep.closing_angles import make_continuous
+from mechkin_cli.analysis.sweep.friction_rows import FrictionRows
 from mechkin_cli.analysis.sweep.read_off import read_off
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
@@ -77,6 +78,7 @@ class Result:
         self._condition: Floats | None = None
         self._power_error: Floats | None = None
         self._unloaded: bool | None = None
+        self.friction = FrictionRows()
 
     @property
     def problem(self) -> Problem:
@@ -126,11 +128,8 @@ class Result:
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """Everything that the run has to say."""
-        return (
-            *self.problem.diagnostics,
-            *self.start.diagnostics,
-            *self.row_states.diagnostics,
-        )
+        own = (*self.start.diagnostics, *self.row_states.diagnostics)
+        return (*self.problem.diagnostics, *own)
 
     @property
     def units(self) -> UnitSystem:
@@ -168,9 +167,9 @@ class Result:
 
     @property
     def complete(self) -> bool:
-        """Whether every row has a solution, a value of every load that forces need, and actuators
-        that hold the mechanism."""
-        return bool(self.solved.all()) and not self._unloaded and is_held(self)
+        """Whether every row has a solution, and all loads, friction and actuators it needs."""
+        lost = self._unloaded or self.friction.is_lost
+        return bool(self.solved.all()) and not lost and is_held(self)
 
     @property
     def sound(self) -> bool:
@@ -287,6 +286,7 @@ class Result:
 
     def _read_plain(self, wanted: list[Wanted]) -> None:
         demand = demand_of(self.problem.mechanism, wanted)
+        wanted += self.friction.beside(self.problem, wanted, demand)
         if demand & Demand.FORCES and demand & Demand.VELOCITY and self._power_error is None:
             demand |= Demand.POWER
         self._keep_read(self._evaluated(demand, wanted), wanted, demand)
@@ -304,6 +304,7 @@ class Result:
         columns = self._split(wanted, batch, self.session)
         self._rests |= make_continuous(self, wanted, columns)
         self._columns |= columns
+        self.friction.judge(self, wanted, demand)
         reactions = [quantity for quantity in wanted if quantity.kind in WRENCH_KINDS]
         for shift, others in zip(self.shifts if reactions else (), self._shifted, strict=False):
             others |= self.evaluated(reactions, shift=shift)
@@ -354,8 +355,7 @@ class Result:
         time = None if moments is None else moments.values
         ties = session.tie_rates if demand & Demand.FORCES else None
         if not rows.reached.all():
-            first = int(np.argmax(rows.reached))
-            stand_in = np.where(rows.reached, np.arange(rows.reached.size), first)
+            stand_in = np.where(rows.reached, np.arange(rows.reached.size), rows.reached.argmax())
             values, states = values[:, stand_in], states[:, stand_in]
             turned, whole, full = turned[:, stand_in], whole[:, stand_in], full[:, stand_in]
             time = None if time is None else time[stand_in]

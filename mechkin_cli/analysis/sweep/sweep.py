@@ -122,6 +122,7 @@ def _closed(
     if not rows.reached.any():
         return result
     wanted, demand = at_once(session, asked, verdicts)
+    wanted += result.friction.beside(result.problem, wanted, demand)
     batch = result.run(wanted, demand, iterations=tolerances.NEWTON_ITERATIONS)
     failed = _failed(batch, rows)
     if failed.any():
@@ -232,6 +233,10 @@ def row_notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
 
         said = {diagnostic.code for diagnostic in rows.diagnostics}
         notes += [fault for fault in input_faults(session) if fault.code not in said]
+    if problem.mechanism.frictions and result.demand & Demand.FORCES:
+        from mechkin_cli.analysis.sweep.friction import uncounted_notes
+
+        notes += uncounted_notes(result)
     note = open_turn_note(session, rows.states, rows.reached)
     notes += [note] if note else []
     if (

@@ -58,11 +58,26 @@ void bind_plan_codes(nb::module_& m) {
       .value("TOTAL_FORCE", OUT_TOTAL_FORCE)
       .value("TOTAL_MOMENT", OUT_TOTAL_MOMENT)
       .value("CARRIED_FORCE", OUT_CARRIED_FORCE)
-      .value("CARRIED_MOMENT", OUT_CARRIED_MOMENT);
+      .value("CARRIED_MOMENT", OUT_CARRIED_MOMENT)
+      .value("NORMAL_LOAD", OUT_NORMAL_LOAD)
+      .value("FRICTION_FORCE", OUT_FRICTION_FORCE)
+      .value("FRICTION_MOMENT", OUT_FRICTION_MOMENT)
+      .value("FRICTION_POWER", OUT_FRICTION_POWER)
+      .value("FRICTION_STATE", OUT_FRICTION_STATE)
+      .value("SELF_LOCKING", OUT_SELF_LOCKING);
   nb::enum_<ReadCode>(m, "ReadCode", nb::is_arithmetic(), "What programs of quantities read.")
       .value("OUTPUT", READ_OUTPUT)
       .value("ANGLE", READ_ANGLE)
       .value("TIME", READ_TIME);
+  nb::enum_<ContactCode>(m, "ContactCode", nb::is_arithmetic(), "Kinds of contacts that rub.")
+      .value("RADIAL", CONTACT_RADIAL)
+      .value("ALONG", CONTACT_ALONG)
+      .value("TOTAL", CONTACT_TOTAL);
+  nb::enum_<FrictionState>(m, "FrictionState", nb::is_arithmetic(), "What is known of a joint's friction in a row.")
+      .value("DECIDED", FRICTION_DECIDED)
+      .value("AT_REST", FRICTION_AT_REST)
+      .value("NOT_UNIQUE", FRICTION_NOT_UNIQUE)
+      .value("NOT_SOLVED", FRICTION_NOT_SOLVED);
   nb::enum_<FreeCode>(m, "FreeCode", nb::is_arithmetic(), "Kinds of free motions.")
       .value("ALONG", FREE_ALONG)
       .value("SQUARE", FREE_SQUARE)

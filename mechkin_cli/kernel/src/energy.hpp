@@ -5,7 +5,7 @@
 //     d(kinetic energy)/dt = powers of gravity, springs, dampers, forces and torques + efforts by rates
 #pragma once
 
-#include "reactions.hpp"
+#include "balance.hpp"
 
 namespace {
 
@@ -130,20 +130,6 @@ inline Pack load_power(const Plan& p, const Workspace& w, int index, const RowVa
   return powers.sum;
 }
 
-// The largest component of the links' twists.
-inline Pack twist_level(const Plan& p, const Workspace& w) {
-  Pack level = 0.0;
-  for (int k = 0; k < p.links; ++k) {
-    const Twist& t = w.motion[k].velocity;
-    level = component_level(level, {t.angular, t.linear});
-  }
-  return level;
-}
-
-// Powers in parts of the largest wrench by the largest twist up to which nothing works: efforts and rates are off by
-// up to about 1e-12 of those (tolerances.REACTION_ROUNDING), so that smaller powers are rounding alone.
-constexpr double NOTHING_WORKS = 1e-12;
-
 // |sum of powers| / sum of their magnitudes; nan where nothing moves or works, for then no balance is told. `level` is
 // that of the wrenches, see reaction_level.
 template <class RowValue, class More>
@@ -156,6 +142,7 @@ inline Pack power_error(const Plan& p, const Workspace& w, bool accelerating, Pa
     if (accelerating) add_kinetic_power(powers, p.inertia[k], w.pose[k], w.motion[k]);
   }
   for (int l = 0; l < p.loads; ++l) add_load_power(powers, p, w, p.load[l], row_value);
+  for (int f = 0; f < p.frictions; ++f) powers.add(-(w.rubbing.force[f] * w.rubbing.speed[f]));
   for (int i = 0; i < p.inputs; ++i) powers.add(w.effort[i] * w.rate[p.input_column[i]]);
   add_more(powers);
   const Mask none = powers.size <= Pack(NOTHING_WORKS) * level * twist_level(p, w);

@@ -41,6 +41,8 @@ void each_array(Plan& p, const Visit& visit) {
   visit(ARRAY_LOAD, p.load, p.loads);
   visit(ARRAY_ACTUATOR, p.actuator, p.actuators);
   visit(ARRAY_TIE, p.tie, p.ties);
+  visit(ARRAY_FRICTION, p.friction, p.frictions);
+  visit(ARRAY_CONTACT, p.contact, p.contacts);
   visit(ARRAY_SIZE_POINT, p.size_point, p.size_points);
   visit(ARRAY_READ, p.law.read, p.law.reads);
   visit(ARRAY_CURVE, p.law.curve, p.law.curves);

@@ -48,11 +48,16 @@ void check_output(const Plan& p, const OutputRecord& r) {
     case OUT_LOAD_POWER: return check_index(r.index, -1, p.loads, "load");
     case OUT_MOTOR: return check_index(r.index, 0, p.actuators ? p.actuators : p.inputs, "motor");
     case OUT_ACTUATION: return require(p.actuators && r.index == 0, "an output of actuators, of which there are none");
+    case OUT_NORMAL_LOAD:
+    case OUT_FRICTION_FORCE:
+    case OUT_FRICTION_MOMENT:
+    case OUT_FRICTION_POWER:
+    case OUT_FRICTION_STATE: return check_index(r.index, 0, p.frictions, "friction");
     default: return require(r.index == 0, "an output of the whole mechanism has index 0");
   }
 }
 
-bool is_output(int type) { return type >= 0 && type <= OUT_CARRIED_MOMENT; }
+bool is_output(int type) { return type >= 0 && type <= OUT_SELF_LOCKING; }
 
 int output_width(int type) {
   switch (type) {
@@ -68,6 +73,10 @@ int output_width(int type) {
     case OUT_LOAD_POWER:
     case OUT_MOTOR:
     case OUT_ACTUATION:
+    case OUT_NORMAL_LOAD:
+    case OUT_FRICTION_POWER:
+    case OUT_FRICTION_STATE:
+    case OUT_SELF_LOCKING:
     case OUT_EFFORT: return 1;
     default: return 3;
   }
@@ -77,6 +86,12 @@ unsigned output_demand(int type, int order) {
   const unsigned to_order[] = {DEMAND_POSITION, DEMAND_VELOCITY, DEMAND_VELOCITY | DEMAND_ACCELERATION,
                                DEMAND_VELOCITY | DEMAND_ACCELERATION | DEMAND_JERK};
   switch (type) {
+    case OUT_NORMAL_LOAD:
+    case OUT_FRICTION_FORCE:
+    case OUT_FRICTION_MOMENT:
+    case OUT_FRICTION_POWER:
+    case OUT_FRICTION_STATE:
+    case OUT_SELF_LOCKING: return DEMAND_FORCES | to_order[2];
     case OUT_JERK: return to_order[3];
     case OUT_RATE:
     case OUT_KINETIC_ENERGY:

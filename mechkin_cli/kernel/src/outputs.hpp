@@ -63,6 +63,12 @@ inline Vec3 output_slip(const Plan& p, const Workspace& w, const OutputOf<Number
   return carried_point(w, j.point_on, j.point) - carried_point(w, j.second, o.data);
 }
 
+inline Vec3 output_friction(const Workspace& w, int type, int index) {
+  const Wrench r = (-w.rubbing.force[index]) * w.rubbing.drag[index];
+  if (type == OUT_FRICTION_FORCE) return r.force;
+  return r.moment - cross(w.rubbing.point[index], r.force);
+}
+
 template <class Number>
 inline Pack output_closing(const Plan& p, const Workspace& w, const OutputOf<Number>& o) {
   Pack k[4];
@@ -113,6 +119,12 @@ inline int output_value(const Plan& p, const Workspace& w, const Balance* balanc
     case OUT_KINETIC_ENERGY: return one(factor * kinetic_energy(p, w));
     case OUT_POTENTIAL_ENERGY: return one(factor * potential_energy(p, w, row_value));
     case OUT_LOAD_POWER: return one(factor * load_power(p, w, o.index, row_value));
+    case OUT_NORMAL_LOAD: return one(factor * w.rubbing.normal[o.index]);
+    case OUT_FRICTION_FORCE:
+    case OUT_FRICTION_MOMENT: return three(factor * output_friction(w, o.type, o.index));
+    case OUT_FRICTION_POWER: return one(factor * (w.rubbing.force[o.index] * w.rubbing.speed[o.index]));
+    case OUT_FRICTION_STATE: return one(w.rubbing.state[o.index]);
+    case OUT_SELF_LOCKING: return one(w.rubbing.self_locking);
     default: return three((-factor) * ground_moment(p, balance->inertia));  // OUT_INERTIA_MOMENT
   }
 }

@@ -8,6 +8,7 @@
 // own with the same structure (wide_plan.hpp). `Plan`, `Frame` ... are those of the constants of this compiled unit.
 #pragma once
 
+#include "friction_records.hpp"
 #include "program.hpp"
 
 // Displacements that carry links in the tree; other pairs are chains of these (joint_table.py).
@@ -194,7 +195,7 @@ struct Actuator {
 // What plans of one structure share.
 struct PlanShape {
   int links, states, columns, closings, legs, blocks, inputs, loads, load_values;
-  int places, axes, drives, frees, loop_entries, order_count, unknowns, size_points;
+  int places, axes, drives, frees, loop_entries, order_count, unknowns, size_points, frictions, contacts;
   int largest_block;  // rows
   int charts;         // coordinates of the one block's chart, whose unknowns they determine; 0: inputs do
   int driven;         // inputs, the first ones, that motors or actuators answer for; the others are held
@@ -227,6 +228,8 @@ struct PlanOf : PlanShape {
   const LinkInertiaOf<Number>* inertia;
   const LoadOf<Number>* load;
   ProgramOf<Number> law;     // the values of loads that vary
+  const FrictionOf<Number>* friction;
+  const ContactOf<Number>* contact;
   const Output* size_point;  // joint points, whose box at the first assembly tells the size; of ground: in m
   Number gravity[3];         // in length units
   Number length;             // the length unit in m, a power of two
@@ -246,6 +249,8 @@ using JointPlace = JointPlaceOf<double>;
 using FreeMotion = FreeMotionOf<double>;
 using CoordinateAxis = CoordinateAxisOf<double>;
 using Drive = DriveOf<double>;
+using Friction = FrictionOf<double>;
+using Contact = ContactOf<double>;
 using Plan = PlanOf<double>;
 #endif
 

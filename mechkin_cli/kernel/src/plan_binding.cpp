@@ -93,6 +93,7 @@ void check_demand(const Request& r, const OutputList* outputs, const Plan& p) {
   refuse((r.loads || r.undefined) && !(r.demand & DEMAND_FORCES), "the values of loads go with forces");
   refuse(r.demand & DEMAND_FORCES && program_demand(p.law) & ~r.demand, "loads that vary need more than is demanded");
   refuse(r.demand & DEMAND_FORCES && p.ties && !r.ties, "forces need the rates of tied inputs");
+  refuse(r.demand & DEMAND_FORCES && p.frictions && !acceleration, "forces with friction need accelerations");
   refuse(r.demand & DEMAND_POWER && !(r.demand & DEMAND_FORCES), "the power error needs forces");
   refuse(!(r.demand & DEMAND_CONDITION) != !r.condition, "an array for the condition goes with its demand");
   refuse(!(r.demand & DEMAND_POWER) != !r.power_error, "an array for the power error goes with its demand");
@@ -281,6 +282,10 @@ void bind_builder(nb::module_& m) {
       .def("set_driven", &PlanBuilder::set_driven, "inputs"_a)
       .def("add_actuator", &PlanBuilder::add_actuator, "axis"_a, "reference"_a, "freedom"_a)
       .def("add_tie", &PlanBuilder::add_tie, "input"_a, "leader"_a)
+      .def("add_friction", &PlanBuilder::add_friction, "place"_a, "turns"_a, "slides"_a, "link"_a, "falls"_a, "axis"_a,
+           "radius"_a, "at_rest"_a, "sliding"_a, "speed"_a)
+      .def("add_contact", &PlanBuilder::add_contact, "code"_a, "weight"_a, "share"_a, "tilt"_a, "roll"_a,
+           "direction"_a)
       .def("add_size_point", &PlanBuilder::add_size_point, "link"_a, "point"_a)
       .def("finish", &PlanBuilder::finish)
       .def_prop_ro("states", &PlanBuilder::states)

@@ -204,6 +204,8 @@ Plan PlanBuilder::arrays() const {
   p.unknowns = (int)unknown_.size();
   p.rest_count = (int)rest_.size();
   p.size_points = (int)size_point_.size();
+  p.frictions = (int)friction_.size();
+  p.contacts = (int)contact_.size();
   p.largest_block = 0;
   for (const Block& b : block_) p.largest_block = b.rows > p.largest_block ? b.rows : p.largest_block;
   p.joints = joints_.data(), p.closing = closing_.data(), p.leg = leg_.data();
@@ -217,5 +219,6 @@ Plan PlanBuilder::arrays() const {
   p.inertia = inertia_.data(), p.load = load_.data(), p.size_point = size_point_.data();
   p.actuator = actuator_.data(), p.tie = tie_.data();
   p.law = program_.view();
+  p.friction = friction_.data(), p.contact = contact_.data();
   return p;
 }

@@ -290,6 +290,42 @@ void PlanBuilder::set_load_program(const ProgramRecord& program) {
   number(ARRAY_PROGRAM_CONSTANT, 0, (int)program.constants.size());
 }
 
+void PlanBuilder::add_friction(int place, int turns, int slides, int link, bool falls, const Triple& axis,
+                               double radius, double at_rest, double sliding, double speed) {
+  open();
+  require(place >= 0 && place < (int)place_.size(), "friction of an unknown joint");
+  const auto motion = [](int code) { return code >= -1 && code < FREE_CODES; };
+  require(motion(turns) && motion(slides) && (turns >= 0 || slides >= 0), "friction of an unknown motion");
+  check_link(link);
+  check_finite(axis), check_finite(radius), check_finite(at_rest), check_finite(sliding), check_finite(speed);
+  for (const Friction& other : friction_) require(other.place != place, "a joint has one friction");
+  const int contacts = (int)contact_.size();
+  Friction f = {place, turns, slides, link, falls, {}, radius, at_rest, sliding, speed, contacts, contacts};
+  copy(axis, f.axis);
+  const std::size_t at = friction_.size() * sizeof(Friction);
+  friction_.push_back(f);
+  number(ARRAY_FRICTION, at + offsetof(Friction, axis), 3);
+  number(ARRAY_FRICTION, at + offsetof(Friction, radius), 1);
+  number(ARRAY_FRICTION, at + offsetof(Friction, at_rest), 1);
+  number(ARRAY_FRICTION, at + offsetof(Friction, sliding), 1);
+  number(ARRAY_FRICTION, at + offsetof(Friction, speed), 1);
+}
+
+void PlanBuilder::add_contact(int code, double weight, double share, double tilt, double roll,
+                              const Triple& direction) {
+  open();
+  require(!friction_.empty(), "contact of no friction");
+  require(code >= 0 && code < CONTACT_CODES, "unknown kind of contact");
+  check_finite(weight), check_finite(share), check_finite(tilt), check_finite(roll), check_finite(direction);
+  Contact c = {code, weight, share, tilt, roll, {}};
+  copy(direction, c.direction);
+  const std::size_t at = contact_.size() * sizeof(Contact);
+  contact_.push_back(c);
+  friction_.back().contact_end = (int)contact_.size();
+  number(ARRAY_CONTACT, at + offsetof(Contact, weight), 4);
+  number(ARRAY_CONTACT, at + offsetof(Contact, direction), 3);
+}
+
 void PlanBuilder::add_size_point(int link, const Triple& point) {
   open();
   check_link(link);

@@ -52,6 +52,11 @@ class PlanBuilder {
   void add_actuator(int axis, int reference, int freedom);
   // Input `input` is moved by the motor of input `leader`, see Tie.
   void add_tie(int input, int leader);
+  // The friction of a joint, see Friction; at most one a joint.
+  void add_friction(int place, int turns, int slides, int link, bool falls, const Triple& axis, double radius,
+                    double at_rest, double sliding, double speed);
+  // The next contact of the last friction, see Contact.
+  void add_contact(int code, double weight, double share, double tilt, double roll, const Triple& direction);
   // A joint's point, see Plan::size_point: in the link's frame and length units, of ground in m.
   void add_size_point(int link, const Triple& point);
   // Checks that the parts fit together; the builder is spent after it.
@@ -98,6 +103,8 @@ class PlanBuilder {
   std::vector<Load> load_;
   std::vector<Actuator> actuator_;
   std::vector<Tie> tie_;
+  std::vector<Friction> friction_;
+  std::vector<Contact> contact_;
   std::vector<Output> size_point_;
   ProgramStore program_;
 };

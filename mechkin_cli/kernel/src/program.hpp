@@ -32,7 +32,13 @@ enum OutputCode : int {
   OUT_TOTAL_FORCE = 25,       // index: place; constraint, drive and actuators
   OUT_TOTAL_MOMENT = 26,      // about the joint's point
   OUT_CARRIED_FORCE = 27,     // index: place of a joint that holds nothing: what its drives exert
-  OUT_CARRIED_MOMENT = 28
+  OUT_CARRIED_MOMENT = 28,
+  OUT_NORMAL_LOAD = 29,       // index: friction
+  OUT_FRICTION_FORCE = 30,    // on the second link
+  OUT_FRICTION_MOMENT = 31,   // about the joint's point
+  OUT_FRICTION_POWER = 32,    // that it takes
+  OUT_FRICTION_STATE = 33,    // FrictionState
+  OUT_SELF_LOCKING = 34       // 1 where a drive that would brake without friction has to push
 };
 
 // One quantity that a run writes; outputs are no part of the plan (OutputsView).

@@ -265,29 +265,20 @@ inline void closing_wrenches(const Plan& p, Workspace& w, int shift, Pack level)
   }
 }
 
-// Applies everything, solves for the closing wrenches and the efforts; the values of loads that vary stand in
-// `w.load` (quantity_program.hpp). `acting`: the actuators' efforts are known loads.
-template <class RowValue>
-inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool accelerating, int shift,
-                              const RowValue& row_value, bool acting = false) {
-  Balance balance = {p, w, zero_wrench(), zero_wrench(), moving, Pack(0.0)};
-  apply_inertia(balance, accelerating);
-  for (int l = 0; l < p.loads; ++l) apply_load(balance, p.load[l], row_value);
-  if (acting)
-    for (int a = 0; a < p.actuators; ++a) apply_along_coordinate(balance, p.actuator[a].axis, w.actuation.motor[a]);
+// From what each link needs of its joints (w.carried) to what the joints transmit: sums over the tree, closing wrenches,
+// efforts.
+inline void distribute(const Plan& p, Workspace& w, int shift) {
   for (int k = p.links - 1; k >= 0; --k)
     if (p.joints[k].type == TREE_L)
       hang_on_ends(p, w, k);
     else if (p.joints[k].parent >= 0)
       w.carried[p.joints[k].parent] += w.carried[k];
-  closing_wrenches(p, w, shift, tree_level(p, w));
+  closing_wrenches(p, w, shift, shift ? tree_level(p, w) : Pack(0.0));
   stretch_legs(p, w);
-  balance.level = reaction_level(p, w);
   for (int i = 0; i < p.inputs; ++i) {
     const int column = p.input_column[i];
     w.effort[i] = power(w.screw[column], w.carried[p.column_joint[column]]);
   }
-  return balance;
 }
 
 // Constraint wrench that a joint's first link exerts on the second, without drives and joint loads.
@@ -318,5 +309,19 @@ inline Vec3 without_free(const Plan& p, const Workspace& w, const JointPlace& j,
   }
   return a;
 }
+
+// The largest component of the links' twists.
+inline Pack twist_level(const Plan& p, const Workspace& w) {
+  Pack level = 0.0;
+  for (int k = 0; k < p.links; ++k) {
+    const Twist& t = w.motion[k].velocity;
+    level = component_level(level, {t.angular, t.linear});
+  }
+  return level;
+}
+
+// Powers in parts of the largest wrench by the largest twist up to which nothing works: efforts and rates are off by
+// up to about 1e-12 of those (tolerances.REACTION_ROUNDING), so that smaller powers are rounding alone.
+constexpr double NOTHING_WORKS = 1e-12;
 
 }  // namespace

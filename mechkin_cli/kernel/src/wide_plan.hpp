@@ -23,6 +23,8 @@ using JointPlace = JointPlaceOf<Pack>;
 using FreeMotion = FreeMotionOf<Pack>;
 using CoordinateAxis = CoordinateAxisOf<Pack>;
 using Drive = DriveOf<Pack>;
+using Friction = FrictionOf<Pack>;
+using Contact = ContactOf<Pack>;
 using Plan = PlanOf<Pack>;
 using LanePlan = PlanOf<double>;
 
@@ -155,6 +157,32 @@ inline void widen_program(const LanePlan& first, const Lanes& lanes, Plan* w, Ro
             from.inputs, read, from.curve, from.knot, constant, from.operation, from.operand, from.output, from.kink};
 }
 
+inline void widen_frictions(const LanePlan& first, const Lanes& lanes, Plan* w, Room& room) {
+  Friction* const friction = room.take<Friction>(first.frictions);
+  Contact* const contact = room.take<Contact>(first.contacts);
+  if (!room.memory) return;
+  for (int f = 0; f < first.frictions; ++f) {
+    const auto& from = first.friction[f];
+    friction[f] = {from.place, from.turns, from.slides, from.link, from.falls, {},
+                   lanes.number([&](const LanePlan& p) { return p.friction[f].radius; }),
+                   lanes.number([&](const LanePlan& p) { return p.friction[f].at_rest; }),
+                   lanes.number([&](const LanePlan& p) { return p.friction[f].sliding; }),
+                   lanes.number([&](const LanePlan& p) { return p.friction[f].speed; }),
+                   from.contact_begin, from.contact_end};
+    lanes.numbers(friction[f].axis, 3, [&](const LanePlan& p) { return p.friction[f].axis; });
+  }
+  for (int c = 0; c < first.contacts; ++c) {
+    contact[c] = {first.contact[c].code,
+                  lanes.number([&](const LanePlan& p) { return p.contact[c].weight; }),
+                  lanes.number([&](const LanePlan& p) { return p.contact[c].share; }),
+                  lanes.number([&](const LanePlan& p) { return p.contact[c].tilt; }),
+                  lanes.number([&](const LanePlan& p) { return p.contact[c].roll; }),
+                  {}};
+    lanes.numbers(contact[c].direction, 3, [&](const LanePlan& p) { return p.contact[c].direction; });
+  }
+  w->friction = friction, w->contact = contact;
+}
+
 // Writes the wide plan of some plans (LANES) into a room; the bytes it takes. Without memory they are only counted.
 inline long widen(const LanePlan* const* plans, char* memory) {
   const LanePlan& first = *plans[0];
@@ -176,6 +204,7 @@ inline long widen(const LanePlan* const* plans, char* memory) {
   widen_places(first, lanes, to, room);
   widen_masses_and_loads(first, lanes, to, room);
   widen_program(first, lanes, to, room);
+  widen_frictions(first, lanes, to, room);
   return room.used;
 }
 

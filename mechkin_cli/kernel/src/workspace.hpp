@@ -4,6 +4,7 @@
 #include "actuation_memory.hpp"
 #include "chart.hpp"
 #include "factors.hpp"
+#include "friction_memory.hpp"
 #include "legs.hpp"
 #include "pairs.hpp"
 
@@ -29,6 +30,7 @@ struct Workspace {
   Pack* scratch;                  // three times the largest block squared
   Pack* effort;                   // inputs
   Actuation actuation;
+  Rubbing rubbing;
   Vec3* across;                   // legs: what its end needs across its line
   Pack* holding;                  // legs: couple about its line
   Pack* saved;                    // states before a trial step
@@ -79,6 +81,7 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->moves = (bool*)take(p.links * sizeof(bool));
   w->effort = (Pack*)take((p.inputs + 1) * pack);
   lay_out_actuation(p, take, &w->actuation);
+  lay_out_friction(p, take, &w->rubbing);
   w->across = (Vec3*)take((p.legs + 1) * sizeof(Vec3));
   w->holding = (Pack*)take((p.legs + 1) * pack);
   w->saved = (Pack*)take(p.states * pack);

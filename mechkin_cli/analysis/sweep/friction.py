@@ -1,0 +1,247 @@
+"""What a sweep has to say of friction: rows without an answer, self-locking, loads not counted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.quantities import REACTION_LEVEL, SELF_LOCKING, friction_states
+from mechkin_cli.solver.codes import FrictionState
+from mechkin_cli.status import Status
+from mechkin_cli.units import FORCE, MOMENT
+
+if TYPE_CHECKING:
+    from mechkin_cli.analysis.sweep.result import Result
+    from mechkin_cli.arrays import Bools, Floats
+    from mechkin_cli.mechanism.friction import Rubbing
+    from mechkin_cli.mechanism.problem import Problem
+    from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.units import Dimension
+
+CODE = "friction-undecided"
+
+_WHY = {
+    FrictionState.AT_REST: (
+        "friction of {} has no direction: nothing slides there, or is about to",
+        "give the inputs the rate, or the acceleration, of the motion that is meant; a joint that "
+        "never moves needs no friction",
+    ),
+    FrictionState.NOT_UNIQUE: (
+        "friction of {} may jam: no proof that its forces are the only ones",
+        "make the coefficient smaller or the bearings longer, or drive the mechanism elsewhere",
+    ),
+    FrictionState.NOT_SOLVED: (
+        "friction of {} has no forces in balance with its reactions",
+        "make the coefficient smaller, or move the sweep by a fraction of its step",
+    ),
+}
+"""What is said of a row without an answer, and what to do."""
+
+
+class FrictionVerdict(NamedTuple):
+    """Rows (rows,) in which some forces have no value, those of them in which all would be
+    unfounded, and what to say."""
+
+    lost: Bools
+    unfounded: Bools
+    diagnostics: list[Diagnostic]
+
+
+def verdict_quantities(problem: Problem) -> list[Wanted]:
+    """What forces with friction are judged by."""
+    mechanism = problem.mechanism
+    if not mechanism.frictions:
+        return []
+    return [*friction_states(mechanism), SELF_LOCKING, REACTION_LEVEL, *_holding(problem)]
+
+
+def _holding(problem: Problem) -> list[Wanted]:
+    """What holds the idle freedoms, where the file does not accept that something does."""
+    from mechkin_cli.mechanism.idle import idle_freedoms
+
+    if problem.hold_idle:
+        return []
+    known = problem.quantities()
+    return [known[name] for name in dict.fromkeys(i.holding for i in idle_freedoms(problem))]
+
+
+def friction_verdict(result: Result) -> FrictionVerdict:
+    """The verdict on the friction of a result, whose verdict quantities have been read."""
+    rows, problem = result.row_states, result.problem
+    judged = rows.reached & (rows.status != Status.rank_unclear)
+    lost, unfounded = np.zeros((2, judged.size), dtype=bool)
+    diagnostics = []
+    for where, diagnostic in _undecided(result, judged):
+        lost |= where
+        diagnostics.append(diagnostic)
+    for where, diagnostic in (*_not_unique(result, judged), *_spinning(result, judged)):
+        unfounded |= where
+        diagnostics.append(diagnostic)
+    lost |= unfounded
+    locking = judged & (result.columns[SELF_LOCKING.name][0] > 0.0) & ~lost
+    if locking.any():
+        diagnostics.append(_self_locking(problem, locking))
+    return FrictionVerdict(lost, unfounded, diagnostics)
+
+
+Finding = Iterator[tuple["Bools", Diagnostic]]
+
+
+def _undecided(result: Result, judged: Bools) -> Finding:
+    frictions = result.problem.mechanism.frictions
+    states = [result.columns[q.name][0] for q in friction_states(result.problem.mechanism)]
+    for code, (why, cure) in _WHY.items():
+        found = [judged & (state == int(code)) for state in states]
+        named = [one for one, where in zip(frictions, found, strict=True) if where.any()]
+        if named:
+            where = np.any(found, axis=0)
+            text = f"{why.format(_list(named))}; forces stay empty in {_rows(where)}"
+            yield where, Diagnostic(CODE, "warning", text, named[0].place, hint=cure)
+
+
+def _list(named: Sequence[Rubbing]) -> str:
+    return ", ".join(one.joint for one in named)
+
+
+def _not_unique(result: Result, judged: Bools) -> Finding:
+    """Friction by a reaction that redundant constraints leave arbitrary."""
+    known = result.problem.quantities()
+    frictions = result.problem.mechanism.frictions if result.shifts else ()
+    names = [f"{rubbing.joint}.normal_load" for rubbing in frictions]
+    wanted = [known[name] for name in names]
+    if not wanted:
+        return
+    columns = [result.evaluated(wanted, shift=shift) for shift in (0, *result.shifts)]
+    level = result.columns[REACTION_LEVEL.name][0]
+    lost, named = np.zeros(judged.size, dtype=bool), []
+    for rubbing, name in zip(frictions, names, strict=True):
+        own, *others = (np.abs(each[name][0]) for each in columns)
+        limit = tolerances.UNIQUE_CELL * np.fmax(own, level)
+        where = judged & np.isfinite(own) & ~_all_near(own, others, limit)
+        if where.any() and rubbing.at_rest != 0.0:
+            lost |= where
+            named.append(rubbing)
+    if named:
+        yield lost, _arbitrary(named)
+
+
+def _all_near(own: Floats, others: Sequence[Floats], limit: Floats) -> Bools:
+    near = np.ones(own.size, dtype=bool)
+    for other in others:
+        near &= np.abs(other - own) <= limit
+    return near
+
+
+def _arbitrary(named: Sequence[Rubbing]) -> Diagnostic:
+    lengths = ("length", "collar", "width")
+    given = [key for key in lengths if any(getattr(one, key) is not None for one in named)]
+    without = f", or leave out {' and '.join(given)}" if given else ""
+    return Diagnostic(
+        "friction-not-unique",
+        "error",
+        f"the friction of {_list(named)} goes by reactions that redundant "
+        "constraints leave arbitrary; forces stay empty",
+        named[0].place,
+        hint=f"free a joint of the loop (a sphere for a pin, a cylinder for a slide){without}",
+    )
+
+
+def _spinning(result: Result, judged: Bools) -> Finding:
+    """Friction that would drive an idle freedom."""
+    from mechkin_cli.mechanism.idle import idle_freedoms
+
+    problem = result.problem
+    level, length = result.columns[REACTION_LEVEL.name][0], result.session.layout.length
+    for idle in idle_freedoms(problem) if _holding(problem) else ():
+        unit = 1.0 if idle.slides else length
+        holding = np.sqrt(sum(part * part for part in result.columns[idle.holding]))
+        where = judged & (holding > tolerances.UNIQUE_CELL * level * unit)
+        if where.any():
+            dimension = FORCE if idle.slides else MOMENT
+            most = float(problem.units.from_si(float(np.max(holding[where])), dimension))
+            motion, what = ("slide", "a force") if idle.slides else ("spin", "a moment")
+            yield (
+                where,
+                Diagnostic(
+                    "loaded-spin",
+                    "error",
+                    f"{idle.words}, and friction drives it in {_rows(where)}: the {motion} is a "
+                    "dynamic freedom, forces depend on it",
+                    measured=f"{most:.6g} {problem.units.label(dimension)}",
+                    hint=f"{idle.cure}, or accept {what} that holds it with idle: hold",
+                ),
+            )
+
+
+def _self_locking(problem: Problem, locking: Bools) -> Diagnostic:
+    return Diagnostic(
+        "self-locking",
+        "note",
+        f"in {_rows(locking)} a drive would brake without friction and has to push with it: the "
+        "loads alone do not move the mechanism there",
+    )
+
+
+def uncounted_notes(result: Result) -> list[Diagnostic]:
+    """Loads of joints that rub which their friction does not go by, for lack of a length."""
+    notes: list[Diagnostic] = []
+    problem, known = result.problem, result.problem.quantities()
+    for rubbing in problem.mechanism.frictions:
+        law = problem.mechanism.joints[rubbing.joint].type.friction
+        missed = [(k, w) for k, w in law.missed if getattr(rubbing, k) is None] if law else []
+        if not missed or result.shifts or rubbing.at_rest == 0.0:
+            continue
+        wanted = [known[f"{rubbing.joint}.{word}"] for word in ("force", "moment", "axis")]
+        columns = result.evaluated([*wanted, REACTION_LEVEL])
+        force, moment, axis = (columns[q.name] for q in wanted)
+        level = columns[REACTION_LEVEL.name][0]
+        for key, load in missed:
+            size, dimension = _uncounted(load, force, moment, axis)
+            unit = 1.0 if dimension == FORCE else result.session.layout.length
+            counts = result.solved & (size > tolerances.UNIQUE_CELL * level * unit)
+            if counts.any():
+                most = float(problem.units.from_si(float(np.max(size[counts])), dimension))
+                measured = f"at most {most:.6g} {problem.units.label(dimension)}"
+                notes.append(_uncounted_note(rubbing, key, load, measured))
+    return notes
+
+
+def _uncounted(load: str, force: Floats, moment: Floats, axis: Floats) -> tuple[Floats, Dimension]:
+    if load == "axial force":
+        return np.abs(_dot(axis, force)), FORCE
+    about = _dot(axis, moment)
+    if load == "tilting moment":
+        across = moment - about * axis
+        return np.sqrt(_dot(across, across)), MOMENT
+    return np.abs(about), MOMENT
+
+
+def _dot(a: Floats, b: Floats) -> Floats:
+    product: Floats = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    return product
+
+
+def _uncounted_note(rubbing: Rubbing, key: str, load: str, measured: str) -> Diagnostic:
+    name = "moment about its axis" if load == "moment about it" else load
+    return Diagnostic(
+        "friction-uncounted",
+        "warning",
+        f"{rubbing.joint} carries {'an' if name[0] == 'a' else 'a'} {name}, and its friction does "
+        "not count it",
+        rubbing.place,
+        measured=measured,
+        hint=f"give the {key} of what takes it, or free the joint of it",
+    )
+
+
+def _rows(where: Bools) -> str:
+    numbers = np.flatnonzero(where) + 1
+    if numbers.size == 1:
+        return f"row {numbers[0]}"
+    if numbers.size == where.size:
+        return "all rows"
+    return f"{numbers.size} rows, first in row {numbers[0]}"

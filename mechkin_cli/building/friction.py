@@ -1,0 +1,155 @@
+"""Friction of the file to the friction of a joint: its law's keys, coefficients and lengths."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.friction import FrictionLaw, Rubbing
+from mechkin_cli.mechanism.joint_table import JOINT_TYPES
+from mechkin_cli.mechanism.model import Attached, Joint
+from mechkin_cli.mechanism.vectors import cross, dot, norm, scale, subtract, unit
+from mechkin_cli.schema.loads import FallingCoefficient
+from mechkin_cli.tolerances import LARGEST_FLANK, PARALLEL
+from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, VELOCITY
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from mechkin_cli.schema.loads import FrictionAtJoint
+
+CODE = "friction"
+LENGTHS = ("radius", "length", "collar", "width")
+KEYS = (*LENGTHS, "across", "flank")
+
+
+class _Coefficients(NamedTuple):
+    at_rest: float
+    sliding: float
+    speed: float | None
+
+
+def build_friction(
+    fields: Fields, path: Path, section: FrictionAtJoint, joint: Joint
+) -> Rubbing | None:
+    """The friction of a joint; None, and errors in `fields`, where it cannot have this one."""
+    law = joint.type.friction
+    if law is None:
+        known = ", ".join(letter for letter, entry in JOINT_TYPES.items() if entry.friction)
+        text = f"{joint.name} is of type {joint.letter}, for which there is no law of friction"
+        fields.error(CODE, (*path, "joint"), text, f"friction is known for {known}")
+        return None
+    errors = fields.error_count
+    _check_keys(fields, path, section, joint, law)
+    given = _coefficients(fields, path, section)
+    radius, length, collar, width = (_length(fields, path, section, key) for key in LENGTHS)
+    flank, across = _flank(fields, path, section), _across(fields, path, section, joint)
+    if fields.error_count > errors:
+        return None
+    place = fields.document.place(path)
+    return Rubbing(joint.name, *given, radius, length, collar, width, flank, across, place)
+
+
+def _check_keys(
+    fields: Fields, path: Path, section: FrictionAtJoint, joint: Joint, law: FrictionLaw
+) -> None:
+    known = (*law.needs, *law.may)
+    takes = f"it takes {', '.join(('coefficient', *known))}"
+    for key in KEYS:
+        given = getattr(section, key) is not None
+        if given and key not in known:
+            text = f"friction of {joint.name}, a joint of type {joint.letter}, has no {key}"
+            fields.key_error(CODE, (*path, key), text, takes)
+        elif key in law.needs and not given:
+            text = f"friction of {joint.name}, a joint of type {joint.letter}, needs a {key}"
+            fields.error(CODE, path, text, takes)
+    if section.across is not None and section.width is None and "across" in known:
+        text = "across is the direction of a width, and there is none"
+        fields.key_error(CODE, (*path, "across"), text, "give width, too, or leave out across")
+
+
+def _coefficients(fields: Fields, path: Path, section: FrictionAtJoint) -> _Coefficients:
+    given = section.coefficient
+    path = (*path, "coefficient")
+    if not isinstance(given, FallingCoefficient):
+        number = _coefficient(fields, path, given)
+        return _Coefficients(number, number, None)
+    at_rest = _coefficient(fields, (*path, "static"), given.static)
+    sliding = _coefficient(fields, (*path, "sliding"), given.sliding)
+    if at_rest < sliding:
+        text = "the static coefficient is smaller than that of sliding"
+        hint = "surfaces hold at least as well as they drag: exchange the two"
+        fields.error(CODE, (*path, "static"), text, hint)
+    if given.speed is None:
+        return _Coefficients(at_rest, sliding, None)
+    errors = fields.error_count
+    speed = fields.number((*path, "speed"), given.speed, VELOCITY)
+    if fields.error_count == errors and not speed > 0.0:
+        text = "the speed from static to sliding friction must be positive"
+        hint = "leave it out where the coefficient falls at once"
+        fields.error(CODE, (*path, "speed"), text, hint)
+    return _Coefficients(at_rest, sliding, speed)
+
+
+def _coefficient(fields: Fields, path: Path, text: str) -> float:
+    number = fields.number(path, text, DIMENSIONLESS)
+    if number < 0.0:
+        fields.error(CODE, path, "a coefficient of friction is not negative", "write its magnitude")
+    return number
+
+
+def _length(fields: Fields, path: Path, section: FrictionAtJoint, key: str) -> float | None:
+    text = getattr(section, key)
+    if text is None:
+        return None
+    errors = fields.error_count
+    number = fields.number((*path, key), text, LENGTH)
+    if fields.error_count == errors and not number > 0.0:
+        fields.error(CODE, (*path, key), f"the {key} of friction must be positive", "give its size")
+    return number
+
+
+def _flank(fields: Fields, path: Path, section: FrictionAtJoint) -> float | None:
+    if section.flank is None:
+        return None
+    angle = fields.number((*path, "flank"), section.flank, ANGLE)
+    if abs(angle) <= LARGEST_FLANK:
+        return angle
+    fields.error(
+        CODE,
+        (*path, "flank"),
+        "such a flank stands nearly along the axis",
+        "give half the angle of the thread: 15 deg for trapezoidal, 30 deg for metric threads",
+    )
+    return None
+
+
+def _across(fields: Fields, path: Path, section: FrictionAtJoint, joint: Joint) -> Attached | None:
+    """The direction of the width, square to the axis."""
+    if section.across is None:
+        return None
+    errors = fields.error_count
+    given, axis = fields.direction((*path, "across"), section.across), joint.axis
+    if fields.error_count > errors:
+        return None
+    if norm(cross(given, axis.vector)) <= PARALLEL:
+        text = f"the width of {joint.name} cannot run along its axis"
+        fields.error(CODE, (*path, "across"), text, "give a direction square to the axis")
+        return None
+    along = scale(dot(given, axis.vector), axis.vector)
+    return Attached(axis.link, unit(subtract(given, along)))
+
+
+def refuse_actuators(fields: Fields, frictions: Sequence[Rubbing]) -> None:
+    """Notes that reactions with friction are found for efforts at the inputs."""
+    text = "friction goes by reactions of efforts at the inputs, and the file has actuators"
+    hint = "leave out actuators, or the friction"
+    fields.note(Diagnostic(CODE, "error", text, frictions[0].place, hint=hint))
+
+
+def refuse_response(fields: Fields, frictions: Sequence[Rubbing], run: str) -> None:
+    """Notes that responses are integrated without friction."""
+    text = f"friction is computed in sweeps, and it acts in the response {run}"
+    hint = "write runs: [sweep] beside it"
+    fields.note(Diagnostic(CODE, "error", text, frictions[0].place, hint=hint))

@@ -1,0 +1,45 @@
+// Friction of joints as records of the plan (friction.hpp), and what is known of it in a row.
+#pragma once
+
+// Contacts of a joint that rub, by what their load is: shares of the radial force and of the tilting couple, a single
+// component, or the whole force.
+enum ContactCode : int {
+  CONTACT_RADIAL = 0,
+  CONTACT_ALONG = 1,
+  CONTACT_TOTAL = 2,
+  CONTACT_CODES = 3
+};
+
+// One contact of a joint that rubs. With F and M the joint's force and moment about its point, z its axis:
+//   RADIAL  | share F_r + tilt M x z |,  F_r = F - (z.F) z
+//   ALONG   | share u.F + tilt u.(M x z) + roll z.M |,  u the direction
+//   TOTAL   share |F|
+template <class Number>
+struct ContactOf {
+  int code;
+  Number weight;             // of its load in the joint's normal load
+  Number share, tilt, roll;  // lengths in units
+  Number direction[3];       // on the link that carries the friction's axis
+};
+
+// Coulomb friction of a joint: a drag against the velocity of its surfaces, the coefficient times its normal load.
+// Which motions rub: FreeCode of its turns and its slides, -1 for none.
+template <class Number>
+struct FrictionOf {
+  int place;
+  int turns, slides;
+  int link;          // that carries the axis
+  int falls;         // whether the coefficient depends on the speed; else it is `sliding`
+  Number axis[3];
+  Number radius;     // of the surfaces that turn
+  Number at_rest, sliding, speed;  // coefficients, and the speed from one to the other
+  int contact_begin, contact_end;  // into Plan::contact
+};
+
+// What is known of a joint's friction in a row.
+enum FrictionState : int {
+  FRICTION_DECIDED = 0,
+  FRICTION_AT_REST = 1,     // loaded, and neither a velocity nor an acceleration tells its direction
+  FRICTION_NOT_UNIQUE = 2,  // no proof that the loads of the rubbing joints are the only ones
+  FRICTION_NOT_SOLVED = 3
+};

@@ -1,0 +1,177 @@
+// The loads of joints that rub, from each other (docs/friction.md).
+//
+// A friction force is its coefficient times a normal load, a normal load a sum of magnitudes of what the contacts carry,
+// and that is linear in the friction forces:
+//
+//     z_k = mu_k N_k(z),    N_k(z) = sum over contacts of weight |base + sum_j gain_j z_j|
+//
+// Solved by semismooth Newton. With L_kj = mu_k sum weight |gain_j| the right-hand side is a contraction where the
+// spectral radius of L is below 1, in the maximum norm weighted by w = (I - L)^-1 1: there is one solution, and a step
+// z := mu N(z) leads towards it wherever Newton's does not. w > 0 with L w < w proves that radius (Collatz 1942), and is
+// there whenever it is below 1 (Berman and Plemmons, Nonnegative Matrices, 1979, chapter 6).
+#pragma once
+
+#include "position.hpp"
+
+namespace {
+
+// By how much L w must be below w: far above the rounding of a few dozen sums, far below what tells friction that jams.
+constexpr double CONTRACTION_MARGIN = 1e-12;
+// Residuals, in parts of the largest friction force: a few roundings of the sums; where Newton gets no further; accepted.
+constexpr double FRICTION_TIGHT = 4e-15, FRICTION_STALLED = 1e-12, FRICTION_ACCEPT = 1e-10;
+constexpr int FRICTION_ITERATIONS = 200;
+
+MECHKIN_INLINE Pack magnitude(Vec3 a) { return sqrt(dot(a, a)); }
+// At least |a|, at most 1.74 times as much.
+MECHKIN_INLINE Pack sum_of_components(Vec3 a) { return abs(a.x) + abs(a.y) + abs(a.z); }
+
+// The Lipschitz matrix L of the friction forces into r.bound, `size` being at least the length of a vector.
+template <class Size>
+MECHKIN_INLINE void bound_friction(const Plan& p, const Rubbing& r, Size&& size) {
+  const int n = p.frictions;
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j) {
+      Pack sum = 0.0;
+      for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c)
+        sum += Pack(p.contact[c].weight) * size(r.gain[c * n + j]);
+      r.bound[k * n + j] = r.coefficient[k] * sum;
+    }
+}
+
+// Friction k where L w < w.
+MECHKIN_INLINE Mask contracts(const Rubbing& r, int n, int k, const Pack* weight) {
+  Pack sum = 0.0;
+  for (int j = 0; j < n; ++j) sum += r.bound[k * n + j] * weight[j];
+  return sum <= Pack(1.0 - CONTRACTION_MARGIN) * weight[k];
+}
+
+MECHKIN_INLINE Mask doubtful(const Rubbing& r, int k) { return r.state[k] == Pack((double)FRICTION_NOT_UNIQUE); }
+
+// As prove_unique, for lanes in which w = 1 and a coarse bound do not prove it.
+inline void prove_thoroughly(const Plan& p, const Rubbing& r, Mask proven) {
+  const int n = p.frictions;
+  const Pack one = 1.0;
+  bound_friction(p, r, [](Vec3 a) { return magnitude(a); });
+  for (int k = 0; k < n; ++k) {
+    r.step[k] = 1.0;
+    for (int j = 0; j < n; ++j) r.matrix[k * n + j] = Pack(k == j ? 1.0 : 0.0) - r.bound[k * n + j];
+  }
+  const Factors f = {r.matrix, r.swap, n};
+  factor(f);
+  solve(f, r.step);
+  for (int k = 0; k < n; ++k) {
+    const Mask finite = (r.step[k] > Pack(0.0)) & (r.step[k] < Pack(__builtin_inf()));
+    const Mask good = proven | (finite & contracts(r, n, k, r.step));
+    r.state[k] = select(good, r.state[k], Pack((double)FRICTION_NOT_UNIQUE));
+  }
+  for (int round = 0; round < n; ++round)
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < n; ++j) {
+        const Mask follows = doubtful(r, j) & ~(r.bound[k * n + j] == Pack(0.0));
+        r.state[k] = select(follows, Pack((double)FRICTION_NOT_UNIQUE), r.state[k]);
+      }
+  for (int k = 0; k < n; ++k) {
+    r.coefficient[k] = select(doubtful(r, k), Pack(0.0), r.coefficient[k]);
+    r.weight[k] = select(proven | doubtful(r, k), one, r.step[k]);
+  }
+}
+
+// The weights w of the norm in which friction contracts; those that no proof holds for, and all that depend on them, are
+// marked in r.state and have no friction.
+inline void prove_unique(const Plan& p, const Rubbing& r) {
+  const int n = p.frictions;
+  bound_friction(p, r, [](Vec3 a) { return sum_of_components(a); });
+  for (int k = 0; k < n; ++k) r.weight[k] = 1.0;
+  Mask proven = all_lanes(true);
+  for (int k = 0; k < n; ++k) proven = proven & contracts(r, n, k, r.weight);
+  if (!all(proven)) prove_thoroughly(p, r, proven);
+}
+
+// Normal loads of the friction forces in r.force, with the directions of the contacts' loads, and mu N - z into r.right.
+inline void load_contacts(const Plan& p, const Rubbing& r) {
+  const int n = p.frictions;
+  for (int k = 0; k < n; ++k) {
+    Pack normal = 0.0;
+    for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
+      Vec3 load = r.base[c];
+      for (int j = 0; j < n; ++j) load += r.force[j] * r.gain[c * n + j];
+      const Pack size = magnitude(load);
+      const Mask none = size == Pack(0.0);
+      r.along[c] = select(none, Pack(0.0), Pack(1.0) / select(none, Pack(1.0), size)) * load;
+      normal += Pack(p.contact[c].weight) * size;
+    }
+    r.normal[k] = normal;
+    r.right[k] = r.coefficient[k] * normal - r.force[k];
+  }
+}
+
+// Newton's matrix I - mu dN/dz there.
+inline void differentiate_loads(const Plan& p, const Rubbing& r) {
+  const int n = p.frictions;
+  for (int k = 0; k < n; ++k) {
+    Pack* const row = r.matrix + k * n;
+    for (int j = 0; j < n; ++j) row[j] = k == j ? 1.0 : 0.0;
+    for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
+      const Pack share = r.coefficient[k] * Pack(p.contact[c].weight);
+      for (int j = 0; j < n; ++j) row[j] -= share * dot(r.along[c], r.gain[c * n + j]);
+    }
+  }
+}
+
+// What is left of the equations, and the largest friction force, in the norm in which friction contracts.
+struct LeftOver {
+  Pack left, scale;
+};
+inline LeftOver left_over(const Plan& p, const Rubbing& r) {
+  LeftOver found = {Pack(0.0), Pack(0.0)};
+  for (int k = 0; k < p.frictions; ++k) {
+    const Pack per = Pack(1.0) / r.weight[k], part = abs(r.right[k]) * per;
+    found.left = select(part <= found.left, found.left, part);  // a NaN wins
+    found.scale = max(max(abs(r.force[k]), r.coefficient[k] * r.normal[k]) * per, found.scale);
+  }
+  return found;
+}
+
+// Friction forces into r.force, normal loads into r.normal, FrictionState into r.state where there is no answer, from
+// coefficients, base and gain; r.state is FRICTION_DECIDED.
+inline void solve_friction(const Plan& p, Rubbing& r) {
+  const int n = p.frictions;
+  prove_unique(p, r);
+  for (int k = 0; k < n; ++k) r.force[k] = 0.0;
+  Mask done = all_lanes(false), newton = all_lanes(false), moved = all_lanes(false);
+  Pack before = __builtin_inf();
+  const Pack infinite = __builtin_inf();
+  for (int iteration = 0; iteration < FRICTION_ITERATIONS; ++iteration) {
+    load_contacts(p, r);
+    const LeftOver now = left_over(p, r);
+    // a step of Newton's that did not help is taken back, for the one that does
+    const Mask back = ~done & newton & ~(now.left <= Pack(0.9) * before);
+    done = done | (~back & (now.left <= Pack(FRICTION_TIGHT) * now.scale));
+    done = done | (back & (before <= Pack(FRICTION_STALLED) * now.scale));
+    done = done | ~(now.left < infinite);  // nothing to hope for
+    moved = back;
+    if (any(back))
+      for (int k = 0; k < n; ++k) r.force[k] = select(back, r.step[k], r.force[k]);
+    if (all(done)) break;
+    const Mask go = ~back & ~done;
+    for (int k = 0; k < n; ++k) r.step[k] = select(go, r.force[k] + r.right[k], r.step[k]);
+    differentiate_loads(p, r);
+    const Factors f = {r.matrix, r.swap, n};
+    factor(f);
+    solve(f, r.right);
+    for (int k = 0; k < n; ++k) r.force[k] = select(go, r.force[k] + r.right[k], r.force[k]);
+    newton = go;
+    before = select(go, now.left, infinite);
+  }
+  // where the forces were moved after their loads had been found, or were not found in time
+  if (any(moved) | !all(done)) load_contacts(p, r);
+  const LeftOver last = left_over(p, r);
+  const Mask solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
+  if (all(solved)) return;
+  for (int k = 0; k < n; ++k) {
+    const Mask open = ~solved & (r.state[k] == Pack((double)FRICTION_DECIDED));
+    r.state[k] = select(open, Pack((double)FRICTION_NOT_SOLVED), r.state[k]);
+  }
+}
+
+}  // namespace
