@@ -230,3 +230,21 @@ def test_what_holds_idle_freedoms_has_no_coefficients():
     text = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8") + "\nidle: hold\n"
     with pytest.raises(InvalidFile, match="cannot be told where idle freedoms are held"):
         mk.loads(text, str(MECHANISMS / "rcsr.yaml"))
+
+
+def test_responses_alone_have_no_coefficients():
+    text = (MECHANISMS / "rcsr_response.yaml").read_text(encoding="utf-8")
+    with pytest.raises(InvalidFile, match="the file has responses alone"):
+        mk.loads(f"{text}\ncoefficients: [{{name: t}}]\n", str(MECHANISMS / "rcsr_response.yaml"))
+
+
+def test_loads_of_responses_do_not_count_in_the_sweep():
+    data = document(MECHANISMS / "rcsr.yaml")
+    data.pop("coefficients")
+    start = {"start": {"O1.theta": "150"}, "time": {"from": "0", "to": "1", "step": "1"}}
+    load = {"type": "torque", "joint": "O4", "value": "10"}
+    other = {"type": "torque", "joint": "O2", "value": "70", "runs": ["r"]}
+    data |= {"responses": {"r": start}, "loads": [load, other]}
+    run = mk.loads(to_text(data), "rcsr").analyze([], tables=["table_18"])
+    assert balance(run, 5) <= LIMIT
+    assert abs(run["O1.effort"][0] - analysis("rcsr")["O1.effort"][0]) <= 1e-12
