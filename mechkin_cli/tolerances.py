@@ -717,6 +717,10 @@ RESPONSE_TOLERANCES: Final = (1e-14, 1e-2)
 """Least and largest tolerance of a response: below, rounding of the accelerations decides; above,
 error estimates mean nothing."""
 
+DENSE_ROUNDING: Final = 1e-13
+"""Size of an unknown of the dense system, in parts of the largest of its kind, up to which it is
+rounding of the elimination and told as zero: fifty equations leave 1e-15 to 1e-14."""
+
 DENSE_PIVOT: Final = 1e-12
 """Pivot of the dense system (equations scaled to a largest coefficient of 1) below which reactions
 are not told apart: rounding of fifty equations leaves 1e-14, mechanisms that stand apart 1e-3."""

@@ -75,7 +75,7 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
     tables = build_tables(fields, file, problem)
     own = [table for table in tables if table.run == SWEEP]
     balances = _balances(fields, file, problem)
-    coefficients = build_coefficients(fields, file.coefficients, problem, tables)
+    coefficients = build_coefficients(fields, file, problem, tables)
     forces = needs_forces(problem, own)
     if file.loads or file.responses or coefficients or forces:
         note_force_unit(fields)

@@ -357,3 +357,21 @@ def test_files_json_and_exit_code(tmp_path):
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 4
     assert ":14:" in done.stderr
+
+
+def test_friction_works_in_the_balance():
+    """A pivot that rubs is all that takes what the effort puts in."""
+    force = "loads:\n  - {type: force, link: slider, point: [0.4, 0, 0], force: [0, 50, 0]}\n"
+    rubs = "  - {type: friction, joint: A, coefficient: 0.1, radius: 8 mm}\n"
+    free = BODY.replace("C: {type: R", "C: {type: S").replace(
+        "point: [0.4, 0, 0], axis: [0, 0, 1]}\n  D", "point: [0.4, 0, 0]}\n  D"
+    )
+    free = free.replace("B: {type: R", "B: {type: U").replace(
+        "point: [0.1, 0, 0], axis: [0, 0, 1]}",
+        "point: [0.1, 0, 0], axis: [0, 0, 1], axis2: [0, 1, 0]}",
+    )
+    found = balances(free + TURN + force + rubs + WORK)["work"]
+    work = dict(zip(found["of"], found["work"], strict=True))
+    assert work["friction"] < 0.0
+    assert abs(work["A.theta.effort"] + work["friction"]) < 1e-12
+    assert abs(work["sum"]) < 1e-12

@@ -12,6 +12,7 @@ from mechkin_cli.analysis.derived.coefficients import unloaded
 from mechkin_cli.analysis.derived.load_powers import (
     GRAVITY,
     effort_powers,
+    friction_power,
     load_powers_along,
     power_against,
 )
@@ -58,6 +59,9 @@ def powers_along(result: Result, cycle: Cycle) -> dict[str, Floats]:
     found = effort_powers(run, along)
     for number, (load, power) in enumerate(load_powers_along(run, along)):
         found[load_name(result, number, load)] = power
+    rubbed = friction_power(run, along)
+    if rubbed is not None:
+        found["friction"] = rubbed
     masses = unloaded(result.session, at_inputs=True)
     return found | {"inertia": power_against(run, along, masses)}
 

@@ -16,6 +16,7 @@ from mechkin_cli.analysis.derived.basis import Reading
 from mechkin_cli.analysis.derived.load_powers import (
     dissipates,
     effort_powers,
+    friction_power,
     is_stored,
     load_powers,
 )
@@ -42,6 +43,9 @@ def ledger(run: Reading) -> dict[str, Floats]:
             taken -= power
         elif not is_stored(load):
             put_in += power
+    rubbed = friction_power(run, run.session.inputs)
+    if rubbed is not None:
+        taken -= rubbed
     moments = time.values
     step = float(moments[-1] - moments[0]) / max(moments.size - 1, 1)
     work, dissipated = running_integral(put_in, step), running_integral(taken, step)
@@ -51,9 +55,10 @@ def ledger(run: Reading) -> dict[str, Floats]:
 
 
 def _missing(kinetic: Floats, potential: Floats, work: Floats, dissipated: Floats) -> Floats:
-    """What is missing of the balance, in parts of the largest energy up to the row."""
-    rest = np.abs(kinetic - kinetic[0] + potential - work + dissipated)
+    """What is missing of the balance, in parts of the largest energy over all rows; nan where
+    nothing moves or works."""
+    rest = np.abs((kinetic - kinetic[0]) + potential - (work - dissipated))
     sizes = np.abs(np.stack([kinetic, potential, work, dissipated]))
-    size = np.maximum.accumulate(np.max(sizes, axis=0))
-    found: Floats = np.where(rest == 0.0, 0.0, rest / np.where(size > 0.0, size, 1.0))
+    size = float(np.max(sizes[np.isfinite(sizes)], initial=0.0))
+    found: Floats = rest / size if size > 0.0 else np.full(rest.size, np.nan)
     return found

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.analysis.derived.basis import Reading
+from mechkin_cli.analysis.derived.coefficients import without_friction
 from mechkin_cli.mechanism.model import GROUND_NAME, Damper, Link, Spring
 from mechkin_cli.mechanism.quantities import Wanted, effort_quantity
 from mechkin_cli.mechanism.vectors import ZERO
@@ -53,6 +54,18 @@ def power_against(
     return power
 
 
+def friction_power(run: Reading, along: KernelInputs) -> Floats | None:
+    """Of the friction of all joints (W, rows) by the rates of `along`: what efforts need less
+    without it; None where nothing rubs."""
+    smooth = without_friction(run.session)
+    if smooth is None:
+        return None
+    power = -power_against(run, along, smooth)
+    for own in effort_powers(run, along).values():
+        power = power - own
+    return power
+
+
 def _power(effort: Floats, rate: Floats) -> Floats:
     """What stands still takes no part, whatever its effort is."""
     return np.where(rate == 0.0, 0.0, effort * rate)
@@ -90,7 +103,7 @@ def _numbered(run: Reading) -> list[tuple[Load | str, int]]:
 def _with_load(run: Reading, number: int) -> Session:
     """The mechanism with one load alone; with gravity, its masses are at rest."""
     problem = run.session.problem
-    mechanism = replace(problem.mechanism, drives=None)
+    mechanism = replace(problem.mechanism, drives=None, frictions=())
     if number < 0:
         mechanism = replace(mechanism, loads=())
     else:
