@@ -45,6 +45,9 @@ def build_coefficients(
     if found and SWEEP not in runs_of(file):
         text = "coefficients: are told at a row of the sweep, and the file has responses alone"
         fields.error("no-sweep", ("coefficients",), text, "add motion:, or leave them out")
+    if found and problem.mechanism.frictions:
+        text = "coefficients: cannot be told where joints rub: friction is no linear function"
+        fields.error("rubbing", ("coefficients",), text, "leave out coefficients: or the friction")
     if found and problem.hold_idle:
         text = "coefficients: cannot be told where idle freedoms are held against loads"
         fields.error("held-idle", ("coefficients",), text, "leave out coefficients: or idle: hold")

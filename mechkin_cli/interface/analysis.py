@@ -103,7 +103,7 @@ class Analysis:
         """The tables of the dense system of reactions that the file asks for, two for each.
 
         Raises:
-            UsageError: a row has no solution, or a load depends on the reactions.
+            UsageError: a row has no solution.
         """
         if not self.chosen_coefficients:
             return ()

@@ -28,7 +28,7 @@ def coefficient_tables(layout: CoefficientsLayout, result: Result) -> tuple[Colu
     """The coefficients with their right side, and the unknowns with their values.
 
     Raises:
-        UsageError: the row has no solution, or a load depends on the reactions.
+        UsageError: the row has no solution.
     """
     row = layout.row - 1
     if not result.solved[row]:

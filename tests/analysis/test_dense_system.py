@@ -295,3 +295,10 @@ def test_a_pose_that_is_driven():
     for actuators in ("", legs):
         run = mk.loads(platform(inputs, actuators), "p").analyze([])
         assert balance(run, 1) <= LIMIT
+
+
+def test_joints_that_rub_have_no_coefficients():
+    data = document(MECHANISMS / "rcsr.yaml")
+    rub = {"type": "friction", "joint": "O1", "coefficient": "0.1", "radius": "0.2"}
+    with pytest.raises(InvalidFile, match="cannot be told where joints rub"):
+        mk.loads(to_text(data | {"loads": [rub]}), "rcsr")

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism.elementary import ELEMENTARY
 from mechkin_cli.mechanism.load_laws import law_value
 from mechkin_cli.mechanism.model import (
@@ -149,19 +148,13 @@ class _Acting:
             yield load.link, self._on_link(load)
         elif isinstance(load, JointLoad):
             yield from self._on_joint(load.joint, load.coordinate, self._amount(load.value))
-        elif isinstance(load, Spring | Damper):
-            if load.between is not None:
-                yield from self._between(load, load.between)
-            else:
-                assert load.joint is not None
-                assert load.coordinate is not None
-                resisting = -self._resistance(load, *self._coordinate(load))
-                yield from self._on_joint(load.joint, load.coordinate, resisting)
+        elif load.between is not None:
+            yield from self._between(load, load.between)
         else:
-            raise UsageError(
-                "the coefficients of the reactions cannot be told where a load depends on the "
-                "reactions; leave out coefficients: or the friction"
-            )
+            assert load.joint is not None
+            assert load.coordinate is not None
+            resisting = -self._resistance(load, *self._coordinate(load))
+            yield from self._on_joint(load.joint, load.coordinate, resisting)
 
     def _number(self, name: str) -> float:
         value = self.result.quantity(name).value
