@@ -70,7 +70,8 @@ class _Builder:
         driven = build_inputs(self.fields, timed, self.joints, self.limit) or Motion((), 1)
         efforts = self._efforts(path, section, name)
         acting = self.loads.of_run(name)
-        if acting.frictions:
+        start = build_start(self.fields, path, section, self.joints)
+        if acting.frictions and (driven.inputs or sum(s.value is not None for s in start) > 1):
             refuse_response(self.fields, acting.frictions, name)
         known: Mapping[str, Wanted] = self.loads.runs[name]
         stops = StopBuilder(self.fields, self.joints, name, known)
@@ -78,7 +79,7 @@ class _Builder:
         return Response(
             name=name,
             place=self.fields.document.key_place(path),
-            start=build_start(self.fields, path, section, self.joints),
+            start=start,
             assembly=self._assembly(path, section),
             efforts=efforts,
             driven=driven.inputs,
