@@ -450,6 +450,14 @@ only shifts: 5e-17."""
 
 # --- numbers of the file ------------------------------------------------------------------------
 
+EQUAL_STEPS: Final = 1e-9
+"""Parts of a step by which rows of a cycle may be unequal, and of a turn by which it may be open:
+rows by from and step differ by rounding, 1e-15 of their values."""
+
+REPEATS: Final = 1e-9
+"""Parts of its largest value by which what repeats may differ between the first row of a cycle and
+the last: rounding leaves 1e-12, what is open is open by far more."""
+
 LAST_ROW: Final = 1e-9
 """Steps by which the last row may lie beyond the end of a sweep, part of format 1: the quotient of
 written numbers is wrong by 1e-16 times the number of rows, of which there are at most 1e7."""
@@ -708,6 +716,10 @@ digits, at twice the work of 1e-7."""
 RESPONSE_TOLERANCES: Final = (1e-14, 1e-2)
 """Least and largest tolerance of a response: below, rounding of the accelerations decides; above,
 error estimates mean nothing."""
+
+DENSE_ROUNDING: Final = 1e-13
+"""Size of an unknown of the dense system, in parts of the largest of its kind, up to which it is
+rounding of the elimination and told as zero: fifty equations leave 1e-15 to 1e-14."""
 
 DENSE_PIVOT: Final = 1e-12
 """Pivot of the dense system (equations scaled to a largest coefficient of 1) below which reactions

@@ -25,6 +25,7 @@ from mechkin_cli.building.source import Source
 from mechkin_cli.building.unit_system import note_force_unit, read_units
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
+from mechkin_cli.mechanism.balance import AnyBalance
 from mechkin_cli.mechanism.model import Attached, Link, Mechanism
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import TIME_OF_ROW, Wanted
@@ -55,6 +56,7 @@ class Built(NamedTuple):
     runs: tuple[str, ...] = (SWEEP,)
     response_graphs: Mapping[str, SolverGraph | Diagnostic] = _NO_GRAPHS
     coefficients: tuple[CoefficientsLayout, ...] = ()
+    balances: tuple[AnyBalance, ...] = ()
 
     def tables_of(self, run: str) -> tuple[TableLayout, ...]:
         """The tables that read a run."""
@@ -72,7 +74,8 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
     problem = replace(build_problem(fields, file), hold_idle=file.idle == "hold")
     tables = build_tables(fields, file, problem)
     own = [table for table in tables if table.run == SWEEP]
-    coefficients = build_coefficients(fields, file.coefficients, problem, tables)
+    balances = _balances(fields, file, problem)
+    coefficients = build_coefficients(fields, file, problem, tables)
     forces = needs_forces(problem, own)
     if file.loads or file.responses or coefficients or forces:
         note_force_unit(fields)
@@ -96,7 +99,15 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
         raise InvalidFile(in_order(fields.diagnostics))
     problem = replace(problem, diagnostics=tuple(in_order(fields.diagnostics)))
     read = (bool(file.tables), file.source or "", source)
-    return Built(problem, graph, tables, *read, runs_of(file), graphs, coefficients)
+    return Built(problem, graph, tables, *read, runs_of(file), graphs, coefficients, balances)
+
+
+def _balances(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[AnyBalance, ...]:
+    if not file.balances:
+        return ()
+    from mechkin_cli.building.balances import build_balances
+
+    return build_balances(fields, file.balances, problem)
 
 
 def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fields:

@@ -6,24 +6,27 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.building.run_names import runs_of
 from mechkin_cli.nearest import nearest_hint
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.tables.layout import CoefficientsLayout
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.schema.coefficients import Coefficients
+    from mechkin_cli.schema.file import MechanismFile
     from mechkin_cli.tables.layout import TableLayout
 
 
 def build_coefficients(
     fields: Fields,
-    sections: Sequence[Coefficients],
+    file: MechanismFile,
     problem: Problem,
     tables: Sequence[TableLayout],
 ) -> tuple[CoefficientsLayout, ...]:
     """The layouts; what is wrong is noted in `fields`."""
     found: list[CoefficientsLayout] = []
-    for number, section in enumerate(sections):
+    for number, section in enumerate(file.coefficients):
         path: Path = ("coefficients", number)
         if section.row > problem.motion.rows:
             text = f"the sweep has {problem.motion.rows} rows"
@@ -39,6 +42,12 @@ def build_coefficients(
                 text = f"another table is written to {name}"
                 fields.error("table-clash", (*path, "name"), text, "rename one of them")
         found.append(layout)
+    if found and SWEEP not in runs_of(file):
+        text = "coefficients: are told at a row of the sweep, and the file has responses alone"
+        fields.error("no-sweep", ("coefficients",), text, "add motion:, or leave them out")
+    if found and problem.mechanism.frictions:
+        text = "coefficients: cannot be told where joints rub: friction is no linear function"
+        fields.error("rubbing", ("coefficients",), text, "leave out coefficients: or the friction")
     if found and problem.hold_idle:
         text = "coefficients: cannot be told where idle freedoms are held against loads"
         fields.error("held-idle", ("coefficients",), text, "leave out coefficients: or idle: hold")

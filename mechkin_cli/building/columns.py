@@ -37,7 +37,7 @@ def build_tables(fields: Fields, file: MechanismFile, problem: Problem) -> tuple
     for i, section in enumerate(file.tables):
         run = _run_of(fields, ("tables", i), section, runs)
         if run is not None:
-            sample = _Sample(fields, known[run], run, drives if run == SWEEP else None)
+            sample = Sample(fields, known[run], run, drives if run == SWEEP else None)
             tables.append(_table(fields, ("tables", i), section, run, sample))
     read = {table.run for table in tables}
     named = {section.run for section in file.tables}
@@ -69,7 +69,7 @@ def _run_of(fields: Fields, path: Path, section: written.Table, runs: Sequence[s
 
 
 def _table(
-    fields: Fields, path: Path, section: written.Table, run: str, sample: _Sample
+    fields: Fields, path: Path, section: written.Table, run: str, sample: Sample
 ) -> TableLayout:
     columns = []
     for k, column in enumerate(section.columns):
@@ -111,7 +111,7 @@ def _published(section: written.PublishedValues | None) -> PublishedValues | Non
 
 
 def _column(
-    fields: Fields, path: Path, column: written.Column, sample: _Sample
+    fields: Fields, path: Path, column: written.Column, sample: Sample
 ) -> ColumnLayout | None:
     try:
         expression = parse(column.value)
@@ -129,7 +129,7 @@ def _column(
     return ColumnLayout(column.label, expression, column.decimals)
 
 
-class _Sample:
+class Sample:
     """Resolves names to one-row stand-ins of the right dimension."""
 
     def __init__(
@@ -146,6 +146,11 @@ class _Sample:
         self.quantities = quantities
 
     def __call__(self, name: str) -> Quantity:
+        """The stand-in of a name.
+
+        Raises:
+            ExpressionError: nothing has this name, or what has it is a text.
+        """
         if name in self.parameters:
             return self.parameters[name]
         if name in self.texts:

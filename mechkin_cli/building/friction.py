@@ -149,7 +149,7 @@ def refuse_actuators(fields: Fields, frictions: Sequence[Rubbing]) -> None:
 
 
 def refuse_response(fields: Fields, frictions: Sequence[Rubbing], run: str) -> None:
-    """Notes that responses are integrated without friction."""
-    text = f"friction is computed in sweeps, and it acts in the response {run}"
-    hint = "write runs: [sweep] beside it"
+    """Notes that friction in responses is that of one freedom."""
+    text = f"friction acts in the response {run}, which has several freedoms or drives"
+    hint = "friction is computed in sweeps and in responses of one freedom: write runs: beside it"
     fields.note(Diagnostic(CODE, "error", text, frictions[0].place, hint=hint))

@@ -70,7 +70,8 @@ class _Builder:
         driven = build_inputs(self.fields, timed, self.joints, self.limit) or Motion((), 1)
         efforts = self._efforts(path, section, name)
         acting = self.loads.of_run(name)
-        if acting.frictions:
+        start = build_start(self.fields, path, section, self.joints)
+        if acting.frictions and (driven.inputs or sum(s.value is not None for s in start) > 1):
             refuse_response(self.fields, acting.frictions, name)
         known: Mapping[str, Wanted] = self.loads.runs[name]
         stops = StopBuilder(self.fields, self.joints, name, known)
@@ -78,7 +79,7 @@ class _Builder:
         return Response(
             name=name,
             place=self.fields.document.key_place(path),
-            start=build_start(self.fields, path, section, self.joints),
+            start=start,
             assembly=self._assembly(path, section),
             efforts=efforts,
             driven=driven.inputs,
@@ -86,7 +87,7 @@ class _Builder:
             moments=timed.time,
             stops=stops.build(path, section.stop),
             tolerance=self._tolerance(path, section.tolerance),
-            fixed_step=self._fixed_step(path, section.fixed_step),
+            fixed_step=self._fixed_step(path, section.fixed_step, timed.time),
             mechanism=replace(acting.on(self.problem.mechanism), drives=None),
             load_laws=acting.laws,
         )
@@ -158,12 +159,25 @@ class _Builder:
             )
         return value
 
-    def _fixed_step(self, path: Path, text: str | None) -> float | None:
+    def _fixed_step(self, path: Path, text: str | None, moments: Moments) -> float | None:
         if text is None:
             return None
-        errors = self.fields.error_count
-        value = self.fields.number((*path, "fixed_step"), text, TIME)
-        if self.fields.error_count == errors and not value > 0.0:
+        path, errors = (*path, "fixed_step"), self.fields.error_count
+        value = self.fields.number(path, text, TIME)
+        if self.fields.error_count > errors:
+            return value
+        most = tolerances.MOST_RESPONSE_STEPS
+        span = float(moments.values[-1] - moments.values[0])
+        if not value > 0.0:
             message = "a step takes a positive time"
-            self.fields.error("zero-step", (*path, "fixed_step"), message, "write 1e-3 s")
+            self.fields.error("zero-step", path, message, "write 1e-3 s")
+        elif span > most * value:
+            self.fields.error(
+                "too-many-steps",
+                path,
+                "steps of this length are too many for the time of the response",
+                "write a longer step, or a tolerance",
+                measured=f"{span / value:.3g} steps",
+                limit=f"{most} steps",
+            )
         return value

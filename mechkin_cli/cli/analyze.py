@@ -107,8 +107,7 @@ def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]
 
 
 def _is_enough(analysis: Analysis, request: _Request) -> bool:
-    result = analysis.result
-    return result.complete and (result.sound or not request.strict)
+    return analysis.complete and (analysis.result.sound or not request.strict)
 
 
 def _formats(given: list[str] | None) -> tuple[str, ...]:
@@ -140,7 +139,7 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
 
 def _results(analysis: Analysis, request: _Request) -> Results:
     name, result = analysis.model.name, analysis.result
-    tables = (*analysis.tables, *analysis.coefficients)
+    tables = (*analysis.tables, *analysis.coefficients, *analysis.balance_tables)
     return Results(name, tables, result, analysis.diagnostics, request.threads, analysis.run)
 
 

@@ -46,7 +46,7 @@ def analyze(
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Run the sweep of each file and write its tables."""
+    """Run the sweep and the responses of each file and write their tables."""
     code = analyze_files(
         files, out, format, set_, mode, table, lanes, threads, explain, json, quiet, strict
     )

@@ -68,6 +68,8 @@ def _free(analysis: Analysis) -> str:
 
 def _ended(analysis: Analysis) -> str:
     """By which stop, or at the last moment asked for, or before it."""
+    from mechkin_cli.analysis.response import ResponseResult
+
     result = analysis.result
     times = result.inputs["time"]
     unit = result.units.label(TIME)
@@ -80,7 +82,10 @@ def _ended(analysis: Analysis) -> str:
         return f"{at}: {result.events[last]}"
     if last == result.rows - 1:
         return f"{at}, the last moment"
-    return f"after {times[last]:.9g} {unit}: {Status(int(result.status[last + 1])).label}"
+    assert isinstance(result, ResponseResult)
+    report = result.report
+    moment = times[last] if report is None else float(result.units.from_si(report.time, TIME))
+    return f"at {moment:.9g} {unit}: {Status(int(result.status[last + 1])).label}"
 
 
 def _branch(analysis: Analysis) -> str:

@@ -124,7 +124,7 @@ def _made(
     printed = [table for one in analyses for table in against_print(file, one.layouts, one.tables)]
     row = overview_row(file, analyses, printed) if overview else None
     fresh = _fresh_files(model, analyses, printed)
-    complete = all(one.result.complete for one in analyses)
+    complete = all(one.complete for one in analyses)
     code = ExitCode.OK if complete else ExitCode.ROWS_MISSING
     record: Record = {
         "file": str(file),
@@ -150,7 +150,7 @@ def _fresh_files(
 
     fresh: dict[str, bytes] = {}
     for analysis in analyses:
-        for table in (*analysis.tables, *analysis.coefficients):
+        for table in (*analysis.tables, *analysis.coefficients, *analysis.balance_tables):
             fresh[f"{table.name}.csv"] = csv_bytes(table, COMMITTED_DIGITS)
             fresh[f"{table.name}.md"] = markdown_bytes(table, analysis.result)
     if printed:

@@ -1,7 +1,7 @@
 """Derivatives of an expression whose names move: the chain rule, node by node, up to third order.
 
 Each operation and function of expressions has its rule for jets here. Where a derivative does not
-exist (abs at zero, min and max of two that cross, sqrt at zero) it is nan or infinite.
+exist (abs and sign at zero, min and max of two that cross, sqrt at zero) it is nan or infinite.
 """
 
 from __future__ import annotations
@@ -160,6 +160,13 @@ def _absolute(a: Jet) -> Jet:
     return np.concatenate([np.abs(a[:1]), np.where(corner, np.nan, jet[1:])])
 
 
+def _sign(a: Jet) -> Jet:
+    """A step where the argument passes zero, else a constant."""
+    jump = (a[0] == 0.0) & (a[1:] != 0.0).any(axis=0)
+    still = np.where(jump, np.nan, np.zeros_like(a[1:]))
+    return np.concatenate([np.atleast_2d(scalar_functions.sign(a[0])), still])
+
+
 def _extreme(sign: float) -> Callable[..., Jet]:
     """max for sign 1, min for -1; a corner where two are equal and do not move alike."""
 
@@ -211,6 +218,7 @@ RULES: dict[str, Callable[..., Any]] = {
     "log": _through(_log),
     "pow": _power,
     "abs": _absolute,
+    "sign": _sign,
     "min": _extreme(-1.0),
     "max": _extreme(1.0),
     "wrap": _wrap,

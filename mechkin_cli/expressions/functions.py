@@ -86,6 +86,10 @@ def _absolute(site: Site, operand: Operand) -> Quantity:
     return Quantity(scalar_functions.magnitude(site.scalar(operand)), operand.dimension)
 
 
+def _sign(site: Site, operand: Operand) -> Quantity:
+    return Quantity(scalar_functions.sign(site.scalar(operand)))
+
+
 def _extreme(
     function: Callable[[Scalar, Scalar], Scalar],
 ) -> Callable[..., Quantity]:
@@ -140,6 +144,7 @@ FUNCTIONS: dict[str, Function] = {
     "log": Function("log(x)", 1, _elementary("LOG", DIMENSIONLESS, DIMENSIONLESS)),
     "pow": Function("pow(x, n)", 2, raise_to_power),
     "abs": Function("abs(x)", 1, _absolute),
+    "sign": Function("sign(x)", 1, _sign),
     "min": Function("min(a, b)", 2, _extreme(scalar_functions.smaller), variadic=True),
     "max": Function("max(a, b)", 2, _extreme(scalar_functions.larger), variadic=True),
     "wrap": Function("wrap(angle)", 1, _wrap),

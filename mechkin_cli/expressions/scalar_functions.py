@@ -34,6 +34,13 @@ def magnitude(value: Scalar) -> Scalar:
     return np.abs(value) if isinstance(value, np.ndarray) else abs(value)
 
 
+def sign(value: Scalar) -> Scalar:
+    """1 of a positive number, -1 of a negative one, else the number itself: zero or nan."""
+    if not isinstance(value, np.ndarray):
+        return scalars.sign(value)
+    return np.where(np.greater(value, 0.0), 1.0, np.where(np.less(value, 0.0), -1.0, value))
+
+
 def power(base: Scalar, exponent: Scalar) -> Scalar:
     """The base to the exponent."""
     return _paired("POWER", base, exponent)

@@ -12,7 +12,7 @@ from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.expressions import Expression, Vector, parse
 from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.runs import SWEEP
-from mechkin_cli.tables.columns import Columns, evaluate, row_words
+from mechkin_cli.tables.columns import Columns, Words, evaluate, row_words
 from mechkin_cli.tables.layout import CoefficientsLayout, TableLayout, row_texts
 from mechkin_cli.tables.uniqueness import unique_cells
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.analysis.sweep import Result
     from mechkin_cli.interface.model import Model
+    from mechkin_cli.mechanism.balance import AnyBalance
 
 
 class Analysis:
@@ -41,12 +42,14 @@ class Analysis:
         result: Result,
         run: str = SWEEP,
         coefficients: tuple[CoefficientsLayout, ...] = (),
+        balances: tuple[AnyBalance, ...] = (),
     ) -> None:
         self.model = model
         self.layouts = layouts
         self.result = result
         self.run = run
         self.chosen_coefficients = coefficients
+        self.chosen_balances = balances
 
     @property
     def rows(self) -> int:
@@ -56,7 +59,39 @@ class Analysis:
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """Everything that the run has to say."""
-        return self.result.diagnostics
+        return (*self.result.diagnostics, *self._balanced[1])
+
+    @property
+    def complete(self) -> bool:
+        """Whether every row has a solution, and every balance its cells."""
+        return self.result.complete and not self._balanced[1]
+
+    @property
+    def balance_tables(self) -> tuple[Columns, ...]:
+        """The balances that were asked for, in the file's units; empty cells where the rows are no
+        closed cycle, which `diagnostics` says."""
+        return self._balanced[0]
+
+    @cached_property
+    def balances(self) -> dict[str, dict[str, NDArray[Any]]]:
+        """The same by name and label: `r.balances["shaking"]["amplitude"]`; words as texts."""
+        return {
+            table.name: {
+                c.label: c.values.array() if isinstance(c.values, Words) else c.values
+                for c in table.columns
+            }
+            for table in self.balance_tables
+        }
+
+    @cached_property
+    def _balanced(self) -> tuple[tuple[Columns, ...], tuple[Diagnostic, ...]]:
+        if not self.chosen_balances:
+            return (), ()
+        from mechkin_cli.interface.balances import balance_table
+
+        found = [balance_table(balance, self.result) for balance in self.chosen_balances]
+        faults = dict.fromkeys(fault for _, own in found for fault in own)
+        return tuple(table for table, _ in found), tuple(faults)
 
     @cached_property
     def tables(self) -> tuple[Columns, ...]:
@@ -68,7 +103,7 @@ class Analysis:
         """The tables of the dense system of reactions that the file asks for, two for each.
 
         Raises:
-            UsageError: a row has no solution, or a load depends on the reactions.
+            UsageError: a row has no solution.
         """
         if not self.chosen_coefficients:
             return ()

@@ -64,7 +64,8 @@ def chosen_tables(built: Built, names: Sequence[str] | None, run: str) -> tuple[
     if names is None:
         return own
     known = {table.name: table for table in own}
-    of_systems = [one.name for one in built.coefficients] if run == SWEEP else []
+    others = (*built.coefficients, *built.balances) if run == SWEEP else ()
+    of_systems = [one.name for one in others]
     names = texts("tables", names, '["table_03"]')
     names = [name for name in names if name not in of_systems]
     for name in names:

@@ -15,6 +15,7 @@ import numpy as np
 from mechkin_cli.analysis.dense.system import DenseSystem, dense_system, solved
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.tables.columns import Column, Columns, words_of
+from mechkin_cli.tolerances import DENSE_ROUNDING
 from mechkin_cli.units import DIMENSIONLESS, FORCE, LENGTH, MOMENT, Dimension
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ def coefficient_tables(layout: CoefficientsLayout, result: Result) -> tuple[Colu
     """The coefficients with their right side, and the unknowns with their values.
 
     Raises:
-        UsageError: the row has no solution, or a load depends on the reactions.
+        UsageError: the row has no solution.
     """
     row = layout.row - 1
     if not result.solved[row]:
@@ -82,14 +83,29 @@ def _per(equation: Dimension, unknown: Dimension) -> Dimension:
 
 
 def _unknowns(system: DenseSystem, units: UnitSystem) -> tuple[Column, ...]:
-    values = solved(system) or [float("nan")] * len(system.unknowns)
     dimensions = [unknown.dimension for unknown in system.unknowns]
+    values = _without_rounding(solved(system), dimensions)
     return (
         _numbers("j", range(1, len(system.unknowns) + 1)),
         _words("unknown", [unknown.name for unknown in system.unknowns]),
         _numbers("value", [units.from_si(v, d) for v, d in zip(values, dimensions, strict=True)]),
         _words("unit", [units.label(dimension) for dimension in dimensions]),
     )
+
+
+def _without_rounding(
+    values: Sequence[float] | None, dimensions: Sequence[Dimension]
+) -> Sequence[float]:
+    """The values with zeros for what is rounding; empty cells where there is no solution."""
+    if values is None:
+        return [float("nan")] * len(dimensions)
+    largest: dict[Dimension, float] = {}
+    for value, dimension in zip(values, dimensions, strict=True):
+        largest[dimension] = max(abs(value), largest.get(dimension, 0.0))
+    return [
+        value if abs(value) > DENSE_ROUNDING * largest[dimension] else 0.0
+        for value, dimension in zip(values, dimensions, strict=True)
+    ]
 
 
 def _numbers(label: str, values: Sequence[float] | range) -> Column:

@@ -93,14 +93,16 @@ class Solver:
         """The position at some inputs."""
         places = dict(zip(self.inputs, self.first, strict=True))
         places.update(_plain(inputs, places) or input_values(self.problem, inputs))
-        values, whole = [], []
+        values, whole, full = [], [], []
         for name, (conversion, unit, turn) in zip(self.inputs, self.to_kernel, strict=True):
             rest, turns = (places[name], 0.0) if turn is None else reduce_angle(places[name], turn)
             values.append(conversion.apply(rest) / unit)
             whole.append(turns)
+            full.append(conversion.apply(places[name]) / unit)
         values += self.held
         whole += [0.0] * len(self.held)
-        found = None if self.native is None else self.native.solve(values, whole)
+        full += self.held
+        found = None if self.native is None else self.native.solve(values, whole, full)
         if found is None:
             nothing = {c.name: np.nan if c.width == 1 else np.full(3, np.nan) for c in self.columns}
             return Position(nothing, Status.branch_lost.label)
@@ -137,8 +139,8 @@ def _wanted(model: Model, names: tuple[str, ...]) -> list[Wanted]:
         unsure = quantity.kind in WRENCH_KINDS and model.session.is_redundant
         if quantity.owner == "row" or quantity.kind in DERIVED_KINDS or unsure:
             raise UsageError(f"solve does not give {name}; analyze does, at the rows of the file")
-        if forces and problem.load_laws:
-            raise UsageError(f"{name} depends on loads that vary; analyze gives it")
+        if forces and any("time" in law.reads for law in problem.load_laws):
+            raise UsageError(f"{name} depends on a load that varies with time; analyze gives it")
         found.append(quantity)
     return found
 

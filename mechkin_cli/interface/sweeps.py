@@ -11,6 +11,7 @@ from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.arguments import a_text, texts
 from mechkin_cli.interface.asking import a_packing, chosen_tables, known_mode, wanted_names
+from mechkin_cli.mechanism.balance import read_by
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.demand import needs_all_links
@@ -46,10 +47,13 @@ def run_sweep(
         a_text("mode", mode, '"A"')
         session = session.assembled(replace(problem.assembly, mode=mode))
     layouts = chosen_tables(model.built, tables, SWEEP)
+    balances = chosen(model.built.balances, tables)
     names = wanted_names(layouts, quantities, problem.quantities(), SWEEP)
+    names += read_by(balances, problem)
     _refuse_loaded_spin(problem, names)
     result = analyze(session.packed(packing), names)
-    analysis = Analysis(model, layouts, result, SWEEP, chosen(model.built.coefficients, tables))
+    systems = chosen(model.built.coefficients, tables)
+    analysis = Analysis(model, layouts, result, SWEEP, systems, balances)
     return analysis if mode is None else known_mode(analysis)
 
 

@@ -453,7 +453,9 @@ class Positions:
         limits: StepLimits,
         angles: Sequence[tuple[int, int, bool]],
     ) -> None: ...
-    def solve(self, inputs: Sequence[float], whole: Sequence[float]) -> list[float] | None:
+    def solve(
+        self, inputs: Sequence[float], whole: Sequence[float], full: Sequence[float]
+    ) -> list[float] | None:
         """The outputs' slots in SI; None where the branch does not lead there."""
 
 class StepLimits:

@@ -15,7 +15,7 @@ from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism,
 from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.quantities import Kind, Wanted
 from mechkin_cli.mechanism.vectors import ZERO
-from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, Dimension
+from mechkin_cli.units import ANGLE, DIMENSIONLESS, ENERGY, LENGTH, Dimension
 
 QUATERNION = ("q0", "q1", "q2", "q3")
 """Names of a joint's quaternion, scalar first."""
@@ -25,7 +25,20 @@ INSTANT_KINDS = {"screw_axis", "screw_point", "screw_pitch"}
 FINITE_KINDS = {"finite_axis", "finite_point", "finite_angle", "finite_slide"}
 TRANSMISSION_KINDS: tuple[Kind, ...] = ("transmission_angle", "dynamic_transmission_angle")
 POWER_KINDS = {"mechanical_advantage", *TRANSMISSION_KINDS}
-DERIVED_KINDS = ORIENTATION_KINDS | INSTANT_KINDS | FINITE_KINDS | POWER_KINDS | COEFFICIENT_KINDS
+LEDGER: dict[str, tuple[Kind, Dimension]] = {
+    "work": ("ledger_work", ENERGY),
+    "dissipated": ("ledger_dissipated", ENERGY),
+    "energy_error": ("ledger_energy_error", DIMENSIONLESS),
+}
+LEDGER_KINDS = {kind for kind, _ in LEDGER.values()}
+DERIVED_KINDS = (
+    ORIENTATION_KINDS
+    | INSTANT_KINDS
+    | FINITE_KINDS
+    | POWER_KINDS
+    | COEFFICIENT_KINDS
+    | LEDGER_KINDS
+)
 
 _ORIENTED = [kind.letter for kind in JOINT_TYPES.values() if kind.is_oriented]
 _GUIDES = [kind.letter for kind in JOINT_TYPES.values() if kind.is_guide]
@@ -84,6 +97,15 @@ def derived_catalogue(
         found += _of_advantages(mechanism, inputs, leading[1])
     found += _of_transmissions(mechanism, inputs)
     return {wanted.name: wanted for wanted in found}
+
+
+def ledger_catalogue() -> dict[str, Wanted]:
+    """What the rows of a sweep in time have beside others: the work of efforts and loads since the
+    first row, what dampers took, and what is missing of their balance with the energies."""
+    return {
+        f"row.{word}": Wanted(f"row.{word}", kind, GROUND_NAME, dimension, False)
+        for word, (kind, dimension) in LEDGER.items()
+    }
 
 
 def hint_of(name: str) -> str | None:

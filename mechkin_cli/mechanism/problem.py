@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.coefficient_quantities import coefficient_catalogue
-from mechkin_cli.mechanism.derived_quantities import derived_catalogue
+from mechkin_cli.mechanism.derived_quantities import derived_catalogue, ledger_catalogue
 from mechkin_cli.mechanism.held import Held
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
@@ -109,4 +109,6 @@ class Problem:
         found = catalogue(mechanism, self.acting, timed=motion.time is not None, held=self.held)
         if leading is not None:
             found |= coefficient_catalogue(found, motion.driven, leading)
+        if motion.time is not None and leading is not None:
+            found |= ledger_catalogue()
         return found | derived_catalogue(mechanism, motion.driven, leading)

@@ -3,6 +3,7 @@
 from typing import Annotated, Any, Literal
 
 from mechkin_cli.schema.assembly import AssemblySection
+from mechkin_cli.schema.balances import Balance, refuse_clashes
 from mechkin_cli.schema.base import NOTHING, Section, refuse
 from mechkin_cli.schema.chain import ChainRow
 from mechkin_cli.schema.coefficients import Coefficients
@@ -67,6 +68,8 @@ class MechanismFile(Section):
     """The tables a run writes; left out, one table of all coordinates, their rates and efforts."""
     coefficients: Annotated[tuple[Coefficients, ...], After(differing_names)] = ()
     """Tables of the dense system of all reactions at one row, as textbooks write it."""
+    balances: tuple[Balance, ...] = ()
+    """Work over a cycle, harmonics and flywheels of the sweep, a table each."""
     follow: tuple[Name, ...] | None = None
     """Joints whose loops are followed beside those the outputs need; left out, all loops are."""
     accept: tuple[Literal["unphysical-inertia"], ...] = ()
@@ -75,6 +78,7 @@ class MechanismFile(Section):
     """`hold`: idle freedoms that loads would move are held, and the holding moment is reported."""
 
     def check(self) -> None:
-        """There is a joint."""
+        """There is a joint, and no two tables are written to the same files."""
         if not self.joints and not self.chain:
             raise refuse("no-joints", "the file has no joints", "add joints: (or chain:)")
+        refuse_clashes(self.balances, (*self.tables, *self.coefficients))

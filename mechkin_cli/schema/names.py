@@ -11,7 +11,7 @@ from typing import Any, Final
 _WORDS = ("ground", "row", "time", "pi", "turn", "nan", "inf", "infinity")
 _VECTOR_FUNCTIONS = ("dot", "cross", "det", "norm")
 _ANGLE_FUNCTIONS = ("wrap", "sin", "cos", "tan", "asin", "acos", "atan", "atan2")
-_NUMBER_FUNCTIONS = ("sqrt", "abs", "min", "max", "exp", "log", "pow")
+_NUMBER_FUNCTIONS = ("sqrt", "abs", "sign", "min", "max", "exp", "log", "pow")
 RESERVED: Final = frozenset((*_WORDS, *_VECTOR_FUNCTIONS, *_ANGLE_FUNCTIONS, *_NUMBER_FUNCTIONS))
 """Words that cannot be the name of anything in a file."""
 

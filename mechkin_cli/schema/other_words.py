@@ -66,7 +66,6 @@ TOP_KEYS: Final = {
 
 LOAD_TYPES: Final = {
     **_OUTSIDE,
-    "friction": "friction needs a joint and a coefficient",
     "moment": "a moment is a torque: {type: torque, ...}",
     "couple": "a couple is a torque: {type: torque, ...}",
     "weight": "weights follow from the masses and {type: gravity, g: standard}",

@@ -37,6 +37,7 @@ from mechkin_cli.tolerances import (
 SWITCHES = (
     *CONDITIONS,
     Operation.MAGNITUDE,
+    Operation.SIGN,
     Operation.LARGER,
     Operation.SMALLER,
     Operation.POWER_OF_TWO,
@@ -109,6 +110,7 @@ class Formula:
 
 _WAYS: dict[Operation, Callable[[Floats, Floats], Floats]] = {
     Operation.MAGNITUDE: lambda a, _: np.where(a < 0.0, -1.0, 1.0),
+    Operation.SIGN: lambda a, _: np.sign(a),
     Operation.LARGER: lambda a, b: (b > a).astype(float),
     Operation.SMALLER: lambda a, b: (b < a).astype(float),
     Operation.LESS: lambda a, b: (a < b).astype(float),

@@ -12,7 +12,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, reference_point
+from mechkin_cli.mechanism.derived_quantities import (
+    DERIVED_KINDS,
+    LEDGER_KINDS,
+    reference_point,
+)
 from mechkin_cli.mechanism.frames import GROUND
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.model import Attached, Damper, Load, Mechanism, varying
@@ -60,7 +64,7 @@ def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
             demand |= forces_demand(mechanism)
         elif quantity.kind == "kinetic_energy":
             demand |= Demand.VELOCITY
-        elif quantity.kind == "load_power":
+        elif quantity.kind == "load_power" or quantity.kind in LEDGER_KINDS:
             demand |= forces_demand(mechanism) | Demand.VELOCITY
         elif quantity.kind == "condition":
             demand |= Demand.CONDITION

@@ -41,6 +41,7 @@ class Fault(IntEnum):
     OFF_BRANCH = 2
     SINGULAR_INERTIA = 4
     UNDEFINED_LOAD = 8
+    FRICTION = 16
     NOT_FINITE = 255
 
 

@@ -67,6 +67,11 @@ class KernelInputs(NamedTuple):
         accelerations[number] = 1.0
         return self._replace(rates=still, accelerations=accelerations, jerks=still)
 
+    def at_rest(self) -> KernelInputs:
+        """The same places at rest."""
+        still = np.zeros_like(self.rates)
+        return self._replace(rates=still, accelerations=still, jerks=still)
+
     def without_accelerations(self) -> KernelInputs:
         """The same places and rates, with no acceleration."""
         still = np.zeros_like(self.rates)

@@ -31,7 +31,13 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.layout import Layout
     from mechkin_cli.tape.recorder import Instruction
 
-KINKS = (Operation.MAGNITUDE, Operation.LARGER, Operation.SMALLER, Operation.WHOLE)
+KINKS = (
+    Operation.MAGNITUDE,
+    Operation.SIGN,
+    Operation.LARGER,
+    Operation.SMALLER,
+    Operation.WHOLE,
+)
 """Operations at which a value bends or jumps."""
 
 _NOTHING = Output(OutputCode.STATE, 0, 0, 0, (0.0, 0.0, 0.0), 1.0)

@@ -161,7 +161,9 @@ class Session:
     def loaded(self, problem: Problem) -> Session:
         """A session of a problem that differs in masses and loads alone: the same states serve."""
         other = self.of(problem, self.graph)
-        other.__dict__["layout"] = Layout(problem.laid_mechanism, self.graph, self.layout.length)
+        other.__dict__["layout"] = Layout(
+            problem.laid_mechanism, self.graph, self.layout.length, laws=problem.laws
+        )
         return other
 
     def derived(self, make: Callable[[Session], Problem]) -> Session:

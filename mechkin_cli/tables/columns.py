@@ -78,7 +78,7 @@ def evaluate(table: TableLayout, source: Source) -> Columns:
     Raises:
         ExpressionError: a column is no number per row, or names what the source does not have.
     """
-    columns = tuple(_column(layout, source) for layout in table.columns)
+    columns = tuple(column_of(layout, source) for layout in table.columns)
     return Columns(table.name, table.title, columns)
 
 
@@ -113,7 +113,8 @@ def solved_rows(source: Source) -> NDArray[np.bool_]:
     return has_solution(source.status)
 
 
-def _column(layout: ColumnLayout, source: Source) -> Column:
+def column_of(layout: ColumnLayout, source: Source) -> Column:
+    """One column in file units; cells that are not unique are nan. Raises as `evaluate`."""
     name = layout.expression.text.strip()
     if name in _WORDS:
         return Column(layout.label, "", row_words(name, source))

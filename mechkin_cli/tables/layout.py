@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 from mechkin_cli.runs import SWEEP
 
@@ -91,9 +91,15 @@ class CoefficientsLayout(NamedTuple):
         return self.name, f"{self.name}_unknowns"
 
 
-def chosen(
-    every: tuple[CoefficientsLayout, ...], names: Collection[str] | None
-) -> tuple[CoefficientsLayout, ...]:
+class _Named(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+OneNamed = TypeVar("OneNamed", bound=_Named)
+
+
+def chosen(every: tuple[OneNamed, ...], names: Collection[str] | None) -> tuple[OneNamed, ...]:
     """Those named; None for all."""
     return every if names is None else tuple(one for one in every if one.name in names)
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 from mechkin_cli.tape.operations import Operation
-from mechkin_cli.tape.scalars import next_power_of_two
+from mechkin_cli.tape.scalars import next_power_of_two, sign
 
 _ROUNDER = float(3 * 2**51)
 """1.5 * 2^52: adding it rounds to the nearest whole number."""
@@ -54,6 +54,7 @@ MEANING: dict[Operation, Callable[..., float]] = {
     Operation.EQUAL: lambda a, b: float(a == b),
     Operation.POWER_OF_TWO: _power_of_two_or_nan,
     Operation.WHOLE: _whole,
+    Operation.SIGN: sign,
 }
 """The operations that are not elementary functions."""
 

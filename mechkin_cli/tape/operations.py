@@ -12,6 +12,7 @@ class Operation(IntEnum):
     CHOOSE is b where a is not zero, else c. LESS, NOT_MORE and EQUAL are 1 where a < b, a <= b,
     a = b, else 0. POWER_OF_TWO is 2^n next to a > 0: for a = m 2^e with 1/2 <= m < 1, n is e where
     m > 0.7, else e - 1. WHOLE is the nearest whole number, ties to even, for |a| < 2^51.
+    SIGN is 1 where a > 0, -1 where a < 0, else a.
     """
 
     ADD = 0
@@ -39,6 +40,7 @@ class Operation(IntEnum):
     EXP = 22
     LOG = 23
     POWER = 24
+    SIGN = 25
 
 
 CONDITIONS = (Operation.LESS, Operation.NOT_MORE, Operation.EQUAL)
@@ -58,6 +60,7 @@ _ONE = {
     Operation.ATAN,
     Operation.EXP,
     Operation.LOG,
+    Operation.SIGN,
 }
 ARITY = dict.fromkeys(Operation, 2) | dict.fromkeys(_ONE, 1) | {Operation.CHOOSE: 3}
 """How many operands an operation has."""

@@ -76,6 +76,14 @@ def square_root(value: float) -> float:
     return math.sqrt(value)
 
 
+def sign(value: float) -> float:
+    """1 of a positive number, -1 of a negative one, else the number itself."""
+    if isinstance(value, Recorded):
+        found: float = value.apply("SIGN")
+        return found
+    return 1.0 if value > 0.0 else -1.0 if value < 0.0 else value
+
+
 def largest(first: float, *others: float) -> float:
     """The largest; of equal ones the first."""
     for other in others:

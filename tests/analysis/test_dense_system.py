@@ -10,6 +10,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from mechanisms.actuated import platform
 from mechanisms.runs import model
 from oracle import document, to_text
 from references import MECHANISMS, committed
@@ -87,7 +88,8 @@ def balance(run, row):
     system = dense_system(run.result, row)
     borne = borne_wrenches(run.result, motion, row)
     total = {name: np.array([*w.force, *w.moment]) for name, w in borne.items()}
-    parts = [(joint, wrench(run, name, row)) for name, joint in problem.mechanism.joints.items()]
+    holding = [joint for joint in problem.mechanism.joints.values() if not joint.type.is_free]
+    parts = [(joint, wrench(run, joint.name, row)) for joint in holding]
     for unknown in system.unknowns:
         if unknown.name.endswith(".effort"):
             unit = np.array([*unknown.wrench.force, *unknown.wrench.moment])
@@ -230,3 +232,73 @@ def test_what_holds_idle_freedoms_has_no_coefficients():
     text = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8") + "\nidle: hold\n"
     with pytest.raises(InvalidFile, match="cannot be told where idle freedoms are held"):
         mk.loads(text, str(MECHANISMS / "rcsr.yaml"))
+
+
+def test_responses_alone_have_no_coefficients():
+    text = (MECHANISMS / "rcsr_response.yaml").read_text(encoding="utf-8")
+    with pytest.raises(InvalidFile, match="the file has responses alone"):
+        mk.loads(f"{text}\ncoefficients: [{{name: t}}]\n", str(MECHANISMS / "rcsr_response.yaml"))
+
+
+def test_loads_of_responses_do_not_count_in_the_sweep():
+    data = document(MECHANISMS / "rcsr.yaml")
+    data.pop("coefficients")
+    start = {"start": {"O1.theta": "150"}, "time": {"from": "0", "to": "1", "step": "1"}}
+    load = {"type": "torque", "joint": "O4", "value": "10"}
+    other = {"type": "torque", "joint": "O2", "value": "70", "runs": ["r"]}
+    data |= {"responses": {"r": start}, "loads": [load, other]}
+    run = mk.loads(to_text(data), "rcsr").analyze([], tables=["table_18"])
+    assert balance(run, 5) <= LIMIT
+    assert abs(run["O1.effort"][0] - analysis("rcsr")["O1.effort"][0]) <= 1e-12
+
+
+UNIVERSAL = """
+format: 1
+units: {length: m, angle: rad, mass: kg, force: N}
+links:
+  arm: {mass: 2, center_of_mass: [0.4, 0.1, 0.2], inertia: {xx: 0.1, yy: 0.2, zz: 0.2, xy: 0.01}}
+joints:
+  J: {type: U, links: [ground, arm], point: [0.1, 0, 0.2], axis: [0, 0, 1], axis2: [1, 0, AXIS]}
+motion:
+  inputs:
+    J.theta1: {from: 0, to: 2, count: 5, rate: 3 rad/s, acceleration: 1}
+    J.theta2: {at: 0.5, rate: 2 rad/s}
+loads:
+  - {type: gravity, g: [1, 2, -9.81]}
+  - {type: spring, joint: J, coordinate: theta2, stiffness: 3, free: 0.2}
+"""
+
+
+@pytest.mark.parametrize("axis", ["0", "0.7"])
+def test_the_two_turns_of_a_universal_joint(axis):
+    run = mk.loads(UNIVERSAL.replace("AXIS", axis), "u").analyze(["J.force", "J.theta1.effort"])
+    assert balance(run, 3) <= LIMIT
+
+
+def test_efforts_that_act_at_actuators():
+    data = document(MECHANISMS / "sevenr.yaml")
+    data.pop("coefficients")
+    data |= {"actuators": ["J3.theta"], "tables": []}
+    run = mk.loads(to_text(data), "sevenr").analyze(["J3.effort"], tables=[])
+    system = dense_system(run.result, 4)
+    assert [u.name for u in system.unknowns if u.rank == 4] == ["J3.theta.effort"]
+    assert balance(run, 4) <= LIMIT
+    assert abs(solved(system)[-1] - run.result.quantity("J3.effort").value[4]) <= 1e-9
+
+
+def test_a_pose_that_is_driven():
+    """Its drive pulls at the platform; or the legs do."""
+    inputs = "    pose.z: {from: -0.01, to: 0.01, count: 3, rate: 0.5}\n" + "".join(
+        f"    pose.{name}: {{at: 0.02, rate: 0.3}}\n" for name in ("x", "y", "rz", "ry", "rx")
+    )
+    legs = "actuators: [" + ", ".join(f"L{k}.s" for k in range(1, 7)) + "]\n"
+    for actuators in ("", legs):
+        run = mk.loads(platform(inputs, actuators), "p").analyze([])
+        assert balance(run, 1) <= LIMIT
+
+
+def test_joints_that_rub_have_no_coefficients():
+    data = document(MECHANISMS / "rcsr.yaml")
+    rub = {"type": "friction", "joint": "O1", "coefficient": "0.1", "radius": "0.2"}
+    with pytest.raises(InvalidFile, match="cannot be told where joints rub"):
+        mk.loads(to_text(data | {"loads": [rub]}), "rcsr")

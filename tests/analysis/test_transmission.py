@@ -229,9 +229,9 @@ def test_where_it_is_not_defined_the_message_says_so():
         model("hooke").analyze(["B.theta.transmission_angle"], tables=[])
     text = (MECHANISMS / "sevenr.yaml").read_text(encoding="utf-8")
     joint = next(iter(model("sevenr").problem.mechanism.joints))
-    table = f"  - {{name: t, columns: [{{label: m, value: {joint}.turn}}]}}\n"
+    table = f"tables:\n  - {{name: t, columns: [{{label: m, value: {joint}.turn}}]}}\n"
     with pytest.raises(mk.InvalidFile, match="joints of type S, Sp, Sg have an orientation"):
-        mk.loads(text + table, "sevenr")
+        mk.loads(text.replace("tables:\n", table), "sevenr")
 
 
 def test_nothing_is_loaded_where_nothing_is_asked_for():

@@ -87,6 +87,7 @@ ROWS = [
     started("tolerance: »1e-20", "out-of-range", "1e-14 to 0.01", "such as 1e-10"),
     started("tolerance: »1 mm", "expression", "dimensionless"),
     started("fixed_step: »0 s", "zero-step", "positive time"),
+    started("fixed_step: »1e-7 s", "too-many-steps", "1e+07 steps", "limit 1000000 steps"),
     started("tolerance: 1e-6, fixed_step: »1e-3", "two-choices", "keep one"),
 ]
 """Its rows and steps."""

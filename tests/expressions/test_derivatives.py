@@ -43,8 +43,20 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 WORDS = {name: getattr(mp, name) for name in ("sin", "cos", "tan", "asin", "acos", "atan", "atan2")}
-WORDS |= {"sqrt": mp.sqrt, "exp": mp.exp, "log": mp.log, "pow": mp.power, "abs": abs}
-WORDS |= {"min": min, "max": max, "wrap": lambda a: a - 2 * mp.pi * mp.nint(a / (2 * mp.pi))}
+WORDS |= {
+    "sqrt": mp.sqrt,
+    "exp": mp.exp,
+    "log": mp.log,
+    "pow": mp.power,
+    "abs": abs,
+    "sign": mp.sign,
+}
+WORDS |= {
+    "sign": mp.sign,
+    "min": min,
+    "max": max,
+    "wrap": lambda a: a - 2 * mp.pi * mp.nint(a / (2 * mp.pi)),
+}
 WORDS |= {"dot": inner, "cross": cross, "det": lambda a, b, c: inner(a, cross(b, c))}
 WORDS |= {"norm": lambda a: mp.sqrt(inner(a, a)), "array": np.array}
 
@@ -58,7 +70,7 @@ SAMPLES = [
         "det([x, y, 1], [z, 2, x], [1, x*y, y])",
         "norm(cross([x, y, 1], 2*[z, 2, x]/y - [1, 2, x]))",
     ),
-    "2*asin(sin(x)/2)*exp(-y)/sqrt(1 + z^2)",
+    *("2*asin(sin(x)/2)*exp(-y)/sqrt(1 + z^2)", "sign(x - y)*z"),
 ]
 
 
@@ -95,7 +107,17 @@ def test_every_operation_and_function_has_a_rule_and_is_tried() -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["abs(x)", "sqrt(x)", "log(x)", "1/x", "min(x, 2*x)", "max(x, 0)", "asin(1 + x)", "x^0.5"],
+    [
+        "abs(x)",
+        "sign(x)",
+        "sqrt(x)",
+        "log(x)",
+        "1/x",
+        "min(x, 2*x)",
+        "max(x, 0)",
+        "asin(1 + x)",
+        "x^0.5",
+    ],
 )
 def test_a_rate_that_does_not_exist_is_not_finite(text: str) -> None:
     x = np.array([[0.0], [1.0], [0.0], [0.0]])

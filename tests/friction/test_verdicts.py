@@ -148,7 +148,10 @@ def test_actuators_and_responses_are_refused():
     with pytest.raises(mk.InvalidFile) as caught:
         mk.loads(text)
     assert "actuators" in caught.value.diagnostics[0].message
-    response = "responses: {go: {start: {A.theta: 20}, time: {from: 0, to: 1, step: 0.5}}}\n"
+    response = (
+        "responses: {go: {start: {A.theta: 20}, driven: {B.s: {at: 0}}, "
+        "time: {from: 0, to: 1, step: 0.5}}}\n"
+    )
     with pytest.raises(mk.InvalidFile) as caught:
         mk.loads(TEXT + response)
-    assert "runs: [sweep]" in caught.value.diagnostics[0].hint
+    assert any("one freedom" in (d.hint or "") for d in caught.value.diagnostics)

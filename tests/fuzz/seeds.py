@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 
 from building.bad_parts import BAD_PARTS
+from building.bad_responses import BAD_RESPONSES
 from building.bad_uses import BAD_USES
 from reading.bad_files import BAD_FILES
 from references import MECHANISMS
@@ -23,7 +24,8 @@ def seeds() -> list[bytes]:
     files = [
         path.read_bytes() for path in sorted([*MECHANISMS.glob("*.yaml"), *GOOD.glob("*.yaml")])
     ]
-    mistakes = [bad.text.encode() for bad in (*BAD_FILES, *BAD_PARTS, *BAD_USES)]
+    bad = (*BAD_FILES, *BAD_PARTS, *BAD_USES, *BAD_RESPONSES)
+    mistakes = [mistake.text.encode() for mistake in bad]
     return [content for content in (*files, *mistakes) if len(content) <= LONGEST]
 
 

@@ -60,8 +60,8 @@ LEAVES = [f"({name}/({unit}))" for name, unit in UNITS.items()] + ["0", "1", "-2
 
 
 OF_ONE = (
-    "-({}); abs({}); sqrt({}); sin(({})*1 rad); cos(({})*1 rad); tan(({})*1 rad); exp({}); "
-    "log({}); (wrap(({})*1 rad)/(1 rad)); (atan({})/(1 rad)); ({})^2"
+    "-({}); abs({}); sign({}); sqrt({}); sin(({})*1 rad); cos(({})*1 rad); tan(({})*1 rad); "
+    "exp({}); log({}); (wrap(({})*1 rad)/(1 rad)); (atan({})/(1 rad)); ({})^2"
 )
 OF_TWO = (
     "({} + {}); ({} - {}); ({}*{}); ({}/({})); min({}, {}); max({}, {}); "
@@ -210,6 +210,22 @@ def test_variants_take_laws_with_them() -> None:
         assert alone["D.moment"] == pytest.approx(fresh["D.moment"], rel=1e-9, abs=1e-6)
 
 
+def test_a_single_position_has_the_loads_of_its_row() -> None:
+    """`solve` evaluates laws, too, as far as they read no time."""
+    swept = TEXT.replace(
+        "{law: constant-rate, at: -300, rate: 5}", "{from: -300, to: 500, step: 50}"
+    )
+    swept = swept.replace("  time: {from: 0, to: 3, step: 0.05}\n", "")
+    law = torque("sin(A.theta/3) + max(O.theta/(7 rad), along.x)", "O")
+    model = mk.loads(swept.replace("LOADS", f"  - {law}"))
+    rows = model.analyze(["O.effort"], tables=[])["O.effort"]
+    for row in (0, 3, 16):
+        found = model.solve({"O.theta": -300.0 + 50.0 * row}, ["O.effort"])
+        assert found["O.effort"] == pytest.approx(rows[row], rel=1e-12, abs=1e-12)
+    with pytest.raises(mk.UsageError, match="varies with time"):
+        model_of(torque("time/(1 s)")).solve({"O.theta": 1.0}, ["O.effort"])
+
+
 def test_kinks_are_where_a_law_chooses() -> None:
     """Magnitudes, larger and smaller of two and wraps are told; smooth laws have none."""
     from mechkin_cli.solver.quantity_program import load_program
@@ -222,5 +238,6 @@ def test_kinks_are_where_a_law_chooses() -> None:
 
     assert kinks("sin(A.theta)*exp(time/(1 s))") == []
     assert kinks("abs(along.x)") == ["MAGNITUDE"]
+    assert kinks("sign(along.x)") == ["SIGN"]
     assert kinks("max(along.x, 0, min(along.y, along.x))") == ["SMALLER", "LARGER", "LARGER"]
     assert kinks("wrap(A.theta)/(1 rad)") == ["WHOLE"]

@@ -285,6 +285,17 @@ def test_a_locked_pose_is_told_from_its_actuators() -> None:
     assert "pose.ry" in said.message
 
 
+def test_rows_lost_by_the_turns_of_a_pose_are_said_to_be() -> None:
+    """An arm that turns about y takes the pose through its quarter turn."""
+    text = ARM.replace("axis: [0, 0, 1]", "axis: [0, 1, 0]").replace(
+        "points:", "  T: {type: F, links: [ground, two], point: [2, 0, 0]}\npoints:"
+    )
+    swept = "A.theta: {from: 0, to: 3, count: 4}, B.theta: {at: 0}"
+    analysis = mk.loads(f"{text.split('assembly')[0]}motion: {{inputs: {{{swept}}}}}\n").analyze()
+    said = [d for d in analysis.diagnostics if d.code == "locked-pose"]
+    assert ["T.ry" in d.message for d in said] == [True]
+
+
 def test_a_tied_motor_carries_what_the_tie_transmits() -> None:
     own = mk.loads(GEARED.replace("DRIVE", "own")).analyze()
     tied = mk.loads(GEARED.replace("DRIVE", "tie")).analyze()

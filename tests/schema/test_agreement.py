@@ -73,6 +73,7 @@ EDITORS_ACCEPT = {
     "one-moment": VALUE,
     "time-backwards": VALUE,
     "no-duration": VALUE,
+    "too-many-steps": VALUE,
     "no-angle": "to a schema theta and s are both names",
     "out-of-range": "a tolerance may be an expression; its value is the reader's",
     "zero-step": VALUE,

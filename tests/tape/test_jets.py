@@ -41,6 +41,7 @@ CASES: list[tuple[str, Callable[[Any], Any]]] = [
         lambda x: mp.sqrt(5 * x * x + 1) - x - x * x + 3 * x * x,
     ),
     ("abs(x)*x", lambda x: x * abs(x)),
+    ("sign(x)*x*x", lambda x: mp.sign(x) * x * x),
     ("max(x, x*x) - min(x, 0.5)", lambda x: max(x, x * x) - min(x, mp.mpf(0.5))),
     ("wrap(x*1rad + 7rad)/1rad", lambda x: x + 7 - 2 * mp.pi),
 ]
@@ -71,7 +72,7 @@ def test_derivatives_of_every_operation(
 
 def ways_at(text: str, x: float) -> np.ndarray:
     """The ways of the switches, in the order of the tape."""
-    if "abs" in text:
+    if "abs" in text or "sign" in text:
         return np.array([-1.0 if x < 0 else 1.0])
     if "max" in text:
         return np.array([float(x * x > x), float(x > 0.5)])

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.mechanism.joint_table import is_angle
+from mechkin_cli.mechanism.elementary import ELEMENTARY
 from mechkin_cli.mechanism.load_laws import law_value
 from mechkin_cli.mechanism.model import (
     GROUND_NAME,
@@ -57,23 +56,48 @@ def force_at(point: Vector, force: Vector) -> Wrench:
 
 def coordinate_wrench(joint: Joint, coordinate: str, motion: RowMotion) -> Wrench:
     """The unit effort on a coordinate, as it acts on the second link: a force along its line
-    through the pair's point, or a couple about it."""
-    axis = motion.direction(_axis_of(joint, coordinate))
-    if is_angle(coordinate):
-        return Wrench(ZERO, axis)
-    return force_at(motion.point(joint.point), axis)
-
-
-def _axis_of(joint: Joint, coordinate: str) -> Attached:
-    """The direction about or along which a coordinate is told, on the link that carries it."""
+    through the pair's point, or the couple that works on this turn of the pair alone."""
     known = joint.type.coordinate[coordinate]
-    if known.axis is not None:
-        return joint.drawn(known.axis)
-    steps = [entry for free in joint.type.free.values() for entry in free]
-    step, along = sorted(steps, key=lambda entry: entry[0])[known.freedom]
-    return (
-        Attached(joint.first, joint.parts[step].before.z) if along is None else joint.drawn(along)
-    )
+    axes = _axes(joint, motion)
+    if not known.is_angle:
+        return force_at(motion.point(joint.point), axes[known.freedom])
+    turns = [number for number, slides in enumerate(joint.type.slides) if not slides]
+    if joint.type.is_threaded or len(turns) == 1:
+        return Wrench(ZERO, axes[known.freedom])
+    others = [axes[number] for number in turns if number != known.freedom]
+    return Wrench(ZERO, _working_on(axes[known.freedom], others))
+
+
+def _axes(joint: Joint, motion: RowMotion) -> list[Vector]:
+    """The direction of every freedom of a pair, as it is now."""
+    found: list[Vector | None] = []
+    for step, part in zip(joint.type.steps, joint.parts, strict=True):
+        count = len(ELEMENTARY[step.letter].freedoms)
+        if step.between:
+            axis = None
+        elif step.along is None:
+            axis = motion.direction(Attached(joint.first, part.before.z))
+        else:
+            axis = motion.direction(joint.drawn(step.along))
+        found += [axis] * count
+    return [_square(found[k - 1], found[k + 1]) if a is None else a for k, a in enumerate(found)]
+
+
+def _square(before: Vector | None, behind: Vector | None) -> Vector:
+    """The axis of a turn that rides on neither link."""
+    assert before is not None
+    assert behind is not None
+    axis = cross(before, behind)
+    return scale(1.0 / norm(axis), axis)
+
+
+def _working_on(axis: Vector, others: Sequence[Vector]) -> Vector:
+    """The couple with the power of a unit rate about an axis and none about others."""
+    if len(others) == 1:
+        couple = subtract(axis, scale(dot(axis, others[0]), others[0]))
+    else:
+        couple = cross(others[0], others[1])
+    return scale(1.0 / dot(couple, axis), couple)
 
 
 def borne_wrenches(result: Result, motion: RowMotion, row: int) -> dict[str, Wrench]:
@@ -124,19 +148,13 @@ class _Acting:
             yield load.link, self._on_link(load)
         elif isinstance(load, JointLoad):
             yield from self._on_joint(load.joint, load.coordinate, self._amount(load.value))
-        elif isinstance(load, Spring | Damper):
-            if load.between is not None:
-                yield from self._between(load, load.between)
-            else:
-                assert load.joint is not None
-                assert load.coordinate is not None
-                resisting = -self._resistance(load, *self._coordinate(load))
-                yield from self._on_joint(load.joint, load.coordinate, resisting)
+        elif load.between is not None:
+            yield from self._between(load, load.between)
         else:
-            raise UsageError(
-                "the coefficients of the reactions cannot be told where a load depends on the "
-                "reactions; leave out coefficients: or the friction"
-            )
+            assert load.joint is not None
+            assert load.coordinate is not None
+            resisting = -self._resistance(load, *self._coordinate(load))
+            yield from self._on_joint(load.joint, load.coordinate, resisting)
 
     def _number(self, name: str) -> float:
         value = self.result.quantity(name).value

@@ -46,7 +46,10 @@ def dense_system(
     """The system at a row (counted from 0) that has a position; `along` as in `pair_terms`."""
     mechanism, motion = result.problem.mechanism, row_motion(result, row)
     pairs = [pair_terms(joint, motion, along) for joint in mechanism.joints.values()]
-    inputs = [effort(mechanism.joints[j], c, motion) for j, c in result.problem.motion.driven]
+    drives = mechanism.drives
+    # a motor that carries what a tie transmits gives another effort than acts at its own coordinate
+    word = "drive" if drives is not None and drives.ties else "effort"
+    inputs = [effort(mechanism.joints[j], c, motion, word) for j, c in result.problem.acting]
     terms = [*(unknown for pair in pairs for unknown in pair.unknowns), *inputs]
     unknowns = tuple(sorted(terms, key=lambda unknown: unknown.rank))
     conditions = [condition for pair in pairs for condition in pair.conditions]

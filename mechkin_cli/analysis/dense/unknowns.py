@@ -68,6 +68,8 @@ Along = tuple[tuple[str, Attached], tuple[str, Attached]]
 
 def pair_terms(joint: Joint, motion: RowMotion, along: Mapping[str, Along]) -> Pair:
     """Unknowns and conditions of a pair; `along` by the names of balls."""
+    if joint.type.is_free:
+        return Pair((), ())
     if joint.type.is_guide:
         return _guide(joint, motion)
     if joint.type.is_oriented:
@@ -77,12 +79,12 @@ def pair_terms(joint: Joint, motion: RowMotion, along: Mapping[str, Along]) -> P
     return Pair((*_components(joint),), (*slides, *turns))
 
 
-def effort(joint: Joint, coordinate: str, motion: RowMotion) -> Unknown:
-    """The effort of an input."""
+def effort(joint: Joint, coordinate: str, motion: RowMotion, word: str) -> Unknown:
+    """What the drive of a coordinate exerts; `word` names it."""
     known = joint.type.coordinate[coordinate]
     dimension = MOMENT if known.is_angle else FORCE
     wrench = coordinate_wrench(joint, coordinate, motion)
-    return Unknown(f"{joint.name}.{coordinate}.effort", joint.name, dimension, wrench, 4)
+    return Unknown(f"{joint.name}.{coordinate}.{word}", joint.name, dimension, wrench, 4)
 
 
 def _guide(joint: Joint, motion: RowMotion) -> Pair:

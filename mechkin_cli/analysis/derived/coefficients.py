@@ -2,7 +2,7 @@
 
 All of these are linear in the inputs' accelerations. A coefficient is what unit acceleration of its
 input gives, from rest and without gravity and loads, so nothing is subtracted; the rest is what the
-rates and loads of the row give with no acceleration.
+rates and loads of the row give with no acceleration. The friction of joints is left out.
 """
 
 from __future__ import annotations
@@ -54,12 +54,15 @@ def _values(
     session, inputs, unit = run.session, run.session.inputs.without_accelerations(), 1.0
     known = session.problem.quantities()
     bases = list(dict.fromkeys(base_quantity(known, name) for name in names))
-    other: Session | None = None
+    other = without_friction(session)
     if by is not None:
         number = session.driven.index(by)
         joint = session.problem.mechanism.joints[by[0]]
         unit = joint.unit_of(by[1], session.layout.length)
-        inputs, other = session.inputs.at_unit_acceleration(number), _unloaded(session, at_inputs)
+        inputs, other = (
+            session.inputs.at_unit_acceleration(number),
+            unloaded(session, at_inputs=at_inputs),
+        )
     reactions = [base for base in bases if base.kind in WRENCH_KINDS]
     shifts = run.result.shifts if reactions else ()
     bases += [REACTION_LEVEL] if shifts else []
@@ -73,16 +76,27 @@ def _values(
     return [columns[name] / unit for name in names]
 
 
-def _unloaded(session: Session, at_inputs: bool) -> Session:
+def unloaded(session: Session, *, at_inputs: bool) -> Session:
     """The mechanism with its masses alone, its efforts where they act or at the inputs."""
 
     def made() -> Session:
         problem = session.problem
         drives = None if at_inputs else problem.mechanism.drives
-        mechanism = replace(problem.mechanism, loads=(), gravity=ZERO, drives=drives)
+        bare = replace(problem.mechanism, loads=(), gravity=ZERO, frictions=())
+        mechanism = replace(bare, drives=drives)
         return session.loaded(replace(problem, mechanism=mechanism, load_laws=()))
 
     return session.once(("unloaded", at_inputs), made)
+
+
+def without_friction(session: Session) -> Session | None:
+    """The mechanism without the friction of its joints, which is linear in nothing; None where it
+    has none."""
+    mechanism = session.problem.mechanism
+    if not mechanism.frictions:
+        return None
+    smooth = replace(session.problem, mechanism=replace(mechanism, frictions=()))
+    return session.once("without friction", lambda: session.loaded(smooth))
 
 
 def _rounding(levels: Sequence[Floats]) -> Floats:

@@ -11,12 +11,18 @@ import numpy as np
 from mechkin_cli.analysis.derived.advantage import mechanical_advantages
 from mechkin_cli.analysis.derived.basis import Reading, basis_of
 from mechkin_cli.analysis.derived.coefficients import coefficients
+from mechkin_cli.analysis.derived.ledger import ledger
 from mechkin_cli.analysis.derived.orientation import continuous_quaternion, turn
 from mechkin_cli.analysis.derived.screws import finite_screw, instant_screw
 from mechkin_cli.analysis.derived.transmission import dynamic_transmission_angle, transmission_angle
 from mechkin_cli.analysis.derived.unit_rate import at_unit_rate
 from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
-from mechkin_cli.mechanism.derived_quantities import FINITE_KINDS, INSTANT_KINDS, QUATERNION
+from mechkin_cli.mechanism.derived_quantities import (
+    FINITE_KINDS,
+    INSTANT_KINDS,
+    LEDGER_KINDS,
+    QUATERNION,
+)
 from mechkin_cli.mechanism.quantities import Wanted
 
 if TYPE_CHECKING:
@@ -45,6 +51,7 @@ def _computed(run: Reading, wanted: Sequence[Wanted]) -> list[list[Floats]]:
     instant = cache(lambda owner: instant_screw(moving, owner))
     finite = cache(lambda owner: finite_screw(run, owner))
     asked = [quantity for quantity in wanted if quantity.kind == "mechanical_advantage"]
+    energies = cache(lambda: ledger(run))
     linear = [quantity for quantity in wanted if quantity.kind in COEFFICIENT_KINDS]
     found = coefficients(run, linear)
     advantages = iter(mechanical_advantages(run, asked) if asked else ())
@@ -61,6 +68,8 @@ def _computed(run: Reading, wanted: Sequence[Wanted]) -> list[list[Floats]]:
             return [transmission_angle(run, quantity)]
         if quantity.kind == "dynamic_transmission_angle":
             return [dynamic_transmission_angle(run, quantity)]
+        if quantity.kind in LEDGER_KINDS:
+            return [energies()[quantity.kind.removeprefix("ledger_")]]
         if quantity.kind in COEFFICIENT_KINDS:
             return [*found[quantity.name]]
         if quantity.kind in INSTANT_KINDS:

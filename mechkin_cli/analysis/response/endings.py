@@ -67,6 +67,10 @@ def _reason(report: MotionReport) -> tuple[Status, str, str, str]:
     if report.fault == Fault.NOT_FINITE or report.fault & Fault.UNDEFINED_LOAD:
         text = "a load or a rate has no finite value beyond"
         return Status.step_limit, "load-undefined", text, "write loads that hold along the motion"
+    if report.fault & Fault.FRICTION:
+        text = "friction has no answer there, or more than one: the mechanism may jam, or slip"
+        hint = "make a coefficient smaller, or bearings longer"
+        return Status.friction_undecided, "friction-undecided", text, hint
     if report.fault & Fault.SINGULAR_INERTIA:
         hint = "give the links that it moves a mass, or drive it"
         return Status.singular_inertia, "singular-inertia", "", hint

@@ -14,6 +14,7 @@ from mechkin_cli.analysis.response.beginning import Beginning, beginning
 from mechkin_cli.analysis.response.endings import ending
 from mechkin_cli.analysis.response.moments import rows_problem, watched_stop
 from mechkin_cli.analysis.response.result import ENERGIES, ResponseResult
+from mechkin_cli.analysis.sweep.friction import arbitrary_friction
 from mechkin_cli.analysis.sweep.rows import Rows
 from mechkin_cli.analysis.sweep.sweep import at_once, first_assembly, judge_condition, row_notes
 from mechkin_cli.mechanism.motion import Motion
@@ -93,6 +94,8 @@ def prepare(problem: Problem, response: Response, packing: Packing = ANY_PACKING
     if start.state is None:
         return Prepared(response, chosen, start, free, None, None)
     begun = beginning(chosen, response, start.state)
+    if free.is_redundant and free.problem.mechanism.frictions:
+        begun = arbitrary_friction(free.problem.mechanism.frictions)
     if not isinstance(begun, Beginning):
         start.diagnostics.append(begun)
         return Prepared(response, chosen, start, free, None, None)
@@ -227,6 +230,7 @@ def read(result: ResponseResult, quantities: Iterable[str]) -> None:
         energies = [known[name] for name in ENERGIES]
         wanted, demand = at_once(result.session, [*asked, *energies], verdicts=True)
         wanted = [q for q in wanted if not result.is_given(q)]
+        wanted += result.friction.beside(result.problem, wanted, demand)
         batch = result.run(wanted, demand, iterations=tolerances.NEWTON_ITERATIONS)
         failed = rows.reached & ~batch.good
         rows.status[failed] = Status.not_converged

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.analysis.sweep.locked_poses import locked_in
 from mechkin_cli.diagnostics import Diagnostic, Number
-from mechkin_cli.kernel.functions import cos
 from mechkin_cli.mechanism.quantities import ACTUATION
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
@@ -76,11 +76,15 @@ def actuation_notes(result: Result) -> list[Diagnostic]:
 def _note(code: str, result: Result, rows: Bools, text: str, limit: float) -> Diagnostic:
     least = float(np.min(result.columns[ACTUATION.name][0][rows]))
     hint = "put an actuator elsewhere, add one, or keep away from that position"
-    locked = _locked_poses(result, rows)
+    turn = locked_in(result, rows)
+    locked = (
+        f"where {turn} is a quarter turn the turns before and after it go about one axis: that is "
+        "a matter of the pose's coordinates, not of the actuators"
+    )
     return Diagnostic(
         code,
         "warning",
-        text + (f"; {locked}" if locked else ""),
+        text + (f"; {locked}" if turn else ""),
         measured=f"{least:.2g} of the motion",
         limit=f"{limit:.0e}",
         hint=hint,
@@ -95,25 +99,3 @@ def _rows(rows: Bools) -> str:
     if len(numbers) <= SHOWN:
         return f"rows {', '.join(numbers[:-1])} and {numbers[-1]}"
     return f"{len(numbers)} rows, the first is row {numbers[0]}"
-
-
-def _locked_poses(result: Result, rows: Bools) -> str:
-    """Poses that are told by turns of which the first and the last go about one axis in some of the
-    rows: that of the pose's own coordinates, not of the actuators, which is to be told apart."""
-    problem = result.problem
-    known = problem.quantities()
-    for joint in problem.mechanism.joints.values():
-        if not joint.type.is_free:
-            continue
-        middle = next(step for step in joint.type.steps if step.between)
-        number = joint.type.steps.index(middle)
-        name = next(n for n, freedom in joint.type.freedom_of.items() if freedom == number)
-        full = f"{joint.name}.{name}"
-        result.read([known[full]])
-        angles = np.asarray(result.quantity(full).value)[rows]
-        if (np.abs(np.asarray(cos(angles))) < tolerances.POSE_LOCKED).any():
-            return (
-                f"where {full} is a quarter turn the turns before and after it go about one axis: "
-                "that is a matter of these coordinates, not of the actuators"
-            )
-    return ""

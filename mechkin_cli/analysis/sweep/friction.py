@@ -99,6 +99,8 @@ def _undecided(result: Result, judged: Bools) -> Finding:
         named = [one for one, where in zip(frictions, found, strict=True) if where.any()]
         if named:
             where = np.any(found, axis=0)
+            if code is FrictionState.AT_REST and not result.problem.motion.inputs:
+                cure = "while all rests, each friction takes what holds it: positions are known"
             text = f"{why.format(_list(named))}; forces stay empty in {_rows(where)}"
             yield where, Diagnostic(CODE, "warning", text, named[0].place, hint=cure)
 
@@ -126,7 +128,7 @@ def _not_unique(result: Result, judged: Bools) -> Finding:
             lost |= where
             named.append(rubbing)
     if named:
-        yield lost, _arbitrary(named)
+        yield lost, arbitrary_friction(named)
 
 
 def _all_near(own: Floats, others: Sequence[Floats], limit: Floats) -> Bools:
@@ -136,7 +138,8 @@ def _all_near(own: Floats, others: Sequence[Floats], limit: Floats) -> Bools:
     return near
 
 
-def _arbitrary(named: Sequence[Rubbing]) -> Diagnostic:
+def arbitrary_friction(named: Sequence[Rubbing]) -> Diagnostic:
+    """Friction that goes by reactions which are not unique, and how to make them so."""
     lengths = ("length", "collar", "width")
     given = [key for key in lengths if any(getattr(one, key) is not None for one in named)]
     without = f", or leave out {' and '.join(given)}" if given else ""

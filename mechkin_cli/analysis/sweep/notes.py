@@ -41,9 +41,7 @@ def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnost
     if not rows.size or not reached[0]:
         return None
     row = int(rows[0])
-    both = np.ascontiguousarray(states[:, [0, row]])
-    keys = pose_keys(session.layout, both, left_out=_advanced(session, both))
-    if same_poses(keys[:, :1], keys[:, 1:])[0, 0]:
+    if not stands_elsewhere(session, states[:, [0, row]]):
         return None
     count = round(abs(float(turns[row])))
     return Diagnostic(
@@ -53,6 +51,13 @@ def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnost
         "mechanism is not back at its first row's position: it has gone on to another assembly",
         hint="mechkin ranges shows the circuit",
     )
+
+
+def stands_elsewhere(session: Session, both: Floats) -> bool:
+    """Whether the second of two places (states, 2) is not the first; threads may have gone on."""
+    both = np.ascontiguousarray(both)
+    keys = pose_keys(session.layout, both, left_out=_advanced(session, both))
+    return not same_poses(keys[:, :1], keys[:, 1:])[0, 0]
 
 
 def _advanced(session: Session, both: Floats) -> set[tuple[int, int]]:

@@ -12,6 +12,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.start import choose_start
 from mechkin_cli.analysis.sweep.actuation import actuation_notes, watched
 from mechkin_cli.analysis.sweep.following import follow_rows
+from mechkin_cli.analysis.sweep.locked_poses import locked_pose_notes
 from mechkin_cli.analysis.sweep.notes import (
     condition_notes,
     not_converged_note,
@@ -74,7 +75,7 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
         result = _closed(session, start, asked, verdicts=verdicts, every_row=True)
     result.read(asked)
     result.row_states.diagnostics += row_notes(result, asked)
-    result.row_states.diagnostics += actuation_notes(result)
+    result.row_states.diagnostics += [*actuation_notes(result), *locked_pose_notes(result)]
     return result
 
 

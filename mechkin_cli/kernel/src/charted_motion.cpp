@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "requirements.hpp"
 #include "units.hpp"
 
 namespace {
@@ -32,6 +33,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
     : unit_(unit), starts_(starts), lanes_(unit.lanes), plan_(*starts[0].plan), limits_(limits), rows_(rows),
       turns_(closing_turns(plan_, *kernel_unit(2))), turn_slots_(slots_of(turns_)), wide_(wide_plan(unit, starts)),
       workspace_((std::size_t)unit.workspace_size(wide_.data())), stops_(stops), driven_(driven) {
+  require(!rubs() || plan_.charts == 1, "friction is that of one freedom");
   for (int b = 0; b < plan_.blocks; ++b) entries_ += (long)plan_.block[b].rows * plan_.block[b].size;
   const auto make = [&](Packed& a, long count) { a.assign((std::size_t)(count * lanes_), 0.0); };
   make(origin_, plan_.states), make(origin_first_, plan_.columns), make(origin_second_, plan_.columns);
@@ -56,7 +58,11 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   const std::vector<double> y = start();
   std::copy(y.begin() + (long)plan_.charts * lanes_, y.begin() + 2L * plan_.charts * lanes_, rate_.begin());
   std::fill(side_.begin(), side_.end(), 1.0);
+  sense_.assign(lanes_, 0.0), undecided_.assign(lanes_, 0);
+  for (int l = 0; l < lanes_ && rubs(); ++l) sense_[l] = (rate_[l] > 0.0) - (rate_[l] < 0.0);
   evaluate(place_.data(), rate_.data(), &found_);
+  for (int l = 0; l < lanes_ && rubs(); ++l)
+    if (sense_[l] == 0.0) find_sense(l);
   jacobian_ = found_.jacobian, origin_second_ = found_.second, turn_ = found_.turned;
   for (std::size_t k = 0; k < stop_start_.size(); ++k)
     stop_start_[k] = found_.watched[(std::size_t)plan_.law.kinks * lanes_ + k];
@@ -65,9 +71,9 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
 ChartedMotion::Stage ChartedMotion::make_stage() const {
   const auto make = [&](long count) { return Packed((std::size_t)(count * lanes_), 0.0); };
   const long n = plan_.charts;
-  return {make(plan_.states), make(plan_.columns), make(plan_.columns), make(plan_.columns), make(entries_), make(n * plan_.columns),
-          make(n), make(n), make(n * n), make(plan_.law.kinks + plan_.law.outputs - plan_.load_values), make(2),
-          make(turn_slots_), std::vector<unsigned char>((std::size_t)lanes_)};
+  return {make(plan_.states), make(plan_.columns), make(plan_.columns), make(plan_.columns), make(entries_),
+          make(n * plan_.columns), make(n), make(n), make(n * n), make(plan_.law.kinks + plan_.law.outputs - plan_.load_values), make(2),
+          make(turn_slots_), make(3), std::vector<unsigned char>((std::size_t)lanes_)};
 }
 
 std::vector<double> ChartedMotion::start() const {
@@ -82,6 +88,7 @@ std::vector<double> ChartedMotion::start() const {
 
 void ChartedMotion::evaluate(const double* place, const double* rate, Stage* found) {
   StageGiven given = {};
+  given.sense = sense_.data();
   given.origin = origin_.data(), given.origin_rate = origin_first_.data(), given.origin_second = origin_second_.data();
   given.miss = miss_.data(), given.miss_elapsed = miss_elapsed_.data();
   given.direction = direction_.data(), given.origin_jacobian = jacobian_.data(), given.elapsed = elapsed_.data();
@@ -91,15 +98,17 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
   given.turns = turns_.data(), given.turn_count = (int)turns_.size();
   given.tight = limits_.tight, given.coarse = limits_.coarse, given.accept = limits_.accept;
   given.iterations = limits_.iterations, given.jump = limits_.jump, given.radius = limits_.radius;
-  const StageFound out = {found->state.data(), found->first.data(), found->second.data(), found->miss.data(), found->jacobian.data(),
-                          found->tangent.data(), found->chart_second.data(), found->inertia.data(),
-                          found->watched.data(), found->power.data(), found->turned.data(), found->flags.data()};
+  const StageFound out = {found->state.data(), found->first.data(), found->second.data(), found->miss.data(),
+                          found->jacobian.data(), found->tangent.data(), found->chart_second.data(), found->inertia.data(),
+                          found->watched.data(), found->power.data(), found->turned.data(), found->ways.data(),
+                          found->flags.data()};
   unit_.evaluate(wide_.data(), given, out, workspace_.data());
 }
 
 std::vector<SwitchKind> ChartedMotion::switches() const {
   std::vector<SwitchKind> kinds(plan_.law.kinks, {true});
-  if (driven_) kinds.insert(kinds.end(), driven_->edges().size(), {true});
+  kinds.insert(kinds.end(), edges(), {true});
+  kinds.insert(kinds.end(), rubs(), {false, true});
   kinds.insert(kinds.end(), stops_.size(), {false});
   return kinds;
 }
@@ -112,7 +121,7 @@ void ChartedMotion::drive(int lane, double time) {
 
 // Lanes that are not asked for stand at their origin.
 void ChartedMotion::set_places(const Places& places) {
-  const int n = plan_.charts, kinks = plan_.law.kinks, edges = driven_ ? (int)driven_->edges().size() : 0;
+  const int n = plan_.charts, kinks = plan_.law.kinks, edges = this->edges();
   for (int l = 0; l < lanes_; ++l) {
     const bool active = places.active[l];
     time_[l] = active ? places.time[l] : origin_time_[l];
@@ -141,6 +150,7 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
     for (int i = 0; i < n; ++i) rates.rates[i * lanes_ + l] = found->chart_second[i * lanes_ + l];
     for (int k = 0; k < 2; ++k) rates.rates[(n + k) * lanes_ + l] = found->power[k * lanes_ + l];
     rates.fault[l] = found->flags[l];
+    if (undecided_[l]) rates.fault[l] |= STAGE_FRICTION;
     if (!found->flags[l]) keep_miss(l, *found);
     write_switches(*found, l, time_[l], rates.switches);
   }
@@ -161,11 +171,12 @@ double ChartedMotion::stop_value(int stop, int lane, double watched) const {
 }
 
 void ChartedMotion::write_switches(const Stage& found, int lane, double time, double* switches) const {
-  const int kinks = plan_.law.kinks, edges = driven_ ? (int)driven_->edges().size() : 0;
+  const int kinks = plan_.law.kinks, edges = this->edges(), stops = kinks + edges + rubs();
+  if (rubs()) switches[(stops - 1) * lanes_ + lane] = at(found.ways, 2, lane);
   for (int k = 0; k < kinks; ++k) switches[k * lanes_ + lane] = at(found.watched, k, lane);
   for (int e = 0; e < edges; ++e) switches[(kinks + e) * lanes_ + lane] = time - driven_->edges()[e];
   for (int s = 0; s < (int)stops_.size(); ++s)
-    switches[(kinks + edges + s) * lanes_ + lane] = stop_value(s, lane, at(found.watched, kinks + s, lane));
+    switches[(stops + s) * lanes_ + lane] = stop_value(s, lane, at(found.watched, kinks + s, lane));
 }
 
 // The tangents of the old chart, made orthonormal in the columns in parts of their weights (Gram-Schmidt, twice).
@@ -296,7 +307,7 @@ void ChartedMotion::row(const unsigned char* lanes, const long* row, const doubl
 }
 
 bool ChartedMotion::event(int lane, int which, bool rising, double) {
-  const int stop = which - plan_.law.kinks - (driven_ ? (int)driven_->edges().size() : 0);
+  const int stop = which - plan_.law.kinks - edges() - rubs();
   if (stop < 0) return false;
   const MotionStop& s = stops_[stop];
   if (s.kind == STOP_CROSSING && s.direction * (rising ? 1 : -1) < 0) return false;
@@ -304,4 +315,31 @@ bool ChartedMotion::event(int lane, int which, bool rising, double) {
   stopped_[lane] = stop;
   write_row(lane, next_row_[lane], end_, nullptr);
   return true;
+}
+
+// A freedom at rest goes the way that friction lets it; `found_` is of the place at rest. Where it may go both ways, none
+// is right.
+void ChartedMotion::find_sense(int lane) {
+  const bool forth = at(found_.ways, 0, lane) > 0.0, back = at(found_.ways, 1, lane) < 0.0;
+  undecided_[lane] = (forth && back) || found_.flags[lane] & STAGE_FRICTION;
+  sense_[lane] = forth - back;
+}
+
+void ChartedMotion::stand_still() {
+  std::fill(place_.begin(), place_.end(), 0.0), std::fill(rate_.begin(), rate_.end(), 0.0);
+  for (int l = 0; l < lanes_; ++l) {
+    time_[l] = origin_time_[l], elapsed_[l] = 0.0;
+    drive(l, time_[l]);
+  }
+}
+
+// The one freedom has come to rest, or a rest ends: by the way that friction holds no longer, to rounding.
+void ChartedMotion::move(int lane, int, double, double* y) {
+  const bool rested = sense_[lane] == 0.0;
+  stand_still();
+  y[plan_.charts * lanes_ + lane] = 0.0;
+  sense_[lane] = 0.0;
+  evaluate(place_.data(), rate_.data(), &found_);
+  find_sense(lane);
+  if (rested && sense_[lane] == 0.0) sense_[lane] = -at(found_.ways, 0, lane) <= at(found_.ways, 1, lane) ? 1.0 : -1.0;
 }

@@ -68,6 +68,7 @@ class ChartedMotion : public Motion {
   void sizes(const unsigned char* lanes, double* size) override;
   void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) override;
   bool event(int lane, int which, bool rising, double time) override;
+  void move(int lane, int which, double time, double* y) override;
 
   // The stop that ended a lane, -1 without one.
   int stopped_by(int lane) const { return stopped_[lane]; }
@@ -78,6 +79,7 @@ class ChartedMotion : public Motion {
   // Arrays of packs, as the unit takes them.
   struct Stage {
     Packed state, first, second, miss, jacobian, tangent, chart_rate, chart_second, inertia, watched, power, turned;
+    Packed ways;
     std::vector<unsigned char> flags;
   };
 
@@ -85,6 +87,10 @@ class ChartedMotion : public Motion {
   void evaluate(const double* place, const double* rate, Stage* found);
   void set_places(const Places& places);
   void drive(int lane, double time);
+  int edges() const { return driven_ ? (int)driven_->edges().size() : 0; }
+  bool rubs() const { return plan_.frictions > 0; }
+  void stand_still();
+  void find_sense(int lane);
   double stop_value(int stop, int lane, double watched) const;
   void write_switches(const Stage& found, int lane, double time, double* switches) const;
   void keep_miss(int lane, const Stage& found);
@@ -107,6 +113,8 @@ class ChartedMotion : public Motion {
   Packed inputs_, input_rates_, input_seconds_, time_, side_;
   const std::vector<MotionStop> stops_;
   const DrivenLaws* driven_;
+  Packed sense_;                    // 1: which way the one freedom goes, see sliding.hpp
+  std::vector<unsigned char> undecided_;  // lanes: friction lets the freedom go both ways
   std::vector<int> cell_;           // lanes: of the driven laws
   std::vector<double> stop_start_;  // stops x lanes: the values at the start
   std::vector<int> passed_;         // stops x lanes: how often a stop's value has passed

@@ -3,10 +3,10 @@
 #define MECHKIN_WIDE_PLAN
 #include "wide_plan.hpp"
 
-#include "equations_of_motion.hpp"
 #include "motion_unit.hpp"
 #include "quantity_program.hpp"
 #include "regular.hpp"
+#include "sliding.hpp"
 
 namespace {
 
@@ -137,7 +137,11 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
   reduce_forces(p, w, m, values);
   Pack* const second = packs(found.chart_second);
   const Mask positive = solve_motion(p, m, second);
+  Slid slid = {all_lanes(false), Pack(0.0)};
+  if (p.frictions)
+    slid = slide(p, w, m, *packs(given.sense), *packs(given.rate), values, second, packs(found.ways));
   powers_of_loads(p, w, m, second, input_rate, values, packs(found.power), packs(found.power) + 1);
+  packs(found.power)[1] += slid.power;
 
   copy(w.q, p.states, packs(found.state));
   copy(w.rate, p.columns, packs(found.first));
@@ -159,6 +163,7 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
     if (!lane(placed.on_branch, i)) f |= STAGE_OFF_BRANCH;
     if (!lane(positive, i)) f |= STAGE_SINGULAR_INERTIA;
     if (lane(undefined, i)) f |= STAGE_UNDEFINED_LOAD;
+    if (lane(slid.undecided, i)) f |= STAGE_FRICTION;
     found.flags[i] = (unsigned char)f;
   }
 }

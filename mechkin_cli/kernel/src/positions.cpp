@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "program_store.hpp"
 #include "requirements.hpp"
 #include "units.hpp"
 
@@ -33,7 +34,7 @@ Positions::Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRow
   require(rows_.state.size() == n * p.states, "states: wrong shape");
   require(rows_.turn.size() == n * turn_slots_, "turns: wrong shape");
   require(!(outputs.demand() & ~demand), "the outputs need more than is demanded");
-  require(!(demand & DEMAND_FORCES) || p.load_values == 0, "loads that vary by row have no place here");
+  require(!(demand & DEMAND_FORCES) || !(program_demand(p.law) & ~demand), "loads that vary need more than is demanded");
   require(!(demand & DEMAND_FORCES) || p.ties == 0, "rates of tied inputs by row have no place here");
   require(!(demand & (DEMAND_POWER | DEMAND_CONDITION)), "no place for condition and power error");
   require(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
@@ -63,7 +64,7 @@ long Positions::nearest(const double* inputs, const double* whole) const {
   return best;
 }
 
-bool Positions::solve(const double* inputs, const double* whole, double* outputs) {
+bool Positions::solve(const double* inputs, const double* whole, const double* full, double* outputs) {
   const Plan& p = plan_.view();
   const KernelUnit& unit = *kernel_unit(2);
   const long row = nearest(inputs, whole), n = rows_.rows;
@@ -87,7 +88,7 @@ bool Positions::solve(const double* inputs, const double* whole, double* outputs
   r.guess = start_.data();
   std::vector<double> turned(turn_slots_);
   for (int s = 0; s < turn_slots_; ++s) turned[s] = way_turn_[2 * s + 1];
-  r.turned = turned.data(), r.whole = whole;
+  r.turned = turned.data(), r.whole = whole, r.full = full;
   r.wanted = outputs_.view(), r.outputs = outputs;
   r.residual = &residual, r.correction = &correction, r.flags = &flags;
   r.demand = demand_, r.iterations = iterations_;
@@ -110,14 +111,15 @@ std::vector<double> copy_of(const Table& a, long rows, const char* name) {
 }
 
 // The outputs at some inputs in kernel units, None where there is no position.
-nb::object solve(Positions& positions, const std::vector<double>& inputs, const std::vector<double>& whole) {
-  for (const auto* values : {&inputs, &whole})
+nb::object solve(Positions& positions, const std::vector<double>& inputs, const std::vector<double>& whole,
+                 const std::vector<double>& full) {
+  for (const auto* values : {&inputs, &whole, &full})
     if ((int)values->size() != positions.inputs()) throw nb::value_error("one number for each input");
   if (!are_whole_turns(whole.data(), whole.size()))
     throw nb::value_error("whole: numbers of turns");
   std::vector<double> outputs(positions.slots());
   FloatingPointState state;
-  if (!positions.solve(inputs.data(), whole.data(), outputs.data())) return nb::none();
+  if (!positions.solve(inputs.data(), whole.data(), full.data(), outputs.data())) return nb::none();
   return nb::cast(outputs);
 }
 
@@ -146,5 +148,5 @@ void bind_positions(nb::module_& m) {
            nb::kw_only(), "plan"_a, "outputs"_a, "inputs"_a, "whole"_a, "rates"_a, "accelerations"_a, "jerks"_a, "states"_a,
            "turns"_a, "demand"_a, "iterations"_a, "limits"_a, "angles"_a, nb::keep_alive<1, 2>(),
            nb::keep_alive<1, 3>())
-      .def("solve", &solve, "inputs"_a, "whole"_a);
+      .def("solve", &solve, "inputs"_a, "whole"_a, "full"_a);
 }

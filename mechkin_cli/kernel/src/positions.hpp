@@ -33,9 +33,9 @@ class Positions {
   Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRows rows, unsigned demand, int iterations,
             const StepLimits& limits, std::vector<TurningOutput> angles);
 
-  // Fills `outputs` (slots); false where the branch ends before the inputs (inputs, and their whole turns), or no row
+  // Fills `outputs` (slots); false where the branch ends before the inputs (inputs, their whole turns, and with them), or no row
   // closes there. Rates are those of the nearest row. One call at a time.
-  bool solve(const double* inputs, const double* whole, double* outputs);
+  bool solve(const double* inputs, const double* whole, const double* full, double* outputs);
 
   int inputs() const { return plan_.view().inputs; }
   int slots() const { return outputs_.view().slots; }

@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t LONGEST = 1 << 24;  // of each list: registers are counted by int
 
 bool is_kink(int operation) {
-  return operation == TAPE_MAGNITUDE || operation == TAPE_LARGER || operation == TAPE_SMALLER || operation == TAPE_WHOLE;
+  return operation == TAPE_MAGNITUDE || operation == TAPE_SIGN || operation == TAPE_LARGER ||
+         operation == TAPE_SMALLER || operation == TAPE_WHOLE;
 }
 
 }  // namespace

@@ -81,14 +81,15 @@ inline void run_program(const Plan& p, const Workspace& w, const ProgramOf<Numbe
   replay_pack(instructions_of(program), r);
 }
 
-// What changes its sign where kink k of a program is passed, from the registers of a run: the argument of a magnitude,
+// What changes its sign where kink k of a program is passed, from the registers of a run: the argument of a magnitude or a sign,
 // the difference of two of which the larger or smaller is taken, and of a rounding the cosine of half its turns.
 template <class Number>
 inline Pack kink_value(const ProgramOf<Number>& program, int k, const Pack* r) {
   const int instruction = program.kink[k];
   const std::int32_t* const o = program.operand + 3 * instruction;
   switch (program.operation[instruction]) {
-    case TAPE_MAGNITUDE: return r[o[0]];
+    case TAPE_MAGNITUDE:
+    case TAPE_SIGN: return r[o[0]];
     case TAPE_WHOLE: return cos(Pack(3.14159265358979323846) * r[o[0]]);
     default: return r[o[0]] - r[o[1]];
   }
@@ -102,6 +103,7 @@ inline Pack value_on_side(const ProgramOf<Number>& program, int k, Pack side, co
   const Mask up = side > Pack(0.0);
   switch (program.operation[instruction]) {
     case TAPE_MAGNITUDE: return side * r[o[0]];
+    case TAPE_SIGN: return select(up, Pack(1.0), Pack(-1.0));
     case TAPE_LARGER: return select(up, r[o[0]], r[o[1]]);
     case TAPE_SMALLER: return select(up, r[o[1]], r[o[0]]);
     default: {  // TAPE_WHOLE: even numbers where the cosine is positive

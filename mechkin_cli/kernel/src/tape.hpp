@@ -30,6 +30,7 @@ enum TapeOperation : std::uint8_t {
   TAPE_EXP,
   TAPE_LOG,
   TAPE_POWER,
+  TAPE_SIGN,  // 1 where a > 0, -1 where a < 0, else a
   TAPE_OPERATIONS
 };
 

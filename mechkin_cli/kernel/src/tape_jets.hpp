@@ -68,7 +68,7 @@ MECHKIN_INLINE Jet power_of(Jet x, Jet n) {
 }
 
 MECHKIN_INLINE bool is_switch(int operation) {
-  return operation == TAPE_MAGNITUDE || operation == TAPE_LARGER || operation == TAPE_SMALLER ||
+  return operation == TAPE_MAGNITUDE || operation == TAPE_SIGN || operation == TAPE_LARGER || operation == TAPE_SMALLER ||
          (operation >= TAPE_LESS && operation <= TAPE_WHOLE);
 }
 

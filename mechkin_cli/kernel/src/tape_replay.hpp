@@ -56,6 +56,7 @@ void replay_pack(const Tape& t, Pack* r) {
       case TAPE_EXP: result[i] = exp(a); break;
       case TAPE_LOG: result[i] = log(a); break;
       case TAPE_POWER: result[i] = pow(a, b); break;
+      case TAPE_SIGN: result[i] = select(a > Pack(0.0), Pack(1.0), select(a < Pack(0.0), Pack(-1.0), a)); break;
       default: result[i] = Pack(__builtin_nan("")); break;
     }
   }

@@ -82,7 +82,8 @@ nb::object jets(const TapeStore& store, Rows<double> inputs, Row<double> ways) {
 int TapeStore::switches() const {
   int count = 0;
   for (std::uint8_t o : operations_)
-    count += o == TAPE_MAGNITUDE || o == TAPE_LARGER || o == TAPE_SMALLER || (o >= TAPE_LESS && o <= TAPE_WHOLE);
+    count += o == TAPE_MAGNITUDE || o == TAPE_SIGN || o == TAPE_LARGER || o == TAPE_SMALLER ||
+             (o >= TAPE_LESS && o <= TAPE_WHOLE);
   return count;
 }
 
