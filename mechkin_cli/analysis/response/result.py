@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,7 @@ from mechkin_cli.expressions import Quantity
 from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
 from mechkin_cli.mechanism.load_laws import law_value
 from mechkin_cli.mechanism.model import Varying
+from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.quantities import response_quantities
 
 if TYPE_CHECKING:
@@ -107,6 +108,30 @@ class ResponseResult(Result):
             iterations=iterations,
             chart=self.chart if chart is None else chart,
         )
+
+    @cached_property
+    def input_rates(self) -> Mapping[str, Floats]:
+        """As of a sweep; and the start's coordinates, which the first row has as they were
+        given."""
+        found = dict(super().input_rates)
+        if not self.solved[:1].all():
+            return found
+        for one in self.response.start:
+            for name, given in ((one.name, one.value), (one.name + ORDERS[1], one.rate)):
+                if given is not None:
+                    found[name] = self._as_given(name, given)
+        return found
+
+    def _as_given(self, name: str, given: float) -> Floats:
+        """A quantity in the file's units, its first value the shortest number that is `given` in
+        SI."""
+        quantity, units = self.quantity(name), self.units
+        rows = np.array(np.broadcast_to(np.asarray(quantity.value, dtype=np.float64), (self.rows,)))
+        column = np.array(units.from_si(rows, quantity.dimension), dtype=np.float64)
+        short = float(f"{column[0]:.15g}")
+        if float(units.to_si(short, quantity.dimension)) == given:
+            column[0] = short
+        return column
 
     @cached_property
     def as_driven(self) -> Result:
