@@ -48,7 +48,8 @@ class Fault(IntEnum):
 class MotionReport(NamedTuple):
     """What a motion came to: the stop that ended it (-1: none), its end, the fault of the last
     refused step, the switch that held it, whether and from when the implicit method took over, the
-    last time in s, and the counts of rows, evaluations, steps and rejections."""
+    last time in s, and the counts of rows, evaluations, steps, rejections and branch points that
+    were passed straight on."""
 
     stop: int
 
@@ -62,6 +63,7 @@ class MotionReport(NamedTuple):
     evaluations: int
     steps: int
     rejections: int
+    passed: int
 
 
 @dataclass(frozen=True)
@@ -128,6 +130,7 @@ def integrate(
     driven: DrivenLaws | None = None,
     tolerance: float,
     fixed_step: float | None,
+    straight: bool = False,
     packing: Packing,
     method: int = 0,
 ) -> list[MotionRows]:
@@ -135,6 +138,8 @@ def integrate(
     the rows' `times` (rows,).
 
     `stops` go with the values that the plans watch, in order; `driven` with their inputs.
+
+    `straight` passes branch points along the smooth continuation.
 
     Raises:
         ValueError: times that do not rise from `begin` on.
@@ -157,6 +162,7 @@ def integrate(
         iterations=tolerances.NEWTON_ITERATIONS,
         jump=tolerances.JUMP_LIMIT,
         radius=tolerances.SPECTRAL_RADIUS,
+        straight=straight,
         lanes=_lanes(packing, len(starts)),
         threads=threads_for(len(starts), packing.threads),
     )

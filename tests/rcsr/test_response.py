@@ -53,7 +53,8 @@ for _x in "xyz":
 def text(tolerance: str = "1e-13") -> str:
     """The file of the kinetostatics with the parameters of the response."""
     data = document(RCSR)
-    del data["motion"], data["tables"], data["loads"], data["assembly"]
+    for key in ("motion", "tables", "loads", "assembly", "coefficients"):
+        data.pop(key, None)
     data["parameters"] |= {"alpha1": "10 deg", "alpha4": "20 deg"}
     data["parameters"] |= {"P1": "5 in", "P2": "10 in", "P3": "5 in", "P4": "10 in"}
     data["responses"] = {

@@ -14,12 +14,12 @@ ENERGY = 1e-11
 """Limit of `row.energy_error`."""
 
 
-def respond(text: str, name: str = "run", *, ends: str = "ok") -> Any:
+def respond(text: str, name: str = "run", *, ends: str = "ok", energy: float = ENERGY) -> Any:
     """The response of a text, whose rows are all `ok` but a last one that ends otherwise."""
     found = mk.loads(text).respond(name)
     status = [str(word) for word in found["row.status"]]
     assert set(status) in ({"ok"}, {"ok", ends}), status
-    assert np.nanmax(found["row.energy_error"]) <= ENERGY
+    assert np.nanmax(found["row.energy_error"]) <= energy
     return found
 
 

@@ -231,7 +231,6 @@ def test_a_spring_with_a_kink() -> None:
     assert off(found["S.s_dot"], v) < 1e-10
 
 
-@pytest.mark.xfail(reason="there is no function sign yet")
 def test_a_force_that_changes_its_sign() -> None:
     """-F sign(s): parabolas by turns; every half lasts 2 m v / F."""
     force, v0 = 6.0, 1.5

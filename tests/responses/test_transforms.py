@@ -19,7 +19,8 @@ FORCES = ("O4.force", "O3.force", "O2.moment")
 def spring_driven() -> dict[str, Any]:
     """RCSR with the dimensions of its response, under its weight, a torque and a damper."""
     data = document(RCSR)
-    del data["motion"], data["tables"]
+    for key in ("motion", "tables", "loads", "assembly", "coefficients"):
+        data.pop(key, None)
     data["parameters"] |= {"alpha1": "10 deg", "alpha4": "20 deg"}
     data["parameters"] |= {"P1": "5 in", "P2": "10 in", "P3": "5 in", "P4": "10 in"}
     data["assembly"] = {

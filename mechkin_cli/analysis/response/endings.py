@@ -27,6 +27,10 @@ def ending(
         text = f"from {_moment(session, report.stiff_from)} on the motion is stiff"
         hint = "an implicit method of order 5 (Radau IIA) has taken over; nothing is to be done"
         notes.append(Diagnostic("stiff", "note", text, response.place, hint=hint))
+    if report.passed:
+        count = f"{report.passed} branch point{'s' * (report.passed > 1)}"
+        text = f"the motion passes {count} along the smooth continuation"
+        notes.append(Diagnostic("branch-point-passed", "note", text, response.place))
     if report.end in (MotionEnd.DONE, MotionEnd.STOPPED):
         return Status.ok, notes
     at = _moment(session, report.time)

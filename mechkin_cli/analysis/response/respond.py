@@ -152,6 +152,7 @@ def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRo
         driven=first.driven,
         tolerance=response.tolerance,
         fixed_step=response.fixed_step,
+        straight=first.chosen.problem.assembly.straight,
         packing=packing,
     )
 

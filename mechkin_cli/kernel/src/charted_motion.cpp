@@ -42,7 +42,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   make(inputs_, plan_.inputs), make(input_rates_, plan_.inputs), make(input_seconds_, plan_.inputs);
   make(miss_, plan_.columns), make(miss_elapsed_, 1);
   unit_.prepare(wide_.data(), workspace_.data());
-  make(time_, 1), make(side_, plan_.law.kinks), make(done_, 2);
+  make(time_, 1), make(over_, 1), make(side_, plan_.law.kinks), make(done_, 2);
   cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), next_row_.assign(lanes_, 0);
   stop_start_.assign(stops_.size() * lanes_, 0.0), passed_.assign(stops_.size() * lanes_, 0);
   found_ = make_stage(), end_ = make_stage();
@@ -86,7 +86,7 @@ std::vector<double> ChartedMotion::start() const {
   return y;
 }
 
-void ChartedMotion::evaluate(const double* place, const double* rate, Stage* found) {
+void ChartedMotion::evaluate(const double* place, const double* rate, const MotionLimits& limits, Stage* found) {
   StageGiven given = {};
   given.sense = sense_.data();
   given.origin = origin_.data(), given.origin_rate = origin_first_.data(), given.origin_second = origin_second_.data();
@@ -94,10 +94,10 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
   given.direction = direction_.data(), given.origin_jacobian = jacobian_.data(), given.elapsed = elapsed_.data();
   given.place = place, given.rate = rate;
   given.inputs = inputs_.data(), given.input_rates = input_rates_.data(), given.input_seconds = input_seconds_.data();
-  given.time = time_.data(), given.side = side_.data(), given.turned = turn_.data();
+  given.time = time_.data(), given.over = over_.data(), given.side = side_.data(), given.turned = turn_.data();
   given.turns = turns_.data(), given.turn_count = (int)turns_.size();
-  given.tight = limits_.tight, given.coarse = limits_.coarse, given.accept = limits_.accept;
-  given.iterations = limits_.iterations, given.jump = limits_.jump, given.radius = limits_.radius;
+  given.tight = limits.tight, given.coarse = limits.coarse, given.accept = limits.accept;
+  given.iterations = limits.iterations, given.jump = limits.jump, given.radius = limits.radius;
   const StageFound out = {found->state.data(), found->first.data(), found->second.data(), found->miss.data(),
                           found->jacobian.data(), found->tangent.data(), found->chart_second.data(), found->inertia.data(),
                           found->watched.data(), found->power.data(), found->turned.data(), found->ways.data(),
@@ -235,7 +235,7 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
     const auto take = [&](const Packed& from, long count, Packed& to) {
       for (long k = 0; k < count; ++k) to[k * lanes_ + l] = from[k * lanes_ + l];
     };
-    origin_time_[l] = time[l], miss_elapsed_[l] = 0.0;
+    origin_time_[l] = time[l], miss_elapsed_[l] = over_[l] = 0.0;
     for (int k = 0; k < 2; ++k) done_[k * lanes_ + l] = y[(2 * n + k) * lanes_ + l];
     take(end_.state, plan_.states, origin_), take(end_.first, columns, origin_first_);
     take(end_.second, columns, origin_second_), take(end_.jacobian, entries_, jacobian_);

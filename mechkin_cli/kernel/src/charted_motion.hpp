@@ -38,6 +38,7 @@ struct MotionStop {
 struct MotionLimits {
   double tight, coarse, accept, jump, radius;
   int iterations;
+  bool straight;  // branch points are passed along the smooth continuation
 };
 
 // Rows of a lane, column after column; rows that are not reached stay as they are. Without rows nothing is written.
@@ -66,6 +67,7 @@ class ChartedMotion : public Motion {
   void rates(const Places& places, const Rates& rates) override;
   void accept(const unsigned char* lanes, const double* time, double* y, double* rates, double* longest) override;
   void sizes(const unsigned char* lanes, double* size) override;
+  AtPlace pass_over(int lane, double reach) override;
   void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) override;
   bool event(int lane, int which, bool rising, double time) override;
   void move(int lane, int which, double time, double* y) override;
@@ -83,8 +85,16 @@ class ChartedMotion : public Motion {
     std::vector<unsigned char> flags;
   };
 
+  // A lane's states and their first two derivatives along a straight way in the chart.
+  struct NodeStates {
+    std::vector<double> state, first, second;
+  };
+
   Stage make_stage() const;
-  void evaluate(const double* place, const double* rate, Stage* found);
+  void evaluate(const double* place, const double* rate, Stage* found) { evaluate(place, rate, limits_, found); }
+  void evaluate(const double* place, const double* rate, const MotionLimits& limits, Stage* found);
+  bool goes_straight(int lane, double time);
+  NodeStates differentiated(const Stage& at, int lane) const;
   void set_places(const Places& places);
   void drive(int lane, double time);
   int edges() const { return driven_ ? (int)driven_->edges().size() : 0; }
@@ -110,7 +120,7 @@ class ChartedMotion : public Motion {
   long entries_ = 0;
   std::vector<char, AlignedAllocator<char>> wide_, workspace_;
   Packed origin_, origin_first_, origin_second_, direction_, jacobian_, turn_, elapsed_, miss_, miss_elapsed_, place_, rate_, origin_time_;
-  Packed inputs_, input_rates_, input_seconds_, time_, side_;
+  Packed inputs_, input_rates_, input_seconds_, time_, side_, over_;
   const std::vector<MotionStop> stops_;
   const DrivenLaws* driven_;
   Packed sense_;                    // 1: which way the one freedom goes, see sliding.hpp

@@ -37,6 +37,10 @@ struct SwitchKind {
   bool moves = false;
 };
 
+// What becomes of a motion at a place towards which its steps shrink: it goes on by itself, it is let over the place in one
+// step, or it ends before.
+enum class AtPlace { GOES_ON, PASSES, ENDS };
+
 class Motion {
  public:
   virtual ~Motion() = default;
@@ -58,6 +62,14 @@ class Motion {
   virtual void sizes(const unsigned char* lanes, double* size) {
     (void)lanes;
     (void)size;
+  }
+
+  // The steps of a lane shrink towards a place where stages are faults; `reach` is how long they may yet be. Where it is
+  // passed, the stages of this lane need not be joined with the origin until the next `accept`, or a reach of 0.
+  virtual AtPlace pass_over(int lane, double reach) {
+    (void)lane;
+    (void)reach;
+    return AtPlace::GOES_ON;
   }
 
   // Rows are reached; `row` (lanes). At the end of a step (`inside` false) that is the chart's origin, after `accept`. Inside
@@ -114,6 +126,7 @@ struct LaneReport {
   double time = 0.0;             // how far the lane came
   long rows = 0;                 // rows that were reached
   long evaluations = 0, steps = 0, rejections = 0;
+  long passed = 0;               // places that were passed, see Motion::pass_over
 };
 
 // Integrates from `time` (lanes) and y, u = 0 in the motion's present charts, over all rows. Throws

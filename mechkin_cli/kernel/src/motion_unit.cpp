@@ -79,6 +79,7 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
   limits.iterations = given.iterations;
   const Pack room = Pack(given.jump) * way(p, w);
   Placed placed = {all_lanes(true), all_lanes(true)};
+  const Mask over = *packs(given.over) > Pack(0.0);
   long entries = 0;
   for (int b = 0; b < p.blocks; ++b) {
     const Closed closed = close_block(p, w, b, limits);
@@ -90,7 +91,7 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
     at.factor_jacobian();
     placed.closed = placed.closed & closed.converged & closed.side;
     placed.on_branch = placed.on_branch & (closed.correction <= room + Pack(given.coarse)) &
-                       is_regular(p, w, b, packs(given.origin_jacobian) + entries, given.radius, m.radius);
+                       (over | is_regular(p, w, b, packs(given.origin_jacobian) + entries, given.radius, m.radius));
     entries += size;
   }
   for (int k = 0; k < p.rest_count; ++k) {

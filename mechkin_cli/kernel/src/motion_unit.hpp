@@ -20,6 +20,7 @@ struct StageGiven {
   const double* place;            // charts: u
   const double* rate;             // charts: its rate
   const double *inputs, *input_rates, *input_seconds;  // inputs: of what is driven
+  const double* over;             // 1: not 0 where a stage need not be joined with the origin by regular Jacobians
   const double* turned;           // turn slots, see Request::turned, of the origin
   const ClosingTurn* turns;       // turn_count: what StageFound::turned holds
   int turn_count;
