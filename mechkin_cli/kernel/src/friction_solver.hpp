@@ -118,6 +118,24 @@ inline void differentiate_loads(const Plan& p, const Rubbing& r) {
   }
 }
 
+// r.right := r.matrix^-1 r.right. Where friction contracts the matrix is diagonally dominant, columns in parts of w, and
+// needs no exchange of rows (Varga, On recurring theorems on diagonal dominance, 1976).
+inline void eliminate(const Rubbing& r, int n) {
+  for (int k = 0; k < n; ++k) {
+    const Pack inverse = Pack(1.0) / r.matrix[k * n + k];
+    r.matrix[k * n + k] = inverse;
+    for (int i = k + 1; i < n; ++i) {
+      const Pack l = r.matrix[i * n + k] * inverse;
+      for (int j = k + 1; j < n; ++j) r.matrix[i * n + j] -= l * r.matrix[k * n + j];
+      r.right[i] -= l * r.right[k];
+    }
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    for (int j = k + 1; j < n; ++j) r.right[k] -= r.matrix[k * n + j] * r.right[j];
+    r.right[k] *= r.matrix[k * n + k];
+  }
+}
+
 // What is left of the equations, and the largest friction force, in the norm in which friction contracts.
 struct LeftOver {
   Pack left, scale;
@@ -137,7 +155,13 @@ inline LeftOver left_over(const Plan& p, const Rubbing& r) {
 inline void solve_friction(const Plan& p, Rubbing& r) {
   const int n = p.frictions;
   prove_unique(p, r);
-  for (int k = 0; k < n; ++k) r.force[k] = 0.0;
+  // by the reactions without friction
+  for (int k = 0; k < n; ++k) {
+    Pack normal = 0.0;
+    for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c)
+      normal += Pack(p.contact[c].weight) * magnitude(r.base[c]);
+    r.force[k] = r.coefficient[k] * normal;
+  }
   Mask done = all_lanes(false), newton = all_lanes(false), moved = all_lanes(false);
   Pack before = __builtin_inf();
   const Pack infinite = __builtin_inf();
@@ -156,9 +180,7 @@ inline void solve_friction(const Plan& p, Rubbing& r) {
     const Mask go = ~back & ~done;
     for (int k = 0; k < n; ++k) r.step[k] = select(go, r.force[k] + r.right[k], r.step[k]);
     differentiate_loads(p, r);
-    const Factors f = {r.matrix, r.swap, n};
-    factor(f);
-    solve(f, r.right);
+    eliminate(r, n);
     for (int k = 0; k < n; ++k) r.force[k] = select(go, r.force[k] + r.right[k], r.force[k]);
     newton = go;
     before = select(go, now.left, infinite);
