@@ -10,6 +10,9 @@ from oracle import document, in_other_units, moved, mp, renamed, reordered, rota
 from references import RCSR
 from responses.motions import off, respond
 
+import mechkin_cli as mk
+from mechkin_cli.kernel.width import widths
+
 SAME = 1e-9
 NAMES = ("O1.theta", "O2.theta", "O2.s", "O4.theta")
 RATES = tuple(f"{name}_dot" for name in NAMES)
@@ -180,3 +183,12 @@ def test_a_part_that_carries_nothing(original: Any) -> None:
     data["links"]["plate"] = {}
     data["joints"]["weld"] = {"type": "W", "links": ["rocker", "plate"]}
     check(respond(to_text(data)), original)
+
+
+@pytest.mark.parametrize("lanes", [2, 4, 8])
+def test_lanes_and_threads_change_no_bit(lanes: int, original: Any) -> None:
+    if lanes not in widths():
+        pytest.skip("the machine has no lanes of this width")
+    found = mk.loads(to_text(spring_driven())).respond("run", lanes=lanes, threads=2)
+    for name in (*NAMES, *RATES, *FORCES, "row.work", "row.energy_error"):
+        assert np.array_equal(found[name], original[name]), name

@@ -1,0 +1,69 @@
+"""Coordinates that move by laws while others are free, against dense Newton-Euler equations."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from oracle.dynamics.motion import Course
+from oracle.dynamics.response import prepare
+from responses.motions import off, respond
+
+FILE = """format: 1
+name: slider-crank with a pendulum on its slide
+units: {{angle: rad}}
+links:
+  crank: {{mass: 1, center_of_mass: [0.1, 0, 0], inertia: {{zz: 0.01}}}}
+  rod: {{mass: 2, center_of_mass: [0.5, 0, 0.05], inertia: {{xx: 0.01, yy: 0.1, zz: 0.1}}}}
+  slide: {{mass: 1, center_of_mass: [0.8, 0, 0]}}
+  bob: {{mass: 0.7, center_of_mass: [0.8, -0.3, 0.1], inertia: {{xx: 0.02, yy: 0.02, zz: 0.03}}}}
+joints:
+  A: {{type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}}
+  B: {{type: S, links: [crank, rod], point: [0.2, 0, 0]}}
+  C: {{type: U, links: [rod, slide], point: [0.8, 0, 0], axis: [0, 1, 0], axis2: [0, 0, 1]}}
+  D: {{type: P, links: [ground, slide], point: [0.8, 0, 0], axis: [1, 0, 0.1]}}
+  E: {{type: R, links: [slide, bob], point: [0.8, 0, 0], axis: [0.2, 0.1, 1]}}
+loads:
+  - {{type: gravity, g: [0, -9.81, 0]}}
+  - {{type: damper, joint: E, coordinate: theta, damping: 0.02}}
+responses:
+  run:
+    start: {{E.theta: 0.4}}
+    driven: {{A.theta: {law}}}
+    time: {{from: 0, to: 1.5, step: 0.25}}
+    tolerance: 1e-13
+"""
+
+
+def cycloid(t: float) -> tuple[float, float, float]:
+    height, length = 2 * math.pi, 1.5
+    u = min(t / length, 1.0)
+    turn = 2 * math.pi * u
+    return (
+        0.3 + height * (u - math.sin(turn) / (2 * math.pi)),
+        height * (1 - math.cos(turn)) / length,
+        height * 2 * math.pi * math.sin(turn) / length**2,
+    )
+
+
+LAWS: dict[str, Course] = {
+    "{law: constant-rate, at: 0.3, rate: 5 rad/s}": lambda t: (0.3 + 5 * t, 5.0, 0.0),
+    "{law: polynomial, coefficients: [0.3, 4 rad/s, -1 rad/s^2, 2 rad/s^3]}": lambda t: (
+        0.3 + 4 * t - t**2 + 2 * t**3,
+        4 - 2 * t + 6 * t**2,
+        -2 + 12 * t,
+    ),
+    f"{{law: cycloidal, from: 0.3, to: {0.3 + 2 * math.pi!r}}}": cycloid,
+}
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_pendulum_on_a_driven_slide(law: str) -> None:
+    text = FILE.format(law=law)
+    found = respond(text)
+    exact = prepare(text, courses={"A.theta": LAWS[law]}).run()
+    for name in ("A.theta", "D.s", "E.theta", "C.theta1", "E.theta_dot", "D.s_dot", "E.theta_ddot"):
+        assert off(found[name], exact[name]) < 1e-10, name
+    for component in "xyz":
+        name = f"D.force.{component}"
+        assert off(found[name], exact[name]) < 1e-9, name
