@@ -146,7 +146,9 @@ class Hostile:
         for column in driven:
             self.attempt(builder.add_input, self.index(0, 9) if self.bad() else column, -1, 1.0)
 
-    def inputs_and_loads(self, builder: Any, links: int, closings: int, _: int, axes: int) -> None:
+    def inputs_and_loads(
+        self, builder: Any, links: int, closings: int, places: int, axes: int
+    ) -> None:
         if self.random.random() < 0.2:
             self.attempt(builder.add_input, self.index(0, 4), self.index(-1, axes), self.number())
         for _number in range(self.random.randint(0, 2)):
@@ -166,8 +168,26 @@ class Hostile:
             self.attempt(builder.add_load, code, link, other, freedom, *vectors, varying)
             if varying and self.counts["add_load done"] > before:
                 values += 1 if along else 3
+        self.frictions(builder, links, places)
         self.program(builder, links, closings, values)
         self.attempt(builder.add_size_point, self.index(-1, links), self.numbers(3))
+
+    def frictions(self, builder: Any, links: int, places: int) -> None:
+        for _number in range(self.random.choice([0, 0, 1, 2])):
+            motions = self.index(-1, 3), self.index(-1, 3), self.index(-1, links)
+            constants = [self.number() for _ in range(4)]
+            falls = self.random.random() < 0.5
+            self.attempt(
+                builder.add_friction,
+                self.index(0, places),
+                *motions,
+                falls,
+                self.numbers(3),
+                *constants,
+            )
+        for _number in range(self.random.choice([0, 1, 3])):
+            numbers = [self.number() for _ in range(4)]
+            self.attempt(builder.add_contact, self.index(0, 3), *numbers, self.numbers(3))
 
     def program(self, builder: Any, links: int, closings: int, values: int) -> None:
         """The values of varying loads: random instructions over random reads and curves."""

@@ -262,6 +262,8 @@ class HostileRuns(Hostile):
             "following": self.kept("limits", self.limits()),
             "half_turn_side": self.either(1e-9, *NUMBERS),
             "angles": self.angles(getattr(outputs, "slots", 0), plan),
+            "full": self.table(plan.inputs, rows),
+            "time": self.either(np.zeros(rows), self.array(1, rows), np.zeros(rows + 1)),
         }
         variants = self.attempt(_kernel.Variants, **named)
         if variants is None:
@@ -311,8 +313,9 @@ class HostileRuns(Hostile):
             for _ in range(3):
                 here = self.around(inputs[:, 0], 1e-2).tolist()
                 turns = self.either([0.0] * len(here), [3.0], [float("nan")] * len(here))
+                full = self.either(here, here[:-1], [float("inf")] * len(here))
                 here = self.either(here, here[:-1], [*here, 0.0])
-                found = self.attempt(positions.solve, here, turns)
+                found = self.attempt(positions.solve, here, turns, full)
                 self.counts["positions found"] += found is not None
 
         self.at_once(call, inputs)
