@@ -159,3 +159,32 @@ loads:
     found = mk.loads(text).respond("go", ["G.s"])
     assert found.result.status[-1] == Status.friction_undecided
     assert "friction-undecided" in [d.code for d in found.diagnostics]
+
+
+ROD = """
+format: 1
+name: crank, rod with two spheres, slider
+links:
+  crank: {mass: 1, center_of_mass: [0, 0.5, 0], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}
+  rod: {}
+  slider: {mass: 1, center_of_mass: [2, 0, 0.5]}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: S, links: [crank, rod], point: [0, 1, 0]}
+  C: {type: S, links: [rod, slider], point: [2, 0, 0.5]}
+  D: {type: P, links: [ground, slider], point: [2, 0, 0.5], axis: [1, 0, 0]}
+responses: {go: {start: {A.theta: 0, A.theta_dot: 3 rad/s}, time: {from: 0, to: 0.2, step: 0.1}}}
+loads:
+  - {type: friction, joint: JOINT, coefficient: 0.1, radius: 0.05}
+"""
+
+
+def test_friction_that_drives_an_idle_spin_is_refused():
+    found = mk.loads(ROD.replace("JOINT", "B")).respond("go", ["A.theta"])
+    (error,) = [d for d in found.diagnostics if d.severity == "error"]
+    assert error.code == "loaded-spin"
+    assert "B" in error.message
+    assert np.isnan(found["A.theta"]).all()
+    found = mk.loads(ROD.replace("JOINT", "A")).respond("go", ["A.theta", "row.energy_error"])
+    assert [d.code for d in found.diagnostics if d.severity == "error"] == []
+    assert (found["row.energy_error"] <= 1e-11).all()

@@ -14,7 +14,7 @@ from mechkin_cli.analysis.response.beginning import Beginning, beginning
 from mechkin_cli.analysis.response.endings import ending
 from mechkin_cli.analysis.response.moments import rows_problem, watched_stop
 from mechkin_cli.analysis.response.result import ENERGIES, ResponseResult
-from mechkin_cli.analysis.sweep.friction import arbitrary_friction
+from mechkin_cli.analysis.sweep.friction import unfounded_in_motion
 from mechkin_cli.analysis.sweep.rows import Rows
 from mechkin_cli.analysis.sweep.sweep import at_once, first_assembly, judge_condition, row_notes
 from mechkin_cli.mechanism.motion import Motion
@@ -94,8 +94,8 @@ def prepare(problem: Problem, response: Response, packing: Packing = ANY_PACKING
     if start.state is None:
         return Prepared(response, chosen, start, free, None, None)
     begun = beginning(chosen, response, start.state)
-    if free.is_redundant and free.problem.mechanism.frictions:
-        begun = arbitrary_friction(free.problem.mechanism.frictions)
+    unfounded = unfounded_in_motion(free.problem, redundant=free.is_redundant)
+    begun = begun if unfounded is None else unfounded
     if not isinstance(begun, Beginning):
         start.diagnostics.append(begun)
         return Prepared(response, chosen, start, free, None, None)

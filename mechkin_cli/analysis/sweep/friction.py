@@ -180,6 +180,29 @@ def _spinning(result: Result, judged: Bools) -> Finding:
             )
 
 
+def unfounded_in_motion(problem: Problem, *, redundant: bool) -> Diagnostic | None:
+    """Why a motion cannot be integrated with its friction: reactions that are arbitrary, or a
+    joint that rubs at an idle link."""
+    from mechkin_cli.mechanism.idle import idle_freedoms
+
+    frictions, joints = problem.mechanism.frictions, problem.mechanism.joints
+    if frictions and redundant:
+        return arbitrary_friction(frictions)
+    for idle in idle_freedoms(problem) if frictions and not problem.hold_idle else ():
+        for rubbing in frictions:
+            joint = joints[rubbing.joint]
+            if (joint.first in idle.links) != (joint.second in idle.links):
+                return Diagnostic(
+                    "loaded-spin",
+                    "error",
+                    f"{idle.words}, and friction of {joint.name} may drive it: that is a dynamic "
+                    "freedom, on which the motion depends",
+                    rubbing.place,
+                    hint=f"{idle.cure}, or accept that it is held with idle: hold",
+                )
+    return None
+
+
 def _self_locking(problem: Problem, locking: Bools) -> Diagnostic:
     return Diagnostic(
         "self-locking",
