@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mechkin_cli.analysis.response.weakest import weakest_coordinates
-from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.solver.free_motion import Fault, MotionEnd
+from mechkin_cli.solver.inputs import input_numbers, input_text
 from mechkin_cli.status import Status
 from mechkin_cli.units import TIME
 
@@ -37,10 +40,26 @@ def ending(
     status, code, text, hint = _reason(report)
     if status is Status.singular_inertia:
         text = _without_inertia(weakest_coordinates(session, response, last))
+    numbers = place_numbers(session, last)
     notes.append(
-        Diagnostic(code, "error", f"the response ends at {at}: {text}", response.place, hint=hint)
+        Diagnostic(
+            code,
+            "error",
+            f"the response ends at {at}: {text}",
+            response.place,
+            measured=f"last row at {', '.join(map(input_text, numbers))}",
+            hint=hint,
+            numbers=numbers,
+        )
     )
     return status, notes
+
+
+def place_numbers(session: Session, state: Floats) -> tuple[Number, ...]:
+    """The start's coordinates at a state (states,), in the file's units."""
+    free = len(session.problem.motion.inputs)
+    values = [state[session.layout.state(edge, dof)] for edge, dof in session.graph.inputs[:free]]
+    return input_numbers(session.problem, session.layout, np.array(values))
 
 
 def _without_inertia(names: list[str]) -> str:
