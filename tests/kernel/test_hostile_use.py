@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 from kernel import hostile
+from kernel.hostile_motions import free
 from kernel.hostile_runs import USUAL
 from references import RCSR
 
@@ -54,6 +55,71 @@ def test_tapes_variants_positions_paths_and_texts_refuse_bad_calls() -> None:
         assert counts[done] > RUNS / 2
     for made in ("Tape", "Variants", "Positions", "straight", "along", "csv_text", "markdown_text"):
         assert counts[f"{made} done"] > RUNS / 10
+
+
+def test_motions_in_time_refuse_bad_calls() -> None:
+    """So do they; and most of those that are well are taken."""
+    found = of_its_own("kernel.hostile_motions", RUNS)
+    assert found.returncode == 0, found.stderr[-2000:]
+    counts = ast.literal_eval(found.stdout)
+    for refusal in ("ValueError", "TypeError"):
+        assert counts[refusal] > RUNS
+    assert counts["rows responded"] > 5 * RUNS
+    for made in ("respond", "DrivenLaws", "at", "integrate_tape"):
+        assert counts[f"{made} done"] > RUNS / 5
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"plans": []}, "plans: none"),
+        ({"plans": ["all"]}, "plans: not a Plan"),
+        ({"plans": [None]}, "plans: not a Plan"),
+        ({"state": np.zeros((1, 5))}, "state: not of the shape"),
+        ({"state": np.full((1, 2), np.nan)}, "state: not finite"),
+        ({"times": np.array([0.0, 0.5, 0.4])}, "the times of rows rise"),
+        ({"begin": 0.1}, "the times of rows rise"),
+        ({"tolerance": float("nan")}, "positive numbers"),
+        ({"tolerance": 0.0}, "positive numbers"),
+        ({"most_steps": 2**40}, "1 to 1000000 steps"),
+        ({"method": 3}, "method: unknown"),
+        ({"iterations": 10001}, "0 to 10000"),
+        ({"jump": float("nan")}, "from 0 on"),
+        ({"stops": [(0, 0, 1, 0.5)]}, "one for each watched value"),
+        (
+            {"driven": _kernel.DrivenLaws(None, [], [], [], [], 1.0, [0.0])},
+            "one law for each input",
+        ),
+    ],
+)
+def test_a_response_says_which_argument_is_wrong(change: dict[str, Any], message: str) -> None:
+    motion = free("free")
+    state, first, tangent = (a.reshape(1, -1) for a in motion.begun)
+    good = {
+        "plans": [motion.plan],
+        "state": state,
+        "first": first,
+        "tangent": tangent,
+        "begin": 0.0,
+        "times": np.array([0.0, 0.1]),
+        "stops": [],
+        "driven": None,
+        "tolerance": 1e-6,
+        "fixed_step": 0.0,
+        "most_steps": 60,
+        "dense_rows": 3,
+        "method": 0,
+        "tests": [1e-16, 1e-8, 1e-14],
+        "iterations": 8,
+        "jump": 0.5,
+        "radius": 0.5,
+        "straight": False,
+        "lanes": 2,
+        "threads": 1,
+    }
+    assert _kernel.respond(**good)[0][0]["rows"] == 2
+    with pytest.raises((ValueError, TypeError), match=message):
+        _kernel.respond(**(good | change))
 
 
 def of_its_own(module: str, count: int) -> subprocess.CompletedProcess[str]:

@@ -43,6 +43,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   make(miss_, plan_.columns), make(miss_elapsed_, 1);
   unit_.prepare(wide_.data(), workspace_.data());
   make(time_, 1), make(over_, 1), make(side_, plan_.law.kinks), make(done_, 2);
+  if (driven_) laws_memory_ = driven_->memory();
   cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), next_row_.assign(lanes_, 0);
   stop_start_.assign(stops_.size() * lanes_, 0.0), passed_.assign(stops_.size() * lanes_, 0);
   found_ = make_stage(), end_ = make_stage();
@@ -116,7 +117,8 @@ std::vector<SwitchKind> ChartedMotion::switches() const {
 // The driven inputs of a lane at a time, on the piece of their laws that the lane is on.
 void ChartedMotion::drive(int lane, double time) {
   if (!driven_) return;
-  driven_->at(cell_[lane], time, lane, lanes_, inputs_.data(), input_rates_.data(), input_seconds_.data());
+  driven_->at(cell_[lane], time, lane, lanes_, inputs_.data(), input_rates_.data(), input_seconds_.data(),
+              &laws_memory_);
 }
 
 // Lanes that are not asked for stand at their origin.

@@ -123,6 +123,7 @@ class ChartedMotion : public Motion {
   Packed inputs_, input_rates_, input_seconds_, time_, side_, over_;
   const std::vector<MotionStop> stops_;
   const DrivenLaws* driven_;
+  DrivenLaws::Memory laws_memory_;
   Packed sense_;                    // 1: which way the one freedom goes, see sliding.hpp
   std::vector<unsigned char> undecided_;  // lanes: friction lets the freedom go both ways
   std::vector<int> cell_;           // lanes: of the driven laws

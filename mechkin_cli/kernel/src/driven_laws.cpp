@@ -21,7 +21,15 @@ DrivenLaws::DrivenLaws(const TapeStore* tape, std::vector<double> edges, std::ve
   for (std::size_t e = 1; e < edges_.size(); ++e) require(edges_[e] > edges_[e - 1], "edges rise");
 }
 
-void DrivenLaws::at(int cell, double time, int lane, int lanes, double* value, double* rate, double* second) const {
+DrivenLaws::Memory DrivenLaws::memory() const {
+  if (units_.empty()) return {};
+  const Tape& t = tape_->view();
+  return {std::vector<double>((std::size_t)t.inputs), std::vector<double>(3 * units_.size()),
+          std::vector<char>((std::size_t)kernel_unit(2)->jets_size(t))};
+}
+
+void DrivenLaws::at(int cell, double time, int lane, int lanes, double* value, double* rate, double* second,
+                    Memory* memory) const {
   const int n = (int)units_.size();
   for (std::size_t h = 0; h < held_.size(); ++h) {
     const std::size_t to = (n + h) * lanes + lane;
@@ -31,11 +39,10 @@ void DrivenLaws::at(int cell, double time, int lane, int lanes, double* value, d
   const Tape& t = tape_->view();
   const KernelUnit& unit = *kernel_unit(2);
   const int more = t.inputs - 1, switches = tape_->switches();
-  std::vector<double> given(t.inputs), out(3 * n);
-  std::vector<char> memory((std::size_t)unit.jets_size(t));
+  double *const given = memory->given.data(), *const out = memory->found.data();
   given[0] = time / time_unit_;
   for (int k = 0; k < more; ++k) given[k + 1] = constants_[(std::size_t)cell * more + k];
-  unit.replay_jets(t, given.data(), ways_.data() + (std::size_t)cell * switches, out.data(), memory.data());
+  unit.replay_jets(t, given, ways_.data() + (std::size_t)cell * switches, out, memory->replay.data());
   for (int i = 0; i < n; ++i) {
     value[i * lanes + lane] = out[3 * i] / units_[i];
     rate[i * lanes + lane] = out[3 * i + 1] / (units_[i] * time_unit_);

@@ -19,8 +19,14 @@ class DrivenLaws {
 
   const std::vector<double>& edges() const { return edges_; }
   int inputs() const { return (int)(units_.size() + held_.size()); }
+  // What `at` works in: one for each thread.
+  struct Memory {
+    std::vector<double> given, found;
+    std::vector<char> replay;
+  };
+  Memory memory() const;
   // Of a cell at a time (s), into arrays [input * lanes + lane].
-  void at(int cell, double time, int lane, int lanes, double* value, double* rate, double* second) const;
+  void at(int cell, double time, int lane, int lanes, double* value, double* rate, double* second, Memory* memory) const;
 
  private:
   const TapeStore* tape_;

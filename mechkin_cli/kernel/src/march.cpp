@@ -7,6 +7,7 @@
 
 namespace {
 
+constexpr long MOST_STEPS = 1000000;
 constexpr double FAULT_MARGIN = 0.85;  // of the way to a fault, for the next try
 constexpr double FAULT_FACTOR = 0.5;   // of it where that failed, too
 constexpr double ROOM_GROWTH = 0.02;   // of the room after a fault, doubled with each step taken since
@@ -15,9 +16,10 @@ constexpr double ROOM_GROWTH = 0.02;   // of the room after a fault, doubled wit
 constexpr double PASS_FROM = 0.1, PASS_SHORTER = 0.8, PASS_LEAST = 5.0;
 
 void check(const Motion& motion, const IntegratorSettings& s, const double* time, const RowTimes& rows) {
-  require(motion.lanes() > 0, "at least one lane");
+  require(motion.lanes() > 0 && motion.freedoms() > 0, "at least one lane and one freedom");
   require(s.tolerance > 0.0 && s.least_step > 0.0 && s.fixed_step >= 0.0 && s.dense_rows > 0 && s.most_steps > 0,
           "tolerance, least step, steps and rows are positive numbers");
+  require(s.most_steps <= MOST_STEPS, "1 to 1000000 steps");
   for (int i = 0; i < motion.lanes(); ++i) {
     double before = time[i];
     require(std::isfinite(before), "times are finite");

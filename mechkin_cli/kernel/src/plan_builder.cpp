@@ -33,12 +33,17 @@ PlanBuilder::PlanBuilder(double length, const Triple& origin, double size) {
   plan_.length = length;
   plan_.size = size;
   copy(origin, plan_.origin);
-  number(ARRAY_PLAN, offsetof(Plan, length), 1);
-  number(ARRAY_PLAN, offsetof(Plan, origin), 3);
-  number(ARRAY_PLAN, offsetof(Plan, size), 1);
+  number(ARRAY_PLAN, in_plan(&plan_.length), 1);
+  number(ARRAY_PLAN, in_plan(plan_.origin), 3);
+  number(ARRAY_PLAN, in_plan(&plan_.size), 1);
 }
 
 void PlanBuilder::open() const { require(!spent_, "the plan is finished, and its builder spent"); }
+
+// Bytes from the plan's beginning to one of its numbers.
+std::size_t PlanBuilder::in_plan(const double* number) const {
+  return (std::size_t)(reinterpret_cast<const char*>(number) - reinterpret_cast<const char*>(&plan_));
+}
 
 void PlanBuilder::number(int array, std::size_t offset, int count) {
   for (int i = 0; i < count; ++i) constants_.push_back({array, offset + i * sizeof(double)});
@@ -210,7 +215,7 @@ void PlanBuilder::set_gravity(const Triple& g) {
   require(!gravity_, "gravity is set once");
   gravity_ = true;
   copy(g, plan_.gravity);
-  number(ARRAY_PLAN, offsetof(Plan, gravity), 3);
+  number(ARRAY_PLAN, in_plan(plan_.gravity), 3);
 }
 
 void PlanBuilder::check_load(int type, int link, int other, int freedom, bool varying) const {

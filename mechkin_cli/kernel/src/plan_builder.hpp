@@ -74,6 +74,7 @@ class PlanBuilder {
   void check_load(int type, int link, int other, int freedom, bool varying) const;
   std::pair<int, int> add_loop(const Loop& loop);
   // The next `count` constants stand in a row from here on.
+  std::size_t in_plan(const double* number) const;
   void number(int array, std::size_t offset, int count);
   void place_joints(int block, const std::vector<int>& joints);
   void check_order() const;

@@ -36,23 +36,54 @@ nb::dict report_of(const ResponseReport& report) {
   return d;
 }
 
-void check_plans(const std::vector<const FrozenPlan*>& plans) {
-  if (plans.empty()) throw nb::value_error("plans: none");
-  for (const FrozenPlan* p : plans)
-    if (!p || p->structure() != plans[0]->structure()) throw nb::value_error("plans: not of one structure");
-  if (!plans[0]->view().charts) throw nb::value_error("plans: without a chart nothing moves freely");
+using Stops = std::vector<std::tuple<int, int, int, double>>;
+constexpr int MOST_ITERATIONS = 10000;
+
+void need(bool holds, const char* message) {
+  if (!holds) throw nb::value_error(message);
 }
 
-nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, const Table& first,
-              const Table& tangent, double begin, const Numbers& times,
-              const std::vector<std::tuple<int, int, int, double>>& stops, const DrivenLaws* driven,
-              double tolerance,
-              double fixed_step, long most_steps, int dense_rows, int method, const std::vector<double>& tests, int iterations,
-              double jump, double radius, bool straight, int lanes, int threads) {
-  check_plans(plans);
+// The plans of some objects, which must outlive them.
+std::vector<const FrozenPlan*> plans_of(const std::vector<nb::object>& objects) {
+  std::vector<const FrozenPlan*> plans;
+  for (const nb::object& object : objects) {
+    const FrozenPlan* plan = nullptr;
+    if (!nb::try_cast(object, plan, false) || !plan) throw nb::type_error("plans: not a Plan");
+    plans.push_back(plan);
+    need(plan->structure() == plans[0]->structure(), "plans: not of one structure");
+  }
+  need(!plans.empty(), "plans: none");
+  need(plans[0]->view().charts > 0, "plans: without a chart nothing moves freely");
+  return plans;
+}
+
+MotionLimits limits_of(const std::vector<double>& tests, int iterations, double jump, double radius, bool straight) {
+  need(tests.size() == 3, "tests: three");
+  for (double limit : {tests[0], tests[1], tests[2], jump, radius}) need(limit >= 0.0, "a limit is a number from 0 on");
+  need(iterations >= 0 && iterations <= MOST_ITERATIONS, "iterations: 0 to 10000");
+  return {tests[0], tests[1], tests[2], jump, radius, iterations, straight};
+}
+
+std::vector<MotionStop> stops_of(const Stops& stops) {
+  std::vector<MotionStop> made;
+  for (const auto& [kind, direction, count, at] : stops) {
+    need(kind >= STOP_CROSSING && kind <= STOP_TURNS, "stops: unknown kind");
+    need(direction >= -1 && direction <= 1, "stops: a direction is -1, 0 or 1");
+    need(all_finite(&at, 1), "stops: not finite");
+    made.push_back({kind, direction, count, at});
+  }
+  return made;
+}
+
+// `held` are plans; references, for another thread may change the list meanwhile.
+nb::tuple run(const std::vector<nb::object>& held, const Table& state, const Table& first, const Table& tangent,
+              double begin, const Numbers& times, const Stops& stops, const DrivenLaws* driven, double tolerance,
+              double fixed_step, long most_steps, int dense_rows, int method, const std::vector<double>& tests,
+              int iterations, double jump, double radius, bool straight, int lanes, int threads) {
+  const std::vector<const FrozenPlan*> plans = plans_of(held);
   if (!motion_unit(lanes)) throw nb::value_error("lanes: this width is not available on this machine");
   if (threads < 1 || threads > 1024) throw nb::value_error("threads: 1 to 1024");
-  if (tests.size() != 3) throw nb::value_error("tests: three");
+  need(method >= 0 && method <= (int)MethodChoice::IMPLICIT, "method: unknown");
   const Plan& p = plans[0]->view();
   const std::size_t count = plans.size(), rows = times.shape(0);
   int slots = 0;
@@ -63,9 +94,10 @@ nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, c
   ResponseTask task;
   if (p.law.outputs - p.load_values != (int)stops.size()) throw nb::value_error("stops: one for each watched value");
   if ((driven ? driven->inputs() : 0) != p.inputs) throw nb::value_error("driven: one law for each input");
-  task.times = times.data(), task.driven = driven;
-  for (const auto& [kind, direction, times_passed, at] : stops) task.stops.push_back({kind, direction, times_passed, at});
-  task.limits = {tests[0], tests[1], tests[2], jump, radius, iterations, straight};
+  // a copy: another thread may change the array
+  const std::vector<double> moments(times.data(), times.data() + rows);
+  task.times = moments.data(), task.driven = driven, task.stops = stops_of(stops);
+  task.limits = limits_of(tests, iterations, jump, radius, straight);
   task.settings.tolerance = tolerance, task.settings.fixed_step = fixed_step;
   task.settings.dense_rows = dense_rows, task.settings.most_steps = most_steps, task.settings.method = (MethodChoice)method;
   MotionRows all = {};
@@ -108,7 +140,8 @@ void bind_response(nb::module_& m) {
         for (double edge : laws.edges()) cell += time >= edge;
         std::vector<double> value(laws.inputs()), rate(laws.inputs()), second(laws.inputs());
         FloatingPointState floating;
-        laws.at(cell, time, 0, 1, value.data(), rate.data(), second.data());
+        DrivenLaws::Memory memory = laws.memory();
+        laws.at(cell, time, 0, 1, value.data(), rate.data(), second.data(), &memory);
         std::vector<std::tuple<double, double, double>> all;
         for (int i = 0; i < laws.inputs(); ++i) all.emplace_back(value[i], rate[i], second[i]);
         return all;
