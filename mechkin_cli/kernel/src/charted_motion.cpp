@@ -230,13 +230,14 @@ void ChartedMotion::continue_turns(int lane, const Packed& found) {
   }
 }
 
-void ChartedMotion::accept(const unsigned char* lanes, const double* time, double* y, double* rates, double*) {
+void ChartedMotion::accept(const unsigned char* lanes, const double* time, double* y, double* rates, double* longest) {
   const int n = plan_.charts, columns = plan_.columns;
   for (int l = 0; l < lanes_; ++l) {
     if (!lanes[l]) continue;
     const auto take = [&](const Packed& from, long count, Packed& to) {
       for (long k = 0; k < count; ++k) to[k * lanes_ + l] = from[k * lanes_ + l];
     };
+    longest[l] = limits_.longest;
     origin_time_[l] = time[l], miss_elapsed_[l] = over_[l] = 0.0;
     for (int k = 0; k < 2; ++k) done_[k * lanes_ + l] = y[(2 * n + k) * lanes_ + l];
     take(end_.state, plan_.states, origin_), take(end_.first, columns, origin_first_);

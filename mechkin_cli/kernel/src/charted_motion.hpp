@@ -39,6 +39,7 @@ struct MotionLimits {
   double tight, coarse, accept, jump, radius;
   int iterations;
   bool straight;  // branch points are passed along the smooth continuation
+  double longest;  // s: a step
 };
 
 // Rows of a lane, column after column; rows that are not reached stay as they are. Without rows nothing is written.

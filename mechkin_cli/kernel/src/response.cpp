@@ -7,6 +7,16 @@
 
 namespace {
 
+// The longest step of a motion whose loads read the time, in parts of its duration: steps that grow while nothing happens
+// would pass over a load that comes and goes. Such a motion ends a step at every row, however dense.
+constexpr double PART_OF_TIME = 1.0 / 64.0;
+
+bool reads_time(const Plan& plan) {
+  for (int k = 0; k < plan.law.reads; ++k)
+    if (plan.law.read[k].kind == READ_TIME) return true;
+  return false;
+}
+
 // A pack of variants from `first` on; lanes beyond the last repeat it, into rows of their own.
 void respond_pack(const ResponseTask& task, const MotionUnit& unit, long first, std::vector<ResponseReport>* reports) {
   const long count = (long)task.starts.size();
@@ -18,12 +28,19 @@ void respond_pack(const ResponseTask& task, const MotionUnit& unit, long first, 
     rows.push_back(task.rows[v]);
     if (first + l >= count) rows.back().rows = 0;
   }
-  ChartedMotion motion(unit, starts, task.limits, rows, task.stops, task.driven);
+  IntegratorSettings settings = task.settings;
+  MotionLimits limits = task.limits;
+  const long moments = rows[0].rows;
+  limits.longest = __builtin_inf();
+  if (reads_time(*starts[0].plan) && moments > 0) {
+    settings.dense_rows = (int)std::min<long>(moments + 1, 1 << 30);
+    limits.longest = PART_OF_TIME * (task.times[moments - 1] - starts[0].time);
+  }
+  ChartedMotion motion(unit, starts, limits, rows, task.stops, task.driven);
   std::vector<double> begin;
   for (const MotionStart& s : starts) begin.push_back(s.time);
-  const long moments = rows[0].rows;
   const std::vector<LaneReport> found =
-      integrate(motion, task.settings, begin.data(), motion.start(), {task.times, moments, 0});
+      integrate(motion, settings, begin.data(), motion.start(), {task.times, moments, 0});
   for (int l = 0; l < unit.lanes && first + l < count; ++l) (*reports)[first + l] = {found[l], motion.stopped_by(l)};
 }
 
