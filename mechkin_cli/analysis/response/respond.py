@@ -115,7 +115,7 @@ def integrated(variants: Sequence[Prepared], packing: Packing) -> list[ResponseR
     for numbers in groups.values():
         together = [variants[number] for number in numbers]
         for number, rows in zip(numbers, _integrated(together, packing), strict=True):
-            found[number] = _rows(variants[number], rows)
+            found[number] = rows_of(variants[number], rows)
     return [found[number] for number in range(len(variants))]
 
 
@@ -157,7 +157,7 @@ def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRo
     )
 
 
-def _rows(one: Prepared, found: MotionRows) -> ResponseResult:
+def rows_of(one: Prepared, found: MotionRows) -> ResponseResult:
     """The rows with their verdicts, before anything is read: those asked for, or up to a stop."""
     response, chosen, free = one.response, one.chosen, one.free
     stopped = found.report.end is MotionEnd.STOPPED
