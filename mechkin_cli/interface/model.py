@@ -79,9 +79,15 @@ class Model:
         """Tree, closing joints and blocks at the start of a response.
 
         Raises:
-            InvalidFile: its start names too few coordinates or too many.
+            InvalidFile: its start names too few coordinates or too many, or nothing is free.
         """
-        return self._sound(self.built.response_graphs[name])
+        graph = self._sound(self.built.response_graphs[name])
+        response = self.built.problem.responses[name]
+        if response.independent:
+            return graph
+        text = "nothing is free to move in this response: all its freedoms are driven"
+        hint = "write the laws under motion: {time: ..., inputs: ...}, which is a sweep in time"
+        return self._sound(Diagnostic("nothing-free", "error", text, response.place, hint=hint))
 
     def _sound(self, graph: SolverGraph | Diagnostic) -> SolverGraph:
         if isinstance(graph, Diagnostic):

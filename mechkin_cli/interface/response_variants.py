@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.analysis.response import integrated, prepare, read
-from mechkin_cli.diagnostics import Diagnostic, InvalidFile, MechkinError
+from mechkin_cli.diagnostics import MechkinError
 from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.asking import a_packing, wanted_names
 from mechkin_cli.interface.given import parameter_arrays
@@ -100,11 +100,10 @@ class _Study:
     def _prepare(self, number: int, row: Floats, models: dict[int, tuple[Model, Prepared]]) -> None:
         try:
             built = self.base.built(dict(zip(self.names, row.tolist(), strict=True)))
-            if isinstance(built.graph, Diagnostic):
-                raise InvalidFile([*built.problem.diagnostics, built.graph])
+            model = Model(built, self.base.model.stem)
+            model.response_graph(self.name)
             response = built.problem.responses[self.name]
-            prepared = prepare(built.problem, response, self.packing)
-            models[number] = Model(built, self.base.model.stem), prepared
+            models[number] = model, prepare(built.problem, response, self.packing)
         except MechkinError as error:
             self.errors[number] = error
 

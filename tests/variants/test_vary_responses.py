@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 FILE = """\
 format: 1
@@ -97,3 +97,14 @@ def test_unknown_names_are_told(model: mk.Model) -> None:
         model.vary(GIVEN, ["A.theta"], run="swung")
     with pytest.raises(UsageError, match=r"A\.thta"):
         model.vary(GIVEN, ["A.thta"], run="swing")
+
+
+def test_nothing_free_is_said(tmp_path: Path) -> None:
+    path = tmp_path / "driven.yaml"
+    head, _, _ = FILE.partition("responses:")
+    path.write_text(
+        head
+        + "responses:\n  r: {start: {}, driven: {A.theta: {at: 20}}, time: {from: 0, to: 1, step: 1}}\n"
+    )
+    with pytest.raises(InvalidFile, match=r"driven\.yaml:\d+:\d+: .*nothing is free"):
+        mk.load(path).respond("r")
