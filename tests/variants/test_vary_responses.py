@@ -102,9 +102,7 @@ def test_unknown_names_are_told(model: mk.Model) -> None:
 def test_nothing_free_is_said(tmp_path: Path) -> None:
     path = tmp_path / "driven.yaml"
     head, _, _ = FILE.partition("responses:")
-    path.write_text(
-        head
-        + "responses:\n  r: {start: {}, driven: {A.theta: {at: 20}}, time: {from: 0, to: 1, step: 1}}\n"
-    )
+    driven = "{start: {}, driven: {A.theta: {at: 20}}, time: {from: 0, to: 1, step: 1}}"
+    path.write_text(f"{head}responses:\n  r: {driven}\n")
     with pytest.raises(InvalidFile, match=r"driven\.yaml:\d+:\d+: .*nothing is free"):
         mk.load(path).respond("r")
