@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from mechkin_cli.building.columns import used_quantities
@@ -80,16 +80,19 @@ def chosen_tables(built: Built, names: Sequence[str] | None, run: str) -> tuple[
 def wanted_names(
     layouts: Sequence[TableLayout],
     quantities: Iterable[str] | None,
-    known: Mapping[str, Wanted],
+    quantities_of_run: Callable[[], Mapping[str, Wanted]],
     run: str,
 ) -> list[str]:
-    """The quantities that tables of a run read, then those asked for.
+    """The quantities that tables of a run read, then those asked for; what there is, is asked only
+    where something is wanted.
 
     Raises:
         UsageError: an unknown quantity.
     """
     asked = () if quantities is None else texts("quantities", quantities, '["O4.theta"]')
-    always = row_texts(run)
+    if not layouts and not asked:
+        return []
+    always, known = row_texts(run), quantities_of_run()
     used = used_quantities(layouts, known) if layouts else []
     names = [*used, *(name for name in asked if name not in always)]
     for name in names:

@@ -10,8 +10,9 @@ import numpy as np
 
 from mechkin_cli.analysis.response import integrated, prepare, read
 from mechkin_cli.diagnostics import MechkinError
+from mechkin_cli.expressions import parse
 from mechkin_cli.interface.analysis import Analysis
-from mechkin_cli.interface.asking import a_packing, wanted_names
+from mechkin_cli.interface.asking import a_packing
 from mechkin_cli.interface.given import parameter_arrays
 from mechkin_cli.interface.model import Model
 from mechkin_cli.interface.variants import (
@@ -116,7 +117,9 @@ class _Study:
         count: int,
     ) -> None:
         known = result.problem.quantities()
-        read(result, wanted_names((), self.asked, known, self.name))
+        used = (name for text in self.asked for name in sorted(parse(text).names))
+        whole = (name if name in known else name.rpartition(".")[0] for name in used)
+        read(result, [name for name in dict.fromkeys(whole) if name in known])
         analysis = Analysis(model, (), result, self.name)
         rows = min(result.rows, self.rows)
         self.codes[number] = int(Status.ok)

@@ -39,7 +39,7 @@ def respond(
         response = replace(response, assembly=assembly)
     layouts = chosen_tables(model.built, tables, run)
     known = response_problem(problem, response).quantities()
-    names = wanted_names(layouts, quantities, known, run)
+    names = wanted_names(layouts, quantities, lambda: known, run)
     analysis = Analysis(model, layouts, run_response(problem, response, names, packing), run)
     return analysis if mode is None else known_mode(analysis)
 

@@ -48,7 +48,7 @@ def run_sweep(
         session = session.assembled(replace(problem.assembly, mode=mode))
     layouts = chosen_tables(model.built, tables, SWEEP)
     balances = chosen(model.built.balances, tables)
-    names = wanted_names(layouts, quantities, problem.quantities(), SWEEP)
+    names = wanted_names(layouts, quantities, problem.quantities, SWEEP)
     names += read_by(balances, problem)
     _refuse_loaded_spin(problem, names)
     result = analyze(session.packed(packing), names)

@@ -165,7 +165,7 @@ def swapped(values: Values, joint: str) -> Values:
         elif rest.startswith(("theta1", "theta2")):
             other = {"1": "2", "2": "1"}[rest[5]]
             wanted[f"{joint}.theta{other}{rest[6:]}"] = -value
-        elif rest not in ("point", "moment"):
+        elif rest not in ("point", "moment", "total_moment"):
             wanted[name] = -value
     return wanted
 

@@ -106,3 +106,13 @@ def test_nothing_free_is_said(tmp_path: Path) -> None:
     path.write_text(f"{head}responses:\n  r: {driven}\n")
     with pytest.raises(InvalidFile, match=r"driven\.yaml:\d+:\d+: .*nothing is free"):
         mk.load(path).respond("r")
+
+
+def test_expressions_are_read(model: mk.Model) -> None:
+    found = model.vary(
+        {"a": [0.1, 0.11]}, ["2*A.theta", "norm(C.force)", "a*A.theta_dot"], run="swing"
+    )
+    plain = model.vary({"a": [0.1, 0.11]}, ["A.theta", "C.force"], run="swing")
+    np.testing.assert_allclose(found["2*A.theta"], 2 * plain["A.theta"], rtol=1e-14)
+    size = np.sqrt((plain["C.force"] ** 2).sum(axis=2))
+    np.testing.assert_allclose(found["norm(C.force)"], size, rtol=1e-14)
