@@ -646,6 +646,7 @@ def respond(
     iterations: int,
     jump: float,
     radius: float,
+    straight: bool,
     lanes: int,
     threads: int,
 ) -> tuple[Any, ...]: ...

@@ -48,7 +48,9 @@ class Fault(IntEnum):
 class MotionReport(NamedTuple):
     """What a motion came to: the stop that ended it (-1: none), its end, the fault of the last
     refused step, the switch that held it, whether and from when the implicit method took over, the
-    last time in s, and the counts of rows, evaluations, steps and rejections."""
+    last time in s, the counts of rows, evaluations, steps and rejections, the last states, the
+    branch points that were passed (time in s, states), and the states at the one that it has ended
+    next to (none: empty)."""
 
     stop: int
 
@@ -62,6 +64,9 @@ class MotionReport(NamedTuple):
     evaluations: int
     steps: int
     rejections: int
+    last: list[float]
+    crossings: list[tuple[float, list[float]]]
+    branch_point: list[float]
 
 
 @dataclass(frozen=True)
@@ -130,11 +135,13 @@ def integrate(
     fixed_step: float | None,
     packing: Packing,
     method: int = 0,
+    straight: bool = False,
 ) -> list[MotionRows]:
     """Integrates motions of plans of one structure, packed into lanes, from time `begin` (s) over
     the rows' `times` (rows,).
 
-    `stops` go with the values that the plans watch, in order; `driven` with their inputs.
+    `stops` go with the values that the plans watch, in order; `driven` with their inputs;
+    `straight`: branch points are passed along the smooth continuation.
 
     Raises:
         ValueError: times that do not rise from `begin` on.
@@ -157,6 +164,7 @@ def integrate(
         iterations=tolerances.NEWTON_ITERATIONS,
         jump=tolerances.JUMP_LIMIT,
         radius=tolerances.SPECTRAL_RADIUS,
+        straight=straight,
         lanes=_lanes(packing, len(starts)),
         threads=threads_for(len(starts), packing.threads),
     )

@@ -43,6 +43,9 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   make(miss_, plan_.columns), make(miss_elapsed_, 1);
   unit_.prepare(wide_.data(), workspace_.data());
   make(time_, 1), make(side_, plan_.law.kinks), make(done_, 2);
+  make(chart_time_, 1), make(placed_, 1), make(placed_state_, plan_.states);
+  make(placed_first_, plan_.columns), make(placed_second_, plan_.columns);
+  crossing_.resize(lanes_), crossings_.resize(lanes_);
   cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), next_row_.assign(lanes_, 0);
   stop_start_.assign(stops_.size() * lanes_, 0.0), passed_.assign(stops_.size() * lanes_, 0);
   found_ = make_stage(), end_ = make_stage();
@@ -50,7 +53,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
     const MotionStart& s = starts_[l];
     for (int k = 0; k < plan_.states; ++k) origin_[k * lanes_ + l] = s.state[k];
     for (int k = 0; k < plan_.columns; ++k) origin_first_[k * lanes_ + l] = s.first[k];
-    origin_time_[l] = time_[l] = s.time;
+    origin_time_[l] = chart_time_[l] = time_[l] = s.time;
     drive(l, s.time);
     for (int k = 0; k < plan_.charts * plan_.columns; ++k) end_.tangent[k * lanes_ + l] = s.tangent[k];
     lay_chart(l);
@@ -86,7 +89,7 @@ std::vector<double> ChartedMotion::start() const {
   return y;
 }
 
-void ChartedMotion::evaluate(const double* place, const double* rate, Stage* found) {
+void ChartedMotion::evaluate(const double* place, const double* rate, Stage* found, double* bend) {
   StageGiven given = {};
   given.sense = sense_.data();
   given.origin = origin_.data(), given.origin_rate = origin_first_.data(), given.origin_second = origin_second_.data();
@@ -98,10 +101,16 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
   given.turns = turns_.data(), given.turn_count = (int)turns_.size();
   given.tight = limits_.tight, given.coarse = limits_.coarse, given.accept = limits_.accept;
   given.iterations = limits_.iterations, given.jump = limits_.jump, given.radius = limits_.radius;
+  bool any_placed = false;
+  for (int l = 0; l < lanes_; ++l) any_placed = any_placed || placed_[l] != PREDICTED;
+  if (any_placed) {
+    given.placed = placed_.data(), given.placed_state = placed_state_.data();
+    given.placed_first = placed_first_.data(), given.placed_second = placed_second_.data();
+  }
   const StageFound out = {found->state.data(), found->first.data(), found->second.data(), found->miss.data(),
-                          found->jacobian.data(), found->tangent.data(), found->chart_second.data(), found->inertia.data(),
-                          found->watched.data(), found->power.data(), found->turned.data(), found->ways.data(),
-                          found->flags.data()};
+                          found->jacobian.data(), found->tangent.data(), found->chart_second.data(), bend,
+                          found->inertia.data(), found->watched.data(), found->power.data(), found->turned.data(),
+                          found->ways.data(), found->flags.data()};
   unit_.evaluate(wide_.data(), given, out, workspace_.data());
 }
 
@@ -125,7 +134,7 @@ void ChartedMotion::set_places(const Places& places) {
   for (int l = 0; l < lanes_; ++l) {
     const bool active = places.active[l];
     time_[l] = active ? places.time[l] : origin_time_[l];
-    elapsed_[l] = time_[l] - origin_time_[l];
+    elapsed_[l] = time_[l] - chart_time_[l];
     if (active && places.side) {
       for (int k = 0; k < kinks; ++k) side_[k * lanes_ + l] = places.side[k * lanes_ + l];
       cell_[l] = 0;
@@ -133,9 +142,10 @@ void ChartedMotion::set_places(const Places& places) {
     }
     drive(l, time_[l]);
     for (int i = 0; i < n; ++i) {
-      place_[i * lanes_ + l] = active ? places.y[i * lanes_ + l] : 0.0;
+      place_[i * lanes_ + l] = (active ? places.y[i * lanes_ + l] : 0.0) + crossing_[l].offset;
       rate_[i * lanes_ + l] = active ? places.y[(n + i) * lanes_ + l] : 0.0;
     }
+    put_on_curve(l);
   }
 }
 
@@ -154,6 +164,8 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
     if (!found->flags[l]) keep_miss(l, *found);
     write_switches(*found, l, time_[l], rates.switches);
   }
+  for (int l = 0; l < lanes_; ++l)
+    if (places.active[l] && (found->flags[l] & (STAGE_OFF_BRANCH | STAGE_NOT_CLOSED))) look_ahead(l, places.y[l]);
 }
 
 // The next stage is predicted with what the prediction of this one missed.
@@ -237,10 +249,13 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
     };
     origin_time_[l] = time[l], miss_elapsed_[l] = 0.0;
     for (int k = 0; k < 2; ++k) done_[k * lanes_ + l] = y[(2 * n + k) * lanes_ + l];
-    take(end_.state, plan_.states, origin_), take(end_.first, columns, origin_first_);
-    take(end_.second, columns, origin_second_), take(end_.jacobian, entries_, jacobian_);
     continue_turns(l, end_.turned);
-    lay_chart(l);
+    if (!keeps_curve(l, time[l], y[l])) {
+      take(end_.state, plan_.states, origin_), take(end_.first, columns, origin_first_);
+      take(end_.second, columns, origin_second_), take(end_.jacobian, entries_, jacobian_);
+      chart_time_[l] = time[l], crossing_[l].looked = false;
+      lay_chart(l);
+    }
     for (int i = 0; i < n; ++i) {
       double first = 0.0, second = 0.0;
       for (int c = 0; c < columns; ++c) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "aligned.hpp"
+#include "crossing_curve.hpp"
 #include "driven_laws.hpp"
 #include "integrator.hpp"
 #include "motion_unit.hpp"
@@ -38,6 +39,13 @@ struct MotionStop {
 struct MotionLimits {
   double tight, coarse, accept, jump, radius;
   int iterations;
+  bool straight;  // branch points are passed along the smooth continuation
+};
+
+// A branch point that was passed: the end of the step, and the states (states) at the point.
+struct PassedBranchPoint {
+  double time;
+  std::vector<double> state;
 };
 
 // Rows of a lane, column after column; rows that are not reached stay as they are. Without rows nothing is written.
@@ -72,6 +80,11 @@ class ChartedMotion : public Motion {
 
   // The stop that ended a lane, -1 without one.
   int stopped_by(int lane) const { return stopped_[lane]; }
+  // States where a lane has come to.
+  std::vector<double> last_place(int lane) const;
+  // The branch points that a lane has passed, and the states at the one that it has ended next to (none: empty).
+  const std::vector<PassedBranchPoint>& crossings(int lane) const { return crossings_[lane]; }
+  std::vector<double> branch_point_near(int lane) const;
   // y at the start: u = 0, the rates of u, nothing done.
   std::vector<double> start() const;
 
@@ -84,7 +97,7 @@ class ChartedMotion : public Motion {
   };
 
   Stage make_stage() const;
-  void evaluate(const double* place, const double* rate, Stage* found);
+  void evaluate(const double* place, const double* rate, Stage* found, double* bend = nullptr);
   void set_places(const Places& places);
   void drive(int lane, double time);
   int edges() const { return driven_ ? (int)driven_->edges().size() : 0; }
@@ -97,6 +110,21 @@ class ChartedMotion : public Motion {
   void lay_chart(int lane);
   void continue_turns(int lane, const Packed& found);
   void write_row(int lane, long row, const Stage& at, const double* done);
+
+  // charted_crossings.cpp
+  struct Crossing {
+    bool looked = false;   // since the origin was laid
+    bool engaged = false;  // the chart goes on over the branch point, on the curve
+    CrossingCurve curve;
+    double offset = 0.0;   // the curve's coordinate where the last step ended
+    std::vector<double> inputs, branch_point;
+  };
+  void put_on_curve(int lane);
+  void put_guess(int lane, std::vector<double> guess);
+  bool look_at(int lane, double s, const std::vector<double>& guess, CurvePlace* found);
+  void look_ahead(int lane, double place);
+  bool keeps_curve(int lane, double time, double moved);
+
   double at(const Packed& a, long k, int lane) const { return a[k * lanes_ + lane]; }
 
   const MotionUnit& unit_;
@@ -122,4 +150,9 @@ class ChartedMotion : public Motion {
   std::vector<long> next_row_;      // lanes
   Packed done_;                     // 2: work put in and lost at the origin
   Stage found_, end_;
+  std::vector<Crossing> crossing_;  // lanes
+  std::vector<std::vector<PassedBranchPoint>> crossings_;
+  Packed chart_time_;               // when the chart was laid
+  Packed placed_, placed_state_, placed_first_, placed_second_, bend_;
+  Stage looked_;
 };

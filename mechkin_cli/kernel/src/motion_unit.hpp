@@ -26,7 +26,15 @@ struct StageGiven {
   double tight, coarse, accept;   // of closing, as in a Request
   int iterations;
   double jump, radius;            // what a stage may differ from the origin, as in StepLimits
+  // Places that are not predicted from the origin; null where there are none.
+  const double* placed;           // lanes: StagePlace
+  const double *placed_state, *placed_first, *placed_second;  // states; columns: derivatives by the one chart coordinate
 };
+
+// Where a lane's place comes from.
+constexpr double PREDICTED = 0.0;  // the origin's derivatives
+constexpr double GUESSED = 1.0;    // placed_state is closed, whatever the Jacobian at the origin
+constexpr double PLACED = 2.0;     // placed_state and its derivatives are the place: the equations are singular near it
 
 enum StageFlag : unsigned char {
   STAGE_GOOD = 0,
@@ -45,6 +53,7 @@ struct StageFound {
   double* jacobian;   // blocks' entries, not factored
   double* tangent;    // charts x columns: rates of the columns by those of u
   double* chart_second;  // charts: u''
+  double* bend;       // columns: their second derivatives at u'' = 0; null where nothing asks
   double* inertia;    // charts x charts: reduced inertia
   double* watched;    // kinks of the plan's program, then its outputs beyond the loads' values
   double* power;      // 2: of efforts and loads without a potential; lost in dampers

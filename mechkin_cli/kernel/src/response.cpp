@@ -24,7 +24,9 @@ void respond_pack(const ResponseTask& task, const MotionUnit& unit, long first, 
   const long moments = rows[0].rows;
   const std::vector<LaneReport> found =
       integrate(motion, task.settings, begin.data(), motion.start(), {task.times, moments, 0});
-  for (int l = 0; l < unit.lanes && first + l < count; ++l) (*reports)[first + l] = {found[l], motion.stopped_by(l)};
+  for (int l = 0; l < unit.lanes && first + l < count; ++l) 
+    (*reports)[first + l] = {found[l], motion.stopped_by(l), motion.last_place(l), motion.crossings(l),
+                             motion.branch_point_near(l)};
 }
 
 }  // namespace

@@ -30,6 +30,9 @@ nb::dict report_of(const ResponseReport& report) {
   const LaneReport& r = report.lane;
   nb::dict d;
   d["stop"] = report.stop;
+  nb::list crossings;
+  for (const PassedBranchPoint& p : report.crossings) crossings.append(nb::make_tuple(p.time, p.state));
+  d["last"] = report.last, d["crossings"] = crossings, d["branch_point"] = report.branch_point;
   d["end"] = (int)r.end, d["fault"] = (int)r.fault, d["which"] = r.which;
   d["stiff"] = r.stiff, d["stiff_from"] = r.stiff_from, d["time"] = r.time, d["rows"] = r.rows;
   d["evaluations"] = r.evaluations, d["steps"] = r.steps, d["rejections"] = r.rejections;
@@ -48,7 +51,7 @@ nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, c
               const std::vector<std::tuple<int, int, int, double>>& stops, const DrivenLaws* driven,
               double tolerance,
               double fixed_step, long most_steps, int dense_rows, int method, const std::vector<double>& tests, int iterations,
-              double jump, double radius, int lanes, int threads) {
+              double jump, double radius, bool straight, int lanes, int threads) {
   check_plans(plans);
   if (!motion_unit(lanes)) throw nb::value_error("lanes: this width is not available on this machine");
   if (threads < 1 || threads > 1024) throw nb::value_error("threads: 1 to 1024");
@@ -65,7 +68,7 @@ nb::tuple run(const std::vector<const FrozenPlan*>& plans, const Table& state, c
   if ((driven ? driven->inputs() : 0) != p.inputs) throw nb::value_error("driven: one law for each input");
   task.times = times.data(), task.driven = driven;
   for (const auto& [kind, direction, times_passed, at] : stops) task.stops.push_back({kind, direction, times_passed, at});
-  task.limits = {tests[0], tests[1], tests[2], jump, radius, iterations};
+  task.limits = {tests[0], tests[1], tests[2], jump, radius, iterations, straight};
   task.settings.tolerance = tolerance, task.settings.fixed_step = fixed_step;
   task.settings.dense_rows = dense_rows, task.settings.most_steps = most_steps, task.settings.method = (MethodChoice)method;
   MotionRows all = {};
@@ -118,5 +121,5 @@ void bind_response(nb::module_& m) {
   // reached hold nan.
   m.def("respond", &run, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "tangent"_a, "begin"_a, "times"_a, "stops"_a, "driven"_a.none(),
         "tolerance"_a, "fixed_step"_a, "most_steps"_a, "dense_rows"_a, "method"_a, "tests"_a, "iterations"_a, "jump"_a, "radius"_a,
-        "lanes"_a, "threads"_a);
+        "straight"_a, "lanes"_a, "threads"_a);
 }
