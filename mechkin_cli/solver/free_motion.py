@@ -49,8 +49,8 @@ class MotionReport(NamedTuple):
     """What a motion came to: the stop that ended it (-1: none), its end, the fault of the last
     refused step, the switch that held it, whether and from when the implicit method took over, the
     last time in s, the counts of rows, evaluations, steps and rejections, the last states, the
-    branch points that were passed (time in s, states), and the states at the one that it has ended
-    next to (none: empty)."""
+    branch points that were passed (time in s, states), the states at the one that it has ended next
+    to (none: empty), and whether short steps were refused there as off the branch."""
 
     stop: int
 
@@ -67,6 +67,7 @@ class MotionReport(NamedTuple):
     last: list[float]
     crossings: list[tuple[float, list[float]]]
     branch_point: list[float]
+    singular: bool
 
 
 @dataclass(frozen=True)

@@ -96,9 +96,7 @@ def _moment(session: Session, time: float) -> str:
     return f"{float(units.from_si(time, TIME)):.6g} {units.label(TIME)}"
 
 
-def _reason(
-    response: Response, report: MotionReport
-) -> tuple[Status, str, str, str | None, str]:
+def _reason(response: Response, report: MotionReport) -> tuple[Status, str, str, str | None, str]:
     """Verdict, code, words, limit and cure."""
     if report.end is MotionEnd.STEP_LIMIT:
         text = f"{report.steps + report.rejections} steps were not enough"
@@ -121,20 +119,20 @@ def _reason(
         hint = "give the links that it moves a mass, or drive it"
         return Status.singular_inertia, "singular-inertia", "", None, hint
     if report.branch_point and not response.assembly.straight:
-        text = "it comes to a branch point, where its branch crosses another and it may go either way"
+        text = (
+            "it comes to a branch point, where its branch crosses another and it may go either way"
+        )
         hint = (
             "assembly: {at_branch_points: straight} goes on along the smooth continuation; or end "
             "the response before it"
         )
         return Status.branch_lost, "branch-point", text, None, hint
-    if report.fault:
+    if report.fault or report.singular:
         text = "no step, however short, is told to stay on the branch"
         return Status.branch_lost, "branch-lost", text, None, _cure_of_lost(response)
     text = "no step, however short, keeps the tolerance"
-    limit = f"fixed_step {response.fixed_step:g} s" if response.fixed_step else None
-    if limit is None:
-        limit = f"tolerance {response.tolerance:g}"
-    return Status.step_limit, "step-limit", text, limit, "widen the tolerance"
+    asked = f"{response.tolerance:g}"
+    return Status.step_limit, "step-limit", text, asked, "widen the tolerance"
 
 
 def _cure_of_lost(response: Response) -> str:

@@ -12,6 +12,8 @@ constexpr double TOO_FAR = 1.0;
 constexpr double PROBE = 0.1;
 // Of states at the end of a motion from a branch point that it has come to.
 constexpr double CLOSE = 0.05;
+// Stages so near to their origin are refused next to a singular place alone.
+constexpr double SINGULAR_NEAR = 1e-2;
 
 }  // namespace
 
@@ -67,10 +69,13 @@ bool ChartedMotion::look_at(int lane, double s, const std::vector<double>& guess
   return true;
 }
 
-// Asked where a stage at a place of the chart was refused.
-void ChartedMotion::look_ahead(int lane, double place) {
+// Asked where a stage at a place (charts x lanes) of the chart was refused.
+void ChartedMotion::look_ahead(int lane, const double* places) {
   Crossing& c = crossing_[lane];
-  const double way = std::fabs(place);
+  const double place = places[lane];
+  double way = 0.0;
+  for (int i = 0; i < plan_.charts; ++i) way = std::fmax(way, std::fabs(places[i * lanes_ + lane]));
+  if (way < SINGULAR_NEAR) c.refused_at = last_place(lane);
   if (plan_.charts != 1 || plan_.blocks != 1 || c.looked || c.engaged || !(way > 0.0 && way < TOO_FAR)) return;
   c.looked = true;
   if (!limits_.straight && !branch_point_near(lane).empty()) return;
@@ -109,10 +114,20 @@ std::vector<double> ChartedMotion::last_place(int lane) const {
   return state;
 }
 
+// Whether a lane stands next to some states (states, or none).
+bool ChartedMotion::is_near(int lane, const std::vector<double>& state, double within) const {
+  const std::vector<double> last = last_place(lane);
+  for (std::size_t k = 0; k < state.size(); ++k)
+    if (!(std::fabs(state[k] - last[k]) <= within)) return false;
+  return !state.empty();
+}
+
+bool ChartedMotion::is_next_to_singular(int lane) const {
+  return is_near(lane, crossing_[lane].refused_at, SINGULAR_NEAR);
+}
+
 // The branch point that a lane has ended next to; empty without one.
 std::vector<double> ChartedMotion::branch_point_near(int lane) const {
-  const Crossing& c = crossing_[lane];
-  for (std::size_t k = 0; k < c.branch_point.size(); ++k)
-    if (!(std::fabs(c.branch_point[k] - at(origin_, (long)k, lane)) <= CLOSE)) return {};
-  return c.branch_point;
+  const std::vector<double>& point = crossing_[lane].branch_point;
+  return is_near(lane, point, CLOSE) ? point : std::vector<double>();
 }

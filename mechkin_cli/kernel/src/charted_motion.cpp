@@ -165,7 +165,7 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
     write_switches(*found, l, time_[l], rates.switches);
   }
   for (int l = 0; l < lanes_; ++l)
-    if (places.active[l] && (found->flags[l] & (STAGE_OFF_BRANCH | STAGE_NOT_CLOSED))) look_ahead(l, places.y[l]);
+    if (places.active[l] && (found->flags[l] & (STAGE_OFF_BRANCH | STAGE_NOT_CLOSED))) look_ahead(l, places.y);
 }
 
 // The next stage is predicted with what the prediction of this one missed.

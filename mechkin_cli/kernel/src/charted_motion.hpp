@@ -85,6 +85,8 @@ class ChartedMotion : public Motion {
   // The branch points that a lane has passed, and the states at the one that it has ended next to (none: empty).
   const std::vector<PassedBranchPoint>& crossings(int lane) const { return crossings_[lane]; }
   std::vector<double> branch_point_near(int lane) const;
+  // Whether steps were refused, however short, where a lane has come to.
+  bool is_next_to_singular(int lane) const;
   // y at the start: u = 0, the rates of u, nothing done.
   std::vector<double> start() const;
 
@@ -118,11 +120,13 @@ class ChartedMotion : public Motion {
     CrossingCurve curve;
     double offset = 0.0;   // the curve's coordinate where the last step ended
     std::vector<double> inputs, branch_point;
+    std::vector<double> refused_at;  // states where a short step was refused last
   };
   void put_on_curve(int lane);
   void put_guess(int lane, std::vector<double> guess);
   bool look_at(int lane, double s, const std::vector<double>& guess, CurvePlace* found);
-  void look_ahead(int lane, double place);
+  void look_ahead(int lane, const double* places);
+  bool is_near(int lane, const std::vector<double>& state, double within) const;
   bool keeps_curve(int lane, double time, double moved);
 
   double at(const Packed& a, long k, int lane) const { return a[k * lanes_ + lane]; }

@@ -20,7 +20,8 @@ constexpr double FARTHEST = 0.25, NEAREST = 1e-6;
 // Half of the way that is interpolated: wide enough that rounding, which grows as the inverse of the distance, leaves the
 // nodes exact, narrow enough that the polynomial is.
 constexpr double WIDTHS[3] = {0.1, 0.03, 0.01};
-// What polynomial and closed places may differ by: states, their derivatives, and what goes to zero.
+// What polynomial and closed places may differ by, which is a rounding over the distance: states, their derivatives, and
+// what goes to zero. Angles after many turns round by more, in parts of the largest.
 constexpr double SAME_STATE = 1e-12, SAME_FIRST = 1e-11, SAME_SECOND = 1e-8, SAME_REGULAR = 1e-3;
 // Of the way to the branch point: how far a place may lie from its guess. Another branch lies off by about all of it.
 constexpr double MISS = 0.1;
@@ -170,7 +171,8 @@ bool CrossingCurve::locate() {
 
 bool CrossingCurve::holds_between(const LookAt& look) const {
   CurvePlace told = nodes_[0], seen;
-  const double size = std::fmax(1.0, largest(nodes_[HALF].second));
+  const double place_size = std::fmax(1.0, largest(nodes_[HALF].state));
+  const double size = place_size * std::fmax(1.0, largest(nodes_[HALF].second));
   double most = 0.0;
   for (double m : regular_) most = std::fmax(most, std::fabs(m));
   for (double x : BETWEEN) {
@@ -179,7 +181,7 @@ bool CrossingCurve::holds_between(const LookAt& look) const {
     if (!look(s, told.state, &seen)) return false;
     const double regular = (x < 0.0 ? -1.0 : 1.0) * regularity(seen.jacobian);
     const double expected = between_nodes(x, [&](int k) { return regular_[k]; });
-    const bool same = largest_difference(told.state, seen.state) <= SAME_STATE &&
+    const bool same = largest_difference(told.state, seen.state) <= SAME_STATE * place_size &&
                       largest_difference(told.first, seen.first) <= SAME_FIRST * size &&
                       largest_difference(told.second, seen.second) <= SAME_SECOND * size &&
                       std::fabs(regular - expected) <= SAME_REGULAR * most;

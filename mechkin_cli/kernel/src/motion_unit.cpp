@@ -82,11 +82,17 @@ inline void take_places(const Plan& p, Workspace& w, const StageGiven& given, Ma
   for (int s = 0; s < p.states; ++s) w.q[s] = select(lanes, packs(given.placed_state)[s], w.q[s]);
 }
 
+// Limit of placed states' residuals in parts of that of closed ones: interpolation rounds some times.
+constexpr double PLACED_ROUNDING = 16.0;
+
 // The states of lanes that are placed, which Newton's method has moved, and whether they are closed.
-inline void place_again(const Plan& p, Workspace& w, int block, const StageGiven& given, Mask lanes, Closed* closed) {
+// Kept apart: see is_regular.
+__attribute__((noinline)) void place_again(const Plan& p, Workspace& w, int block, const StageGiven& given, Mask lanes, Closed* closed) {
   take_places(p, w, given, lanes);
   place_block(p, w, p.block[block]);
-  const Mask near = block_residual(p, w, p.block[block]).test <= Pack(given.accept);
+  const Pack limit = PLACED_ROUNDING * given.accept;
+  Mask near = block_residual(p, w, p.block[block]).test <= limit;
+  if (any(lanes & ~near)) near = near | (residual_with_rounding(p, w, p.block[block], given.accept) <= limit);
   const Mask side = block_side_conditions(p, w, p.block[block]);
   closed->converged = (lanes & near) | (~lanes & closed->converged);
   closed->side = (lanes & side) | (~lanes & closed->side);
