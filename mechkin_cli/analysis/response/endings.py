@@ -118,7 +118,7 @@ def _reason(response: Response, report: MotionReport) -> tuple[Status, str, str,
     if report.fault & Fault.SINGULAR_INERTIA:
         hint = "give the links that it moves a mass, or drive it"
         return Status.singular_inertia, "singular-inertia", "", None, hint
-    if report.branch_point and not response.assembly.straight:
+    if report.branch_point:
         text = (
             "it comes to a branch point, where its branch crosses another and it may go either way"
         )
@@ -126,6 +126,11 @@ def _reason(response: Response, report: MotionReport) -> tuple[Status, str, str,
             "assembly: {at_branch_points: straight} goes on along the smooth continuation; or end "
             "the response before it"
         )
+        if response.assembly.straight:
+            hint = (
+                "with friction it is not passed, as the reactions that friction reads are not "
+                "unique there: end the response before it"
+            )
         return Status.branch_lost, "branch-point", text, None, hint
     if report.fault or report.singular:
         text = "no step, however short, is told to stay on the branch"

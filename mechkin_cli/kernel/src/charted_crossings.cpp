@@ -78,7 +78,7 @@ void ChartedMotion::look_ahead(int lane, const double* places) {
   if (way < SINGULAR_NEAR) c.refused_at = last_place(lane);
   if (plan_.charts != 1 || plan_.blocks != 1 || c.looked || c.engaged || !(way > 0.0 && way < TOO_FAR)) return;
   c.looked = true;
-  if (!limits_.straight && !branch_point_near(lane).empty()) return;
+  if (!branch_point_near(lane).empty()) return;
   CrossingCurve curve;
   const auto look = [&](double s, const std::vector<double>& guess, CurvePlace* found) {
     return look_at(lane, s, guess, found);
@@ -87,7 +87,8 @@ void ChartedMotion::look_ahead(int lane, const double* places) {
   std::vector<double> first(plan_.columns), second(plan_.columns);
   c.branch_point.resize(plan_.states);
   curve.place(curve.at(), c.branch_point.data(), first.data(), second.data());
-  if (!limits_.straight) return;
+  // friction reads reactions, which are not unique there
+  if (!limits_.straight || plan_.frictions) return;
   c.engaged = true, c.curve = std::move(curve), c.offset = 0.0;
   c.inputs.resize(plan_.inputs);
   for (int i = 0; i < plan_.inputs; ++i) c.inputs[i] = at(inputs_, i, lane);
@@ -129,5 +130,5 @@ bool ChartedMotion::is_next_to_singular(int lane) const {
 // The branch point that a lane has ended next to; empty without one.
 std::vector<double> ChartedMotion::branch_point_near(int lane) const {
   const std::vector<double>& point = crossing_[lane].branch_point;
-  return is_near(lane, point, CLOSE) ? point : std::vector<double>();
+  return !crossing_[lane].engaged && is_near(lane, point, CLOSE) ? point : std::vector<double>();
 }
