@@ -228,7 +228,8 @@ ELSEWHERE = {
     ("FlywheelBalance", "rate"),
     ("HarmonicsBalance", "of"),
 }
-"""Of friction, responses and balances, whose own tests change their units."""
+"""Of friction and responses, whose own tests change their units, and of balances, of which none
+does yet."""
 
 WITHOUT = {
     ("SpherePlaneJoint", "normal"),
