@@ -42,6 +42,7 @@ class Fault(IntEnum):
     SINGULAR_INERTIA = 4
     UNDEFINED_LOAD = 8
     FRICTION = 16
+    UNDEFINED_STOP = 32
     NOT_FINITE = 255
 
 
@@ -54,6 +55,10 @@ class MotionReport(NamedTuple):
 
     stop: int
     energy: float
+    lightest: float
+    growth: float
+    met: int
+    step: float
     end: MotionEnd
     fault: int
     which: int

@@ -172,7 +172,7 @@ def rows_of(one: Prepared, found: MotionRows) -> ResponseResult:
     rows.turns = _all_turns(free, found.turns[:, part])
     assert one.begun is not None
     last = found.states[:, found.count - 1] if found.count else one.begun.state
-    status, notes = ending(chosen, response, found.report, last)
+    status, notes = ending(chosen, free, response, found.report, last)
     rows.status[~reached] = status
     rows.diagnostics += notes
     energy = free.layout.length * free.layout.length

@@ -44,7 +44,8 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   unit_.prepare(wide_.data(), workspace_.data());
   make(time_, 1), make(over_, 1), make(side_, plan_.law.kinks), make(done_, 2);
   if (driven_) laws_memory_ = driven_->memory();
-  cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), energy_.assign(lanes_, 0.0), next_row_.assign(lanes_, 0);
+  cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), energy_.assign(lanes_, 0.0),
+  lightest_.assign(lanes_, 0.0), lightest_start_.assign(lanes_, 0.0), growth_.assign(lanes_, 0.0), next_row_.assign(lanes_, 0);
   stop_start_.assign(stops_.size() * lanes_, 0.0), passed_.assign(stops_.size() * lanes_, 0);
   found_ = make_stage(), end_ = make_stage();
   for (int l = 0; l < lanes_; ++l) {
@@ -154,6 +155,7 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
     rates.fault[l] = found->flags[l];
     if (undecided_[l]) rates.fault[l] |= STAGE_FRICTION;
     if (!found->flags[l]) keep_miss(l, *found);
+    if (found->flags[l] & STAGE_UNDEFINED_STOP) find_undefined(*found, l);
     write_switches(*found, l, time_[l], rates.switches);
   }
 }
@@ -162,6 +164,14 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
 void ChartedMotion::keep_miss(int lane, const Stage& found) {
   miss_elapsed_[lane] = elapsed_[lane];
   for (int c = 0; c < plan_.columns; ++c) miss_[(long)c * lanes_ + lane] = at(found.miss, c, lane);
+}
+
+// The first stop whose value there is none is what ends the lane, if nothing helps.
+void ChartedMotion::find_undefined(const Stage& found, int lane) {
+  for (std::size_t s = stops_.size(); s-- > 0;) {
+    const double value = at(found.watched, plan_.law.kinks + (long)s, lane);
+    if (!(value == value)) stopped_[lane] = (int)s;
+  }
 }
 
 // What changes its sign where a stop is met.
@@ -272,8 +282,30 @@ void ChartedMotion::sizes(const unsigned char* lanes, double* size) {
       coming += PART_OF_FORCE * std::fabs(force);
     }
     energy_[l] = std::max(energy_[l], energy);
+    weigh(l);
     for (int k = 1; k < 3; ++k) size[k * lanes_ + l] = std::max(size[k * lanes_ + l], energy + coming);
   }
+}
+
+// The pivots of the inertia where a lane stands, and how fast its rates grow.
+void ChartedMotion::weigh(int lane) {
+  const int n = plan_.charts;
+  std::vector<double> m((std::size_t)n * n);
+  for (int k = 0; k < n * n; ++k) m[k] = at(end_.inertia, k, lane);
+  lightest_[lane] = __builtin_inf();
+  double rate = 0.0, second = 0.0;
+  for (int i = 0; i < n; ++i) {
+    rate = std::max(rate, std::fabs(at(end_.chart_rate, i, lane)));
+    second = std::max(second, std::fabs(at(end_.chart_second, i, lane)));
+  }
+  growth_[lane] = rate > 0.0 ? second / rate : 0.0;
+  for (int j = 0; j < n; ++j) {
+    const double pivot = m[j * n + j];
+    lightest_[lane] = std::min(lightest_[lane], pivot);
+    for (int r = j + 1; r < n; ++r)
+      for (int c = j + 1; c < n; ++c) m[r * n + c] -= m[r * n + j] * m[j * n + c] / pivot;
+  }
+  if (lightest_start_[lane] == 0.0) lightest_start_[lane] = lightest_[lane];
 }
 
 void ChartedMotion::write_row(int lane, long row, const Stage& at_row, const double* done) {

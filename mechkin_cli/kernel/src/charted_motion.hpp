@@ -74,8 +74,12 @@ class ChartedMotion : public Motion {
   bool event(int lane, int which, bool rising, double time) override;
   void move(int lane, int which, double time, double* y) override;
 
-  // The stop that ended a lane, -1 without one.
+  // The stop that ended a lane, or that had no value where it ended; -1 without one.
   int stopped_by(int lane) const { return stopped_[lane]; }
+  // The least inertia of a lane at the end of its last step, a pivot, in parts of that at its start.
+  double lightest(int lane) const { return lightest_[lane] / lightest_start_[lane]; }
+  // The largest acceleration of a lane in parts of the largest rate at the end of its last step, 1/s.
+  double growth(int lane) const { return growth_[lane]; }
   // The largest kinetic energy of a lane at the ends of its steps so far.
   double energy(int lane) const { return energy_[lane]; }
   // y at the start: u = 0, the rates of u, nothing done.
@@ -105,6 +109,8 @@ class ChartedMotion : public Motion {
   bool rubs() const { return plan_.frictions > 0; }
   void stand_still();
   void find_sense(int lane);
+  void weigh(int lane);
+  void find_undefined(const Stage& found, int lane);
   double stop_value(int stop, int lane, double watched) const;
   void write_switches(const Stage& found, int lane, double time, double* switches) const;
   void keep_miss(int lane, const Stage& found);
@@ -135,7 +141,7 @@ class ChartedMotion : public Motion {
   std::vector<int> passed_;         // stops x lanes: how often a stop's value has passed
   std::vector<int> stopped_;        // lanes
   std::vector<long> next_row_;      // lanes
-  std::vector<double> energy_;      // lanes
+  std::vector<double> energy_, lightest_, lightest_start_, growth_;  // lanes
   Packed done_;                     // 2: work put in and lost at the origin
   Stage found_, end_;
 };

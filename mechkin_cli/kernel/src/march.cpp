@@ -48,6 +48,7 @@ March::March(Motion& motion, const IntegratorSettings& settings, const double* t
   require((long)y.size() == states_.entries, "one y for each lane");
   for (LaneControl& c : control_) {
     c.passed.assign(states_.kinds.size(), 0);
+    c.met.assign(states_.kinds.size(), 0);
     c.let_alone.assign(states_.kinds.size(), 0);
     c.implicit = settings.method == MethodChoice::IMPLICIT;
   }
@@ -78,7 +79,11 @@ void March::finish(int lane, LaneEnd end, int which) {
   LaneReport& report = states_.report[lane];
   control_[lane].running = false;
   report.end = end;
+  const std::vector<long>& met = control_[lane].met;
+  if (end == LaneEnd::STEP_LIMIT && !met.empty()) which = (int)(std::max_element(met.begin(), met.end()) - met.begin());
   report.which = which;
+  report.met = which < 0 ? 0 : met[which];
+  report.step = states_.step[lane];
   report.fault = end == LaneEnd::STUCK && states_.fault[lane] != NOT_SOLVED ? states_.fault[lane] : 0;
   report.time = states_.time[lane];
   report.evaluations = states_.evaluations[lane];
@@ -154,7 +159,8 @@ void March::shorten_for_fault(int lane) {
   c.room_growth = ROOM_GROWTH;
   if (c.before_fault == 0.0) c.before_fault = step;
   const double to_row = row_time(lane, c.next_row) - states_.time[lane];
-  const bool passes = c.room < PASS_FROM * c.before_fault && c.room < 0.7 * c.tried_from && to_row > PASS_LEAST * c.room;
+  // stages that cannot be solved for say nothing of the place
+  const bool passes = states_.fault[lane] != NOT_SOLVED && c.room < PASS_FROM * c.before_fault && c.room < 0.7 * c.tried_from && to_row > PASS_LEAST * c.room;
   if (passes) c.tried_from = c.room;
   const AtPlace here = passes ? states_.motion.pass_over(lane, c.room) : AtPlace::GOES_ON;
   if (here == AtPlace::ENDS) return finish(lane, LaneEnd::STUCK);

@@ -16,6 +16,8 @@ struct ResponseTask {
 struct ResponseReport {
   LaneReport lane;
   int stop;  // that ended it, -1: none
+  double lightest;  // see ChartedMotion::lightest
+  double growth;    // see ChartedMotion::growth
   double energy;  // the largest kinetic energy at the ends of steps; kg, length units, s
 };
 

@@ -31,6 +31,10 @@ nb::dict report_of(const ResponseReport& report) {
   nb::dict d;
   d["stop"] = report.stop;
   d["energy"] = report.energy;
+  d["lightest"] = report.lightest;
+  d["growth"] = report.growth;
+  d["met"] = r.met;
+  d["step"] = r.step;
   d["end"] = (int)r.end, d["fault"] = (int)r.fault, d["which"] = r.which;
   d["stiff"] = r.stiff, d["stiff_from"] = r.stiff_from, d["time"] = r.time, d["rows"] = r.rows;
   d["evaluations"] = r.evaluations, d["steps"] = r.steps, d["rejections"] = r.rejections, d["passed"] = r.passed;
