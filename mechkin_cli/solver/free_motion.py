@@ -46,14 +46,15 @@ class Fault(IntEnum):
 
 
 class MotionReport(NamedTuple):
-    """What a motion came to: the stop that ended it (-1: none), its end, the fault of the last
+    """What a motion came to: the stop that ended it (-1: none), the largest kinetic energy at the
+    ends of its steps (kg, length units, s), its end, the fault of the last
     refused step, the switch that held it, whether and from when the implicit method took over, the
     last time in s, the counts of rows, evaluations, steps and rejections, the last states, the
     branch points that were passed (time in s, states), the states at the one that it has ended next
     to (none: empty), and whether short steps were refused there as off the branch."""
 
     stop: int
-
+    energy: float
     end: MotionEnd
     fault: int
     which: int

@@ -75,6 +75,7 @@ class ChartedMotion : public Motion {
   void rates(const Places& places, const Rates& rates) override;
   void accept(const unsigned char* lanes, const double* time, double* y, double* rates, double* longest) override;
   void sizes(const unsigned char* lanes, double* size) override;
+  bool is_driven() const override { return plan_.inputs > 0; }
   void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) override;
   bool event(int lane, int which, bool rising, double time) override;
   void move(int lane, int which, double time, double* y) override;
@@ -90,6 +91,8 @@ class ChartedMotion : public Motion {
   std::vector<double> branch_point_near(int lane) const;
   // Whether steps were refused, however short, where a lane has come to.
   bool is_next_to_singular(int lane) const;
+  // The largest kinetic energy of a lane at the ends of its steps so far.
+  double energy(int lane) const { return energy_[lane]; }
   // y at the start: u = 0, the rates of u, nothing done.
   std::vector<double> start() const;
 
@@ -175,6 +178,7 @@ class ChartedMotion : public Motion {
   std::vector<int> passed_;         // stops x lanes: how often a stop's value has passed
   std::vector<int> stopped_;        // lanes
   std::vector<long> next_row_;      // lanes
+  std::vector<double> energy_;      // lanes
   Packed done_;                     // 2: work put in and lost at the origin
   Stage found_, end_;
   std::vector<Crossing> crossing_;  // lanes

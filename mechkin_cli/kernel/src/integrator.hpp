@@ -35,6 +35,8 @@ constexpr unsigned char NOT_FINITE = 255;  // the fault where a rate is not fini
 struct SwitchKind {
   bool kink;
   bool moves = false;
+  // A kink that stays where it is: where both its sides give the same rates it is passed without a word.
+  bool may_be_nothing() const { return kink && !moves; }
 };
 
 class Motion {
@@ -59,6 +61,9 @@ class Motion {
     (void)lanes;
     (void)size;
   }
+
+  // Whether something moves beside the freedoms: powers are then not rounding where these rest.
+  virtual bool is_driven() const { return false; }
 
   // Asked where a step was refused that may not be made shorter: whether the same step may be tried again, as more is known
   // of the places ahead.

@@ -16,6 +16,7 @@ struct ResponseTask {
 struct ResponseReport {
   LaneReport lane;
   int stop;  // that ended it, -1: none
+  double energy;  // the largest kinetic energy at the ends of steps; kg, length units, s
   std::vector<double> last;  // states at the end
   std::vector<PassedBranchPoint> crossings;
   std::vector<double> branch_point;  // states at the one that it has ended next to, empty without one
