@@ -8,6 +8,7 @@ import numpy as np
 
 from mechkin_cli.analysis.response.reasons import reason
 from mechkin_cli.analysis.response.weakest import weakest_coordinates
+from mechkin_cli.analysis.sweep.branch_end import MOST_SHOWN
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.solver.free_motion import MotionEnd
 from mechkin_cli.solver.inputs import input_numbers, input_text
@@ -25,16 +26,14 @@ def ending(
     session: Session, free: Session, response: Response, report: MotionReport, last: Floats
 ) -> tuple[Status, list[Diagnostic]]:
     """The verdict of rows that were not reached, and what is to say about the motion; `last`
-    (states,) is the last state that is known, `free` the session that moved."""
+    (states,) is the last place of it, `free` the session that moved."""
     notes = []
+    if report.crossings:
+        notes.append(_passed(session, response, report))
     if report.stiff:
         text = f"from {_moment(session, report.stiff_from)} on the motion is stiff"
         hint = "an implicit method of order 5 (Radau IIA) has taken over; nothing is to be done"
         notes.append(Diagnostic("stiff", "note", text, response.place, hint=hint))
-    if report.passed:
-        count = f"{report.passed} branch point{'s' * (report.passed > 1)}"
-        text = f"the motion passes {count} along the smooth continuation"
-        notes.append(Diagnostic("branch-point-passed", "note", text, response.place))
     if report.end in (MotionEnd.DONE, MotionEnd.STOPPED):
         return Status.ok, notes
     at = _moment(session, report.time)
@@ -42,8 +41,10 @@ def ending(
     text = why.text
     if why.status is Status.singular_inertia:
         text = _without_inertia(weakest_coordinates(session, response, last))
-    numbers = place_numbers(session, last)
-    measured = f"last row at {', '.join(map(input_text, numbers))}"
+    is_point = why.code == "branch-point"
+    numbers = place_numbers(session, np.array(report.branch_point) if is_point else last)
+    shown = ", ".join(map(input_text, numbers))
+    measured = shown if is_point else f"last place {shown}"
     notes.append(
         Diagnostic(
             why.code,
@@ -51,6 +52,7 @@ def ending(
             f"the response ends at {at}: {text}",
             why.place or response.place,
             measured=f"{why.measured}, {measured}" if why.measured else measured,
+            limit=why.limit,
             hint=why.hint,
             numbers=numbers,
         )
@@ -63,6 +65,22 @@ def place_numbers(session: Session, state: Floats) -> tuple[Number, ...]:
     free = len(session.problem.motion.inputs)
     values = [state[session.layout.state(edge, dof)] for edge, dof in session.graph.inputs[:free]]
     return input_numbers(session.problem, session.layout, np.array(values))
+
+
+def _passed(session: Session, response: Response, report: MotionReport) -> Diagnostic:
+    """The branch points that a motion passed straight on."""
+    places = [place_numbers(session, np.array(state)) for _, state in report.crossings]
+    shown = [", ".join(map(input_text, numbers)) for numbers in places[:MOST_SHOWN]]
+    more = len(places) - len(shown)
+    return Diagnostic(
+        "branch-point-passed",
+        "note",
+        f"the motion passes {'a branch point' if len(places) == 1 else 'branch points'} along its "
+        "smooth continuation, as assembly: {at_branch_points: straight} asks",
+        response.place,
+        measured="; ".join(shown) + (f" and {more} more" if more else ""),
+        numbers=tuple(number for numbers in places[:MOST_SHOWN] for number in numbers),
+    )
 
 
 def _without_inertia(names: list[str]) -> str:

@@ -29,11 +29,12 @@ class Reason(NamedTuple):
     hint: str
     measured: str = ""
     place: Place | None = None
+    limit: str | None = None
 
 
 def reason(free: Session, response: Response, report: MotionReport) -> Reason:
     """The reason of an end that was not wanted; `free` is the session that moved."""
-    if report.end is MotionEnd.STEP_LIMIT:
+    if report.end is MotionEnd.STEP_LIMIT and not report.singular:
         return _step_limit(free, report)
     if report.end is MotionEnd.HELD:
         return _held(free, report)
@@ -51,16 +52,32 @@ def reason(free: Session, response: Response, report: MotionReport) -> Reason:
     if fault & Fault.SINGULAR_INERTIA or _loses_inertia(response, report):
         hint = "give the links that it moves a mass, or drive it"
         return Reason(Status.singular_inertia, "singular-inertia", "", hint)
+    if report.branch_point:
+        return _branch_point(response)
     if fault and response.fixed_step is not None:
         return _long_step(free.problem.units, report)
-    if fault:
+    if fault or report.singular:
         text = "no step, however short, is told to stay on the branch"
         hint = (
-            "there is a branch point or a special position; at_branch_points: straight passes "
-            "branch points along the smooth continuation"
+            "this may be a special position where the smooth continuation is not told apart from "
+            "other branches: end the response before it"
         )
         return Reason(Status.branch_lost, "branch-lost", text, hint)
     return _tolerance(response, report)
+
+
+def _branch_point(response: Response) -> Reason:
+    text = "it comes to a branch point, where its branch crosses another and it may go either way"
+    hint = (
+        "assembly: {at_branch_points: straight} goes on along the smooth continuation, unless "
+        "joints rub; or end the response before it"
+    )
+    if response.assembly.straight:
+        hint = (
+            "with friction it is not passed, as the reactions that friction reads are not unique "
+            "there: end the response before it"
+        )
+    return Reason(Status.branch_lost, "branch-point", text, hint)
 
 
 def _step_limit(free: Session, report: MotionReport) -> Reason:
@@ -73,7 +90,8 @@ def _step_limit(free: Session, report: MotionReport) -> Reason:
         hint = "write it smoothly there, or what sticks as {type: friction, ...}"
         return Reason(Status.step_limit, "step-limit", text, hint, measured, law.place)
     hint = "widen the tolerance, shorten the time, or look for what moves so fast"
-    return Reason(Status.step_limit, "step-limit", text, hint, measured)
+    limit = f"{tolerances.MOST_RESPONSE_STEPS} steps"
+    return Reason(Status.step_limit, "step-limit", text, hint, measured, limit=limit)
 
 
 def _held(free: Session, report: MotionReport) -> Reason:
@@ -120,14 +138,18 @@ def _long_step(units: UnitSystem, report: MotionReport) -> Reason:
         f"a fixed step of {_length(units, report.step)} is too long there: its stages are not told "
         "to stay on the branch"
     )
-    hint = "write a shorter fixed_step, or a tolerance in its place, which chooses the steps"
+    hint = (
+        "write a shorter fixed_step, or a tolerance in its place, which chooses the steps; if that "
+        "ends here, too, this is a special position: end the response before it"
+    )
     return Reason(Status.step_limit, "step-limit", text, hint)
 
 
 def _tolerance(response: Response, report: MotionReport) -> Reason:
     if not _runs_away(response, report):
         text = "no step, however short, keeps the tolerance"
-        return Reason(Status.step_limit, "step-limit", text, "widen the tolerance")
+        asked = f"{response.tolerance:g}"
+        return Reason(Status.step_limit, "step-limit", text, "widen the tolerance", limit=asked)
     growth = f"rates grow by themselves in {1.0 / report.growth:.1e} s"
     if response.driven:
         names = ", ".join(f"{d.joint}.{d.coordinate}" for d in response.driven)
