@@ -160,8 +160,9 @@ def _times(body: Link, a: Vector) -> Vector:
     return (dot((xx, xy, xz), a), dot((xy, yy, yz), a), dot((xz, yz, zz), a))
 
 
-def spin_errors(problem: Problem) -> list[tuple[str, Diagnostic]]:
-    """For every idle freedom that something drives: the link, and what to say.
+def spin_errors(problem: Problem, *, free: bool = False) -> list[tuple[str, Diagnostic]]:
+    """For every idle freedom that something drives: the link, and what to say; in a `free` motion
+    it may be one of the freedoms that the start names.
 
     None if the file holds idle freedoms.
     """
@@ -172,7 +173,8 @@ def spin_errors(problem: Problem) -> list[tuple[str, Diagnostic]]:
         for link in idle.links:
             cause = _spin_cause(problem, idle, link)
             if cause is not None:
-                error = (link, _dynamic_freedom(idle, *cause))
+                cure = _cure_in_motion(idle) if free else idle.cure
+                error = (link, _dynamic_freedom(idle, cure, *cause))
                 found += [error] if error not in found else []
                 break
     return found
@@ -204,14 +206,24 @@ def holding_notes(problem: Problem, moments: Mapping[str, Floats]) -> list[Diagn
     return notes
 
 
-def _dynamic_freedom(idle: Idle, cause: str, measured: str) -> Diagnostic:
+def _cure_in_motion(idle: Idle) -> str:
+    """How the start of a free motion comes to have an idle freedom for one of its own."""
+    if idle.moves:
+        return f"name {'.'.join(min(idle.moves))} in start: it is a freedom as others are"
+    return (
+        "give it a coordinate that start names: write one S as an R along that line and a U, with "
+        "a link {} between"
+    )
+
+
+def _dynamic_freedom(idle: Idle, cure: str, cause: str, measured: str) -> Diagnostic:
     motion, what = ("slide", "a force") if idle.slides else ("spin", "a moment")
     return Diagnostic(
         "loaded-spin",
         "error",
         f"{idle.words}, and {cause}: the {motion} is a dynamic freedom, forces depend on it",
         measured=measured,
-        hint=f"{idle.cure}, or accept {what} that holds it with idle: hold",
+        hint=f"{cure}, or accept {what} that holds it with idle: hold",
     )
 
 
