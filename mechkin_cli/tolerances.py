@@ -736,6 +736,10 @@ DENSE_ROWS: Final = 10
 """Rows within one step of a response from which on they are interpolated instead of stepped to:
 interpolation costs 18 to 50 times in energy, so it is for rows that are much denser than steps."""
 
+ENERGY_ROUNDING: Final = 2.0**-48
+"""Parts of the largest potential energy below which nothing is missing of a response's energies: 16
+roundings, as heights are sums of some. A pendulum that swings by 1e-6 deg moves 1e-16 of it."""
+
 SAME_MOMENT: Final = 1e-15
 """A stop so near to the last row, in parts of its moment, ends the response at that row: a few
 roundings of the time, which would print as two rows of one moment."""
