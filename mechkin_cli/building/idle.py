@@ -28,7 +28,7 @@ def note_spins(fields: Fields, problem: Problem, *, free: bool = False) -> None:
     `free` motion where its start does not name them."""
     if not (find_legs(problem.mechanism) or problem.held):
         return
-    from mechkin_cli.mechanism.idle import spin_errors
+    from mechkin_cli.mechanism.spins import spin_errors
 
     for link, diagnostic in spin_errors(problem, free=free):
         found = diagnostic._replace(place=fields.document.place(("links", link)))

@@ -166,10 +166,16 @@ OTHER_WORDS = [
     added("»published: a.csv", "unknown-key", "belong to a table"),
     added("»harmonics: {}", "unknown-key", "balances: [{name: work, type: work}]"),
     added("»mass: 3", "unknown-key", "links:"),
-    load("{type: friction, joint: O, coefficient: 0.1, radius: 8, »mu: 0.1}", "unknown-key", "coeff"),
-    load("{type: friction, joint: O, »static: 0.1, coefficient: 0.1, radius: 8}", "unknown-key", "{"),
+    load(
+        "{type: friction, joint: O, coefficient: 0.1, radius: 8, »mu: 0.1}", "unknown-key", "coeff"
+    ),
+    load(
+        "{type: friction, joint: O, »static: 0.1, coefficient: 0.1, radius: 8}", "unknown-key", "{"
+    ),
     joint("{type: R, LINKS, point: [0, 0, 0], axis: [0, 0, 1], »mu: 1}", "unknown-key", "friction"),
-    joint("{type: R, LINKS, point: [0, 0, 0], axis: [0, 0, 1], »parent: a}", "unknown-key", "first"),
+    joint(
+        "{type: R, LINKS, point: [0, 0, 0], axis: [0, 0, 1], »parent: a}", "unknown-key", "first"
+    ),
     started("»t_end: 2", "unknown-key", "time: {from: 0, to: 2, step: 0.1}"),
     started("»rtol: 1e-6", "unknown-key", "tolerance: 1e-10"),
     started("»solver: rk45", "unknown-key", "DOP853"),
