@@ -57,7 +57,7 @@ def test_a_freedom_without_inertia_is_named() -> None:
     assert set(statuses(found)) == {"singular-inertia"}
     words = " ".join(str(d) for d in found.diagnostics)
     assert "B.theta has no inertia" in words
-    assert "last row at A.theta = 0 deg, B.theta = 0 deg" in words
+    assert "last place A.theta = 0 deg, B.theta = 0 deg" in words
 
 
 def test_the_same_freedom_with_inertia_moves() -> None:
