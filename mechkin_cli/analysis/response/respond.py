@@ -90,6 +90,10 @@ def prepare(problem: Problem, response: Response, packing: Packing = ANY_PACKING
     """
     chosen = Session(response_problem(problem, response), packing=packing)
     chosen, start = first_assembly(chosen)
+    place = response.place
+    start.diagnostics[:] = [
+        told if told.place else told._replace(place=place) for told in start.diagnostics
+    ]
     free = free_session(chosen, response.independent)
     if start.state is None:
         return Prepared(response, chosen, start, free, None, None)
