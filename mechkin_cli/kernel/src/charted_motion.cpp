@@ -9,6 +9,8 @@
 namespace {
 
 constexpr double PART_OF_FORCE = 0.1;
+// Of the time since the origin: stages that are closer tell nearly the same, and their difference little.
+constexpr double NEAR_STAGE = 0.4;
 constexpr double FULL = 2.0 * 3.14159265358979323846;
 
 std::vector<char, AlignedAllocator<char>> wide_plan(const MotionUnit& unit, const std::vector<MotionStart>& starts) {
@@ -40,7 +42,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   make(direction_, (long)plan_.charts * plan_.columns), make(jacobian_, entries_), make(turn_, turn_slots_);
   make(elapsed_, 1), make(origin_time_, 1), make(place_, plan_.charts), make(rate_, plan_.charts);
   make(inputs_, plan_.inputs), make(input_rates_, plan_.inputs), make(input_seconds_, plan_.inputs);
-  make(miss_, plan_.columns), make(miss_elapsed_, 1);
+  make(miss_, (long)MISSES * plan_.columns), make(miss_elapsed_, MISSES);
   unit_.prepare(wide_.data(), workspace_.data());
   make(time_, 1), make(over_, 1), make(side_, plan_.law.kinks), make(done_, 2);
   if (driven_) laws_memory_ = driven_->memory();
@@ -87,7 +89,8 @@ std::vector<double> ChartedMotion::start() const {
   return y;
 }
 
-void ChartedMotion::evaluate(const double* place, const double* rate, const MotionLimits& limits, Stage* found) {
+void ChartedMotion::evaluate(const double* place, const double* rate, const MotionLimits& limits, Stage* found,
+                             bool turns) {
   StageGiven given = {};
   given.sense = sense_.data();
   given.origin = origin_.data(), given.origin_rate = origin_first_.data(), given.origin_second = origin_second_.data();
@@ -96,7 +99,7 @@ void ChartedMotion::evaluate(const double* place, const double* rate, const Moti
   given.place = place, given.rate = rate;
   given.inputs = inputs_.data(), given.input_rates = input_rates_.data(), given.input_seconds = input_seconds_.data();
   given.time = time_.data(), given.over = over_.data(), given.side = side_.data(), given.turned = turn_.data();
-  given.turns = turns_.data(), given.turn_count = (int)turns_.size();
+  given.turns = turns_.data(), given.turn_count = turns ? (int)turns_.size() : 0;
   given.tight = limits.tight, given.coarse = limits.coarse, given.accept = limits.accept;
   given.iterations = limits.iterations, given.jump = limits.jump, given.radius = limits.radius;
   const StageFound out = {found->state.data(), found->first.data(), found->second.data(), found->miss.data(),
@@ -145,7 +148,8 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
   const int n = plan_.charts;
   set_places(places);
   Stage* const found = places.is_end ? &end_ : &found_;
-  evaluate(place_.data(), rate_.data(), found);
+  // turns are kept of places that may become origins or rows
+  evaluate(place_.data(), rate_.data(), limits_, found, places.is_end);
   found->chart_rate = rate_;
   for (int l = 0; l < lanes_; ++l) {
     if (!places.active[l]) continue;
@@ -158,10 +162,20 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
   }
 }
 
-// The next stage is predicted with what the prediction of this one missed.
+// The next stages are predicted with what the prediction of this one missed: in place of those near it in time, else of one
+// that is none yet, else of the farthest.
 void ChartedMotion::keep_miss(int lane, const Stage& found) {
-  miss_elapsed_[lane] = elapsed_[lane];
-  for (int c = 0; c < plan_.columns; ++c) miss_[(long)c * lanes_ + lane] = at(found.miss, c, lane);
+  const double now = elapsed_[lane];
+  const auto elapsed = [&](int i) -> double& { return miss_elapsed_[(long)i * lanes_ + lane]; };
+  const auto distance = [&](int i) { return elapsed(i) > 0.0 ? std::fabs(elapsed(i) - now) : __builtin_inf(); };
+  int place = 0;
+  for (int i = 0; i < MISSES; ++i) {
+    if (distance(i) <= NEAR_STAGE * now) elapsed(i) = 0.0;
+    if (distance(i) > distance(place)) place = i;
+  }
+  elapsed(place) = now;
+  for (int c = 0; c < plan_.columns; ++c)
+    miss_[((long)place * plan_.columns + c) * lanes_ + lane] = at(found.miss, c, lane);
 }
 
 // What changes its sign where a stop is met.
@@ -238,7 +252,8 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
       for (long k = 0; k < count; ++k) to[k * lanes_ + l] = from[k * lanes_ + l];
     };
     longest[l] = limits_.longest;
-    origin_time_[l] = time[l], miss_elapsed_[l] = over_[l] = 0.0;
+    origin_time_[l] = time[l], over_[l] = 0.0;
+    for (int i = 0; i < MISSES; ++i) miss_elapsed_[(long)i * lanes_ + l] = 0.0;
     for (int k = 0; k < 2; ++k) done_[k * lanes_ + l] = y[(2 * n + k) * lanes_ + l];
     take(end_.state, plan_.states, origin_), take(end_.first, columns, origin_first_);
     take(end_.second, columns, origin_second_), take(end_.jacobian, entries_, jacobian_);

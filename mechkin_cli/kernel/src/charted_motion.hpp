@@ -93,7 +93,8 @@ class ChartedMotion : public Motion {
 
   Stage make_stage() const;
   void evaluate(const double* place, const double* rate, Stage* found) { evaluate(place, rate, limits_, found); }
-  void evaluate(const double* place, const double* rate, const MotionLimits& limits, Stage* found);
+  // Without `turns` those of `found` stay as they are.
+  void evaluate(const double* place, const double* rate, const MotionLimits& limits, Stage* found, bool turns = true);
   bool goes_straight(int lane, double time);
   NodeStates differentiated(const Stage& at, int lane) const;
   void set_places(const Places& places);
