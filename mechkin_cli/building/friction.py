@@ -141,13 +141,6 @@ def _across(fields: Fields, path: Path, section: FrictionAtJoint, joint: Joint) 
     return Attached(axis.link, unit(subtract(given, along)))
 
 
-def refuse_actuators(fields: Fields, frictions: Sequence[Rubbing]) -> None:
-    """Notes that reactions with friction are found for efforts at the inputs."""
-    text = "friction goes by reactions of efforts at the inputs, and the file has actuators"
-    hint = "leave out actuators, or the friction"
-    fields.note(Diagnostic(CODE, "error", text, frictions[0].place, hint=hint))
-
-
 def refuse_response(fields: Fields, frictions: Sequence[Rubbing], run: str) -> None:
     """Notes that friction in responses is that of one freedom."""
     text = f"friction acts in the response {run}, which has several freedoms or drives"

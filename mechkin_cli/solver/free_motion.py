@@ -46,13 +46,14 @@ class Fault(IntEnum):
 
 
 class MotionReport(NamedTuple):
-    """What a motion came to: the stop that ended it (-1: none), its end, the fault of the last
+    """What a motion came to: the stop that ended it (-1: none), the largest kinetic energy at the
+    ends of its steps (kg, length units, s), its end, the fault of the last
     refused step, the switch that held it, whether and from when the implicit method took over, the
     last time in s, and the counts of rows, evaluations, steps, rejections and branch points that
     were passed straight on."""
 
     stop: int
-
+    energy: float
     end: MotionEnd
     fault: int
     which: int

@@ -46,7 +46,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   unit_.prepare(wide_.data(), workspace_.data());
   make(time_, 1), make(over_, 1), make(side_, plan_.law.kinks), make(done_, 2);
   if (driven_) laws_memory_ = driven_->memory();
-  cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), next_row_.assign(lanes_, 0);
+  cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), energy_.assign(lanes_, 0.0), next_row_.assign(lanes_, 0);
   stop_start_.assign(stops_.size() * lanes_, 0.0), passed_.assign(stops_.size() * lanes_, 0);
   found_ = make_stage(), end_ = make_stage();
   for (int l = 0; l < lanes_; ++l) {
@@ -276,16 +276,18 @@ void ChartedMotion::sizes(const unsigned char* lanes, double* size) {
   const int n = plan_.charts;
   for (int l = 0; l < lanes_; ++l) {
     if (!lanes[l]) continue;
-    double energy = 0.0;
+    double energy = 0.0, coming = 0.0;
     for (int i = 0; i < n; ++i) {
       double rate = 0.0, force = 0.0;
       for (int j = 0; j < n; ++j) {
         const double m = at(end_.inertia, i * n + j, l);
         rate += m * at(end_.chart_rate, j, l), force += m * at(end_.chart_second, j, l);
       }
-      energy += 0.5 * at(end_.chart_rate, i, l) * rate + PART_OF_FORCE * std::fabs(force);
+      energy += 0.5 * at(end_.chart_rate, i, l) * rate;
+      coming += PART_OF_FORCE * std::fabs(force);
     }
-    for (int k = 1; k < 3; ++k) size[k * lanes_ + l] = std::max(size[k * lanes_ + l], energy);
+    energy_[l] = std::max(energy_[l], energy);
+    for (int k = 1; k < 3; ++k) size[k * lanes_ + l] = std::max(size[k * lanes_ + l], energy + coming);
   }
 }
 

@@ -68,6 +68,7 @@ class ChartedMotion : public Motion {
   void rates(const Places& places, const Rates& rates) override;
   void accept(const unsigned char* lanes, const double* time, double* y, double* rates, double* longest) override;
   void sizes(const unsigned char* lanes, double* size) override;
+  bool is_driven() const override { return plan_.inputs > 0; }
   AtPlace pass_over(int lane, double reach) override;
   void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) override;
   bool event(int lane, int which, bool rising, double time) override;
@@ -75,6 +76,8 @@ class ChartedMotion : public Motion {
 
   // The stop that ended a lane, -1 without one.
   int stopped_by(int lane) const { return stopped_[lane]; }
+  // The largest kinetic energy of a lane at the ends of its steps so far.
+  double energy(int lane) const { return energy_[lane]; }
   // y at the start: u = 0, the rates of u, nothing done.
   std::vector<double> start() const;
 
@@ -133,6 +136,7 @@ class ChartedMotion : public Motion {
   std::vector<int> passed_;         // stops x lanes: how often a stop's value has passed
   std::vector<int> stopped_;        // lanes
   std::vector<long> next_row_;      // lanes
+  std::vector<double> energy_;      // lanes
   Packed done_;                     // 2: work put in and lost at the origin
   Stage found_, end_;
 };

@@ -35,6 +35,8 @@ constexpr unsigned char NOT_FINITE = 255;  // the fault where a rate is not fini
 struct SwitchKind {
   bool kink;
   bool moves = false;
+  // A kink that stays where it is: where both its sides give the same rates it is passed without a word.
+  bool may_be_nothing() const { return kink && !moves; }
 };
 
 // What becomes of a motion at a place towards which its steps shrink: it goes on by itself, it is let over the place in one
@@ -63,6 +65,9 @@ class Motion {
     (void)lanes;
     (void)size;
   }
+
+  // Whether something moves beside the freedoms: powers are then not rounding where these rest.
+  virtual bool is_driven() const { return false; }
 
   // The steps of a lane shrink towards a place where stages are faults; `reach` is how long they may yet be. Where it is
   // passed, the stages of this lane need not be joined with the origin until the next `accept`, or a reach of 0.

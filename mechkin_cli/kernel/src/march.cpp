@@ -44,10 +44,11 @@ March::March(Motion& motion, const IntegratorSettings& settings, const double* t
     : states_(motion, settings), rows_(rows), explicit_(states_), control_(states_.lanes),
       size_((1 + states_.quadratures) * (std::size_t)states_.lanes),
       place_(states_.entries), values_(states_.side.size()), part_(states_.lanes), at_(states_.lanes),
-      row_(states_.lanes) {
+      row_(states_.lanes), other_slope_(states_.entries), scale_(states_.entries), muted_(states_.side.size(), 0) {
   require((long)y.size() == states_.entries, "one y for each lane");
   for (LaneControl& c : control_) {
     c.passed.assign(states_.kinds.size(), 0);
+    c.let_alone.assign(states_.kinds.size(), 0);
     c.implicit = settings.method == MethodChoice::IMPLICIT;
   }
   start(time, y);
@@ -201,13 +202,14 @@ void March::take(Method& method, Flags mask) {
   }
 }
 
-// An event that rested at its zero goes on from the side where the step has led it.
+// An event that rested at its zero, or a kink that bends nothing, goes on from the side where the step has led it.
 void March::settle_ignored(int lane) {
   std::vector<int>& passed = control_[lane].passed;
   for (int s = 0; s < (int)passed.size(); ++s) {
     const std::size_t k = (std::size_t)s * states_.lanes + lane;
     if (is_ignored(lane, s)) states_.side[k] = states_.switch_end[k] < 0.0 ? -1 : 1;
     passed[s] = 0;
+    control_[lane].let_alone[s] = 0;
   }
 }
 

@@ -30,6 +30,8 @@ struct LaneControl {
   double landing_slope = 0.0, landing_step = 0.0, landing_before = 0.0, landing_value = 0.0;
   bool landed = false;
   std::vector<int> passed;               // switches: how often they were passed at this place
+  // Switches that are let alone until a step is taken: kinks met again and again where both sides give the same.
+  Flags let_alone;
 };
 
 class March {
@@ -69,7 +71,17 @@ class March {
   // crossings.cpp
   bool is_ignored(int lane, int which) const;
   bool is_crossed(int lane, int but) const;
+  bool is_crossed_by(int lane, int which) const;
   bool may_dip(int lane, int landing) const;
+  double least_inside(int lane, int which, bool stages_alone) const;
+  void hold(int lane, int which);
+
+  // kinks.cpp
+  void mute(Flags* mask);
+  void compare_sides(int which, const double* time, const double* place, const double* slope, const double* value,
+                     Flags* mask);
+  bool bends_nothing(int lane, const double* y, const double* a, const double* b, double step) const;
+  bool rests(int lane, const double* y) const;
   void look_for_crossings(Method& method, Flags* mask);
   void land(int lane, Flags* mask);
   void search(Method& method, const Flags& crossed, const Flags& suspected, Flags* mask);
@@ -83,5 +95,7 @@ class March {
   std::unique_ptr<Radau> implicit_;  // made when it is first needed
   std::vector<LaneControl> control_;
   std::vector<double> size_, place_, values_, part_, at_;
+  std::vector<double> other_slope_, scale_;  // entries: on the other side of a kink; what an error of one tolerance is
+  Flags muted_;  // switches x lanes: kinks that bend nothing within the step that was tried
   std::vector<long> row_;
 };

@@ -16,6 +16,7 @@ struct ResponseTask {
 struct ResponseReport {
   LaneReport lane;
   int stop;  // that ended it, -1: none
+  double energy;  // the largest kinetic energy at the ends of steps; kg, length units, s
 };
 
 // How each variant ended; they do not depend on `lanes` and `threads`.
