@@ -3,7 +3,6 @@ them."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import nan
 from typing import TYPE_CHECKING
 
@@ -53,7 +52,7 @@ def rows_problem(
             _stopped(free, _part(item, count - 1), at[number])
             for number, item in enumerate(response.driven)
         )
-    return replace(free.problem, motion=Motion(driven, count, moments, response.course))
+    return free.problem.moved(Motion(driven, count, moments, response.course))
 
 
 def _part(item: DrivenInput, count: int) -> DrivenInput:

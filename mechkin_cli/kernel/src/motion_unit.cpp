@@ -31,11 +31,15 @@ struct StageValues {
   MECHKIN_INLINE Pack input(int, Pack, Pack angle) const { return angle; }
 };
 
+// A miss of so much earlier a stage is rounding.
+constexpr double EARLIEST_MISS = 0.01;
+
 // What the prediction misses grows with the third power of the time: of each known miss the part (MISSES) that the
 // polynomial has which goes through all of them, over the third power.
 inline void weigh_misses(const StageGiven& given, Pack t, Pack* weight) {
   const Pack* const at = packs(given.miss_elapsed);
-  const auto known = [at](int i) { return at[i] > Pack(0.0); };
+  const Pack earliest = Pack(EARLIEST_MISS) * t;
+  const auto known = [=](int i) { return at[i] > earliest; };
   for (int i = 0; i < MISSES; ++i) {
     const Pack own = select(known(i), at[i], Pack(1.0));
     Pack above = t * t * t, below = own * own * own;
