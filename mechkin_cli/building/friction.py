@@ -146,10 +146,3 @@ def refuse_actuators(fields: Fields, frictions: Sequence[Rubbing]) -> None:
     text = "friction goes by reactions of efforts at the inputs, and the file has actuators"
     hint = "leave out actuators, or the friction"
     fields.note(Diagnostic(CODE, "error", text, frictions[0].place, hint=hint))
-
-
-def refuse_response(fields: Fields, frictions: Sequence[Rubbing], run: str) -> None:
-    """Notes that friction in responses is that of one freedom."""
-    text = f"friction acts in the response {run}, which has several freedoms or drives"
-    hint = "friction is computed in sweeps and in responses of one freedom: write runs: beside it"
-    fields.note(Diagnostic(CODE, "error", text, frictions[0].place, hint=hint))

@@ -48,10 +48,11 @@ class Fault(IntEnum):
 class MotionReport(NamedTuple):
     """What a motion came to: the stop that ended it (-1: none), its end, the fault of the last
     refused step, the switch that held it, whether and from when the implicit method took over, the
-    last time in s, and the counts of rows, evaluations, steps, rejections and branch points that
-    were passed straight on."""
+    last time in s, the counts of rows, evaluations, steps, rejections and branch points that were
+    passed straight on, and the numbers of the frictions that it ended by."""
 
     stop: int
+    joints: list[int]
 
     end: MotionEnd
     fault: int

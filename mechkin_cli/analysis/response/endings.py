@@ -37,7 +37,7 @@ def ending(
     if report.end in (MotionEnd.DONE, MotionEnd.STOPPED):
         return Status.ok, notes
     at = _moment(session, report.time)
-    status, code, text, hint = _reason(report)
+    status, code, text, hint = _reason(report, _rubbing(session, report))
     if status is Status.singular_inertia:
         text = _without_inertia(weakest_coordinates(session, response, last))
     numbers = place_numbers(session, last)
@@ -77,12 +77,22 @@ def _moment(session: Session, time: float) -> str:
     return f"{float(units.from_si(time, TIME)):.6g} {units.label(TIME)}"
 
 
-def _reason(report: MotionReport) -> tuple[Status, str, str, str]:
+def _rubbing(session: Session, report: MotionReport) -> str:
+    """The names of the joints whose friction ends a motion."""
+    frictions = session.problem.mechanism.frictions
+    return ", ".join(frictions[number].joint for number in report.joints)
+
+
+def _reason(report: MotionReport, rubbing: str) -> tuple[Status, str, str, str]:
     """Verdict, code, words and cure."""
     if report.end is MotionEnd.STEP_LIMIT:
         text = f"{report.steps + report.rejections} steps were not enough"
         hint = "widen the tolerance, shorten the time, or look for what moves so fast"
         return Status.step_limit, "step-limit", text, hint
+    if report.end is MotionEnd.HELD and rubbing:
+        text = f"{rubbing} comes to rest and starts again and again, at one place"
+        hint = "make the static coefficient a little larger than that of sliding"
+        return Status.friction_undecided, "friction-undecided", text, hint
     if report.end is MotionEnd.HELD:
         text = "on both sides of a jump of a load the motion goes back to it"
         hint = "write what sticks as {type: friction, ...}, or make the load continuous"
@@ -91,7 +101,8 @@ def _reason(report: MotionReport) -> tuple[Status, str, str, str]:
         text = "a load or a rate has no finite value beyond"
         return Status.step_limit, "load-undefined", text, "write loads that hold along the motion"
     if report.fault & Fault.FRICTION:
-        text = "friction has no answer there, or more than one: the mechanism may jam, or slip"
+        whose = f"friction of {rubbing}" if rubbing else "friction"
+        text = f"{whose} has no answer there, or more than one: the mechanism may jam, or slip"
         hint = "make a coefficient smaller, or bearings longer"
         return Status.friction_undecided, "friction-undecided", text, hint
     if report.fault & Fault.SINGULAR_INERTIA:

@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "aligned.hpp"
+#include "charted_friction.hpp"
 #include "driven_laws.hpp"
 #include "integrator.hpp"
 #include "motion_unit.hpp"
+#include "slip_trial.hpp"
 #include "stepper.hpp"
 
 // Where a lane begins.
@@ -73,6 +75,8 @@ class ChartedMotion : public Motion {
   bool event(int lane, int which, bool rising, double time) override;
   void move(int lane, int which, double time, double* y) override;
 
+  // Joints (numbers of frictions) that leave a lane without an answer, or whose switch it is.
+  std::vector<int> undecided_joints(int lane, int which) const;
   // The stop that ended a lane, -1 without one.
   int stopped_by(int lane) const { return stopped_[lane]; }
   // y at the start: u = 0, the rates of u, nothing done.
@@ -82,7 +86,7 @@ class ChartedMotion : public Motion {
   // Arrays of packs, as the unit takes them.
   struct Stage {
     Packed state, first, second, miss, jacobian, tangent, chart_rate, chart_second, inertia, watched, power, turned;
-    Packed ways;
+    SlipStage slip;
     std::vector<unsigned char> flags;
   };
 
@@ -99,9 +103,44 @@ class ChartedMotion : public Motion {
   void set_places(const Places& places);
   void drive(int lane, double time);
   int edges() const { return driven_ ? (int)driven_->edges().size() : 0; }
-  bool rubs() const { return plan_.frictions > 0; }
   void stand_still();
-  void find_sense(int lane);
+
+  // charted_friction.cpp
+  SlipStage make_slips() const;
+  void begin_slips();
+  // A switch for each friction, and one for those that rest with forces that are not unique.
+  int slip_switches() const { return plan_.frictions ? plan_.frictions + 1 : 0; }
+  bool rubs(int lane, int k) const;
+  int slip_columns(int k) const { return slips_.first[k + 1] - slips_.first[k]; }
+  double& sense(int lane, int k) { return slips_.sense[(std::size_t)k * lanes_ + lane]; }
+  double& quiet(int lane, int k) { return slips_.quiet[(std::size_t)k * lanes_ + lane]; }
+  double slip_size(const Packed& of, int lane, int k) const;
+  double lever(const Stage& found, int lane, int k) const;
+  double slip_switch(const Stage& found, int lane, int k) const;
+  void write_slip_switches(const Stage& found, int lane, double* switches) const;
+  void look_for_ways(const Places& places, const Rates& rates);
+  void tell_undecided(const Stage& found, int lane);
+  std::vector<int> sticking(int lane) const;
+  void arm(const Stage& found, int lane);
+  int hold_rates(Stage* found, int lane, const std::vector<int>& joints, double* v);
+  void hold_sticking(int lane);
+  void stand_still(Stage* found, int lane) const;
+  void evaluate_here(int lane, const std::vector<double>& v, Stage* found);
+  bool aim(int lane, const std::vector<int>& joints, const double* place, const double* rate, Stage* found);
+  
+  // charted_sticking.cpp
+  SlipTrial trial(int lane, const Signs& senses, const std::vector<int>& open, int forced, const std::vector<double>& v);
+  std::vector<Signs> senses_of(int lane, const std::vector<int>& open, int forced);
+  void take_senses(int lane, const Signs& senses);
+  Signs senses(int lane) const;
+  double along_sense(const Stage& found, int lane, int k) const;
+  std::vector<int> resting(int lane, int event);
+  bool set_going(int lane, int forced, std::vector<int>* open, const std::vector<double>& v);
+  bool go_first_way(int lane, std::vector<int>* open, const std::vector<double>& v);
+  void list_ways(int lane, const std::vector<double>& v);
+  double margin(int lane, const Signs& way, const double* place, const double* rate, bool* decided);
+  void settle(int lane, int event, std::vector<double>* v);
+  bool settled(int lane, int event, std::vector<double>* v);
   double stop_value(int stop, int lane, double watched) const;
   void write_switches(const Stage& found, int lane, double time, double* switches) const;
   void keep_miss(int lane, const Stage& found);
@@ -125,13 +164,12 @@ class ChartedMotion : public Motion {
   const std::vector<MotionStop> stops_;
   const DrivenLaws* driven_;
   DrivenLaws::Memory laws_memory_;
-  Packed sense_;                    // 1: which way the one freedom goes, see sliding.hpp
-  std::vector<unsigned char> undecided_;  // lanes: friction lets the freedom go both ways
+  SlipMemory slips_;
   std::vector<int> cell_;           // lanes: of the driven laws
   std::vector<double> stop_start_;  // stops x lanes: the values at the start
   std::vector<int> passed_;         // stops x lanes: how often a stop's value has passed
   std::vector<int> stopped_;        // lanes
   std::vector<long> next_row_;      // lanes
   Packed done_;                     // 2: work put in and lost at the origin
-  Stage found_, end_;
+  Stage found_, end_, trial_;
 };

@@ -16,6 +16,7 @@ struct ResponseTask {
 struct ResponseReport {
   LaneReport lane;
   int stop;  // that ended it, -1: none
+  std::vector<int> joints;  // frictions that it ended by
 };
 
 // How each variant ended; they do not depend on `lanes` and `threads`.
