@@ -143,15 +143,8 @@ loads:
     assert found["D.effort"][0] == pytest.approx(np.full(3, 50 / 0.6))
 
 
-def test_actuators_and_responses_are_refused():
+def test_actuators_are_refused():
     text = TEXT.replace("loads:", "actuators: [D.s]\nloads:")
     with pytest.raises(mk.InvalidFile) as caught:
         mk.loads(text)
     assert "actuators" in caught.value.diagnostics[0].message
-    response = (
-        "responses: {go: {start: {A.theta: 20}, driven: {B.s: {at: 0}}, "
-        "time: {from: 0, to: 1, step: 0.5}}}\n"
-    )
-    with pytest.raises(mk.InvalidFile) as caught:
-        mk.loads(TEXT + response)
-    assert any("one freedom" in (d.hint or "") for d in caught.value.diagnostics)

@@ -126,11 +126,21 @@ class ChartedMotion : public Motion {
   void hold_sticking(int lane);
   void stand_still(Stage* found, int lane) const;
   void evaluate_here(int lane, const std::vector<double>& v, Stage* found);
-  bool aim(int lane, const std::vector<int>& joints, const double* place, const double* rate, Stage* found);
   
   // charted_sticking.cpp
-  SlipTrial trial(int lane, const Signs& senses, const std::vector<int>& open, int forced, const std::vector<double>& v);
-  std::vector<Signs> senses_of(int lane, const std::vector<int>& open, int forced);
+  // A row of a slip by the chart, what stays of the slip's derivative without it, and the row's size.
+  struct SlipRow {
+    std::vector<double> row;
+    double rest = 0.0, size = 0.0;
+  };
+  SlipRow slip_row(int lane, int c, const std::vector<SlipRow>& basis) const;
+  std::vector<SlipRow> held_rows(int lane, const std::vector<int>& joints) const;
+  bool slips_beside(int lane, const Signs& way, const std::vector<int>& joints) const;
+  bool aim(int lane, const std::vector<int>& joints, const Signs& way, const double* place, const double* rate,
+           Stage* found);
+  double turn_aim(int lane, int k, double step, const Stage& found);
+  SlipTrial trial(int lane, const Signs& way, const std::vector<int>& open, const std::vector<double>& v);
+  std::vector<Signs> ways_of(int lane, const std::vector<int>& open, int forced);
   void take_senses(int lane, const Signs& senses);
   Signs senses(int lane) const;
   double along_sense(const Stage& found, int lane, int k) const;

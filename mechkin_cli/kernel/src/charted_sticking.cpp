@@ -8,18 +8,9 @@ namespace {
 
 // Slips, in parts of what the fastest motion so far would give, up to which a joint is at rest beside one that is.
 constexpr double AT_REST = 1e-9;
-// Rows of slips, in parts of the largest, that are rounding.
-constexpr double NO_ROW = 1e-8;
 // Forces of what sticks, in parts of what it can hold and of the largest wrench, that are rounding; accelerations, in parts
 // of those by the largest wrench, likewise.
 constexpr double JUST_HELD = 1e-9, NO_FORCE = 1e-12;
-// Directions in which slips begin: rounds, and what the last may yet change. From MEAN_FROM on means of two are taken.
-constexpr int AIM_ROUNDS = 200, MEAN_FROM = 20;
-constexpr double AIM_TIGHT = 1e-14, AIM_ACCEPT = 1e-9;
-// Ways to slip that are tried: six joints, each forth, back or at rest.
-constexpr std::size_t MOST_WAYS = 729;
-
-bool has(const std::vector<int>& joints, int k) { return std::find(joints.begin(), joints.end(), k) != joints.end(); }
 
 }  // namespace
 
@@ -44,48 +35,19 @@ double ChartedMotion::along_sense(const Stage& found, int lane, int k) const {
   return sum;
 }
 
-// A slip in several directions begins in that of its own acceleration. False where none is found for these joints.
-bool ChartedMotion::aim(int lane, const std::vector<int>& joints, const double* place, const double* rate, Stage* found) {
-  double change = 0.0;
-  for (int round = 0; round < AIM_ROUNDS; ++round) {
-    evaluate(place, rate, found);
-    change = 0.0;
-    for (int k : joints) {
-      const double size = slip_size(found->slip.second, lane, k);
-      if (!(size > 0.0)) continue;
-      std::vector<double> to;
-      double square = 0.0;
-      for (int c = slips_.first[k]; c < slips_.first[k + 1]; ++c) {
-        const double before = at(slips_.aim, c, lane), now = at(found->slip.second, c, lane) / size;
-        change = std::max(change, std::fabs(now - before));
-        to.push_back(round < MEAN_FROM ? now : now + before);
-        square += to.back() * to.back();
-      }
-      for (int c = slips_.first[k]; c < slips_.first[k + 1] && square > 0.0; ++c)
-        slips_.aim[(std::size_t)c * lanes_ + lane] = to[c - slips_.first[k]] / std::sqrt(square);
-    }
-    if (change <= AIM_TIGHT) return true;
-  }
-  return change <= AIM_ACCEPT;
-}
-
 // What joints would do with some senses; `open` start from rest.
-SlipTrial ChartedMotion::trial(int lane, const Signs& senses, const std::vector<int>& open, int forced,
-                               const std::vector<double>& v) {
+SlipTrial ChartedMotion::trial(int lane, const Signs& way, const std::vector<int>& open, const std::vector<double>& v) {
   SlipTrial t;
-  t.sense = senses;
-  take_senses(lane, senses);
+  t.way = t.sense = way;
+  take_senses(lane, way);
   std::vector<int> starting;
-  for (int k : open) {
-    if (slip_columns(k) == 1 || senses[k] == 0 || k == forced) continue;
-    starting.push_back(k);
-    for (int c = slips_.first[k]; c < slips_.first[k + 1]; ++c) slips_.aim[(std::size_t)c * lanes_ + lane] = 0.0;
-  }
+  for (int k : open)
+    if (slip_columns(k) > 1 && way[k] != 0) starting.push_back(k), t.sense[k] = 1;
   stand_still();
   for (std::size_t i = 0; i < v.size(); ++i) rate_[(long)i * lanes_ + lane] = v[i];
-  const bool aimed = aim(lane, starting, place_.data(), rate_.data(), &trial_);
+  const bool aimed = aim(lane, starting, way, place_.data(), rate_.data(), &trial_);
   t.decided = aimed && !(trial_.flags[lane] & STAGE_FRICTION);
-  if (!t.decided) tell_undecided(trial_, lane);
+  if (aimed && !t.decided) tell_undecided(trial_, lane);
   const double level = at(trial_.slip.level, 0, lane);
   for (int k = 0; k < plan_.frictions; ++k) {
     const double force = slip_size(trial_.slip.force, lane, k), limit = at(trial_.slip.limit, k, lane);
@@ -96,36 +58,6 @@ SlipTrial ChartedMotion::trial(int lane, const Signs& senses, const std::vector<
   }
   for (int i = 0; i < plan_.charts; ++i) t.motion.push_back(at(trial_.chart_second, i, lane));
   return t;
-}
-
-// The senses that open joints could have together; the others keep theirs. None where they are too many. Of the stage in
-// trial_.
-std::vector<Signs> ChartedMotion::senses_of(int lane, const std::vector<int>& open, int forced) {
-  std::vector<int> one, several;
-  for (int k : open)
-    if (k != forced) (slip_columns(k) == 1 ? one : several).push_back(k);
-  Matrix rows((int)one.size(), plan_.charts);
-  std::vector<double> offset;
-  for (std::size_t r = 0; r < one.size(); ++r) {
-    const int c = slips_.first[one[r]];
-    double rest = at(trial_.slip.second, c, lane);
-    for (int i = 0; i < plan_.charts; ++i) {
-      rows((int)r, i) = at(trial_.slip.row, (long)c * plan_.charts + i, lane);
-      rest -= rows((int)r, i) * at(trial_.chart_second, i, lane);
-    }
-    offset.push_back(rest);
-  }
-  const std::vector<Signs> signs = sign_vectors(rows, offset, NO_ROW, MOST_WAYS >> std::min<std::size_t>(several.size(), 16));
-  const Signs now = senses(lane);
-  std::vector<Signs> all;
-  for (const Signs& each : signs)
-    for (std::size_t which = 0; which < (std::size_t)1 << several.size(); ++which) {
-      Signs way = now;
-      for (std::size_t r = 0; r < one.size(); ++r) way[one[r]] = each[r];
-      for (std::size_t r = 0; r < several.size(); ++r) way[several[r]] = which >> r & 1;
-      all.push_back(way);
-    }
-  return all;
 }
 
 // How far what a way sets going would go along it; negative where it would not. `decided` turns false where friction has no
@@ -139,7 +71,7 @@ double ChartedMotion::margin(int lane, const Signs& way, const double* place, co
     quiet(lane, k) = 1.0;
     if (slip_columns(k) > 1) starting.push_back(k);
   }
-  *decided = aim(lane, starting, place, rate, &trial_) && !(trial_.flags[lane] & STAGE_FRICTION) && *decided;
+  *decided = aim(lane, starting, way, place, rate, &trial_) && !(trial_.flags[lane] & STAGE_FRICTION) && *decided;
   double least = __builtin_inf();
   for (int k = 0; k < plan_.frictions; ++k)
     if (way[k] != before[k]) quiet(lane, k) = 0.0, least = std::min(least, along_sense(trial_, lane, k));
@@ -164,12 +96,12 @@ bool ChartedMotion::set_going(int lane, int forced, std::vector<int>* open, cons
   while (!open->empty()) {
     for (int k : *open) quiet(lane, k) = 1.0;
     std::vector<SlipTrial> trials;
-    for (const Signs& way : senses_of(lane, *open, forced)) trials.push_back(trial(lane, way, *open, forced, v));
+    for (const Signs& way : ways_of(lane, *open, forced)) trials.push_back(trial(lane, way, *open, v));
     const int found = trial_that_holds(trials, *open, forced);
     for (int k : *open) quiet(lane, k) = 0.0;
     if (trials.empty()) slips_.doubtful[lane] = *open;
     if (found < 0) return false;
-    const SlipTrial again = trial(lane, trials[found].sense, *open, forced, v);
+    const SlipTrial again = trial(lane, trials[found].way, *open, v);
     std::vector<int> kept;
     bool falls = false;
     for (int k : *open) {
@@ -197,7 +129,7 @@ bool ChartedMotion::go_first_way(int lane, std::vector<int>* open, const std::ve
     if (far > most) most = far, best = way;
   }
   if (best.empty() || !decided) return false;
-  trial(lane, best, *open, -1, v);
+  trial(lane, best, *open, v);
   std::vector<int> kept;
   for (int k : *open)
     if (best[k] == 0) kept.push_back(k);
@@ -214,7 +146,7 @@ void ChartedMotion::list_ways(int lane, const std::vector<double>& v) {
     if (sense(lane, k) == 0.0 && at(trial_.slip.loose, k, lane) != 0.0) loose.push_back(k);
   if (loose.empty()) return;
   const Signs now = senses(lane);
-  for (const Signs& way : senses_of(lane, loose, -1))
+  for (const Signs& way : ways_of(lane, loose, -1))
     if (way != now) slips_.ways[lane].push_back(way);
 }
 
@@ -224,14 +156,7 @@ bool ChartedMotion::settled(int lane, int event, std::vector<double>* v) {
   const bool breaks = event >= 0 && event < n && sense(lane, event) == 0.0;
   std::vector<int> open = resting(lane, event);
   if (open.empty()) return true;
-  double push = 0.0;
-  if (breaks) {
-    const double force = slip_size(trial_.slip.force, lane, event);
-    for (int c = slips_.first[event]; c < slips_.first[event + 1]; ++c) {
-      push = at(trial_.slip.force, c, lane);
-      slips_.aim[(std::size_t)c * lanes_ + lane] = force > 0.0 ? push / force : 0.0;
-    }
-  }
+  const double push = breaks ? at(trial_.slip.force, slips_.first[event], lane) : 0.0;
   hold_rates(&trial_, lane, open, v->data());
   for (int k : open) {
     sense(lane, k) = 0.0;

@@ -32,13 +32,35 @@ bool same_motion(const SlipTrial& a, const SlipTrial& b, double scale) {
   return true;
 }
 
+const SlipTrial* with_sense(const std::vector<SlipTrial>& trials, const SlipTrial& t, int k, signed char sense) {
+  Signs way = t.way;
+  way[k] = sense;
+  for (const SlipTrial& other : trials)
+    if (other.way == way) return other.decided ? &other : nullptr;
+  return nullptr;
+}
+
+// Whether a joint that sticks in a trial goes the same way whether its friction pushes it forth or back: then it does with
+// all that lies between, and does not stick.
+bool goes_anyway(const std::vector<SlipTrial>& trials, const SlipTrial& t, const std::vector<int>& open) {
+  for (int k : open) {
+    if (t.sense[k] != 0) continue;
+    const SlipTrial *const forth = with_sense(trials, t, k, 1), *const back = with_sense(trials, t, k, -1);
+    if (!forth || !back) continue;
+    const double a = forth->second[k], b = back->second[k];
+    if ((a > forth->rounding[k] && b < -back->rounding[k]) || (a < -forth->rounding[k] && b > back->rounding[k])) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 int trial_that_holds(const std::vector<SlipTrial>& trials, const std::vector<int>& open, int forced) {
   double scale = 0.0;
   std::vector<double> level(trials.empty() ? 0 : trials[0].sense.size(), 0.0);
   for (const SlipTrial& t : trials) {
-    if (!t.decided) return -1;
+    if (!t.decided && !goes_anyway(trials, t, open)) return -1;
+    if (!t.decided) continue;
     for (double x : t.motion) scale = std::max(scale, std::fabs(x));
     for (std::size_t k = 0; k < level.size(); ++k) level[k] = std::max(level[k], std::fabs(t.second[k]));
   }
@@ -48,6 +70,7 @@ int trial_that_holds(const std::vector<SlipTrial>& trials, const std::vector<int
   std::vector<int> good;
   for (int number : order) {
     const SlipTrial& t = trials[number];
+    if (!t.decided) continue;
     bool holds = true, is_loose = false;
     for (int k : open) {
       const double none = std::max(NO_SLIP * level[k], t.rounding[k]);
