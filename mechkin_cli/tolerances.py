@@ -368,6 +368,21 @@ ACTUATORS_AT_REST: Final = 1e-10
 leaves them at rest: rounding leaves 1e-16 by the condition of the loops, a position written with
 ten digits 1e-10. The kernel has the same (actuation.hpp)."""
 
+POWER_INTEGRAL: Final = 1e-13
+"""Error of the integral of a power between two rows, in parts of the largest power by their
+distance: a few hundred roundings of a power, the difference of efforts with friction and without.
+"""
+
+NEXT_TO_END: Final = 1.0 - 1e-4
+"""Where the ends of a piece of an integral are sampled, in parts of its half: off the end, since a
+zero that parts pieces, and what is next to it, is known to rounding only."""
+
+NEXT_TO_ZERO: Final = 1e-13
+"""Distance of a zero from the end of a piece, in parts of all pieces, below which it is the end."""
+
+TURNS_NOT: Final = 1e-12
+"""Size of a rate in parts of its largest below which its sign is rounding."""
+
 REACTION_ROUNDING: Final = 1e-12
 """Rounding of reactions in parts of the largest in the mechanism, in whatever joint it is met: a
 cell that moves no more than with this keeps its value. Measured: 1e-15 to 1e-13; what depends on
@@ -735,6 +750,10 @@ kept ones needs (8 to 600)."""
 DENSE_ROWS: Final = 10
 """Rows within one step of a response from which on they are interpolated instead of stepped to:
 interpolation costs 18 to 50 times in energy, so it is for rows that are much denser than steps."""
+
+ENERGY_ROUNDING: Final = 2.0**-48
+"""Parts of the largest potential energy below which nothing is missing of a response's energies: 16
+roundings, as heights are sums of some. A pendulum that swings by 1e-6 deg moves 1e-16 of it."""
 
 SAME_MOMENT: Final = 1e-15
 """A stop so near to the last row, in parts of its moment, ends the response at that row: a few

@@ -134,10 +134,6 @@ def build_problem(fields: Fields, file: MechanismFile, *, responses: bool = True
     loads = LoadBuilder(fields, links, joints, points, _quantities_of_runs(file, problem))
     loads.add_all(file.loads)
     acting = loads.of_run(SWEEP)
-    if drives is not None and drives.actuators and acting.frictions:
-        from mechkin_cli.building.friction import refuse_actuators
-
-        refuse_actuators(fields, acting.frictions)
     problem = replace(problem, mechanism=acting.on(mechanism), load_laws=acting.laws)
     if not (file.responses and responses):
         return problem

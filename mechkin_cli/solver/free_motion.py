@@ -46,14 +46,17 @@ class Fault(IntEnum):
 
 
 class MotionReport(NamedTuple):
-    """What a motion came to: the stop that ended it (-1: none), its end, the fault of the last
+    """What a motion came to: the stop that ended it (-1: none), the largest kinetic energy at the
+    ends of its steps (kg, length units, s), its end, the fault of the last
     refused step, the switch that held it, whether and from when the implicit method took over, the
-    last time in s, the counts of rows, evaluations, steps, rejections and branch points that were
-    passed straight on, and the numbers of the frictions that it ended by."""
+    last time in s, the counts of rows, evaluations, steps and rejections, the last states, the
+    branch points that were passed (time in s, states), the states at the one that it has ended next
+    to (none: empty), whether short steps were refused there as off the branch, and the numbers of
+    the frictions that it ended by."""
 
     stop: int
     joints: list[int]
-
+    energy: float
     end: MotionEnd
     fault: int
     which: int
@@ -64,7 +67,10 @@ class MotionReport(NamedTuple):
     evaluations: int
     steps: int
     rejections: int
-    passed: int
+    last: list[float]
+    crossings: list[tuple[float, list[float]]]
+    branch_point: list[float]
+    singular: bool
 
 
 @dataclass(frozen=True)
@@ -138,9 +144,8 @@ def integrate(
     """Integrates motions of plans of one structure, packed into lanes, from time `begin` (s) over
     the rows' `times` (rows,).
 
-    `stops` go with the values that the plans watch, in order; `driven` with their inputs.
-
-    `straight` passes branch points along the smooth continuation.
+    `stops` go with the values that the plans watch, in order; `driven` with their inputs;
+    `straight`: branch points are passed along the smooth continuation.
 
     Raises:
         ValueError: times that do not rise from `begin` on.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from mechkin_cli.arrays import Floats
@@ -52,6 +54,29 @@ def places_of(
         np.array(places),
         np.stack(columns, axis=1),
         np.array(between),
+    )
+
+
+def places_at(course: Course, at: Floats, values: Floats) -> Course:
+    """A course of which the rows are at other rising parameters `at` (rows,), within those of its
+    rising rows, where the inputs are `values` (inputs, rows) in SI."""
+    between = course.rows < 0
+    order = np.argsort(np.concatenate([course.at[between], at]), kind="stable")
+    ends = np.count_nonzero(between)
+    places = np.concatenate([course.at[between], at])[order]
+    columns = np.concatenate([course.values[:, between], values], axis=1)[:, order]
+    first, last = np.flatnonzero(order >= ends)[[0, -1]]
+    kept = slice(int(first), int(last) + 1)
+    rows = np.where(order >= ends, order - ends, -1)[kept]
+    cells = np.searchsorted(course.edges, 0.5 * (places[:-1] + places[1:])) - 1
+    cells = np.clip(cells, 0, course.edges.size - 2)
+    cells[places[:-1] == places[1:]] = -1
+    return replace(
+        course,
+        rows=rows,
+        at=places[kept],
+        values=columns[:, kept],
+        cells=cells[int(first) : int(last)],
     )
 
 

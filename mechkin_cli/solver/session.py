@@ -164,7 +164,8 @@ class Session:
         other.__dict__["layout"] = Layout(
             problem.laid_mechanism, self.graph, self.layout.length, laws=problem.laws
         )
-        return other
+        # efforts that actuators share go by the size
+        return other if self.size is None else other.sized(self.size)
 
     def derived(self, make: Callable[[Session], Problem]) -> Session:
         """The session of a problem that follows from this session's."""

@@ -7,6 +7,7 @@ import pytest
 from mpmath import mp, mpf
 
 import mechkin_cli as mk
+from mechkin_cli.analysis.derived.adaptive_quadrature import Samples, integrals
 from mechkin_cli.analysis.derived.quadrature import (
     interval_weights,
     largest_between,
@@ -85,6 +86,78 @@ loads:
     assert np.abs(r["D.s.reduced_inertia"] - 2).max() < 1e-15
     smooth = mk.loads(text.format(coefficient=0)).analyze(NAMES)
     assert not smooth["row.dissipated"].any()
+
+
+BLOCK = """
+format: 1
+links: {{block: {{mass: 2, center_of_mass: [0, 0, 0]}}}}
+joints: {{D: {{type: P, links: [ground, block], point: [0, 0, 0], axis: [1, 0, 0]}}}}
+motion:
+  time: {{from: 0, to: 2, count: {count}}}
+  inputs: {{D.s: {{law: constant-acceleration, at: 0, rate: 3, acceleration: -4}}}}
+loads:
+  - {{type: gravity, g: [0, -9.81, 0]}}
+  - {{type: force, link: block, point: [0, 0, 0], force: [0, "25 N*cos(4 rad/s*time)", 0]}}
+  - {{type: friction, joint: D, coefficient: 0.1, length: 60 mm, width: 30 mm}}
+"""
+"""It turns round at 0.75 s; its guide is pressed from below where cos(4 t) > 0.7848."""
+
+
+@pytest.mark.parametrize("count", [4, 11, 101, 1001])
+def test_friction_that_turns_round_and_contacts_that_change_sides(count):
+    """However many rows there are, by the integral between all kinks at 30 digits."""
+    r = mk.loads(BLOCK.format(count=count)).analyze([*NAMES, "time"])
+    with mp.workdps(30):
+        weight, first = mpf(2) * mpf("9.81"), mp.acos(mpf(2) * mpf("9.81") / 25) / 4
+        kinks = [mpf(3) / 4, first, mp.pi / 2 - first, mp.pi / 2 + first]
+
+        def power(t):
+            return abs(weight - 25 * mp.cos(4 * t)) * abs(3 - 4 * t) / 10
+
+        for time, found in zip(r["time"].tolist(), r["row.dissipated"].tolist(), strict=True):
+            if count < 100 or time in (0.75, 2.0):
+                places = [0, *(k for k in sorted(kinks) if k < time), time]
+                assert abs(found - mp.quad(power, places)) < 1e-13 * 30
+    assert r["row.energy_error"].max() < 1e-13
+
+
+def test_what_rows_alone_cannot_tell_is_said(monkeypatch):
+    """The balance closes although work and dissipation are both wrong: it says how much."""
+    from mechkin_cli.analysis.sweep.other_moments import Between
+
+    right = mk.loads(BLOCK.format(count=11)).analyze(NAMES)["row.dissipated"]
+    monkeypatch.setattr(Between, "of", classmethod(lambda cls, result: None))
+    r = mk.loads(BLOCK.format(count=11)).analyze(NAMES)
+    size = max(np.abs(r[name]).max() for name in NAMES[:2])
+    off = np.abs(r["row.dissipated"] - right) / size
+    assert off.max() > 1e-3
+    assert (off <= r["row.energy_error"] + 1e-15).all()
+
+
+def test_an_integral_between_kinks_that_nothing_tells():
+    """A jump and a bend without a function that parts pieces there, in closed form."""
+    low, high = np.array([0.0, 0.5, 0.9]), np.array([0.5, 0.9, 2.0])
+
+    def sample(at):
+        values = np.stack([np.abs(at - 0.3), np.where(at > np.sqrt(2), np.exp(at), 0.0)])
+        return Samples(values, np.empty((0, at.size)))
+
+    found = integrals(low, high, sample, np.array([1e-13, 1e-13]))
+    wanted = [0.5 * (0.09 + 0.04), 0.5 * (0.36 - 0.04), 0.5 * (1.7**2 - 0.36)]
+    assert np.abs(found.values[0] - wanted).max() < 1e-13
+    assert np.abs(found.values[1] - [0, 0, np.exp(2) - np.exp(np.sqrt(2))]).max() < 1e-12
+    assert (np.abs(found.values[0] - wanted) <= found.errors[0] + 1e-15).all()
+
+
+def test_balls_that_rub_part_no_intervals():
+    """Friction at a ball alone: no coordinate tells of its slip."""
+    text = SLIDER.replace("C: {{type: R,", "C: {{type: S,").replace(
+        ", axis: [0, 0, 1]}}\n  D", "}}\n  D"
+    )
+    text += "  - {{type: friction, joint: C, coefficient: 0.1, radius: 10 mm}}\n"
+    few, many = (mk.loads(text.format(count=n)).analyze(NAMES) for n in (11, 201))
+    assert np.abs(few["row.dissipated"] - many["row.dissipated"][::20]).max() < 1e-13 * 30
+    assert max(r["row.energy_error"].max() for r in (few, many)) < 1e-12
 
 
 def test_a_wrong_mass_would_show():

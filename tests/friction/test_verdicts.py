@@ -141,10 +141,3 @@ loads:
     assert (found.status[1] == "friction-undecided").all()
     assert np.isnan(found["D.effort"][1]).all()
     assert found["D.effort"][0] == pytest.approx(np.full(3, 50 / 0.6))
-
-
-def test_actuators_are_refused():
-    text = TEXT.replace("loads:", "actuators: [D.s]\nloads:")
-    with pytest.raises(mk.InvalidFile) as caught:
-        mk.loads(text)
-    assert "actuators" in caught.value.diagnostics[0].message

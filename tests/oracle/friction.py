@@ -7,7 +7,7 @@ nothing of the package's system. A file's friction loads are `rubbings`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -85,19 +85,24 @@ def _rubbing(scope: Scope, load: dict[str, Any]) -> Rubbing:
     return Rubbing(load["joint"], at_rest, sliding, speed, lengths, across, flank)
 
 
-def rub(mechanism: Mechanism, solution: Solution, found: list[Rubbing]) -> Rubbed:
-    """Reactions with friction, every joint in motion."""
-    plain = newton_euler(mechanism, solution)
+def rub(
+    mechanism: Mechanism,
+    solution: Solution,
+    found: list[Rubbing],
+    actuators: Sequence[str] | None = None,
+) -> Rubbed:
+    """Reactions with friction, every joint in motion, the efforts at the inputs or `actuators`."""
+    plain = newton_euler(mechanism, solution, actuators)
     directions = [_direction(solution, each) for each in found]
     by_unit = []
     for each, (direction, _) in zip(found, directions, strict=True):
         loads = [*mechanism.loads, *_drag(mechanism, solution, each, direction, mp.one)]
-        by_unit.append(newton_euler(replace(mechanism, loads=loads), solution))
+        by_unit.append(newton_euler(replace(mechanism, loads=loads), solution, actuators))
     z = _fixed_point(solution, found, directions, plain, by_unit)
     loads = list(mechanism.loads)
     for each, (direction, _), value in zip(found, directions, z, strict=True):
         loads += _drag(mechanism, solution, each, direction, value)
-    reactions = newton_euler(replace(mechanism, loads=loads), solution)
+    reactions = newton_euler(replace(mechanism, loads=loads), solution, actuators)
     normal, force, moment, power = {}, {}, {}, {}
     for each, (direction, speed), value in zip(found, directions, z, strict=True):
         joint = each.joint

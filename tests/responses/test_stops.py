@@ -129,3 +129,32 @@ def test_a_rotor_is_stopped_after_three_turns(effort: float) -> None:
     found = respond(ROTOR.replace("EFFORT", repr(effort)))
     assert last_time(found) == pytest.approx(math.sqrt(2 * 6 * math.pi / 4), rel=EXACT)
     assert found["A.theta"][-1] == pytest.approx(1 + math.copysign(6 * math.pi, effort), rel=EXACT)
+
+
+NEARLY_TURNING = """format: 1
+name: pendulum
+units: {{length: mm, force: N}}
+links: {{bob: {{mass: 2, center_of_mass: [0, -250, 0]}}}}
+joints: {{A: {{type: R, links: [ground, bob], point: [0, 0, 0], axis: [0, 0, 1]}}}}
+loads: [{{type: gravity, g: [0, -9810, 0]}}]
+responses:
+  run:
+    start: {{A.theta: 80, A.theta_dot: 0 rad/s}}
+    time: {{from: 0, to: 3, count: {count}}}
+    stop: [{{value: A.theta, at: -{at}}}]
+"""
+
+
+@pytest.mark.parametrize("count", [2, 4, 31, 61, 101, 151, 301, 1501])
+@pytest.mark.parametrize("at", ["79.9", "79.9999", "79.9999999"])
+def test_a_stop_just_before_a_dead_centre_is_met(at: str, count: int) -> None:
+    """Both crossings lie within one step. With k = sin(40 deg) and sin(at/2) = k sin(phi), at is
+    met (K(k) + F(phi, k)) / w after the other dead centre."""
+    found = respond(NEARLY_TURNING.format(at=at, count=count), energy=1e-10)
+    with mp.workdps(30):
+        k = mp.sin(mp.radians(40))
+        phi = mp.asin(mp.sin(mp.radians(mp.mpf(at)) / 2) / k)
+        moment = (mp.ellipk(k**2) + mp.ellipf(phi, k**2)) / mp.sqrt(mp.mpf("9.81") / mp.mpf("0.25"))
+    # the angle is known to 1e-10, and nearly turns
+    assert found["A.theta"][-1] == pytest.approx(-float(at), abs=1e-9)
+    assert last_time(found) == pytest.approx(float(moment), abs=3e-8 if "99999" in at else 1e-9)

@@ -89,13 +89,29 @@ class Evaluated(Protocol):
         ...
 
 
+class OtherMoments(Protocol):
+    """A sweep in time between its rows (`analysis.sweep.other_moments`)."""
+
+    @property
+    def bends(self) -> Floats:
+        """Moments between the rows, in the file's unit, at which the laws of the inputs bend."""
+        ...
+
+    def at(self, written: Floats) -> Evaluated:
+        """The sweep at rising moments within its own, in the file's unit, and at that of its first
+        assembly, which may be none of them."""
+        ...
+
+
 class Reading(NamedTuple):
     """Basis quantities of a result at the rates of `inputs`: `columns` by name, (1, rows) or
-    (3, rows) in SI, nan where a row has none."""
+    (3, rows) in SI, nan where a row has none; `between`: where the motion is known beside its rows.
+    """
 
     result: Evaluated
     columns: Mapping[str, Floats]
     inputs: KernelInputs
+    between: OtherMoments | None = None
 
     @property
     def session(self) -> Session:

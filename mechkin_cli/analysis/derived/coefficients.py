@@ -89,14 +89,16 @@ def unloaded(session: Session, *, at_inputs: bool) -> Session:
     return session.once(("unloaded", at_inputs), made)
 
 
-def without_friction(session: Session) -> Session | None:
-    """The mechanism without the friction of its joints, which is linear in nothing; None where it
-    has none."""
+def without_friction(session: Session, *, at_inputs: bool = False) -> Session | None:
+    """The mechanism without the friction of its joints, which is linear in nothing, its efforts
+    where they act or at the inputs; None where it has none."""
     mechanism = session.problem.mechanism
     if not mechanism.frictions:
         return None
-    smooth = replace(session.problem, mechanism=replace(mechanism, frictions=()))
-    return session.once("without friction", lambda: session.loaded(smooth))
+    drives = None if at_inputs else mechanism.drives
+    bare = replace(mechanism, frictions=(), drives=drives)
+    smooth = replace(session.problem, mechanism=bare)
+    return session.once(("without friction", at_inputs), lambda: session.loaded(smooth))
 
 
 def _rounding(levels: Sequence[Floats]) -> Floats:

@@ -57,7 +57,7 @@ def power_against(
 def friction_power(run: Reading, along: KernelInputs) -> Floats | None:
     """Of the friction of all joints (W, rows) by the rates of `along`: what efforts need less
     without it; None where nothing rubs."""
-    smooth = without_friction(run.session)
+    smooth = without_friction(run.session, at_inputs=True)
     if smooth is None:
         return None
     power = -power_against(run, along, smooth)

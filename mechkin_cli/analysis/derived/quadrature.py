@@ -66,16 +66,22 @@ def total(values: Floats) -> float:
 def running_integral(values: Floats, step: float) -> Floats:
     """From the first sample to each (samples,), which is zero at the first; nan from a sample on
     that is nan."""
+    found = np.zeros(values.size)
+    found[1:] = np.cumsum(interval_integrals(values, POINTS)) * step
+    return found
+
+
+def interval_integrals(values: Floats, most: int) -> Floats:
+    """From each sample to the next (samples - 1,), a unit apart, of the polynomial through the
+    `most` nearest ones."""
     count = values.size
-    found = np.zeros(count)
-    points = min(POINTS, count)
+    points = min(most, count)
     parts = np.empty(max(count - 1, 0))
     for interval in range(count - 1):
         first = min(max(interval - (points // 2 - 1), 0), count - points)
         weights = interval_weights(points, interval - first)
         parts[interval] = total(np.array(weights) * values[first : first + points])
-    found[1:] = np.cumsum(parts) * step
-    return found
+    return parts
 
 
 def running_integral_of_cycle(values: Floats, step: float) -> Floats:

@@ -170,9 +170,7 @@ def rows_of(one: Prepared, found: MotionRows) -> ResponseResult:
     rows.states = np.where(reached, found.states[:, part], 0.0)
     rows.reached, rows.nodes = reached, found.report.steps
     rows.turns = _all_turns(free, found.turns[:, part])
-    assert one.begun is not None
-    last = found.states[:, found.count - 1] if found.count else one.begun.state
-    status, notes = ending(chosen, response, found.report, last)
+    status, notes = ending(chosen, response, found.report, np.array(found.report.last))
     rows.status[~reached] = status
     rows.diagnostics += notes
     energy = free.layout.length * free.layout.length

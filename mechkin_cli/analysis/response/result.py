@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.analysis.response.driven_rows import driven_rows
 from mechkin_cli.analysis.sweep.result import Result
 from mechkin_cli.expressions import Quantity
@@ -186,8 +187,8 @@ class ResponseResult(Result):
 
     @cached_property
     def energy_error(self) -> Floats:
-        """|T + V - T0 - V0 - work + dissipated| in parts of the largest of them over all rows
-        (rows,); nan where nothing moves or works."""
+        """|T + V - T0 - V0 - work + dissipated| beyond the rounding of V, in parts of the largest
+        of them over all rows and of T between them (rows,); nan where nothing moves or works."""
         kinetic, potential = (self._energy(name) for name in ENERGIES)
         work, lost = self.exchanged
         solved = np.flatnonzero(self.solved)
@@ -196,11 +197,14 @@ class ResponseResult(Result):
         first = solved[0]
         gained = potential - potential[first]
         parts = np.abs([kinetic, gained, work, lost])[:, solved]
-        largest = float(parts.max())
+        assert self.report is not None
+        length = self.session.layout.length
+        largest = max(float(parts.max()), length * length * self.report.energy)
         if not largest > 0.0:
             return self._nothing
         missing = ((kinetic - kinetic[first]) + gained) - (work - lost)
-        error: Floats = np.abs(missing) / largest
+        rounding = tolerances.ENERGY_ROUNDING * float(np.abs(potential[solved]).max())
+        error: Floats = np.maximum(np.abs(missing) - rounding, 0.0) / largest
         return error
 
     def _energy(self, name: str) -> Floats:

@@ -280,8 +280,9 @@ class Result:
             self._read_plain(plain)
         if derived:
             from mechkin_cli.analysis.derived import Reading, derived_columns
+            from mechkin_cli.analysis.sweep.other_moments import Between
 
-            run = Reading(self, self._columns, self.session.inputs)
+            run = Reading(self, self._columns, self.session.inputs, Between.of(self))
             self._columns |= derived_columns(run, derived)
 
     def _read_plain(self, wanted: list[Wanted]) -> None:

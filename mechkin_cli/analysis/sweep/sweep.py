@@ -79,6 +79,14 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     return result
 
 
+def closed_rows(session: Session, start: Start) -> Result:
+    """The rows of a session on the branch through the start, of which nothing is read yet."""
+    result = _closed(session, start, [], verdicts=False)
+    if result.row_states.has_failed:
+        result = _closed(session, start, [], verdicts=False, every_row=True)
+    return result
+
+
 def first_assembly(session: Session) -> tuple[Session, Start]:
     """The first assembly, and the session with residual and condition in parts of its size."""
     start = choose_start(session)

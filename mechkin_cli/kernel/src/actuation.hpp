@@ -86,43 +86,36 @@ inline void find_motors(const Plan& p, Workspace& w, const TieValue& tie_value) 
   for (int t = 0; t < p.ties; ++t) motor[p.tie[t].leader] += tie_value(t) * w.effort[p.tie[t].input];
 }
 
-// The actuators' efforts in the place of the motors' that find_motors leaves; not a number where the set is singular.
-// Returns the least rate of the actuators, all together, in a motion of length one.
-inline Pack solve_actuators(const Plan& p, const Actuation& at) {
-  const int n = free_inputs(p), m = p.actuators, rows = p.columns + m + 1;
-  Pack* const jacobian = at.influence + p.columns * n;
-  Pack* const wanted = jacobian + m * n;
+// The efforts of the free inputs, of the motors that find_motors leaves, as wanted of the actuators in case `number`.
+inline void want_efforts(const Plan& p, const Actuation& at, int number) {
+  Pack* const wanted = at.influence + (p.columns + p.actuators + number) * free_inputs(p);
   int f = 0;
   for (int i = 0; i < p.driven; ++i)
     if (!is_tied(p, i)) wanted[f++] = at.motor[i];
+}
+
+// The actuators' efforts for what is wanted in each of `cases`, into `out`, efforts(plan) apart; not a number where the set
+// is singular. Returns the least rate of the actuators, all together, in a motion of length one.
+inline Pack solve_actuators(const Plan& p, const Actuation& at, int cases, Pack* out) {
+  const int n = free_inputs(p), m = p.actuators, rows = p.columns + m + cases;
+  Pack* const jacobian = at.influence + p.columns * n;
+  const Pack* const wanted = jacobian + m * n;
   orthonormalise(at.influence, p.columns, rows, n);
   // the rows of the motion have done their duty
   Pack *const copy = at.influence_factors, *const pivot = copy + m * n, *const beta = pivot + n;
   for (int e = 0; e < m * n; ++e) copy[e] = jacobian[e];
   const Pack least = smallest_singular_value(copy, m, n, pivot);
-  for (int k = 0; k < n; ++k) at.motor[k] = wanted[k];
   const Reflectors qr = {jacobian, pivot, beta, m, n};
   reflect(qr);
-  solve_transposed(qr, at.motor, 0);
   const Mask known = least > Pack(ACTUATORS_AT_REST);
-  for (int a = 0; a < m; ++a) at.motor[a] = select(known, at.motor[a] * actuator_weight(p, a), Pack(__builtin_nan("")));
-  return least;
-}
-
-// The balance of a row with the efforts where they act: at the inputs, or at the actuators, whose loads leave nothing to
-// the inputs that they answer for but rounding.
-template <class RowValue, class TieValue>
-inline Balance balance_with_actuators(const Plan& p, Workspace& w, bool moving, bool accelerating, int shift,
-                                      const RowValue& row_value, const TieValue& tie_value) {
-  if (!p.actuators) {
-    const Balance balance = balance_forces(p, w, moving, accelerating, shift, row_value);
-    find_motors(p, w, tie_value);
-    return balance;
+  for (int c = 0; c < cases; ++c) {
+    Pack* const effort = out + c * efforts(p);
+    for (int k = 0; k < n; ++k) effort[k] = wanted[c * n + k];
+    solve_transposed(qr, effort, 0);
+    for (int a = 0; a < m; ++a)
+      effort[a] = select(known, effort[a] * actuator_weight(p, a), Pack(__builtin_nan("")));
   }
-  balance_forces(p, w, moving, accelerating, 0, row_value);
-  find_motors(p, w, tie_value);
-  *w.actuation.least = solve_actuators(p, w.actuation);
-  return balance_forces(p, w, moving, accelerating, shift, row_value, true);
+  return least;
 }
 
 // What the actuators put in, for the balance of powers.

@@ -41,9 +41,14 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   make(inputs_, plan_.inputs), make(input_rates_, plan_.inputs), make(input_seconds_, plan_.inputs);
   make(miss_, plan_.columns), make(miss_elapsed_, 1);
   unit_.prepare(wide_.data(), workspace_.data());
-  make(time_, 1), make(over_, 1), make(side_, plan_.law.kinks), make(done_, 2);
+  make(time_, 1), make(side_, plan_.law.kinks), make(done_, 2);
   if (driven_) laws_memory_ = driven_->memory();
-  cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), next_row_.assign(lanes_, 0);
+  make(chart_time_, 1), make(placed_, 1), make(placed_state_, plan_.states);
+  make(placed_tangent_, (long)(plan_.charts + plan_.inputs) * plan_.columns), make(placed_bend_, plan_.columns);
+  make(origin_inputs_, plan_.inputs), make(last_, plan_.states);
+  crossing_.resize(lanes_), crossings_.resize(lanes_);
+  for (Crossing& c : crossing_) c.offset.assign(plan_.charts, 0.0);
+  cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), energy_.assign(lanes_, 0.0), next_row_.assign(lanes_, 0);
   stop_start_.assign(stops_.size() * lanes_, 0.0), passed_.assign(stops_.size() * lanes_, 0);
   found_ = make_stage(), end_ = make_stage();
   if (plan_.frictions) trial_ = make_stage();
@@ -51,11 +56,12 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
     const MotionStart& s = starts_[l];
     for (int k = 0; k < plan_.states; ++k) origin_[k * lanes_ + l] = s.state[k];
     for (int k = 0; k < plan_.columns; ++k) origin_first_[k * lanes_ + l] = s.first[k];
-    origin_time_[l] = time_[l] = s.time;
+    origin_time_[l] = chart_time_[l] = time_[l] = s.time;
     drive(l, s.time);
     for (int k = 0; k < plan_.charts * plan_.columns; ++k) end_.tangent[k * lanes_ + l] = s.tangent[k];
     lay_chart(l);
   }
+  last_ = origin_, origin_inputs_ = inputs_;
   const std::vector<double> y = start();
   std::copy(y.begin() + (long)plan_.charts * lanes_, y.begin() + 2L * plan_.charts * lanes_, rate_.begin());
   std::fill(side_.begin(), side_.end(), 1.0);
@@ -70,7 +76,7 @@ ChartedMotion::Stage ChartedMotion::make_stage() const {
   const auto make = [&](long count) { return Packed((std::size_t)(count * lanes_), 0.0); };
   const long n = plan_.charts;
   return {make(plan_.states), make(plan_.columns), make(plan_.columns), make(plan_.columns), make(entries_),
-          make(n * plan_.columns), make(n), make(n), make(n * n), make(plan_.law.kinks + plan_.law.outputs - plan_.load_values), make(2),
+          make((n + plan_.inputs) * plan_.columns), make(n), make(n), make(n * n), make(plan_.law.kinks + plan_.law.outputs - plan_.load_values), make(2),
           make(turn_slots_), make_slips(), std::vector<unsigned char>((std::size_t)lanes_)};
 }
 
@@ -84,7 +90,7 @@ std::vector<double> ChartedMotion::start() const {
   return y;
 }
 
-void ChartedMotion::evaluate(const double* place, const double* rate, const MotionLimits& limits, Stage* found) {
+void ChartedMotion::evaluate(const double* place, const double* rate, Stage* found, double* bend) {
   StageGiven given = {};
   given.sense = slips_.sense.data(), given.quiet = slips_.quiet.data(), given.aim = slips_.aim.data();
   given.origin = origin_.data(), given.origin_rate = origin_first_.data(), given.origin_second = origin_second_.data();
@@ -92,15 +98,22 @@ void ChartedMotion::evaluate(const double* place, const double* rate, const Moti
   given.direction = direction_.data(), given.origin_jacobian = jacobian_.data(), given.elapsed = elapsed_.data();
   given.place = place, given.rate = rate;
   given.inputs = inputs_.data(), given.input_rates = input_rates_.data(), given.input_seconds = input_seconds_.data();
-  given.time = time_.data(), given.over = over_.data(), given.side = side_.data(), given.turned = turn_.data();
+  given.time = time_.data(), given.side = side_.data(), given.turned = turn_.data();
   given.turns = turns_.data(), given.turn_count = (int)turns_.size();
-  given.tight = limits.tight, given.coarse = limits.coarse, given.accept = limits.accept;
-  given.iterations = limits.iterations, given.jump = limits.jump, given.radius = limits.radius;
+  given.tight = limits_.tight, given.coarse = limits_.coarse, given.accept = limits_.accept;
+  given.iterations = limits_.iterations, given.jump = limits_.jump, given.radius = limits_.radius;
+  bool any_placed = false;
+  for (int l = 0; l < lanes_; ++l) any_placed = any_placed || placed_[l] != PREDICTED;
+  if (any_placed) {
+    given.placed = placed_.data(), given.placed_state = placed_state_.data();
+    given.placed_tangent = placed_tangent_.data(), given.placed_bend = placed_bend_.data();
+  }
   const StageFound out = {found->state.data(), found->first.data(), found->second.data(), found->miss.data(),
-                          found->jacobian.data(), found->tangent.data(), found->chart_second.data(), found->inertia.data(),
-                          found->watched.data(), found->power.data(), found->turned.data(), found->slip.rate.data(),
-                          found->slip.second.data(), found->slip.force.data(), found->slip.row.data(),
-                          found->slip.limit.data(), found->slip.loose.data(), found->slip.state.data(), found->slip.answer.data(), found->slip.level.data(),
+                          found->jacobian.data(), found->tangent.data(), found->chart_second.data(), bend,
+                          found->inertia.data(), found->watched.data(), found->power.data(), found->turned.data(),
+                          found->slip.rate.data(), found->slip.second.data(), found->slip.force.data(),
+                          found->slip.row.data(), found->slip.limit.data(), found->slip.loose.data(),
+                          found->slip.state.data(), found->slip.answer.data(), found->slip.level.data(),
                           found->flags.data()};
   unit_.evaluate(wide_.data(), given, out, workspace_.data());
 }
@@ -126,7 +139,7 @@ void ChartedMotion::set_places(const Places& places) {
   for (int l = 0; l < lanes_; ++l) {
     const bool active = places.active[l];
     time_[l] = active ? places.time[l] : origin_time_[l];
-    elapsed_[l] = time_[l] - origin_time_[l];
+    elapsed_[l] = time_[l] - chart_time_[l];
     if (active && places.side) {
       for (int k = 0; k < kinks; ++k) side_[k * lanes_ + l] = places.side[k * lanes_ + l];
       cell_[l] = 0;
@@ -134,9 +147,12 @@ void ChartedMotion::set_places(const Places& places) {
     }
     drive(l, time_[l]);
     for (int i = 0; i < n; ++i) {
-      place_[i * lanes_ + l] = active ? places.y[i * lanes_ + l] : 0.0;
+      place_[i * lanes_ + l] = (active ? places.y[i * lanes_ + l] : 0.0) + crossing_[l].offset[i];
       rate_[i * lanes_ + l] = active ? places.y[(n + i) * lanes_ + l] : 0.0;
     }
+    placed_[l] = PREDICTED;
+    if (active) put_on_curve(l);
+    if (active && places.is_end) crossing_[l].at_end = crossing_[l].here;
   }
 }
 
@@ -159,6 +175,11 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
     write_switches(*found, l, time_[l], rates.switches);
   }
   if (plan_.frictions) look_for_ways(places, rates);
+  for (int l = 0; l < lanes_; ++l) {
+    if (!places.active[l]) continue;
+    if (is_beyond(l)) rates.fault[l] |= STAGE_OFF_BRANCH;
+    if (rates.fault[l] & (STAGE_OFF_BRANCH | STAGE_NOT_CLOSED)) look_ahead(l);
+  }
 }
 
 // The next stage is predicted with what the prediction of this one missed.
@@ -241,12 +262,19 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
       for (long k = 0; k < count; ++k) to[k * lanes_ + l] = from[k * lanes_ + l];
     };
     longest[l] = limits_.longest;
-    origin_time_[l] = time[l], miss_elapsed_[l] = over_[l] = 0.0;
+    origin_time_[l] = time[l], miss_elapsed_[l] = 0.0;
     for (int k = 0; k < 2; ++k) done_[k * lanes_ + l] = y[(2 * n + k) * lanes_ + l];
     if (plan_.frictions) hold_sticking(l);
+    continue_turns(l, end_.turned);
+    take(end_.state, plan_.states, last_);
+    const bool is_kept = keeps_curve(l, time[l], y);
+    for (int i = 0; i < n; ++i) y[i * lanes_ + l] = 0.0;
+    if (is_kept) continue;
     take(end_.state, plan_.states, origin_), take(end_.first, columns, origin_first_);
     take(end_.second, columns, origin_second_), take(end_.jacobian, entries_, jacobian_);
-    continue_turns(l, end_.turned);
+    chart_time_[l] = time[l], crossing_[l].looked = false;
+    drive(l, time[l]);
+    take(inputs_, plan_.inputs, origin_inputs_);
     lay_chart(l);
     for (int i = 0; i < n; ++i) {
       double first = 0.0, second = 0.0;
@@ -254,7 +282,7 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
         first += at(direction_, i * columns + c, l) * at(end_.first, c, l);
         second += at(direction_, i * columns + c, l) * at(end_.second, c, l);
       }
-      y[i * lanes_ + l] = 0.0, y[(n + i) * lanes_ + l] = first, rates[i * lanes_ + l] = second;
+      y[(n + i) * lanes_ + l] = first, rates[i * lanes_ + l] = second;
     }
   }
 }
@@ -265,16 +293,18 @@ void ChartedMotion::sizes(const unsigned char* lanes, double* size) {
   const int n = plan_.charts;
   for (int l = 0; l < lanes_; ++l) {
     if (!lanes[l]) continue;
-    double energy = 0.0;
+    double energy = 0.0, coming = 0.0;
     for (int i = 0; i < n; ++i) {
       double rate = 0.0, force = 0.0;
       for (int j = 0; j < n; ++j) {
         const double m = at(end_.inertia, i * n + j, l);
         rate += m * at(end_.chart_rate, j, l), force += m * at(end_.chart_second, j, l);
       }
-      energy += 0.5 * at(end_.chart_rate, i, l) * rate + PART_OF_FORCE * std::fabs(force);
+      energy += 0.5 * at(end_.chart_rate, i, l) * rate;
+      coming += PART_OF_FORCE * std::fabs(force);
     }
-    for (int k = 1; k < 3; ++k) size[k * lanes_ + l] = std::max(size[k * lanes_ + l], energy);
+    energy_[l] = std::max(energy_[l], energy);
+    for (int k = 1; k < 3; ++k) size[k * lanes_ + l] = std::max(size[k * lanes_ + l], energy + coming);
   }
 }
 
@@ -304,6 +334,8 @@ void ChartedMotion::row(const unsigned char* lanes, const long* row, const doubl
     const Places places = {time, y, lanes, nullptr, false};
     set_places(places);
     evaluate(place_.data(), rate_.data(), &found_);
+    found_.chart_rate = rate_;
+    for (int l = 0; l < lanes_ && plan_.frictions; ++l) stand_still(&found_, l);
   }
   for (int l = 0; l < lanes_; ++l) {
     if (!lanes[l]) continue;

@@ -10,6 +10,7 @@
 
 #include "aligned.hpp"
 #include "charted_friction.hpp"
+#include "crossing_curve.hpp"
 #include "driven_laws.hpp"
 #include "integrator.hpp"
 #include "motion_unit.hpp"
@@ -44,6 +45,12 @@ struct MotionLimits {
   double longest;  // s: a step
 };
 
+// A branch point that was passed: the end of the step, and the states (states) at the point.
+struct PassedBranchPoint {
+  double time;
+  std::vector<double> state;
+};
+
 // Rows of a lane, column after column; rows that are not reached stay as they are. Without rows nothing is written.
 // One row more is for the place where a stop ends the motion between rows.
 struct MotionRows {
@@ -70,15 +77,26 @@ class ChartedMotion : public Motion {
   void rates(const Places& places, const Rates& rates) override;
   void accept(const unsigned char* lanes, const double* time, double* y, double* rates, double* longest) override;
   void sizes(const unsigned char* lanes, double* size) override;
-  AtPlace pass_over(int lane, double reach) override;
+  bool is_driven() const override { return plan_.inputs > 0; }
   void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) override;
   bool event(int lane, int which, bool rising, double time) override;
   void move(int lane, int which, double time, double* y) override;
+  bool finds_more(int lane) override;
+  bool gives_up(int lane) const override;
 
   // Joints (numbers of frictions) that leave a lane without an answer, or whose switch it is.
   std::vector<int> undecided_joints(int lane, int which) const;
   // The stop that ended a lane, -1 without one.
   int stopped_by(int lane) const { return stopped_[lane]; }
+  // States where a lane has come to.
+  std::vector<double> last_place(int lane) const;
+  // The branch points that a lane has passed, and the states at the one that it has ended next to (none: empty).
+  const std::vector<PassedBranchPoint>& crossings(int lane) const { return crossings_[lane]; }
+  std::vector<double> branch_point_near(int lane) const;
+  // Whether steps were refused, however short, where a lane has come to.
+  bool is_next_to_singular(int lane) const;
+  // The largest kinetic energy of a lane at the ends of its steps so far.
+  double energy(int lane) const { return energy_[lane]; }
   // y at the start: u = 0, the rates of u, nothing done.
   std::vector<double> start() const;
 
@@ -90,16 +108,8 @@ class ChartedMotion : public Motion {
     std::vector<unsigned char> flags;
   };
 
-  // A lane's states and their first two derivatives along a straight way in the chart.
-  struct NodeStates {
-    std::vector<double> state, first, second;
-  };
-
   Stage make_stage() const;
-  void evaluate(const double* place, const double* rate, Stage* found) { evaluate(place, rate, limits_, found); }
-  void evaluate(const double* place, const double* rate, const MotionLimits& limits, Stage* found);
-  bool goes_straight(int lane, double time);
-  NodeStates differentiated(const Stage& at, int lane) const;
+  void evaluate(const double* place, const double* rate, Stage* found, double* bend = nullptr);
   void set_places(const Places& places);
   void drive(int lane, double time);
   int edges() const { return driven_ ? (int)driven_->edges().size() : 0; }
@@ -157,6 +167,42 @@ class ChartedMotion : public Motion {
   void lay_chart(int lane);
   void continue_turns(int lane, const Packed& found);
   void write_row(int lane, long row, const Stage& at, const double* done);
+
+  // charted_crossings.cpp
+  // Where a stage lies on its curve.
+  struct OnCurve {
+    bool is_found = false, is_covered = false, is_behind = false, leaves = false;
+  };
+  struct Crossing {
+    bool looked = false;   // since the origin was laid
+    bool engaged = false;  // the chart goes on over the branch point, on curves
+    bool is_new = false;   // engaged, and no step was tried since
+    bool has_only = false, was_behind = false;
+    std::vector<double> way, inputs;  // of lines, see charted_crossings.cpp; inputs at the origin
+    double probe = 0.0;
+    CrossingCurve curve;              // of the only line, or of the first
+    OnCurve here, at_end;
+    std::vector<double> offset;       // u where the last step ended
+    std::vector<double> branch_point;
+    std::vector<double> refused_at;   // states where a short step was refused last
+    int refusals = 0;                 // there
+  };
+  struct Line {
+    std::vector<double> base;
+    bool is_only;  // all stages lie on it, and inputs rest
+  };
+  Line line_through(int lane, double* s) const;
+  void put_on_curve(int lane);
+  void put_guess(int lane, std::vector<double> guess);
+  bool look_at(int lane, const Line& line, double s, const std::vector<double>& guess, CurvePlace* found);
+  bool is_joined(int lane, const Matrix& jacobian) const;
+  bool find_way(int lane, const Line& line, double probe);
+  bool find_curve(int lane, const Line& line, double probe, CrossingCurve* curve);
+  void look_ahead(int lane);
+  bool is_beyond(int lane) const;
+  bool is_near(int lane, const std::vector<double>& state, double within) const;
+  bool keeps_curve(int lane, double time, const double* moved);
+
   double at(const Packed& a, long k, int lane) const { return a[k * lanes_ + lane]; }
 
   const MotionUnit& unit_;
@@ -170,7 +216,7 @@ class ChartedMotion : public Motion {
   long entries_ = 0;
   std::vector<char, AlignedAllocator<char>> wide_, workspace_;
   Packed origin_, origin_first_, origin_second_, direction_, jacobian_, turn_, elapsed_, miss_, miss_elapsed_, place_, rate_, origin_time_;
-  Packed inputs_, input_rates_, input_seconds_, time_, side_, over_;
+  Packed inputs_, input_rates_, input_seconds_, time_, side_;
   const std::vector<MotionStop> stops_;
   const DrivenLaws* driven_;
   DrivenLaws::Memory laws_memory_;
@@ -180,6 +226,13 @@ class ChartedMotion : public Motion {
   std::vector<int> passed_;         // stops x lanes: how often a stop's value has passed
   std::vector<int> stopped_;        // lanes
   std::vector<long> next_row_;      // lanes
+  std::vector<double> energy_;      // lanes
   Packed done_;                     // 2: work put in and lost at the origin
   Stage found_, end_, trial_;
+  std::vector<Crossing> crossing_;  // lanes
+  std::vector<std::vector<PassedBranchPoint>> crossings_;
+  Packed chart_time_;               // when the chart was laid
+  Packed origin_inputs_, last_;     // inputs at the origin; states at the end of the last step
+  Packed placed_, placed_state_, placed_tangent_, placed_bend_, bend_;
+  Stage looked_;
 };

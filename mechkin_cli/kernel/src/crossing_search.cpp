@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace {
 
 constexpr int SCAN = 8;                         // parts in which a step is looked into
-constexpr int DEEPER = 5;                       // more places where values are least
+constexpr int DEEPER = 8;                       // more places where values are least
+constexpr double EDGE = 0.999;                  // of an interval in which the least value is looked for
+constexpr double NEAR = 0.25;                   // of the range of three values: a least value that may be below zero
 constexpr double EARLY[] = {1e-3, 1e-6, 1e-9};  // of the step: where a switch is asked that begins at a zero
 constexpr double ZERO = 1e-12;                  // in parts of the value at the other end
+constexpr double MUCH = 4.0;                    // times as bad as where a kink was found to make a difference
 constexpr int MOST_TRIES = 80;
 constexpr double FOUND = 1e-10;                 // of the step; what is left is done by steps
 constexpr int BISECT_EVERY = 3;
@@ -21,9 +25,9 @@ bool is_bad(const std::vector<double>& values) {
 
 }  // namespace
 
-CrossingSearch::CrossingSearch(LaneStates& states, Method& method, const Flags& ignored)
-    : states_(states), method_(method), ignored_(ignored), bracket_(states.lanes), found_(states.lanes),
-      seen_(states.lanes), open_(states.lanes), part_(states.lanes), at_(states.lanes), place_(states.entries),
+CrossingSearch::CrossingSearch(LaneStates& states, Method& method, Flags* ignored, IsSame is_same)
+    : states_(states), method_(method), ignored_(*ignored), is_same_(std::move(is_same)),
+      compared_(states.side.size(), 0.0), bracket_(states.lanes), found_(states.lanes), seen_(states.lanes), open_(states.lanes), part_(states.lanes), at_(states.lanes), place_(states.entries),
       slope_(states.entries), switches_(states.kinds.size() * states.lanes) {}
 
 std::size_t CrossingSearch::Samples::insert(double at, const std::vector<double>& seen) {
@@ -33,19 +37,21 @@ std::size_t CrossingSearch::Samples::insert(double at, const std::vector<double>
   return k;
 }
 
-// Where the least of all parabolas through a local minimum and its neighbours is; false where it was looked at before.
+// Where the least of all parabolas through three neighbours is, within a thousandth of an interval from its ends, where the
+// next parabola tells more; false where none comes near zero or where it was looked at before.
 bool CrossingSearch::Samples::deepest(double* at) const {
   double least = __builtin_inf();
   for (std::size_t k = 1; k + 1 < part.size(); ++k)
     for (std::size_t s = 0; s < values[k].size(); ++s) {
       const double a = values[k - 1][s], b = values[k][s], c = values[k + 1][s];
-      if (b > a || b > c) continue;
       const double left = part[k] - part[k - 1], right = part[k + 1] - part[k];
       const double fall = (b - a) / left, rise = (c - b) / right, bend = (rise - fall) / (left + right);
       if (!(bend > 0.0)) continue;
-      const double slope = fall + bend * left, shift = -0.5 * slope / bend;
-      if (!(b + 0.5 * slope * shift < least)) continue;
-      least = b + 0.5 * slope * shift;
+      const double slope = fall + bend * left, low = -EDGE * left, high = EDGE * right;
+      const double shift = std::max(low, std::min(high, -0.5 * slope / bend)), found = b + shift * (slope + bend * shift);
+      const double range = std::max({a, b, c}) - std::min({a, b, c});
+      if (!(found < least) || found > NEAR * range) continue;
+      least = found;
       *at = part[k] + shift;
     }
   return least < __builtin_inf() && !std::binary_search(part.begin(), part.end(), *at);
@@ -84,11 +90,24 @@ void CrossingSearch::look() {
   states_.evaluate(at_.data(), place_.data(), false, &open_, slope_.data(), switches_.data());
   for (int i = 0; i < states_.lanes; ++i) {
     if (open_[i]) {
+      forget_kinks(i);
       seen_[i] = values(switches_, i);
     } else if (asked[i]) {
       states_.reached[i] = part_[i];
       found_[i].kind = Crossing::FAULT;
     }
+  }
+}
+
+// Kinks that are bad at the place that was looked at, and make no difference, are ignored.
+void CrossingSearch::forget_kinks(int lane) {
+  for (std::size_t s = 0; s < states_.kinds.size(); ++s) {
+    const std::size_t k = s * states_.lanes + lane;
+    const double bad = -states_.side[k] * switches_[k];
+    if (!states_.kinds[s].may_be_nothing() || ignored_[k] || !(bad > compared_[k])) continue;
+    compared_[k] = MUCH * bad;
+    ignored_[k] = is_same_(lane, (int)s, at_.data(), place_.data(), slope_.data(), switches_.data() + s * states_.lanes);
+    if (ignored_[k]) bracket_[lane].at_low[s] = bracket_[lane].at_high[s] = 0.0;
   }
 }
 
@@ -99,6 +118,8 @@ void CrossingSearch::end(int lane, Crossing::Kind kind) {
   c.kind = kind;
   if (kind == Crossing::NONE) return;
   c.which = b.first(&c.part);
+  // all that was bad is ignored
+  if (c.which < 0) return (void)(c.kind = Crossing::NONE);
   if (c.part < EARLY[2]) c.kind = Crossing::AT_ONCE;
   c.slope = (b.at_high[c.which] - b.at_low[c.which]) / (b.high - b.low);
 }
@@ -200,7 +221,10 @@ void CrossingSearch::close_in() {
     for (int i = 0; i < states_.lanes; ++i) {
       if (!open_[i]) continue;
       Bracket& b = bracket_[i];
-      b.first(&part_[i]);
+      if (b.first(&part_[i]) < 0) {
+        end(i, Crossing::NONE);
+        continue;
+      }
       const bool is_near = std::fabs(part_[i] - b.tried) <= FOUND || b.high - b.low <= FOUND;
       if (is_near) end(i, Crossing::WITHIN);
       b.tried = part_[i];

@@ -3,6 +3,7 @@
 // Values here are taken times the side: good where they are not negative.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "lane_states.hpp"
@@ -22,8 +23,12 @@ struct Crossing {
 
 class CrossingSearch {
  public:
-  // `ignored`: switches x lanes.
-  CrossingSearch(LaneStates& states, Method& method, const Flags& ignored);
+  // Whether the other side of kink `which` makes no difference at a place (entries, with its slope) where a lane's value of
+  // it is bad.
+  using IsSame = std::function<bool(int lane, int which, const double* time, const double* place, const double* slope,
+                                    const double* values)>;
+  // `ignored`: switches x lanes; kinks that are found to make no difference are added.
+  CrossingSearch(LaneStates& states, Method& method, Flags* ignored, IsSame is_same);
   // Lanes that are bad at the end of their step, and such as may be bad inside alone.
   std::vector<Crossing> run(const Flags& crossed, const Flags& suspected);
 
@@ -46,6 +51,7 @@ class CrossingSearch {
   std::vector<double> values(const std::vector<double>& switches, int lane) const;
   // Asks the open lanes at part_; lanes with a fault are closed.
   void look();
+  void forget_kinks(int lane);
   void scan(const Flags& suspected);
   void look_early();
   void close_in();
@@ -54,7 +60,9 @@ class CrossingSearch {
 
   LaneStates& states_;
   Method& method_;
-  const Flags& ignored_;
+  Flags& ignored_;
+  const IsSame is_same_;
+  std::vector<double> compared_;  // switches x lanes: how bad a kink's value was where it made a difference
   std::vector<Bracket> bracket_;
   std::vector<Crossing> found_;
   std::vector<std::vector<double>> seen_;  // lanes: values at part_

@@ -160,14 +160,25 @@ inline void judge_friction(const Plan& p, const Rubbing& r, Pack level) {
   }
 }
 
-// Whether some drive that would brake without friction has to push with it; `least`: powers up to it are rounding.
-inline Pack self_locking(const Plan& p, const Workspace& w, Pack least) {
+// Whether some of `count` drives that would brake without friction, with r.effort, has to push with it; `least`: powers up
+// to it are rounding.
+template <class Rate>
+inline Pack self_locking(const Rubbing& r, int count, const Pack* effort, Pack least, const Rate& rate_of) {
   Mask locks = all_lanes(false);
-  for (int i = 0; i < p.inputs; ++i) {
-    const Pack rate = w.rate[p.input_column[i]];
-    locks = locks | ((w.rubbing.effort[i] * rate < -least) & (w.effort[i] * rate > least));
+  for (int i = 0; i < count; ++i) {
+    const Pack rate = rate_of(i);
+    locks = locks | ((r.effort[i] * rate < -least) & (effort[i] * rate > least));
   }
   return select(locks, Pack(1.0), Pack(0.0));
+}
+
+// Places, directions and coefficients of everything that rubs; `rates` is the mechanism's largest.
+inline void aim_frictions(const Plan& p, Workspace& w, bool accelerating, Pack rates) {
+  place_contacts(p, w);
+  for (int k = 0; k < p.frictions; ++k) {
+    aim_friction(p, w, k, accelerating, rates);
+    w.rubbing.state[k] = (double)FRICTION_DECIDED;
+  }
 }
 
 // Friction onto the links, and what all joints transmit; every other load has been applied.
@@ -176,18 +187,15 @@ inline void apply_friction(Balance& balance, bool accelerating, int shift) {
   Workspace& w = balance.w;
   Rubbing& r = w.rubbing;
   const Pack rates = twist_level(p, w);
-  place_contacts(p, w);
-  for (int k = 0; k < p.frictions; ++k) {
-    aim_friction(p, w, k, accelerating, rates);
-    r.state[k] = (double)FRICTION_DECIDED;
-  }
+  aim_frictions(p, w, accelerating, rates);
   find_gains(balance, shift);
   solve_friction(p, r);
   judge_friction(p, r, balance.level);
   for (int k = 0; k < p.links; ++k) w.carried[k] = r.applied[k];
   for (int k = 0; k < p.frictions; ++k) rub(balance, k, r.force[k]);
   distribute(p, w, shift);
-  r.self_locking = self_locking(p, w, Pack(NOTHING_WORKS) * balance.level * rates);
+  r.self_locking = self_locking(r, p.inputs, w.effort, Pack(NOTHING_WORKS) * balance.level * rates,
+                                [&](int i) { return w.rate[p.input_column[i]]; });
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ struct Rubbing {
   Vec3* direction;     // contacts: now
   Vec3 *base, *gain;   // contacts: their loads without friction; by a unit of each friction
   Vec3* along;         // contacts: directions of their loads
-  Pack* effort;        // inputs: of the drives without friction
+  Vec3* reach;         // contacts: their loads by a unit of one actuator (actuated_balance.hpp)
+  Pack* effort;        // inputs, or actuators: of the drives without friction
   Pack self_locking;
 };
 
@@ -35,10 +36,10 @@ inline void lay_out_friction(const Plan& p, Take&& take, Rubbing* r) {
   r->swap = (Mask*)take((n * (n - 1) / 2 + 1) * sizeof(Mask));
   r->axis = (Vec3*)take(n * sizeof(Vec3));
   r->point = (Vec3*)take(n * sizeof(Vec3));
-  Vec3** const of_contacts[] = {&r->direction, &r->base, &r->along};
+  Vec3** const of_contacts[] = {&r->direction, &r->base, &r->along, &r->reach};
   for (Vec3** each : of_contacts) *each = (Vec3*)take(p.contacts * sizeof(Vec3));
   r->gain = (Vec3*)take(p.contacts * n * sizeof(Vec3));
-  r->effort = (Pack*)take((p.inputs + 1) * pack);
+  r->effort = (Pack*)take((p.inputs + p.actuators + 1) * pack);
 }
 
 }  // namespace

@@ -35,11 +35,9 @@ constexpr unsigned char NOT_FINITE = 255;  // the fault where a rate is not fini
 struct SwitchKind {
   bool kink;
   bool moves = false;
+  // A kink that stays where it is: where both its sides give the same rates it is passed without a word.
+  bool may_be_nothing() const { return kink && !moves; }
 };
-
-// What becomes of a motion at a place towards which its steps shrink: it goes on by itself, it is let over the place in one
-// step, or it ends before.
-enum class AtPlace { GOES_ON, PASSES, ENDS };
 
 class Motion {
  public:
@@ -64,12 +62,20 @@ class Motion {
     (void)size;
   }
 
-  // The steps of a lane shrink towards a place where stages are faults; `reach` is how long they may yet be. Where it is
-  // passed, the stages of this lane need not be joined with the origin until the next `accept`, or a reach of 0.
-  virtual AtPlace pass_over(int lane, double reach) {
+  // Whether something moves beside the freedoms: powers are then not rounding where these rest.
+  virtual bool is_driven() const { return false; }
+
+  // Asked where a step was refused that may not be made shorter: whether the same step may be tried again, as more is known
+  // of the places ahead.
+  virtual bool finds_more(int lane) {
     (void)lane;
-    (void)reach;
-    return AtPlace::GOES_ON;
+    return false;
+  }
+
+  // Asked where a step was refused for a fault: whether there is no use in shorter ones.
+  virtual bool gives_up(int lane) const {
+    (void)lane;
+    return false;
   }
 
   // Rows are reached; `row` (lanes). At the end of a step (`inside` false) that is the chart's origin, after `accept`. Inside
@@ -126,7 +132,6 @@ struct LaneReport {
   double time = 0.0;             // how far the lane came
   long rows = 0;                 // rows that were reached
   long evaluations = 0, steps = 0, rejections = 0;
-  long passed = 0;               // places that were passed, see Motion::pass_over
 };
 
 // Integrates from `time` (lanes) and y, u = 0 in the motion's present charts, over all rows. Throws

@@ -18,9 +18,6 @@ struct LaneControl {
   double longest = __builtin_inf();      // the step that the chart bears, as the motion says
   bool is_cut = false;                   // the step was made shorter for a row
   bool was_refused = false;
-  double before_fault = 0.0;             // the step that errors wanted where stages began to be faults; 0: none are
-  double tried_from = __builtin_inf();   // the room from which it was last tried to pass the place where they are
-  double over = 0.0;                     // the step over that place; 0: none is tried
   long next_row = 0;
   long attempts = 0;
   // The way to end a step at a zero of a switch: number, derivative of side * value by time, the step to try,
@@ -30,6 +27,8 @@ struct LaneControl {
   double landing_slope = 0.0, landing_step = 0.0, landing_before = 0.0, landing_value = 0.0;
   bool landed = false;
   std::vector<int> passed;               // switches: how often they were passed at this place
+  // Switches that are let alone until a step is taken: kinks met again and again where both sides give the same.
+  Flags let_alone;
 };
 
 class March {
@@ -44,7 +43,6 @@ class March {
   void round(Method& method, Flags mask);
   void judge(Method& method, Flags* mask);
   void shorten_for_fault(int lane);
-  void pass_shorter(int lane);
   void refuse(int lane, double step);
   void take(Method& method, Flags mask);
   void move_on(const Flags& mask);
@@ -69,7 +67,17 @@ class March {
   // crossings.cpp
   bool is_ignored(int lane, int which) const;
   bool is_crossed(int lane, int but) const;
+  bool is_crossed_by(int lane, int which) const;
   bool may_dip(int lane, int landing) const;
+  double least_inside(int lane, int which, bool stages_alone) const;
+  void hold(int lane, int which);
+
+  // kinks.cpp
+  void mute(Flags* mask);
+  void compare_sides(int which, const double* time, const double* place, const double* slope, const double* value,
+                     Flags* mask);
+  bool bends_nothing(int lane, const double* y, const double* a, const double* b, double step) const;
+  bool rests(int lane, const double* y) const;
   void look_for_crossings(Method& method, Flags* mask);
   void land(int lane, Flags* mask);
   void search(Method& method, const Flags& crossed, const Flags& suspected, Flags* mask);
@@ -83,5 +91,7 @@ class March {
   std::unique_ptr<Radau> implicit_;  // made when it is first needed
   std::vector<LaneControl> control_;
   std::vector<double> size_, place_, values_, part_, at_;
+  std::vector<double> other_slope_, scale_;  // entries: on the other side of a kink; what an error of one tolerance is
+  Flags muted_;  // switches x lanes: kinks that bend nothing within the step that was tried
   std::vector<long> row_;
 };

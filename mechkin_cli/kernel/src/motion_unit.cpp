@@ -72,6 +72,61 @@ struct Placed {
   Mask closed, on_branch;
 };
 
+// The lanes with places of a kind.
+inline Mask lanes_placed(const StageGiven& given, double kind) {
+  return given.placed ? *packs(given.placed) == Pack(kind) : all_lanes(false);
+}
+
+inline void take_places(const Plan& p, Workspace& w, const StageGiven& given, Mask lanes) {
+  if (!any(lanes)) return;
+  for (int s = 0; s < p.states; ++s) w.q[s] = select(lanes, packs(given.placed_state)[s], w.q[s]);
+  for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = packs(given.inputs)[i];
+}
+
+// Limit of placed states' residuals in parts of that of closed ones: interpolation rounds some times.
+constexpr double PLACED_ROUNDING = 16.0;
+
+// The states of lanes that are placed, which Newton's method has moved, and whether they are closed.
+// Kept apart: see is_regular.
+__attribute__((noinline)) void place_again(const Plan& p, Workspace& w, int block, const StageGiven& given, Mask lanes, Closed* closed) {
+  take_places(p, w, given, lanes);
+  place_block(p, w, p.block[block]);
+  const Pack limit = PLACED_ROUNDING * given.accept;
+  Mask near = block_residual(p, w, p.block[block]).test <= limit;
+  if (any(lanes & ~near)) near = near | (residual_with_rounding(p, w, p.block[block], given.accept) <= limit);
+  const Mask side = block_side_conditions(p, w, p.block[block]);
+  closed->converged = (lanes & near) | (~lanes & closed->converged);
+  closed->side = (lanes & side) | (~lanes & closed->side);
+}
+
+// All links' motions by the rates, and the accelerations, of the columns.
+inline void move_all(const Plan& p, Workspace& w, bool second) {
+  for (int b = 0; b < p.blocks; ++b)
+    for (int o = p.block[b].joint_begin; o < p.block[b].joint_end; ++o) move_link(p, w, p.order[o], second);
+  for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], second);
+}
+
+// Rates and twists of lanes that are placed.
+inline void place_directions(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given, Mask lanes) {
+  if (!any(lanes)) return;
+  for (int d = 0; d < directions(p); ++d) {
+    for (int c = 0; c < p.columns; ++c) {
+      Pack& rate = m.tangent[d * p.columns + c];
+      rate = select(lanes, packs(given.placed_tangent)[d * p.columns + c], rate);
+      w.rate[c] = rate;
+    }
+    move_all(p, w, false);
+    for (int k = 0; k < p.links; ++k) m.twist[d * p.links + k] = w.motion[k].velocity;
+  }
+}
+
+inline void place_accelerations(const Plan& p, Workspace& w, const StageGiven& given, Mask lanes) {
+  if (!any(lanes)) return;
+  for (int c = 0; c < p.columns; ++c)
+    w.acceleration[c] = select(lanes, packs(given.placed_bend)[c], w.acceleration[c]);
+  move_all(p, w, true);
+}
+
 inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given,
                           const StageFound& found) {
   Request limits = {};
@@ -79,10 +134,12 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
   limits.iterations = given.iterations;
   const Pack room = Pack(given.jump) * way(p, w);
   Placed placed = {all_lanes(true), all_lanes(true)};
-  const Mask over = *packs(given.over) > Pack(0.0);
+  const Mask fixed = lanes_placed(given, PLACED);
+  take_places(p, w, given, fixed | lanes_placed(given, GUESSED));
   long entries = 0;
   for (int b = 0; b < p.blocks; ++b) {
-    const Closed closed = close_block(p, w, b, limits);
+    Closed closed = close_block(p, w, b, limits);
+    if (any(fixed)) place_again(p, w, b, given, fixed, &closed);
     const BlockMatrices at = matrices_of(p, w, b);
     const int size = at.m * at.n;
     block_screws(p, w, p.block[b]);
@@ -91,9 +148,10 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
     at.factor_jacobian();
     placed.closed = placed.closed & closed.converged & closed.side;
     placed.on_branch = placed.on_branch & (closed.correction <= room + Pack(given.coarse)) &
-                       (over | is_regular(p, w, b, packs(given.origin_jacobian) + entries, given.radius, m.radius));
+                       is_regular(p, w, b, packs(given.origin_jacobian) + entries, given.radius, m.radius);
     entries += size;
   }
+  placed.on_branch = placed.on_branch | fixed;
   for (int k = 0; k < p.rest_count; ++k) {
     place_joint(p, w, p.rest[k]);
     find_screws(p, w, p.rest[k]);
@@ -130,9 +188,12 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const Slips& 
     missed = s < 0 ? Pack(0.0) : missed + (w.q[s] - packs(given.origin)[s]);
   }
 
+  const Mask fixed = lanes_placed(given, PLACED);
   for (int d = 0; d < directions(p); ++d) move_along(p, w, m, d);
+  place_directions(p, w, m, given, fixed);
   const Pack* const input_rate = packs(given.input_rates);
   move(p, w, m, packs(given.rate), input_rate, packs(given.input_seconds));
+  place_accelerations(p, w, given, fixed);
   const StageValues values = {given};
   const Mask undefined = evaluate_program(p, w, given, values, packs(found.watched));
   reduce_inertia(p, w, m);
@@ -149,7 +210,8 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const Slips& 
 
   copy(w.q, p.states, packs(found.state));
   copy(w.rate, p.columns, packs(found.first));
-  copy(m.tangent, p.charts * p.columns, packs(found.tangent));
+  if (found.bend) copy(w.acceleration, p.columns, packs(found.bend));
+  copy(m.tangent, directions(p) * p.columns, packs(found.tangent));
   copy(m.inertia, p.charts * p.charts, packs(found.inertia));
   for (int c = 0; c < p.columns; ++c) {
     Pack sum = w.acceleration[c];

@@ -2,6 +2,7 @@
 // MECHKIN_UNIT set by the build.
 #include "unit.hpp"
 
+#include "actuated_balance.hpp"
 #include "condition.hpp"
 #include "elementwise.hpp"
 #include "energy.hpp"

@@ -1,0 +1,46 @@
+"""Kinks of loads where nothing bends: magnitudes, signs and the larger of two of what is rounding
+alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mechkin_cli as mk
+
+RESTING = (Path(__file__).parent / "kinks" / "resting_slide.yaml").read_text()
+GIVEN = '"-0.1 N*s^2/m^2*C.s_dot*abs(C.s_dot)"'
+
+
+def swing(text: str) -> mk.Response:
+    return mk.loads(text).respond("swing", tables=[])
+
+
+SMOOTH = swing(RESTING.replace(GIVEN, "0"))
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        "-0.1 N*s^2/m^2*C.s_dot*abs(C.s_dot)",
+        "-100 N*s^2/m^2*C.s_dot*abs(C.s_dot)",
+        "-10 N*sign(C.s_dot)",
+        "-10 N/m*max(0 m, C.s)",
+        "-10 N/m*min(0 m, C.s) - 10 N*sign(C.s)*abs(C.s_dot)*(1 s/m)",
+    ],
+)
+def test_a_coordinate_that_never_moves_has_no_kinks(load: str) -> None:
+    assert GIVEN in RESTING
+    rows = swing(RESTING.replace(GIVEN, f'"{load}"'))
+    assert set(rows["row.status"]) == {"ok"}
+    assert np.abs(rows["A.theta"] - SMOOTH["A.theta"]).max() < 1e-8
+
+
+def test_the_same_kinks_of_what_moves_are_there() -> None:
+    """The check above can fail: a load with a sign on a joint that moves changes the motion."""
+    at_joint = "{type: torque, joint: A, value: "
+    load = f'  - {at_joint}"-0.1 N*m*sign(A.theta_dot)"}}\nresponses:'
+    rows = swing(RESTING.replace("responses:", load))
+    assert np.abs(rows["A.theta"] - SMOOTH["A.theta"]).max() > 1e-3
