@@ -224,9 +224,17 @@ void ChartedMotion::evaluate_here(int lane, const std::vector<double>& v, Stage*
   stand_still(found, lane);
 }
 
-std::vector<int> ChartedMotion::undecided_joints(int lane, int which) const {
+std::vector<int> ChartedMotion::undecided_joints(int lane, const LaneReport& report) const {
   if (!plan_.frictions) return {};
-  const int k = which - plan_.law.kinks - edges();
+  const int k = report.which - plan_.law.kinks - edges();
   if (k >= 0 && k < plan_.frictions) return {k};
-  return k >= 0 && k < slip_switches() ? sticking(lane) : slips_.doubtful[lane];
+  if (k >= 0 && k < slip_switches()) return sticking(lane);
+  if (report.fault & STAGE_FRICTION && report.fault != NOT_FINITE) return slips_.doubtful[lane];
+  std::vector<int> starting;
+  if (report.end != LaneEnd::STUCK || report.fault) return starting;
+  for (int f = 0; f < plan_.frictions; ++f) {
+    const std::size_t at = (std::size_t)f * lanes_ + lane;
+    if (slip_columns(f) > 1 && slips_.sense[at] != 0.0 && !slips_.armed[at] && rubs(lane, f)) starting.push_back(f);
+  }
+  return starting;
 }

@@ -8,7 +8,6 @@
 
 namespace {
 
-constexpr double PART_OF_FORCE = 0.1;
 constexpr double FULL = 2.0 * 3.14159265358979323846;
 
 std::vector<char, AlignedAllocator<char>> wide_plan(const MotionUnit& unit, const std::vector<MotionStart>& starts) {
@@ -48,7 +47,8 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   make(origin_inputs_, plan_.inputs), make(last_, plan_.states);
   crossing_.resize(lanes_), crossings_.resize(lanes_);
   for (Crossing& c : crossing_) c.offset.assign(plan_.charts, 0.0);
-  cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), energy_.assign(lanes_, 0.0), next_row_.assign(lanes_, 0);
+  cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), next_row_.assign(lanes_, 0);
+  for (auto* a : {&energy_, &lightest_, &lightest_start_, &growth_}) a->assign(lanes_, 0.0);
   stop_start_.assign(stops_.size() * lanes_, 0.0), passed_.assign(stops_.size() * lanes_, 0);
   found_ = make_stage(), end_ = make_stage();
   if (plan_.frictions) trial_ = make_stage();
@@ -172,6 +172,7 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
     if (plan_.frictions && slips_.blocked[l]) rates.fault[l] |= STAGE_FRICTION;
     if (found->flags[l] & STAGE_FRICTION) tell_undecided(*found, l);
     if (!found->flags[l]) keep_miss(l, *found);
+    if (found->flags[l] & STAGE_UNDEFINED_STOP) find_undefined(*found, l);
     write_switches(*found, l, time_[l], rates.switches);
   }
   if (plan_.frictions) look_for_ways(places, rates);
@@ -186,6 +187,14 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
 void ChartedMotion::keep_miss(int lane, const Stage& found) {
   miss_elapsed_[lane] = elapsed_[lane];
   for (int c = 0; c < plan_.columns; ++c) miss_[(long)c * lanes_ + lane] = at(found.miss, c, lane);
+}
+
+// The first stop whose value there is none is what ends the lane, if nothing helps.
+void ChartedMotion::find_undefined(const Stage& found, int lane) {
+  for (std::size_t s = stops_.size(); s-- > 0;) {
+    const double value = at(found.watched, plan_.law.kinks + (long)s, lane);
+    if (!(value == value)) stopped_[lane] = (int)s;
+  }
 }
 
 // What changes its sign where a stop is met.
@@ -284,27 +293,6 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
       }
       y[(n + i) * lanes_ + l] = first, rates[i * lanes_ + l] = second;
     }
-  }
-}
-
-// Works matter in parts of the energy that the motion has, or that its forces would give it over a tenth of a unit of its
-// chart: what a damper within a rigid part takes is rounding.
-void ChartedMotion::sizes(const unsigned char* lanes, double* size) {
-  const int n = plan_.charts;
-  for (int l = 0; l < lanes_; ++l) {
-    if (!lanes[l]) continue;
-    double energy = 0.0, coming = 0.0;
-    for (int i = 0; i < n; ++i) {
-      double rate = 0.0, force = 0.0;
-      for (int j = 0; j < n; ++j) {
-        const double m = at(end_.inertia, i * n + j, l);
-        rate += m * at(end_.chart_rate, j, l), force += m * at(end_.chart_second, j, l);
-      }
-      energy += 0.5 * at(end_.chart_rate, i, l) * rate;
-      coming += PART_OF_FORCE * std::fabs(force);
-    }
-    energy_[l] = std::max(energy_[l], energy);
-    for (int k = 1; k < 3; ++k) size[k * lanes_ + l] = std::max(size[k * lanes_ + l], energy + coming);
   }
 }
 

@@ -84,10 +84,14 @@ class ChartedMotion : public Motion {
   bool finds_more(int lane) override;
   bool gives_up(int lane) const override;
 
-  // Joints (numbers of frictions) that leave a lane without an answer, or whose switch it is.
-  std::vector<int> undecided_joints(int lane, int which) const;
-  // The stop that ended a lane, -1 without one.
+  // Joints (numbers of frictions) that a lane ends by: without an answer, met again and again, or just starting to slip.
+  std::vector<int> undecided_joints(int lane, const LaneReport& report) const;
+  // The stop that ended a lane, or that had no value where it ended; -1 without one.
   int stopped_by(int lane) const { return stopped_[lane]; }
+  // The least inertia of a lane at the end of its last step, a pivot, in parts of that at its start.
+  double lightest(int lane) const { return lightest_[lane] / lightest_start_[lane]; }
+  // The largest acceleration of a lane in parts of the largest rate at the end of its last step, 1/s.
+  double growth(int lane) const { return growth_[lane]; }
   // States where a lane has come to.
   std::vector<double> last_place(int lane) const;
   // The branch points that a lane has passed, and the states at the one that it has ended next to (none: empty).
@@ -114,6 +118,8 @@ class ChartedMotion : public Motion {
   void drive(int lane, double time);
   int edges() const { return driven_ ? (int)driven_->edges().size() : 0; }
   void stand_still();
+  void weigh(int lane);
+  void find_undefined(const Stage& found, int lane);
 
   // charted_friction.cpp
   SlipStage make_slips() const;
@@ -226,7 +232,7 @@ class ChartedMotion : public Motion {
   std::vector<int> passed_;         // stops x lanes: how often a stop's value has passed
   std::vector<int> stopped_;        // lanes
   std::vector<long> next_row_;      // lanes
-  std::vector<double> energy_;      // lanes
+  std::vector<double> energy_, lightest_, lightest_start_, growth_;  // lanes
   Packed done_;                     // 2: work put in and lost at the origin
   Stage found_, end_, trial_;
   std::vector<Crossing> crossing_;  // lanes

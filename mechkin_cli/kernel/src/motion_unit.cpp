@@ -159,19 +159,26 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
   return placed;
 }
 
-// The values of loads, of kinks and of what else is watched; the lanes in which a load has none.
-inline Mask evaluate_program(const Plan& p, Workspace& w, const StageGiven& given, const StageValues& values,
+struct Undefined {
+  Mask load, stop;
+};
+
+// The values of loads, of kinks and of what else is watched; the lanes in which a load or a stop has none.
+inline Undefined evaluate_program(const Plan& p, Workspace& w, const StageGiven& given, const StageValues& values,
                              Pack* watched) {
-  Mask undefined = all_lanes(false);
+  Undefined undefined = {all_lanes(false), all_lanes(false)};
   if (!p.law.outputs) return undefined;
   run_on_sides(p, w, p.law, values, packs(given.side), w.law);
   for (int v = 0; v < p.load_values; ++v) {
     w.load[v] = w.law[p.law.output[v]];
-    undefined = undefined | ~(w.load[v] == w.load[v]);
+    undefined.load = undefined.load | ~(w.load[v] == w.load[v]);
   }
   for (int k = 0; k < p.law.kinks; ++k) watched[k] = kink_value(p.law, k, w.law);
-  for (int v = p.load_values; v < p.law.outputs; ++v)
-    watched[p.law.kinks + v - p.load_values] = w.law[p.law.output[v]];
+  for (int v = p.load_values; v < p.law.outputs; ++v) {
+    const Pack value = w.law[p.law.output[v]];
+    watched[p.law.kinks + v - p.load_values] = value;
+    undefined.stop = undefined.stop | ~(value == value);
+  }
   return undefined;
 }
 
@@ -195,7 +202,7 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const Slips& 
   move(p, w, m, packs(given.rate), input_rate, packs(given.input_seconds));
   place_accelerations(p, w, given, fixed);
   const StageValues values = {given};
-  const Mask undefined = evaluate_program(p, w, given, values, packs(found.watched));
+  const Undefined undefined = evaluate_program(p, w, given, values, packs(found.watched));
   reduce_inertia(p, w, m);
   reduce_forces(p, w, m, values);
   Pack* const second = packs(found.chart_second);
@@ -228,7 +235,8 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const Slips& 
     if (!lane(placed.closed, i)) f |= STAGE_NOT_CLOSED;
     if (!lane(placed.on_branch, i)) f |= STAGE_OFF_BRANCH;
     if (!lane(positive, i)) f |= STAGE_SINGULAR_INERTIA;
-    if (lane(undefined, i)) f |= STAGE_UNDEFINED_LOAD;
+    if (lane(undefined.load, i)) f |= STAGE_UNDEFINED_LOAD;
+    if (lane(undefined.stop, i)) f |= STAGE_UNDEFINED_STOP;
     if (lane(slid.undecided, i)) f |= STAGE_FRICTION;
     found.flags[i] = (unsigned char)f;
   }

@@ -42,7 +42,8 @@ enum StageFlag : unsigned char {
   STAGE_OFF_BRANCH = 2,      // not told to lie on the origin's branch
   STAGE_SINGULAR_INERTIA = 4,
   STAGE_UNDEFINED_LOAD = 8,  // a law of a load has no value
-  STAGE_FRICTION = 16        // friction has no answer, or not one alone
+  STAGE_FRICTION = 16,       // friction has no answer, or not one alone
+  STAGE_UNDEFINED_STOP = 32  // what is watched beside the loads has no value
 };
 
 struct StageFound {

@@ -35,6 +35,10 @@ nb::dict report_of(const ResponseReport& report) {
   d["last"] = report.last, d["crossings"] = crossings, d["branch_point"] = report.branch_point;
   d["singular"] = report.singular;
   d["energy"] = report.energy;
+  d["lightest"] = report.lightest;
+  d["growth"] = report.growth;
+  d["met"] = r.met;
+  d["step"] = r.step;
   d["end"] = (int)r.end, d["fault"] = (int)r.fault, d["which"] = r.which;
   d["stiff"] = r.stiff, d["stiff_from"] = r.stiff_from, d["time"] = r.time, d["rows"] = r.rows;
   d["evaluations"] = r.evaluations, d["steps"] = r.steps, d["rejections"] = r.rejections;
