@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli.analysis.response.reasons import reason
 from mechkin_cli.analysis.response.weakest import weakest_coordinates
 from mechkin_cli.analysis.sweep.branch_end import MOST_SHOWN
 from mechkin_cli.diagnostics import Diagnostic, Number
-from mechkin_cli.solver.free_motion import Fault, MotionEnd
+from mechkin_cli.solver.free_motion import MotionEnd
 from mechkin_cli.solver.inputs import input_numbers, input_text
 from mechkin_cli.status import Status
 from mechkin_cli.units import TIME
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 
 def ending(
-    session: Session, response: Response, report: MotionReport, last: Floats
+    session: Session, free: Session, response: Response, report: MotionReport, last: Floats
 ) -> tuple[Status, list[Diagnostic]]:
     """The verdict of rows that were not reached, and what is to say about the motion; `last`
-    (states,) is the last place of it."""
+    (states,) is the last place of it, `free` the session that moved."""
     notes = []
     if report.crossings:
         notes.append(_passed(session, response, report))
@@ -37,25 +37,27 @@ def ending(
     if report.end in (MotionEnd.DONE, MotionEnd.STOPPED):
         return Status.ok, notes
     at = _moment(session, report.time)
-    status, code, text, limit, hint = _reason(response, report)
-    if status is Status.singular_inertia:
+    why = reason(free, response, report)
+    text = why.text
+    if why.status is Status.singular_inertia:
         text = _without_inertia(weakest_coordinates(session, response, last))
-    is_point = code == "branch-point"
+    is_point = why.code == "branch-point"
     numbers = place_numbers(session, np.array(report.branch_point) if is_point else last)
     shown = ", ".join(map(input_text, numbers))
+    measured = shown if is_point else f"last place {shown}"
     notes.append(
         Diagnostic(
-            code,
+            why.code,
             "error",
             f"the response ends at {at}: {text}",
-            response.place,
-            measured=shown if is_point else f"last place {shown}",
-            limit=limit,
-            hint=hint,
+            why.place or response.place,
+            measured=f"{why.measured}, {measured}" if why.measured else measured,
+            limit=why.limit,
+            hint=why.hint,
             numbers=numbers,
         )
     )
-    return status, notes
+    return why.status, notes
 
 
 def place_numbers(session: Session, state: Floats) -> tuple[Number, ...]:
@@ -94,60 +96,3 @@ def _without_inertia(names: list[str]) -> str:
 def _moment(session: Session, time: float) -> str:
     units = session.problem.units
     return f"{float(units.from_si(time, TIME)):.6g} {units.label(TIME)}"
-
-
-def _reason(response: Response, report: MotionReport) -> tuple[Status, str, str, str | None, str]:
-    """Verdict, code, words, limit and cure."""
-    if report.end is MotionEnd.STEP_LIMIT and not report.singular:
-        text = f"{report.steps + report.rejections} steps were not enough"
-        hint = "widen the tolerance, shorten the time, or look for what moves so fast"
-        limit = f"{tolerances.MOST_RESPONSE_STEPS} steps"
-        return Status.step_limit, "step-limit", text, limit, hint
-    if report.end is MotionEnd.HELD:
-        text = "on both sides of a jump of a load the motion goes back to it"
-        hint = "write what sticks as {type: friction, ...}, or make the load continuous"
-        return Status.friction_undecided, "held-at-jump", text, None, hint
-    if report.fault == Fault.NOT_FINITE or report.fault & Fault.UNDEFINED_LOAD:
-        text = "a load or a rate has no finite value beyond"
-        hint = "write loads that hold along the motion"
-        return Status.step_limit, "load-undefined", text, None, hint
-    if report.fault & Fault.FRICTION:
-        text = "friction has no answer there, or more than one: the mechanism may jam, or slip"
-        hint = "make a coefficient smaller, or bearings longer"
-        return Status.friction_undecided, "friction-undecided", text, None, hint
-    if report.fault & Fault.SINGULAR_INERTIA:
-        hint = "give the links that it moves a mass, or drive it"
-        return Status.singular_inertia, "singular-inertia", "", None, hint
-    if report.branch_point:
-        text = (
-            "it comes to a branch point, where its branch crosses another and it may go either way"
-        )
-        hint = (
-            "assembly: {at_branch_points: straight} goes on along the smooth continuation, unless "
-            "joints rub; or end the response before it"
-        )
-        if response.assembly.straight:
-            hint = (
-                "with friction it is not passed, as the reactions that friction reads are not "
-                "unique there: end the response before it"
-            )
-        return Status.branch_lost, "branch-point", text, None, hint
-    if report.fault or report.singular:
-        text = "no step, however short, is told to stay on the branch"
-        return Status.branch_lost, "branch-lost", text, None, _cure_of_lost(response)
-    text = "no step, however short, keeps the tolerance"
-    asked = f"{response.tolerance:g}"
-    return Status.step_limit, "step-limit", text, asked, "widen the tolerance"
-
-
-def _cure_of_lost(response: Response) -> str:
-    """What to do where a branch is lost that no branch point with a smooth way through ends."""
-    if response.fixed_step is not None:
-        return (
-            "write a tolerance in place of fixed_step, or shorter steps; if that ends here, too, "
-            "this is a special position: end the response before it"
-        )
-    return (
-        "this may be a special position where the smooth continuation is not told apart from other "
-        "branches: end the response before it"
-    )

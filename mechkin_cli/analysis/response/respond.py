@@ -174,7 +174,8 @@ def rows_of(one: Prepared, found: MotionRows) -> ResponseResult:
     rows.states = np.where(reached, found.states[:, part], 0.0)
     rows.reached, rows.nodes = reached, found.report.steps
     rows.turns = _all_turns(free, found.turns[:, part])
-    status, notes = ending(chosen, response, found.report, np.array(found.report.last))
+    last = np.array(found.report.last)
+    status, notes = ending(chosen, free, response, found.report, last)
     rows.status[~reached] = status
     rows.diagnostics += notes
     energy = free.layout.length * free.layout.length

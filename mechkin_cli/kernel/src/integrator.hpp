@@ -126,7 +126,9 @@ enum class LaneEnd : unsigned char {
 struct LaneReport {
   LaneEnd end = LaneEnd::DONE;
   unsigned char fault = 0;
-  int which = -1;                // the switch that ended the lane
+  int which = -1;                // the switch that ended the lane, or at STEP_LIMIT the one that was met most often
+  long met = 0;                  // how often that was
+  double step = 0.0;             // the last step that was tried
   bool stiff = false;            // the implicit method took over
   double stiff_from = 0.0;       // at this time
   double time = 0.0;             // how far the lane came

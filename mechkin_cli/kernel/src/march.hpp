@@ -27,6 +27,7 @@ struct LaneControl {
   double landing_slope = 0.0, landing_step = 0.0, landing_before = 0.0, landing_value = 0.0;
   bool landed = false;
   std::vector<int> passed;               // switches: how often they were passed at this place
+  std::vector<long> met;                 // switches: how often they were passed at all
   // Switches that are let alone until a step is taken: kinks met again and again where both sides give the same.
   Flags let_alone;
 };

@@ -159,23 +159,31 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
   return placed;
 }
 
-// The values of loads, of kinks and of what else is watched; the lanes in which a load has none.
-inline Mask evaluate_program(const Plan& p, Workspace& w, const StageGiven& given, const StageValues& values,
+struct Undefined {
+  Mask load, stop;
+};
+
+// The values of loads, of kinks and of what else is watched; the lanes in which a load or a stop has none.
+inline Undefined evaluate_program(const Plan& p, Workspace& w, const StageGiven& given, const StageValues& values,
                              Pack* watched) {
-  Mask undefined = all_lanes(false);
+  Undefined undefined = {all_lanes(false), all_lanes(false)};
   if (!p.law.outputs) return undefined;
   run_on_sides(p, w, p.law, values, packs(given.side), w.law);
   for (int v = 0; v < p.load_values; ++v) {
     w.load[v] = w.law[p.law.output[v]];
-    undefined = undefined | ~(w.load[v] == w.load[v]);
+    undefined.load = undefined.load | ~(w.load[v] == w.load[v]);
   }
   for (int k = 0; k < p.law.kinks; ++k) watched[k] = kink_value(p.law, k, w.law);
-  for (int v = p.load_values; v < p.law.outputs; ++v)
-    watched[p.law.kinks + v - p.load_values] = w.law[p.law.output[v]];
+  for (int v = p.load_values; v < p.law.outputs; ++v) {
+    const Pack value = w.law[p.law.output[v]];
+    watched[p.law.kinks + v - p.load_values] = value;
+    undefined.stop = undefined.stop | ~(value == value);
+  }
   return undefined;
 }
 
-void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given, const StageFound& found) {
+void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const Slips& slips, const StageGiven& given,
+                    const StageFound& found) {
   copy(packs(given.direction), p.charts * p.columns, w.direction);
   copy(packs(given.origin), p.states, w.origin);
   copy(packs(given.place), p.charts, w.place);
@@ -194,14 +202,16 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
   move(p, w, m, packs(given.rate), input_rate, packs(given.input_seconds));
   place_accelerations(p, w, given, fixed);
   const StageValues values = {given};
-  const Mask undefined = evaluate_program(p, w, given, values, packs(found.watched));
+  const Undefined undefined = evaluate_program(p, w, given, values, packs(found.watched));
   reduce_inertia(p, w, m);
   reduce_forces(p, w, m, values);
   Pack* const second = packs(found.chart_second);
   const Mask positive = solve_motion(p, m, second);
   Slid slid = {all_lanes(false), Pack(0.0)};
   if (p.frictions)
-    slid = slide(p, w, m, *packs(given.sense), *packs(given.rate), values, second, packs(found.ways));
+    slid = slide(p, w, m, slips, {packs(given.sense), packs(given.quiet), packs(given.aim)}, values, second,
+                 {packs(found.slip_rate), packs(found.slip_second), packs(found.slip_force), packs(found.slip_row),
+                  packs(found.slip_limit), packs(found.slip_loose), packs(found.slip_state), packs(found.slip_answer), packs(found.level)});
   powers_of_loads(p, w, m, second, input_rate, values, packs(found.power), packs(found.power) + 1);
   packs(found.power)[1] += slid.power;
 
@@ -225,7 +235,8 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
     if (!lane(placed.closed, i)) f |= STAGE_NOT_CLOSED;
     if (!lane(placed.on_branch, i)) f |= STAGE_OFF_BRANCH;
     if (!lane(positive, i)) f |= STAGE_SINGULAR_INERTIA;
-    if (lane(undefined, i)) f |= STAGE_UNDEFINED_LOAD;
+    if (lane(undefined.load, i)) f |= STAGE_UNDEFINED_LOAD;
+    if (lane(undefined.stop, i)) f |= STAGE_UNDEFINED_STOP;
     if (lane(slid.undecided, i)) f |= STAGE_FRICTION;
     found.flags[i] = (unsigned char)f;
   }
@@ -237,6 +248,7 @@ const Plan& plan_at(const char* wide) { return *reinterpret_cast<const Plan*>(wi
 struct Laid {
   Workspace w;
   ReducedMotion m;
+  Slips slips;
 };
 constexpr long LAID = (sizeof(Laid) + 63) / 64 * 64;
 Laid& laid_at(char* memory) { return *reinterpret_cast<Laid*>(memory + (64 - (std::uintptr_t)memory % 64) % 64); }
@@ -244,21 +256,24 @@ Laid& laid_at(char* memory) { return *reinterpret_cast<Laid*>(memory + (64 - (st
 long workspace_size(const char* wide) {
   Workspace w;
   ReducedMotion m;
-  return lay_out(plan_at(wide), nullptr, &w) + lay_out_motion(plan_at(wide), nullptr, &m) + LAID + 128;
+  Slips s;
+  const Plan& p = plan_at(wide);
+  return lay_out(p, nullptr, &w) + lay_out_motion(p, nullptr, &m) + lay_out_slips(p, nullptr, &s) + LAID + 128;
 }
 
 void prepare(const char* wide, char* memory) {
   const Plan& p = plan_at(wide);
   Laid& laid = laid_at(memory);
   char* const at = reinterpret_cast<char*>(&laid) + LAID;
-  const long used = lay_out(p, at, &laid.w);
-  lay_out_motion(p, at + used, &laid.m);
+  long used = lay_out(p, at, &laid.w);
+  used += lay_out_motion(p, at + used, &laid.m);
+  lay_out_slips(p, at + used, &laid.slips);
   find_moving(p, laid.w);
 }
 
 void evaluate(const char* wide, const StageGiven& given, const StageFound& found, char* memory) {
   Laid& laid = laid_at(memory);
-  evaluate_stage(plan_at(wide), laid.w, laid.m, given, found);
+  evaluate_stage(plan_at(wide), laid.w, laid.m, laid.slips, given, found);
 }
 
 const MotionUnit unit = {LANES, widen, workspace_size, prepare, evaluate};
