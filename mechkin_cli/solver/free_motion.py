@@ -55,10 +55,11 @@ class MotionReport(NamedTuple):
     refused step, the switch that held it or that was met most often when steps ran out, whether and
     from when the implicit method took over, the last time in s, the counts of rows, evaluations,
     steps and rejections, the last states, the branch points that were passed (time in s, states),
-    the states at the one that it has ended next to (none: empty), and whether short steps were
-    refused there as off the branch."""
+    the states at the one that it has ended next to (none: empty), whether short steps were
+    refused there as off the branch, and the numbers of the frictions that it ended by."""
 
     stop: int
+    joints: list[int]
     energy: float
     lightest: float
     growth: float

@@ -29,7 +29,7 @@ const double* checked(const Table& a, std::size_t variants, long width, const ch
 nb::dict report_of(const ResponseReport& report) {
   const LaneReport& r = report.lane;
   nb::dict d;
-  d["stop"] = report.stop;
+  d["stop"] = report.stop, d["joints"] = report.joints;
   nb::list crossings;
   for (const PassedBranchPoint& p : report.crossings) crossings.append(nb::make_tuple(p.time, p.state));
   d["last"] = report.last, d["crossings"] = crossings, d["branch_point"] = report.branch_point;
