@@ -62,7 +62,7 @@ MOST_RCSR, MOST_7R = 0.15, 0.5
 """ms for 2 s of response."""
 
 EQUAL_STEPS = {
-    "explicit": (0.05, 0.025, 0.0125, 0.00625),
+    "explicit": (0.05, 0.025, 0.0125),
     "implicit": (0.005, 0.0025),
 }
 """Of the double pendulum, s."""

@@ -8,8 +8,6 @@
 
 namespace {
 
-// Of the time since the origin: stages that are closer tell nearly the same, and their difference little.
-constexpr double NEAR_STAGE = 0.4;
 constexpr double FULL = 2.0 * 3.14159265358979323846;
 
 std::vector<char, AlignedAllocator<char>> wide_plan(const MotionUnit& unit, const std::vector<MotionStart>& starts) {
@@ -40,7 +38,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   make(direction_, (long)plan_.charts * plan_.columns), make(jacobian_, entries_), make(turn_, turn_slots_);
   make(elapsed_, 1), make(origin_time_, 1), make(place_, plan_.charts), make(rate_, plan_.charts);
   make(inputs_, plan_.inputs), make(input_rates_, plan_.inputs), make(input_seconds_, plan_.inputs);
-  make(miss_, (long)MISSES * plan_.columns), make(miss_elapsed_, MISSES);
+  make(miss_, plan_.columns), make(miss_elapsed_, 1);
   unit_.prepare(wide_.data(), workspace_.data());
   make(time_, 1), make(side_, plan_.law.kinks), make(done_, 2);
   if (driven_) laws_memory_ = driven_->memory();
@@ -186,20 +184,10 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
   }
 }
 
-// The next stages are predicted with what the prediction of this one missed: in place of those near it in time, else of one
-// that is none yet, else of the farthest.
+// The next stage is predicted with what the prediction of this one missed.
 void ChartedMotion::keep_miss(int lane, const Stage& found) {
-  const double now = elapsed_[lane];
-  const auto elapsed = [&](int i) -> double& { return miss_elapsed_[(long)i * lanes_ + lane]; };
-  const auto distance = [&](int i) { return elapsed(i) > 0.0 ? std::fabs(elapsed(i) - now) : __builtin_inf(); };
-  int place = 0;
-  for (int i = 0; i < MISSES; ++i) {
-    if (distance(i) <= NEAR_STAGE * now) elapsed(i) = 0.0;
-    if (distance(i) > distance(place)) place = i;
-  }
-  elapsed(place) = now;
-  for (int c = 0; c < plan_.columns; ++c)
-    miss_[((long)place * plan_.columns + c) * lanes_ + lane] = at(found.miss, c, lane);
+  miss_elapsed_[lane] = elapsed_[lane];
+  for (int c = 0; c < plan_.columns; ++c) miss_[(long)c * lanes_ + lane] = at(found.miss, c, lane);
 }
 
 // The first stop whose value there is none is what ends the lane, if nothing helps.
@@ -284,8 +272,7 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
       for (long k = 0; k < count; ++k) to[k * lanes_ + l] = from[k * lanes_ + l];
     };
     longest[l] = limits_.longest;
-    origin_time_[l] = time[l];
-    for (int i = 0; i < MISSES; ++i) miss_elapsed_[(long)i * lanes_ + l] = 0.0;
+    origin_time_[l] = time[l], miss_elapsed_[l] = 0.0;
     for (int k = 0; k < 2; ++k) done_[k * lanes_ + l] = y[(2 * n + k) * lanes_ + l];
     if (plan_.frictions) hold_sticking(l);
     continue_turns(l, end_.turned);

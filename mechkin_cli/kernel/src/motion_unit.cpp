@@ -31,29 +31,8 @@ struct StageValues {
   MECHKIN_INLINE Pack input(int, Pack, Pack angle) const { return angle; }
 };
 
-// A miss of so much earlier a stage is rounding.
-constexpr double EARLIEST_MISS = 0.01;
-
-// What the prediction misses grows with the third power of the time: of each known miss the part (MISSES) that the
-// polynomial has which goes through all of them, over the third power.
-inline void weigh_misses(const StageGiven& given, Pack t, Pack* weight) {
-  const Pack* const at = packs(given.miss_elapsed);
-  const Pack earliest = Pack(EARLIEST_MISS) * t;
-  const auto known = [=](int i) { return (at[i] > Pack(0.0)) & (at[i] > earliest); };
-  for (int i = 0; i < MISSES; ++i) {
-    const Pack own = select(known(i), at[i], Pack(1.0));
-    Pack above = t * t * t, below = own * own * own;
-    for (int j = 0; j < MISSES; ++j) {
-      if (j == i) continue;
-      above *= select(known(j), t - at[j], Pack(1.0));
-      below *= select(known(j), own - at[j], Pack(1.0));
-    }
-    weight[i] = select(known(i), above / below, Pack(0.0));
-  }
-}
-
-// Where the states would be by the origin's derivatives, moved along the chart to the wanted place, and by what that
-// missed at other stages. `missing` keeps where they would be without these.
+// Where the states would be by the origin's derivatives, moved along the chart to the wanted place; what that missed at
+// another stage grows with the third power of the time. `missing` keeps where they would be without it.
 inline void predict(const Plan& p, Workspace& w, const StageGiven& given, Pack* missing) {
   const Pack* const q = packs(given.origin);
   const Pack t = *packs(given.elapsed), half = Pack(0.5) * t * t;
@@ -66,11 +45,11 @@ inline void predict(const Plan& p, Workspace& w, const StageGiven& given, Pack* 
     // the directions are orthonormal in the weighted columns
     for (int c = 0; c < p.columns; ++c) w.rate[c] += off * along[c] * p.column_weight[c] * p.column_weight[c];
   }
-  Pack weight[MISSES];
-  weigh_misses(given, t, weight);
+  const Pack other = *packs(given.miss_elapsed), part = t / select(other > Pack(0.0), other, Pack(1.0));
+  const Pack cube = select(other > Pack(0.0), part * part * part, Pack(0.0));
   for (int c = 0; c < p.columns; ++c) {
     missing[c] = -w.rate[c];
-    for (int i = 0; i < MISSES; ++i) w.rate[c] += weight[i] * packs(given.miss)[i * p.columns + c];
+    w.rate[c] += cube * packs(given.miss)[c];
   }
   copy(q, p.states, w.q);
   for (int k = 0; k < p.links; ++k) {
@@ -92,11 +71,6 @@ inline Pack way(const Plan& p, const Workspace& w) {
 struct Placed {
   Mask closed, on_branch;
 };
-
-// Kept apart as is_regular is.
-__attribute__((noinline)) Closed close_in_chart(const Plan& p, Workspace& w, int block, const Request& limits) {
-  return close_block<true>(p, w, block, limits);
-}
 
 // The lanes with places of a kind.
 inline Mask lanes_placed(const StageGiven& given, double kind) {
@@ -151,6 +125,11 @@ inline void place_accelerations(const Plan& p, Workspace& w, const StageGiven& g
   for (int c = 0; c < p.columns; ++c)
     w.acceleration[c] = select(lanes, packs(given.placed_bend)[c], w.acceleration[c]);
   move_all(p, w, true);
+}
+
+// Kept apart as is_regular is.
+__attribute__((noinline)) Closed close_in_chart(const Plan& p, Workspace& w, int block, const Request& limits) {
+  return close_block<true>(p, w, block, limits);
 }
 
 inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given,

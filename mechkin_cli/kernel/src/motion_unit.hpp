@@ -3,17 +3,14 @@
 
 #include "plan.hpp"
 
-// How many earlier stages of a step correct the prediction of the next one.
-constexpr int MISSES = 3;
-
 // What a stage of an integration is computed from, one lane a variant; arrays are packs, [k * lanes + lane], 64-byte
 // aligned. The origin is the place that the chart is about.
 struct StageGiven {
   const double* origin;           // states
   const double* origin_rate;      // columns
   const double* origin_second;    // columns: their derivatives
-  const double* miss;             // MISSES x columns: what predictions missed at other stages since the origin, and
-  const double* miss_elapsed;     // MISSES: their times since then, different ones, zero for none
+  const double* miss;             // columns: what the prediction missed at another stage since the origin, and
+  const double* miss_elapsed;     // 1: its time since then, zero for none
   const double* direction;        // charts x columns, see chart.hpp
   const double* origin_jacobian;  // blocks' entries, the chart's rows included
   const double* elapsed;          // 1: time since the origin
