@@ -34,6 +34,9 @@ class Reason(NamedTuple):
 
 def reason(free: Session, response: Response, report: MotionReport) -> Reason:
     """The reason of an end that was not wanted; `free` is the session that moved."""
+    law = _law(free, report.which) if report.met else None
+    if law is not None and report.value < tolerances.KINK_ROUNDING:
+        return _rounding(law, report)
     if report.end is MotionEnd.STEP_LIMIT and not report.singular:
         return _step_limit(free, report)
     if report.end is MotionEnd.HELD:
@@ -46,7 +49,9 @@ def reason(free: Session, response: Response, report: MotionReport) -> Reason:
     if fault & Fault.UNDEFINED_STOP:
         return _undefined_stop(response, report)
     if fault & Fault.FRICTION:
-        text = "friction has no answer there, or more than one: the mechanism may jam, or slip"
+        rubbing = _rubbing(free, report)
+        whose = f"friction of {rubbing}" if rubbing else "friction"
+        text = f"{whose} has no answer there, or more than one: the mechanism may jam, or slip"
         hint = "make a coefficient smaller, or bearings longer"
         return Reason(Status.friction_undecided, "friction-undecided", text, hint)
     if fault & Fault.SINGULAR_INERTIA or _loses_inertia(response, report):
@@ -63,7 +68,17 @@ def reason(free: Session, response: Response, report: MotionReport) -> Reason:
             "other branches: end the response before it"
         )
         return Reason(Status.branch_lost, "branch-lost", text, hint)
+    if report.joints:
+        text = f"{_rubbing(free, report)} starts to slip in a direction that no step tells"
+        hint = "make its static coefficient a little larger than that of sliding"
+        return Reason(Status.friction_undecided, "friction-undecided", text, hint)
     return _tolerance(response, report)
+
+
+def _rubbing(free: Session, report: MotionReport) -> str:
+    """The names of the joints whose friction ends a motion."""
+    frictions = free.problem.mechanism.frictions
+    return ", ".join(frictions[number].joint for number in report.joints)
 
 
 def _branch_point(response: Response) -> Reason:
@@ -97,8 +112,9 @@ def _step_limit(free: Session, report: MotionReport) -> Reason:
 def _held(free: Session, report: MotionReport) -> Reason:
     law = _law(free, report.which)
     if law is None:
-        text = "the motion comes to rest again and again at one place"
-        hint = "make a coefficient smaller, or bearings longer"
+        whose = _rubbing(free, report) or "the motion"
+        text = f"{whose} comes to rest again and again at one place"
+        hint = "make a static coefficient a little larger than that of sliding, or bearings longer"
         return Reason(Status.friction_undecided, "friction-undecided", text, hint)
     text = (
         f"it is held where {_words(law)} jumps: from both sides the motion goes back to the jump, "
@@ -109,6 +125,14 @@ def _held(free: Session, report: MotionReport) -> Reason:
         "max(-1, min(1, x/small)) for sign(x)"
     )
     return Reason(Status.friction_undecided, "held-at-jump", text, hint, "", law.place)
+
+
+def _rounding(law: LoadLaw, report: MotionReport) -> Reason:
+    """A jump whose side rounding chooses, of a load that moves something."""
+    text = f"{_words(law)} jumps with the sign of what is zero all along but for rounding"
+    hint = "leave the jump out: what it asks for does not move"
+    measured = f"at most {report.value:.1e}"
+    return Reason(Status.friction_undecided, "held-at-jump", text, hint, measured, law.place)
 
 
 def _undefined_stop(response: Response, report: MotionReport) -> Reason:

@@ -32,7 +32,6 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
     : unit_(unit), starts_(starts), lanes_(unit.lanes), plan_(*starts[0].plan), limits_(limits), rows_(rows),
       turns_(closing_turns(plan_, *kernel_unit(2))), turn_slots_(slots_of(turns_)), wide_(wide_plan(unit, starts)),
       workspace_((std::size_t)unit.workspace_size(wide_.data())), stops_(stops), driven_(driven) {
-  require(!rubs() || plan_.charts == 1, "friction is that of one freedom");
   for (int b = 0; b < plan_.blocks; ++b) entries_ += (long)plan_.block[b].rows * plan_.block[b].size;
   const auto make = [&](Packed& a, long count) { a.assign((std::size_t)(count * lanes_), 0.0); };
   make(origin_, plan_.states), make(origin_first_, plan_.columns), make(origin_second_, plan_.columns);
@@ -52,6 +51,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   for (auto* a : {&energy_, &lightest_, &lightest_start_, &growth_}) a->assign(lanes_, 0.0);
   stop_start_.assign(stops_.size() * lanes_, 0.0), passed_.assign(stops_.size() * lanes_, 0);
   found_ = make_stage(), end_ = make_stage();
+  if (plan_.frictions) trial_ = make_stage();
   for (int l = 0; l < lanes_; ++l) {
     const MotionStart& s = starts_[l];
     for (int k = 0; k < plan_.states; ++k) origin_[k * lanes_ + l] = s.state[k];
@@ -65,11 +65,8 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   const std::vector<double> y = start();
   std::copy(y.begin() + (long)plan_.charts * lanes_, y.begin() + 2L * plan_.charts * lanes_, rate_.begin());
   std::fill(side_.begin(), side_.end(), 1.0);
-  sense_.assign(lanes_, 0.0), undecided_.assign(lanes_, 0);
-  for (int l = 0; l < lanes_ && rubs(); ++l) sense_[l] = (rate_[l] > 0.0) - (rate_[l] < 0.0);
+  if (plan_.frictions) begin_slips();
   evaluate(place_.data(), rate_.data(), &found_);
-  for (int l = 0; l < lanes_ && rubs(); ++l)
-    if (sense_[l] == 0.0) find_sense(l);
   jacobian_ = found_.jacobian, origin_second_ = found_.second, turn_ = found_.turned;
   for (std::size_t k = 0; k < stop_start_.size(); ++k)
     stop_start_[k] = found_.watched[(std::size_t)plan_.law.kinks * lanes_ + k];
@@ -80,7 +77,7 @@ ChartedMotion::Stage ChartedMotion::make_stage() const {
   const long n = plan_.charts;
   return {make(plan_.states), make(plan_.columns), make(plan_.columns), make(plan_.columns), make(entries_),
           make((n + plan_.inputs) * plan_.columns), make(n), make(n), make(n * n), make(plan_.law.kinks + plan_.law.outputs - plan_.load_values), make(2),
-          make(turn_slots_), make(3), std::vector<unsigned char>((std::size_t)lanes_)};
+          make(turn_slots_), make_slips(), std::vector<unsigned char>((std::size_t)lanes_)};
 }
 
 std::vector<double> ChartedMotion::start() const {
@@ -93,16 +90,16 @@ std::vector<double> ChartedMotion::start() const {
   return y;
 }
 
-void ChartedMotion::evaluate(const double* place, const double* rate, Stage* found, double* bend) {
+void ChartedMotion::evaluate(const double* place, const double* rate, Stage* found, double* bend, bool turns) {
   StageGiven given = {};
-  given.sense = sense_.data();
+  given.sense = slips_.sense.data(), given.quiet = slips_.quiet.data(), given.aim = slips_.aim.data();
   given.origin = origin_.data(), given.origin_rate = origin_first_.data(), given.origin_second = origin_second_.data();
   given.miss = miss_.data(), given.miss_elapsed = miss_elapsed_.data();
   given.direction = direction_.data(), given.origin_jacobian = jacobian_.data(), given.elapsed = elapsed_.data();
   given.place = place, given.rate = rate;
   given.inputs = inputs_.data(), given.input_rates = input_rates_.data(), given.input_seconds = input_seconds_.data();
   given.time = time_.data(), given.side = side_.data(), given.turned = turn_.data();
-  given.turns = turns_.data(), given.turn_count = (int)turns_.size();
+  given.turns = turns_.data(), given.turn_count = turns ? (int)turns_.size() : 0;
   given.tight = limits_.tight, given.coarse = limits_.coarse, given.accept = limits_.accept;
   given.iterations = limits_.iterations, given.jump = limits_.jump, given.radius = limits_.radius;
   bool any_placed = false;
@@ -114,14 +111,17 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
   const StageFound out = {found->state.data(), found->first.data(), found->second.data(), found->miss.data(),
                           found->jacobian.data(), found->tangent.data(), found->chart_second.data(), bend,
                           found->inertia.data(), found->watched.data(), found->power.data(), found->turned.data(),
-                          found->ways.data(), found->flags.data()};
+                          found->slip.rate.data(), found->slip.second.data(), found->slip.force.data(),
+                          found->slip.row.data(), found->slip.limit.data(), found->slip.loose.data(),
+                          found->slip.state.data(), found->slip.answer.data(), found->slip.level.data(),
+                          found->flags.data()};
   unit_.evaluate(wide_.data(), given, out, workspace_.data());
 }
 
 std::vector<SwitchKind> ChartedMotion::switches() const {
   std::vector<SwitchKind> kinds(plan_.law.kinks, {true});
   kinds.insert(kinds.end(), edges(), {true});
-  kinds.insert(kinds.end(), rubs(), {false, true});
+  kinds.insert(kinds.end(), slip_switches(), {false, true});
   kinds.insert(kinds.end(), stops_.size(), {false});
   return kinds;
 }
@@ -160,18 +160,23 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
   const int n = plan_.charts;
   set_places(places);
   Stage* const found = places.is_end ? &end_ : &found_;
-  evaluate(place_.data(), rate_.data(), found);
+  // turns are kept of places that may become origins or rows
+  evaluate(place_.data(), rate_.data(), found, nullptr, places.is_end);
   found->chart_rate = rate_;
+  if (plan_.frictions)
+    for (int l = 0; l < lanes_; ++l) stand_still(found, l);
   for (int l = 0; l < lanes_; ++l) {
     if (!places.active[l]) continue;
     for (int i = 0; i < n; ++i) rates.rates[i * lanes_ + l] = found->chart_second[i * lanes_ + l];
     for (int k = 0; k < 2; ++k) rates.rates[(n + k) * lanes_ + l] = found->power[k * lanes_ + l];
     rates.fault[l] = found->flags[l];
-    if (undecided_[l]) rates.fault[l] |= STAGE_FRICTION;
+    if (plan_.frictions && slips_.blocked[l]) rates.fault[l] |= STAGE_FRICTION;
+    if (found->flags[l] & STAGE_FRICTION) tell_undecided(*found, l);
     if (!found->flags[l]) keep_miss(l, *found);
     if (found->flags[l] & STAGE_UNDEFINED_STOP) find_undefined(*found, l);
     write_switches(*found, l, time_[l], rates.switches);
   }
+  if (plan_.frictions) look_for_ways(places, rates);
   for (int l = 0; l < lanes_; ++l) {
     if (!places.active[l]) continue;
     if (is_beyond(l)) rates.fault[l] |= STAGE_OFF_BRANCH;
@@ -201,9 +206,9 @@ double ChartedMotion::stop_value(int stop, int lane, double watched) const {
   return std::fabs(watched - stop_start_[(std::size_t)stop * lanes_ + lane]) - FULL * s.count;
 }
 
-void ChartedMotion::write_switches(const Stage& found, int lane, double time, double* switches) const {
-  const int kinks = plan_.law.kinks, edges = this->edges(), stops = kinks + edges + rubs();
-  if (rubs()) switches[(stops - 1) * lanes_ + lane] = at(found.ways, 2, lane);
+void ChartedMotion::write_switches(const Stage& found, int lane, double time, double* switches) {
+  const int kinks = plan_.law.kinks, edges = this->edges(), stops = kinks + edges + slip_switches();
+  if (plan_.frictions) write_slip_switches(found, lane, switches + (long)(kinks + edges) * lanes_);
   for (int k = 0; k < kinks; ++k) switches[k * lanes_ + lane] = at(found.watched, k, lane);
   for (int e = 0; e < edges; ++e) switches[(kinks + e) * lanes_ + lane] = time - driven_->edges()[e];
   for (int s = 0; s < (int)stops_.size(); ++s)
@@ -269,6 +274,7 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
     longest[l] = limits_.longest;
     origin_time_[l] = time[l], miss_elapsed_[l] = 0.0;
     for (int k = 0; k < 2; ++k) done_[k * lanes_ + l] = y[(2 * n + k) * lanes_ + l];
+    if (plan_.frictions) hold_sticking(l);
     continue_turns(l, end_.turned);
     take(end_.state, plan_.states, last_);
     const bool is_kept = keeps_curve(l, time[l], y);
@@ -317,6 +323,8 @@ void ChartedMotion::row(const unsigned char* lanes, const long* row, const doubl
     const Places places = {time, y, lanes, nullptr, false};
     set_places(places);
     evaluate(place_.data(), rate_.data(), &found_);
+    found_.chart_rate = rate_;
+    for (int l = 0; l < lanes_ && plan_.frictions; ++l) stand_still(&found_, l);
   }
   for (int l = 0; l < lanes_; ++l) {
     if (!lanes[l]) continue;
@@ -327,7 +335,7 @@ void ChartedMotion::row(const unsigned char* lanes, const long* row, const doubl
 }
 
 bool ChartedMotion::event(int lane, int which, bool rising, double) {
-  const int stop = which - plan_.law.kinks - edges() - rubs();
+  const int stop = which - plan_.law.kinks - edges() - slip_switches();
   if (stop < 0) return false;
   const MotionStop& s = stops_[stop];
   if (s.kind == STOP_CROSSING && s.direction * (rising ? 1 : -1) < 0) return false;
@@ -337,29 +345,10 @@ bool ChartedMotion::event(int lane, int which, bool rising, double) {
   return true;
 }
 
-// A freedom at rest goes the way that friction lets it; `found_` is of the place at rest. Where it may go both ways, none
-// is right.
-void ChartedMotion::find_sense(int lane) {
-  const bool forth = at(found_.ways, 0, lane) > 0.0, back = at(found_.ways, 1, lane) < 0.0;
-  undecided_[lane] = (forth && back) || found_.flags[lane] & STAGE_FRICTION;
-  sense_[lane] = forth - back;
-}
-
 void ChartedMotion::stand_still() {
   std::fill(place_.begin(), place_.end(), 0.0), std::fill(rate_.begin(), rate_.end(), 0.0);
   for (int l = 0; l < lanes_; ++l) {
     time_[l] = origin_time_[l], elapsed_[l] = 0.0;
     drive(l, time_[l]);
   }
-}
-
-// The one freedom has come to rest, or a rest ends: by the way that friction holds no longer, to rounding.
-void ChartedMotion::move(int lane, int, double, double* y) {
-  const bool rested = sense_[lane] == 0.0;
-  stand_still();
-  y[plan_.charts * lanes_ + lane] = 0.0;
-  sense_[lane] = 0.0;
-  evaluate(place_.data(), rate_.data(), &found_);
-  find_sense(lane);
-  if (rested && sense_[lane] == 0.0) sense_[lane] = -at(found_.ways, 0, lane) <= at(found_.ways, 1, lane) ? 1.0 : -1.0;
 }

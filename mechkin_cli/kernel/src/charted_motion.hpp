@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "aligned.hpp"
+#include "charted_friction.hpp"
 #include "crossing_curve.hpp"
 #include "driven_laws.hpp"
 #include "integrator.hpp"
 #include "motion_unit.hpp"
+#include "slip_trial.hpp"
 #include "stepper.hpp"
 
 // Where a lane begins.
@@ -82,6 +84,8 @@ class ChartedMotion : public Motion {
   bool finds_more(int lane) override;
   bool gives_up(int lane) const override;
 
+  // Joints (numbers of frictions) that a lane ends by: without an answer, met again and again, or just starting to slip.
+  std::vector<int> undecided_joints(int lane, const LaneReport& report) const;
   // The stop that ended a lane, or that had no value where it ended; -1 without one.
   int stopped_by(int lane) const { return stopped_[lane]; }
   // The least inertia of a lane at the end of its last step, a pivot, in parts of that at its start.
@@ -104,22 +108,68 @@ class ChartedMotion : public Motion {
   // Arrays of packs, as the unit takes them.
   struct Stage {
     Packed state, first, second, miss, jacobian, tangent, chart_rate, chart_second, inertia, watched, power, turned;
-    Packed ways;
+    SlipStage slip;
     std::vector<unsigned char> flags;
   };
 
   Stage make_stage() const;
-  void evaluate(const double* place, const double* rate, Stage* found, double* bend = nullptr);
+  // Without `turns` those of `found` stay as they are.
+  void evaluate(const double* place, const double* rate, Stage* found, double* bend = nullptr, bool turns = true);
   void set_places(const Places& places);
   void drive(int lane, double time);
   int edges() const { return driven_ ? (int)driven_->edges().size() : 0; }
-  bool rubs() const { return plan_.frictions > 0; }
   void stand_still();
-  void find_sense(int lane);
   void weigh(int lane);
   void find_undefined(const Stage& found, int lane);
+
+  // charted_friction.cpp
+  SlipStage make_slips() const;
+  void begin_slips();
+  // A switch for each friction, and one for those that rest with forces that are not unique.
+  int slip_switches() const { return plan_.frictions ? plan_.frictions + 1 : 0; }
+  bool rubs(int lane, int k) const;
+  int slip_columns(int k) const { return slips_.first[k + 1] - slips_.first[k]; }
+  double& sense(int lane, int k) { return slips_.sense[(std::size_t)k * lanes_ + lane]; }
+  double& quiet(int lane, int k) { return slips_.quiet[(std::size_t)k * lanes_ + lane]; }
+  double slip_size(const Packed& of, int lane, int k) const;
+  double lever(const Stage& found, int lane, int k) const;
+  double slip_switch(const Stage& found, int lane, int k) const;
+  void write_slip_switches(const Stage& found, int lane, double* switches);
+  void look_for_ways(const Places& places, const Rates& rates);
+  void tell_undecided(const Stage& found, int lane);
+  std::vector<int> sticking(int lane) const;
+  void arm(const Stage& found, int lane);
+  int hold_rates(Stage* found, int lane, const std::vector<int>& joints, double* v);
+  void hold_sticking(int lane);
+  void stand_still(Stage* found, int lane) const;
+  void evaluate_here(int lane, const std::vector<double>& v, Stage* found);
+  
+  // charted_sticking.cpp
+  // A row of a slip by the chart, what stays of the slip's derivative without it, and the row's size.
+  struct SlipRow {
+    std::vector<double> row;
+    double rest = 0.0, size = 0.0;
+  };
+  SlipRow slip_row(int lane, int c, const std::vector<SlipRow>& basis) const;
+  std::vector<SlipRow> held_rows(int lane, const std::vector<int>& joints) const;
+  bool slips_beside(int lane, const Signs& way, const std::vector<int>& joints) const;
+  bool aim(int lane, const std::vector<int>& joints, const Signs& way, const double* place, const double* rate,
+           Stage* found);
+  double turn_aim(int lane, int k, double step, const Stage& found);
+  SlipTrial trial(int lane, const Signs& way, const std::vector<int>& open, const std::vector<double>& v);
+  std::vector<Signs> ways_of(int lane, const std::vector<int>& open, int forced);
+  void take_senses(int lane, const Signs& senses);
+  Signs senses(int lane) const;
+  double along_sense(const Stage& found, int lane, int k) const;
+  std::vector<int> resting(int lane, int event);
+  bool set_going(int lane, int forced, std::vector<int>* open, const std::vector<double>& v);
+  bool go_first_way(int lane, std::vector<int>* open, const std::vector<double>& v);
+  void list_ways(int lane, const std::vector<double>& v);
+  double margin(int lane, const Signs& way, const double* place, const double* rate, bool* decided);
+  void settle(int lane, int event, std::vector<double>* v);
+  bool settled(int lane, int event, std::vector<double>* v);
   double stop_value(int stop, int lane, double watched) const;
-  void write_switches(const Stage& found, int lane, double time, double* switches) const;
+  void write_switches(const Stage& found, int lane, double time, double* switches);
   void keep_miss(int lane, const Stage& found);
   void lay_chart(int lane);
   void continue_turns(int lane, const Packed& found);
@@ -177,8 +227,7 @@ class ChartedMotion : public Motion {
   const std::vector<MotionStop> stops_;
   const DrivenLaws* driven_;
   DrivenLaws::Memory laws_memory_;
-  Packed sense_;                    // 1: which way the one freedom goes, see sliding.hpp
-  std::vector<unsigned char> undecided_;  // lanes: friction lets the freedom go both ways
+  SlipMemory slips_;
   std::vector<int> cell_;           // lanes: of the driven laws
   std::vector<double> stop_start_;  // stops x lanes: the values at the start
   std::vector<int> passed_;         // stops x lanes: how often a stop's value has passed
@@ -186,7 +235,7 @@ class ChartedMotion : public Motion {
   std::vector<long> next_row_;      // lanes
   std::vector<double> energy_, lightest_, lightest_start_, growth_;  // lanes
   Packed done_;                     // 2: work put in and lost at the origin
-  Stage found_, end_;
+  Stage found_, end_, trial_;
   std::vector<Crossing> crossing_;  // lanes
   std::vector<std::vector<PassedBranchPoint>> crossings_;
   Packed chart_time_;               // when the chart was laid

@@ -18,7 +18,6 @@ struct Rubbing {
   Vec3* along;         // contacts: directions of their loads
   Vec3* reach;         // contacts: their loads by a unit of one actuator (actuated_balance.hpp)
   Pack* effort;        // inputs, or actuators: of the drives without friction
-  Pack* answer;        // frictions: acceleration of the one freedom by a unit of each (sliding.hpp)
   Pack self_locking;
 };
 
@@ -30,7 +29,7 @@ inline void lay_out_friction(const Plan& p, Take&& take, Rubbing* r) {
   r->applied = (Wrench*)take(p.links * sizeof(Wrench));
   r->drag = (Wrench*)take(n * sizeof(Wrench));
   Pack** const vectors[] = {&r->speed, &r->coefficient, &r->force, &r->normal, &r->state,
-                            &r->at_rest, &r->right, &r->step, &r->weight, &r->answer};
+                            &r->at_rest, &r->right, &r->step, &r->weight};
   for (Pack** each : vectors) *each = (Pack*)take(n * pack);
   r->matrix = (Pack*)take(n * n * pack);
   r->bound = (Pack*)take(n * n * pack);

@@ -127,6 +127,11 @@ inline void place_accelerations(const Plan& p, Workspace& w, const StageGiven& g
   move_all(p, w, true);
 }
 
+// Kept apart as is_regular is.
+__attribute__((noinline)) Closed close_in_chart(const Plan& p, Workspace& w, int block, const Request& limits) {
+  return close_block<true>(p, w, block, limits);
+}
+
 inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given,
                           const StageFound& found) {
   Request limits = {};
@@ -138,7 +143,7 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
   take_places(p, w, given, fixed | lanes_placed(given, GUESSED));
   long entries = 0;
   for (int b = 0; b < p.blocks; ++b) {
-    Closed closed = close_block(p, w, b, limits);
+    Closed closed = close_in_chart(p, w, b, limits);
     if (any(fixed)) place_again(p, w, b, given, fixed, &closed);
     const BlockMatrices at = matrices_of(p, w, b);
     const int size = at.m * at.n;
@@ -182,7 +187,8 @@ inline Undefined evaluate_program(const Plan& p, Workspace& w, const StageGiven&
   return undefined;
 }
 
-void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given, const StageFound& found) {
+void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const Slips& slips, const StageGiven& given,
+                    const StageFound& found) {
   copy(packs(given.direction), p.charts * p.columns, w.direction);
   copy(packs(given.origin), p.states, w.origin);
   copy(packs(given.place), p.charts, w.place);
@@ -208,7 +214,9 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
   const Mask positive = solve_motion(p, m, second);
   Slid slid = {all_lanes(false), Pack(0.0)};
   if (p.frictions)
-    slid = slide(p, w, m, *packs(given.sense), *packs(given.rate), values, second, packs(found.ways));
+    slid = slide(p, w, m, slips, {packs(given.sense), packs(given.quiet), packs(given.aim)}, values, second,
+                 {packs(found.slip_rate), packs(found.slip_second), packs(found.slip_force), packs(found.slip_row),
+                  packs(found.slip_limit), packs(found.slip_loose), packs(found.slip_state), packs(found.slip_answer), packs(found.level)});
   powers_of_loads(p, w, m, second, input_rate, values, packs(found.power), packs(found.power) + 1);
   packs(found.power)[1] += slid.power;
 
@@ -245,6 +253,7 @@ const Plan& plan_at(const char* wide) { return *reinterpret_cast<const Plan*>(wi
 struct Laid {
   Workspace w;
   ReducedMotion m;
+  Slips slips;
 };
 constexpr long LAID = (sizeof(Laid) + 63) / 64 * 64;
 Laid& laid_at(char* memory) { return *reinterpret_cast<Laid*>(memory + (64 - (std::uintptr_t)memory % 64) % 64); }
@@ -252,21 +261,24 @@ Laid& laid_at(char* memory) { return *reinterpret_cast<Laid*>(memory + (64 - (st
 long workspace_size(const char* wide) {
   Workspace w;
   ReducedMotion m;
-  return lay_out(plan_at(wide), nullptr, &w) + lay_out_motion(plan_at(wide), nullptr, &m) + LAID + 128;
+  Slips s;
+  const Plan& p = plan_at(wide);
+  return lay_out(p, nullptr, &w) + lay_out_motion(p, nullptr, &m) + lay_out_slips(p, nullptr, &s) + LAID + 128;
 }
 
 void prepare(const char* wide, char* memory) {
   const Plan& p = plan_at(wide);
   Laid& laid = laid_at(memory);
   char* const at = reinterpret_cast<char*>(&laid) + LAID;
-  const long used = lay_out(p, at, &laid.w);
-  lay_out_motion(p, at + used, &laid.m);
+  long used = lay_out(p, at, &laid.w);
+  used += lay_out_motion(p, at + used, &laid.m);
+  lay_out_slips(p, at + used, &laid.slips);
   find_moving(p, laid.w);
 }
 
 void evaluate(const char* wide, const StageGiven& given, const StageFound& found, char* memory) {
   Laid& laid = laid_at(memory);
-  evaluate_stage(plan_at(wide), laid.w, laid.m, given, found);
+  evaluate_stage(plan_at(wide), laid.w, laid.m, laid.slips, given, found);
 }
 
 const MotionUnit unit = {LANES, widen, workspace_size, prepare, evaluate};

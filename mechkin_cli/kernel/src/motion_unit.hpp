@@ -16,7 +16,7 @@ struct StageGiven {
   const double* elapsed;          // 1: time since the origin
   const double* time;             // 1
   const double* side;             // kinks of the plan's program: +1 or -1
-  const double* sense;            // 1: of a motion of one freedom with friction, see sliding.hpp
+  const double *sense, *quiet, *aim;  // frictions, frictions, slips: how joints slip, see SlipsGiven
   const double* place;            // charts: u
   const double* rate;             // charts: its rate
   const double *inputs, *input_rates, *input_seconds;  // inputs: of what is driven
@@ -59,7 +59,10 @@ struct StageFound {
   double* watched;    // kinks of the plan's program, then its outputs beyond the loads' values
   double* power;      // 2: of efforts and loads without a potential; lost in dampers
   double* turned;        // turn slots: angles and quaternions of the closing joints as the kernel finds them
-  double* ways;          // 3: with friction, see sliding.hpp
+  double *slip_rate, *slip_second, *slip_force;  // slips: see SlipsFound
+  double* slip_row;      // slips x charts
+  double *slip_limit, *slip_loose, *slip_state, *slip_answer;  // frictions
+  double* level;         // 1
   unsigned char* flags;  // lanes: StageFlag
 };
 

@@ -42,7 +42,8 @@ void respond_pack(const ResponseTask& task, const MotionUnit& unit, long first, 
   const std::vector<LaneReport> found =
       integrate(motion, settings, begin.data(), motion.start(), {task.times, moments, 0});
   for (int l = 0; l < unit.lanes && first + l < count; ++l)
-    (*reports)[first + l] = {found[l], motion.stopped_by(l), motion.lightest(l), motion.growth(l), motion.energy(l), motion.last_place(l), motion.crossings(l),
+    (*reports)[first + l] = {found[l], motion.stopped_by(l), motion.undecided_joints(l, found[l]),
+                             motion.lightest(l), motion.growth(l), motion.energy(l), motion.last_place(l), motion.crossings(l),
                              motion.branch_point_near(l), motion.is_next_to_singular(l)};
 }
 

@@ -16,6 +16,7 @@ struct ResponseTask {
 struct ResponseReport {
   LaneReport lane;
   int stop;  // that ended it, -1: none
+  std::vector<int> joints;  // frictions that it ended by
   double lightest;  // see ChartedMotion::lightest
   double growth;    // see ChartedMotion::growth
   double energy;  // the largest kinetic energy at the ends of steps; kg, length units, s

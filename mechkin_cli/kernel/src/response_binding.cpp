@@ -29,7 +29,7 @@ const double* checked(const Table& a, std::size_t variants, long width, const ch
 nb::dict report_of(const ResponseReport& report) {
   const LaneReport& r = report.lane;
   nb::dict d;
-  d["stop"] = report.stop;
+  d["stop"] = report.stop, d["joints"] = report.joints;
   nb::list crossings;
   for (const PassedBranchPoint& p : report.crossings) crossings.append(nb::make_tuple(p.time, p.state));
   d["last"] = report.last, d["crossings"] = crossings, d["branch_point"] = report.branch_point;
@@ -39,6 +39,7 @@ nb::dict report_of(const ResponseReport& report) {
   d["growth"] = report.growth;
   d["met"] = r.met;
   d["step"] = r.step;
+  d["value"] = r.value;
   d["end"] = (int)r.end, d["fault"] = (int)r.fault, d["which"] = r.which;
   d["stiff"] = r.stiff, d["stiff_from"] = r.stiff_from, d["time"] = r.time, d["rows"] = r.rows;
   d["evaluations"] = r.evaluations, d["steps"] = r.steps, d["rejections"] = r.rejections;
