@@ -16,8 +16,8 @@ import mechkin_cli as mk
 DEPTH = 3
 COUNTS = (2, 5, 101)
 TOLERANCE, TOLERANCE_ROWS = 2e-7, 1e-8
-"""Of rates and places of size 1: from the tiny steps, which go over kinks blindly; between responses
-with other rows."""
+"""Of rates and places of size 1: from the tiny steps, which go over kinks blindly; between
+responses with other rows."""
 
 Value = Callable[[float, np.ndarray], float]
 LEAVES: list[tuple[str, Value]] = [
