@@ -20,6 +20,7 @@ struct Rubbing {
   Vec3* reach;         // contacts: their loads by a unit of one actuator (actuated_balance.hpp)
   Pack* effort;        // inputs, or actuators: of the drives without friction
   Pack* answer;        // frictions: acceleration of the one freedom by a unit of each (sliding.hpp)
+  Pack softness;       // of magnitudes of loads, zero but on the way to a start (friction_solver.hpp)
   Pack self_locking;
 };
 

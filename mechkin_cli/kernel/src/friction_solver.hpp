@@ -20,7 +20,10 @@ namespace {
 constexpr double CONTRACTION_MARGIN = 1e-12;
 // Residuals, in parts of the largest friction force: a few roundings of the sums; where Newton gets no further; accepted.
 constexpr double FRICTION_TIGHT = 4e-15, FRICTION_STALLED = 1e-12, FRICTION_ACCEPT = 1e-10;
-constexpr int FRICTION_ITERATIONS = 200;
+constexpr int FRICTION_ITERATIONS = 60;
+// Softness of magnitudes in parts of the loads at which they hardly bend, and steps, two for each halving, to their rounding.
+constexpr double FRICTION_SOFTEST = 16.0;
+constexpr int FRICTION_LEVELS = 112;
 // Part of Newton's step below which z := mu N(z) is taken instead: at kinks of the magnitudes steps of an eighth help.
 constexpr double FRICTION_SHORTEST = 1.0 / 1024.0;
 
@@ -98,7 +101,7 @@ inline void load_contacts(const Plan& p, const Rubbing& r) {
     for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
       Vec3 load = r.base[c];
       for (int j = 0; j < n; ++j) load += r.force[j] * r.gain[c * n + j];
-      const Pack size = magnitude(load);
+      const Pack size = sqrt(dot(load, load) + r.softness * r.softness);
       const Mask none = size == Pack(0.0);
       r.along[c] = select(none, Pack(0.0), Pack(1.0) / select(none, Pack(1.0), size)) * load;
       normal += Pack(p.contact[c].weight) * size;
@@ -153,20 +156,11 @@ inline LeftOver left_over(const Plan& p, const Rubbing& r) {
   return found;
 }
 
-// Friction forces into r.force, normal loads into r.normal, FrictionState into r.state where there is no answer, from
-// coefficients, base and gain; r.state is FRICTION_DECIDED.
-inline void solve_friction(const Plan& p, Rubbing& r) {
+// Newton's method from r.force on for lanes that are not `done`; loads and residuals of all are those of r.force after it.
+inline void iterate_friction(const Plan& p, Rubbing& r, Mask done) {
   const int n = p.frictions;
-  prove_unique(p, r);
-  // by the reactions without friction
-  for (int k = 0; k < n; ++k) {
-    Pack normal = 0.0;
-    for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c)
-      normal += Pack(p.contact[c].weight) * magnitude(r.base[c]);
-    r.force[k] = r.coefficient[k] * normal;
-  }
   // each lane tries a length of Newton's step from `origin`; that of zero stands for z := mu N(z)
-  Mask done = all_lanes(false), moved = all_lanes(false);
+  Mask moved = all_lanes(false);
   Pack before = __builtin_inf(), length = 0.0;
   const Pack infinite = __builtin_inf();
   for (int iteration = 0; iteration < FRICTION_ITERATIONS; ++iteration) {
@@ -204,9 +198,51 @@ inline void solve_friction(const Plan& p, Rubbing& r) {
   }
   // where the forces were moved after their loads had been found, or were not found in time
   if (any(moved) | !all(done)) load_contacts(p, r);
-  const LeftOver last = left_over(p, r);
-  const Mask solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
+}
+
+// A start next to the solution for lanes that are not `done`: magnitudes sqrt(|load|^2 + softness^2) have no kinks and the
+// same Lipschitz matrix; their solution is followed while the softness falls from far above the loads to their rounding.
+inline void start_softly(const Plan& p, Rubbing& r, Mask done) {
+  const int n = p.frictions;
+  Pack size = 0.0;
+  for (int c = 0; c < p.contacts; ++c) size = max(size, sum_of_components(r.base[c]));
+  for (int k = 0; k < n; ++k) {
+    r.origin[k] = r.force[k];
+    r.force[k] = select(done, r.force[k], Pack(0.0));
+  }
+  r.softness = Pack(FRICTION_SOFTEST) * size;
+  for (int level = 0; level < FRICTION_LEVELS; ++level) {
+    load_contacts(p, r);
+    differentiate_loads(p, r);
+    eliminate(r, n);
+    for (int k = 0; k < n; ++k) r.force[k] += r.right[k];
+    if (level & 1) r.softness *= Pack(0.5);
+  }
+  r.softness = 0.0;
+  for (int k = 0; k < n; ++k) r.force[k] = select(done, r.origin[k], r.force[k]);
+}
+
+// Friction forces into r.force, normal loads into r.normal, FrictionState into r.state where there is no answer, from
+// coefficients, base and gain; r.state is FRICTION_DECIDED.
+inline void solve_friction(const Plan& p, Rubbing& r) {
+  const int n = p.frictions;
+  prove_unique(p, r);
+  // by the reactions without friction
+  for (int k = 0; k < n; ++k) {
+    Pack normal = 0.0;
+    for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c)
+      normal += Pack(p.contact[c].weight) * magnitude(r.base[c]);
+    r.force[k] = r.coefficient[k] * normal;
+  }
+  r.softness = 0.0;
+  iterate_friction(p, r, all_lanes(false));
+  LeftOver last = left_over(p, r);
+  Mask solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
   if (all(solved)) return;
+  start_softly(p, r, solved);
+  iterate_friction(p, r, solved);
+  last = left_over(p, r);
+  solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
   for (int k = 0; k < n; ++k) {
     const Mask open = ~solved & (r.state[k] == Pack((double)FRICTION_DECIDED));
     r.state[k] = select(open, Pack((double)FRICTION_NOT_SOLVED), r.state[k]);

@@ -235,7 +235,9 @@ class Row:
         near = MANY_STARTS if SURELY_ONE < radius < 1.0 else 1
         found = _roots(system, len(names), near) if radius < 1.0 else []
         z = found[0] if found else np.zeros(len(names))
-        others = any(np.abs(z - each).max() > 1e-6 * np.abs(z).max() for each in found)
+        others = any(
+            (np.abs(z - each) > 1e-6 * np.abs(z).max()).any() for each in found if each.size
+        )
         unknowns = plain + sum(value * own for value, own in zip(z, by_unit, strict=True))
         forces = dict(zip(names, z.tolist(), strict=True))
         return Rubbed(radius, forces, drag, mu, unknowns, bool(found), others)
