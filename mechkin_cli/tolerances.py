@@ -755,6 +755,18 @@ ENERGY_ROUNDING: Final = 2.0**-48
 """Parts of the largest potential energy below which nothing is missing of a response's energies: 16
 roundings, as heights are sums of some. A pendulum that swings by 1e-6 deg moves 1e-16 of it."""
 
+RUNAWAY: Final = 1e6
+"""Accelerations in parts of the rates over the duration from which on rates run away: steps that
+the tolerance refuses end at 1e8 to 1e12 of them."""
+
+LOST_INERTIA: Final = 1e-3
+"""Parts of the least inertia at the start below which rates that run away do so for want of it; it
+is 1e-8 to 1e-10 where such steps end."""
+
+MANY_KINKS: Final = 0.2
+"""Parts of all steps that end at one kink from which on a response is said to run out of steps by
+it."""
+
 SAME_MOMENT: Final = 1e-15
 """A stop so near to the last row, in parts of its moment, ends the response at that row: a few
 roundings of the time, which would print as two rows of one moment."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
 from mechkin_cli.building.run_names import runs_of, unknown_run
+from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector, parse
 from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.mechanism.drives import Drives, without_effort
@@ -80,7 +81,8 @@ def _table(
         if layout is not None:
             columns.append(layout)
     title = section.title or section.name
-    return TableLayout(section.name, title, tuple(columns), _published(section.published), run)
+    published = _published(fields, (*path, "published"), section.published)
+    return TableLayout(section.name, title, tuple(columns), published, run)
 
 
 def _default(problem: Problem, run: str) -> TableLayout:
@@ -103,9 +105,20 @@ def _refuse_taken(fields: Fields, file: MechanismFile, run: str) -> None:
             fields.error("table-clash", ("tables", i, "name"), text, hint)
 
 
-def _published(section: written.PublishedValues | None) -> PublishedValues | None:
+def _published(
+    fields: Fields, path: Path, section: written.PublishedValues | None
+) -> PublishedValues | None:
+    """What is known of the print; a file that is not there is warned of, since the table needs none
+    until it is compared."""
     if section is None:
         return None
+    folder = fields.document.folder
+    if folder is not None and not (folder / section.file).is_file():
+        at = path if fields.document.node((*path, "file")) is None else (*path, "file")
+        place = fields.document.place(at)
+        text = f"there are no printed values in {folder / section.file}"
+        hint = "the path leads from the folder of the mechanism file; put the file there"
+        fields.note(Diagnostic("published-missing", "warning", text, place, hint=hint))
     remarks = tuple(PrintedRemark(r.text, r.columns or (), r.data or ()) for r in section.remarks)
     return PublishedValues(section.file, remarks, section.rows_by)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism.friction import FrictionLaw, Rubbing
 from mechkin_cli.mechanism.joint_table import JOINT_TYPES
 from mechkin_cli.mechanism.model import Attached, Joint
@@ -15,8 +14,6 @@ from mechkin_cli.tolerances import LARGEST_FLANK, PARALLEL
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, VELOCITY
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from mechkin_cli.schema.loads import FrictionAtJoint
 
 CODE = "friction"
@@ -139,10 +136,3 @@ def _across(fields: Fields, path: Path, section: FrictionAtJoint, joint: Joint) 
         return None
     along = scale(dot(given, axis.vector), axis.vector)
     return Attached(axis.link, unit(subtract(given, along)))
-
-
-def refuse_response(fields: Fields, frictions: Sequence[Rubbing], run: str) -> None:
-    """Notes that friction in responses is that of one freedom."""
-    text = f"friction acts in the response {run}, which has several freedoms or drives"
-    hint = "friction is computed in sweeps and in responses of one freedom: write runs: beside it"
-    fields.note(Diagnostic(CODE, "error", text, frictions[0].place, hint=hint))

@@ -23,13 +23,14 @@ def held_of(problem: Problem) -> tuple[Held, ...]:
     return held_along(problem, held)
 
 
-def note_spins(fields: Fields, problem: Problem) -> None:
-    """Notes what would drive the idle freedoms: kinematics alone does not know how they move."""
+def note_spins(fields: Fields, problem: Problem, *, free: bool = False) -> None:
+    """Notes what would drive the idle freedoms: kinematics alone does not know how they move, and a
+    `free` motion where its start does not name them."""
     if not (find_legs(problem.mechanism) or problem.held):
         return
-    from mechkin_cli.mechanism.idle import spin_errors
+    from mechkin_cli.mechanism.spins import spin_errors
 
-    for link, diagnostic in spin_errors(problem):
+    for link, diagnostic in spin_errors(problem, free=free):
         found = diagnostic._replace(place=fields.document.place(("links", link)))
         if found not in fields.diagnostics:
             fields.diagnostics.append(found)

@@ -35,7 +35,7 @@ def with_graphs(fields: Fields, problem: Problem) -> tuple[Problem, Graphs]:
         response = replace(response, held=first.held)
         graphs[name] = response_graph(fields, problem, response)
         if isinstance(graphs[name], SolverGraph):
-            note_spins(fields, first)
+            note_spins(fields, first, free=True)
             response = replace(response, mechanism=settled(first).mechanism)
         responses[name] = response
     return replace(problem, responses=responses), graphs
@@ -82,7 +82,7 @@ def _too_few(response: Response, error: UnsolvableGraph) -> Diagnostic:
         "error",
         f"the start of {response.name} names {_coordinates(response.independent)}, but "
         f"{free} {'is' if free == 1 else 'are'} free; candidates: {listed(error.candidates)}",
-        measured=f"{error.missing} more unknowns than closing equations",
+        measured=f"{error.missing} more unknown{'s' * (error.missing > 1)} than closing equations",
         hint=HINT,
     )
 

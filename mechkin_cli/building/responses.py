@@ -11,7 +11,6 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.building.assembly import near_values
 from mechkin_cli.building.coordinates import is_coordinate
-from mechkin_cli.building.friction import refuse_response
 from mechkin_cli.building.laws import Clock
 from mechkin_cli.building.motion import Written, build_inputs, spaced_moments
 from mechkin_cli.building.start import build_start
@@ -71,8 +70,6 @@ class _Builder:
         efforts = self._efforts(path, section, name)
         acting = self.loads.of_run(name)
         start = build_start(self.fields, path, section, self.joints)
-        if acting.frictions and (driven.inputs or sum(s.value is not None for s in start) > 1):
-            refuse_response(self.fields, acting.frictions, name)
         known: Mapping[str, Wanted] = self.loads.runs[name]
         stops = StopBuilder(self.fields, self.joints, name, known)
         assert timed.time is not None

@@ -64,7 +64,7 @@ def _all_rates(
     if len(rates) == len(values):
         return dict(rates)
     place = (*path, f"{others[0]}{RATE}")
-    text = f"start has {len(rates)} rates for {len(values)} coordinates"
+    text = f"start has {_counted(rates, 'rate')} for {_counted(values, 'coordinate')}"
     if len(rates) > len(values):
         hint = "give as many rates as coordinates: remove a rate"
     else:
@@ -72,6 +72,10 @@ def _all_rates(
         hint = f"with a rate of another coordinate name all: add {' or '.join(missing)}"
     fields.key_error("start-rates", place, text, hint)
     return dict(rates)
+
+
+def _counted(named: Mapping[str, float], word: str) -> str:
+    return f"{len(named)} {word}{'s' * (len(named) != 1)}"
 
 
 def _is_prescribed(

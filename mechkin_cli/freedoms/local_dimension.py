@@ -77,11 +77,12 @@ def freedom_of(
     component = _regular(part, state, first, random)
     if component is not None:
         return Freedom(first, (component,))
-    return (
-        Freedom(first, (), "a special position")
-        if regular
-        else _singular(part, state, first, random)
-    )
+    if regular:
+        return Freedom(first, (), "a special position")
+    if not first.stresses.shape[1]:
+        # regular by its rank, but its moves do not show it: sizes too far apart for the numbers
+        return Freedom(first, (), "no move along its motions closes the loops as they should")
+    return _singular(part, state, first, random)
 
 
 def _regular(part: Part, state: Floats, first: Rank, random: RandomStarts) -> Component | None:

@@ -81,7 +81,7 @@ def _refuse_loaded_spin(problem: Problem, names: Sequence[str]) -> None:
         return
     known = problem.quantities() if names else {}
     if needs_all_links(problem.mechanism, [known[name] for name in names]):
-        from mechkin_cli.mechanism.idle import spin_errors
+        from mechkin_cli.mechanism.spins import spin_errors
 
         for _, diagnostic in spin_errors(problem):
             raise UsageError(str(diagnostic))

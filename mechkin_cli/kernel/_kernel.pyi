@@ -284,6 +284,7 @@ class PlanBuilder:
         falls: bool,
         axis: Triple,
         radius: float,
+        pitch: float,
         at_rest: float,
         sliding: float,
         speed: float,

@@ -138,7 +138,10 @@ class Group:
         none."""
         if any(len(place) != 1 for place in self.left):
             return None
-        screws = [scaled_screw(place[0].own.twists[link]) for place in self.left]
+        twists = [place[0].own.twists[link] for place in self.left]
+        if not all(any(angular) or any(linear) for angular, linear in twists):
+            return None
+        screws = [scaled_screw(twist) for twist in twists]
         return screws[0] if all(same_line(screws[0], other) for other in screws[1:]) else None
 
     def is_steady(self, freedom: Freedom) -> bool:
@@ -150,6 +153,8 @@ class Group:
         for (moving,) in self.left:
             angular, linear = moving.own.twists[self.links[0]]
             turn, slide = norm(angular), norm(linear)
+            if turn == slide == 0.0:
+                return False
             speed = turn if turn > tolerances.SAME_COMMON_MOTION * slide else slide
             speeds.append(abs(moving.own.rates.get(freedom, 0.0)) / speed)
         apart = max(speeds) - min(speeds)

@@ -7,7 +7,7 @@ from mechkin_cli.schema.base import Section, refuse
 from mechkin_cli.schema.coefficients import Coefficients
 from mechkin_cli.schema.rules import After, Barred, Limits, Named, Shown
 from mechkin_cli.schema.scalars import (
-    COORDINATE_PATTERN,
+    CYCLE_PATTERN,
     AnyDimension,
     CoordinateRate,
     Dimensionless,
@@ -17,7 +17,7 @@ from mechkin_cli.schema.tables import TAKEN_FOR_EDITORS, Table, TableName, free_
 
 CycleName = Annotated[
     str,
-    Limits(pattern=f"{COORDINATE_PATTERN}|^time$"),
+    Limits(pattern=CYCLE_PATTERN),
     Shown(("string",), "an input that turns, or time", ("A.theta", "time")),
     Named("CycleName"),
 ]

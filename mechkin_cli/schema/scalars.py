@@ -13,6 +13,7 @@ from mechkin_cli.schema.rules import Before, Dimension, Limits, Named, Shown
 
 NAME_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*$"
 COORDINATE_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*\.([a-z][a-z0-9]*|position\.[xyz])$"
+CYCLE_PATTERN: Final = f"{COORDINATE_PATTERN}|^time$"
 START_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*\.[a-z][a-z0-9]*(_dot)?$"
 TABLE_NAME_PATTERN: Final = r"^[A-Za-z0-9_-]{1,100}$"
 CSV_PATH_PATTERN: Final = r"^[A-Za-z0-9_-][A-Za-z0-9_. -]*(/[A-Za-z0-9_-][A-Za-z0-9_. -]*)*\.csv$"
@@ -20,6 +21,10 @@ CSV_PATH_PATTERN: Final = r"^[A-Za-z0-9_-][A-Za-z0-9_. -]*(/[A-Za-z0-9_-][A-Za-z
 FORMS: Final = {
     NAME_PATTERN: ("a name", "use letters, digits and _, and no digit at the start"),
     COORDINATE_PATTERN: ("a joint coordinate", "write joint.coordinate, for example O1.theta"),
+    CYCLE_PATTERN: (
+        "an input that turns, or time",
+        "write joint.coordinate, for example A.theta, or time",
+    ),
     START_PATTERN: (
         "a joint coordinate or its rate",
         "write joint.coordinate or joint.coordinate_dot, for example O1.theta_dot",

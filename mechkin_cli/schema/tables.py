@@ -90,7 +90,6 @@ _TAKEN = {
 
 def free_name(name: str) -> str:
     """The name, if nothing else is written to its files."""
-    """The name, if nothing else is written under it."""
     if name.casefold() in _TAKEN:
         raise refuse("reserved-name", _TAKEN[name.casefold()], "rename it")
     if DEVICE.fullmatch(name):

@@ -48,7 +48,7 @@ def _completed(error: dict[str, Any], data: object) -> dict[str, Any]:
     if error["type"] not in ("missing", "extra_forbidden"):
         return error
     from mechkin_cli.schema.known_keys import known_keys  # reads sources: only for messages
-    from mechkin_cli.schema.other_words import advice_for_key
+    from mechkin_cli.schema.other_keys import advice_for_key
 
     *mapping, key = error["loc"]
     known = known_keys(MechanismFile, tuple(mapping))

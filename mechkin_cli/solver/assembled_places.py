@@ -8,6 +8,7 @@ little follow. If nothing closes, the drawing has to do as it is.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -93,7 +94,9 @@ def _session(mechanism: Mechanism, graph: Callable[[], SolverGraph]) -> Session 
         return None
     if any(block.equations > tolerances.MOST_EQUATIONS for block in found.blocks):
         return None
-    problem = Problem(mechanism, Motion((), 1), Assembly(), UnitSystem())
+    # no load says where links stand, and the laws of those that vary are the runs'
+    unloaded = replace(mechanism, loads=(), frictions=())
+    problem = Problem(unloaded, Motion((), 1), Assembly(), UnitSystem())
     return Session(problem, found, driven=found.driven)
 
 

@@ -42,18 +42,28 @@ class Fault(IntEnum):
     SINGULAR_INERTIA = 4
     UNDEFINED_LOAD = 8
     FRICTION = 16
+    UNDEFINED_STOP = 32
     NOT_FINITE = 255
 
 
 class MotionReport(NamedTuple):
-    """What a motion came to: the stop that ended it (-1: none), the largest kinetic energy at the
-    ends of its steps (kg, length units, s), its end, the fault of the last
-    refused step, the switch that held it, whether and from when the implicit method took over, the
-    last time in s, and the counts of rows, evaluations, steps, rejections and branch points that
-    were passed straight on."""
+    """What a motion came to: the stop that ended it or that had no value where it ended (-1: none),
+    the largest kinetic energy at the ends of its steps (kg, length units, s), the least inertia at
+    the last of them in parts of that at the start, the accelerations there in parts of the rates
+    (1/s), how often the switch `which` was met, the last step in s, its end, the fault of the last
+    refused step, the switch that held it or that was met most often when steps ran out, whether and
+    from when the implicit method took over, the last time in s, the counts of rows, evaluations,
+    steps and rejections, the last states, the branch points that were passed (time in s, states),
+    the states at the one that it has ended next to (none: empty), whether short steps were
+    refused there as off the branch, and the numbers of the frictions that it ended by."""
 
     stop: int
+    joints: list[int]
     energy: float
+    lightest: float
+    growth: float
+    met: int
+    step: float
     end: MotionEnd
     fault: int
     which: int
@@ -64,7 +74,10 @@ class MotionReport(NamedTuple):
     evaluations: int
     steps: int
     rejections: int
-    passed: int
+    last: list[float]
+    crossings: list[tuple[float, list[float]]]
+    branch_point: list[float]
+    singular: bool
 
 
 @dataclass(frozen=True)
@@ -138,9 +151,8 @@ def integrate(
     """Integrates motions of plans of one structure, packed into lanes, from time `begin` (s) over
     the rows' `times` (rows,).
 
-    `stops` go with the values that the plans watch, in order; `driven` with their inputs.
-
-    `straight` passes branch points along the smooth continuation.
+    `stops` go with the values that the plans watch, in order; `driven` with their inputs;
+    `straight`: branch points are passed along the smooth continuation.
 
     Raises:
         ValueError: times that do not rise from `begin` on.

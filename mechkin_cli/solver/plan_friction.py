@@ -35,6 +35,7 @@ def _records(layout: Layout, rubbing: Rubbing) -> Iterator[Friction | Contact]:
         rubbing.speed is not None,
         layout.vector(axis),
         0.0 if rubbing.radius is None else rubbing.radius / unit,
+        joint.pitch / unit,
         rubbing.at_rest,
         rubbing.sliding,
         1.0 if rubbing.speed is None else rubbing.speed / unit,

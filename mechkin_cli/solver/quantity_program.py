@@ -26,6 +26,7 @@ from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import curve
+    from mechkin_cli.mechanism.load_laws import LoadLaw
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.layout import Layout
@@ -66,9 +67,35 @@ def load_program(layout: Layout) -> list[Program]:
     recording = _Recording(layout, laws.quantities, laws.parameters, [*acting, *laws.watched])
     found = recording.values()
     kinks = recording.kinks
+    outputs = _outputs_of_loads(layout, recording, used, found)
+    return [recording.program(outputs, kinks)]
+
+
+def _outputs_of_loads(
+    layout: Layout, recording: _Recording, used: Sequence[int], found: Sequence[Any]
+) -> list[Any]:
     values = dict(zip(used, map(recording.defined, found[: len(used)]), strict=True))
-    columns = kernel_columns(layout, values)
-    return [recording.program([*columns, *found[len(used) :]], kinks)]
+    return [*kernel_columns(layout, values), *found[len(used) :]]
+
+
+def kink_laws(layout: Layout) -> list[LoadLaw]:
+    """The law in which each kink of `load_program` stands, of several the first."""
+    laws = layout.laws
+    assert laws is not None
+    used = sorted({one.number for load in layout.mechanism.loads for one in varying(load)})
+    own = [*(laws.laws[number] for number in used), *laws.watched]
+    recording = _Recording(layout, laws.quantities, laws.parameters, own)
+    found = recording.values()
+    kinks, ends = recording.kinks, recording.ends
+    outputs = _outputs_of_loads(layout, recording, used, found)
+    registers = [register(recording.recorder, value) for value in outputs]
+    written = recording.recorder.instructions
+    owner: dict[int, LoadLaw] = {}
+    for law, begin, end in zip(own, [0, *ends], ends, strict=False):
+        marked = [one for one in written[begin:end] if one in kinks]
+        for number in recording.recorder.listed(registers, marked)[-1]:
+            owner.setdefault(number, law)
+    return [owner[number] for number in sorted(owner)]
 
 
 def compile_quantity_expressions(
@@ -129,16 +156,21 @@ class _Recording:
         ]
         self._first_curve = width
         self.recorder = RowRecorder(width + len(self._curves))
+        self.ends: list[int] = []
+        """How many instructions there are after each law."""
 
     def values(self) -> list[Any]:
         """The laws' values in SI."""
         curves = iter(range(self._first_curve, self._first_curve + len(self._curves)))
-        return [
-            law.expression.evaluate(self._resolve).value
-            if law.curve is None
-            else self.recorder.number(next(curves))
-            for law in self._laws
-        ]
+        found = []
+        for law in self._laws:
+            found.append(
+                law.expression.evaluate(self._resolve).value
+                if law.curve is None
+                else self.recorder.number(next(curves))
+            )
+            self.ends.append(len(self.recorder.instructions))
+        return found
 
     def defined(self, value: Any) -> Any:
         """The value where it is no slip of the pen, else nan."""

@@ -214,6 +214,7 @@ class Friction(NamedTuple):
     falls: bool
     axis: Triple
     radius: Number
+    pitch: Number
     at_rest: Number
     sliding: Number
     speed: Number
@@ -309,7 +310,7 @@ _CONSTANTS: dict[type, tuple[str, ...]] = {
     Gravity: ("g",),
     AppliedLoad: ("point", "other_point", "vector"),
     Program: ("numbers", "constants"),
-    Friction: ("axis", "radius", "at_rest", "sliding", "speed"),
+    Friction: ("axis", "radius", "pitch", "at_rest", "sliding", "speed"),
     Contact: ("weight", "share", "tilt", "roll", "direction"),
     SizePoint: ("point",),
     Output: ("data", "factor"),

@@ -1,6 +1,6 @@
 """Mistakes in responses, in what names their runs, and words that the format does not have."""
 
-from building.sound import BadMechanism, added, between, column, joint, load
+from building.sound import BadMechanism, added, between, changed, column, joint, load
 
 TIME = "time: {from: 0, to: 1, step: 0.1}"
 
@@ -29,13 +29,13 @@ START = [
     response(
         "start: {O.theta: 2, O.theta_dot: 1, »D.s_dot: 1}, TIME",
         "start-rates",
-        "2 rates for 1 coordinates",
+        "2 rates for 1 coordinate",
         "remove a rate",
     ),
     response(
         "start: {O.theta: 2, D.theta: 1, »D.s_dot: 1}, TIME",
         "start-rates",
-        "1 rates for 2 coordinates",
+        "1 rate for 2 coordinates",
         "add O.theta_dot or D.theta_dot",
     ),
     response(
@@ -147,6 +147,43 @@ OTHER_WORDS = [
     between("{type: »cam, LINKS}", "unknown-word", "law: table"),
     joint("{type: R, LINKS, point: [0, 0, 0], axis: [0, 0, 1], »friction: 1}", "unknown-key", "is"),
     started("»inputs: {}", "unknown-key", "driven:"),
+    added("»plane: xy", "unknown-key", "mechanisms stand in space", "[x, y, 0]"),
+    added("»mu: 0.1", "unknown-key", "coefficient: 0.1", "radius"),
+    added("»coulomb: 0.1", "unknown-key", "type: friction"),
+    added("»stiction: 0.1", "unknown-key", "type: friction"),
+    added("»viscous: 1", "unknown-key", "type: damper"),
+    added("»damping: 1", "unknown-key", "type: damper"),
+    added("»motor: {}", "unknown-key", "motion: inputs:", "efforts"),
+    added("»actuator: [O.theta]", "unknown-key", "actuators: ["),
+    added("»simulate: {}", "unknown-key", "responses:"),
+    added("»dynamics: {}", "unknown-key", "responses:"),
+    added("»initial: {}", "unknown-key", "start: {"),
+    added("»t_end: 2", "unknown-key", "time: {from: 0, to: 2, step: 0.1}"),
+    added("»duration: 2", "unknown-key", "time: {from: 0, to: 2, step: 0.1}"),
+    added("»solver: rk45", "unknown-key", "tolerance: 1e-10"),
+    added("»outputs: [O.theta]", "unknown-key", "tables: [{name: t"),
+    added("»rows_by: t", "unknown-key", "published: {file: printed.csv, rows_by: t}"),
+    added("»published: a.csv", "unknown-key", "belong to a table"),
+    added("»harmonics: {}", "unknown-key", "balances: [{name: work, type: work}]"),
+    added("»mass: 3", "unknown-key", "links:"),
+    load(
+        "{type: friction, joint: O, coefficient: 0.1, radius: 8, »mu: 0.1}", "unknown-key", "coeff"
+    ),
+    load(
+        "{type: friction, joint: O, »static: 0.1, coefficient: 0.1, radius: 8}", "unknown-key", "{"
+    ),
+    joint("{type: R, LINKS, point: [0, 0, 0], axis: [0, 0, 1], »mu: 1}", "unknown-key", "friction"),
+    joint(
+        "{type: R, LINKS, point: [0, 0, 0], axis: [0, 0, 1], »parent: a}", "unknown-key", "first"
+    ),
+    started("»t_end: 2", "unknown-key", "time: {from: 0, to: 2, step: 0.1}"),
+    started("»rtol: 1e-6", "unknown-key", "tolerance: 1e-10"),
+    started("»solver: rk45", "unknown-key", "DOP853"),
+    started("»initial_conditions: {}", "unknown-key", "start: {"),
+    started("»forces: {}", "unknown-key", "efforts: {"),
+    started("»actuators: [O.theta]", "unknown-key", "efforts:"),
+    changed("name: t, col", "name: t, »rows_by: t, col", "unknown-key", "with the file: published"),
+    changed("motion: {in", "motion: {»start: {}, in", "unknown-key", "responses:"),
     started("»loads: []", "unknown-key", "runs: [NAME]"),
 ]
 """Words of other programs, each with what to write instead."""

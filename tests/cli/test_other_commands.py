@@ -287,3 +287,16 @@ def test_mobility(mechkin) -> None:
     assert run.out.startswith("Bennett: one freedom; Kutzbach's count is -2")
     record = mechkin("mobility", RCSR.with_name("bennett.yaml"), "--json").json
     assert (record["count"], record["mobility"], record["redundant"][0]["number"]) == (-2, 1, 3)
+
+
+def test_printed_values_that_are_not_there_are_warned_of(mechkin, committed) -> None:
+    """Tables need none until they are compared."""
+    (committed / "published/table_09.csv").unlink()
+    run = mechkin("check", "mechanisms/rcsr.yaml")
+    assert run.code == 0
+    (warning,) = [line for line in run.err.splitlines() if "printed values" in line]
+    assert "there are no printed values in mechanisms/rcsr/published/table_09.csv" in warning
+    place = warning.split(": warning")[0].removeprefix("mechanisms/rcsr.yaml:")
+    line = int(place.split(":")[0])
+    text = (committed.parent / "rcsr.yaml").read_text(encoding="utf-8").splitlines()[line - 1]
+    assert "table_09.csv" in text

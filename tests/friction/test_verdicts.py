@@ -141,13 +141,3 @@ loads:
     assert (found.status[1] == "friction-undecided").all()
     assert np.isnan(found["D.effort"][1]).all()
     assert found["D.effort"][0] == pytest.approx(np.full(3, 50 / 0.6))
-
-
-def test_responses_with_drives_are_refused():
-    response = (
-        "responses: {go: {start: {A.theta: 20}, driven: {B.s: {at: 0}}, "
-        "time: {from: 0, to: 1, step: 0.5}}}\n"
-    )
-    with pytest.raises(mk.InvalidFile) as caught:
-        mk.loads(TEXT + response)
-    assert any("one freedom" in (d.hint or "") for d in caught.value.diagnostics)

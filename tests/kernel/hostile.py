@@ -175,7 +175,7 @@ class Hostile:
     def frictions(self, builder: Any, links: int, places: int) -> None:
         for _number in range(self.random.choice([0, 0, 1, 2])):
             motions = self.index(-1, 3), self.index(-1, 3), self.index(-1, links)
-            constants = [self.number() for _ in range(4)]
+            constants = [self.number() for _ in range(5)]
             falls = self.random.random() < 0.5
             self.attempt(
                 builder.add_friction,

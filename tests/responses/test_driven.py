@@ -67,3 +67,22 @@ def test_a_pendulum_on_a_driven_slide(law: str) -> None:
     for component in "xyz":
         name = f"D.force.{component}"
         assert off(found[name], exact[name]) < 1e-9, name
+
+
+@pytest.mark.parametrize("row", [0.5, 1.0])
+def test_a_row_where_a_law_begins_or_ends_tells_of_one_side(row: float) -> None:
+    """Its acceleration jumps there: all cells are those of the motion that comes to the row, so the
+    powers balance."""
+    law = "{law: harmonic, from: 0, to: 1, start: 0.5, duration: 0.5}"
+    text = (
+        FILE.format(law=law).replace("driven: {A.", "driven: {E.").replace("{E.theta: 0.4}", START)
+    )
+    text = text.replace("{from: 0, to: 1.5, step: 0.25}", f"{{values: [0, {row}, 1.2]}}")
+    found = respond(text)
+    just_before = respond(text.replace(f"{row},", f"{row * (1 - 1e-9)!r},"))
+    for name in ("E.theta_ddot", "A.theta_ddot", "E.effort", "C.force"):
+        assert off(found[name][1], just_before[name][1]) < 1e-6, name
+    assert found["row.power_error"][1] < 1e-13
+
+
+START = "{A.theta: 0.3, A.theta_dot: 1 rad/s}"

@@ -6,10 +6,11 @@ import pytest
 from pydantic_core import PydanticCustomError
 
 from mechkin_cli.expressions.functions import FUNCTIONS
+from mechkin_cli.schema import scalars
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.schema.known_keys import known_keys
 from mechkin_cli.schema.names import RESERVED, name_errors
-from mechkin_cli.schema.scalars import expression_text, plain_text, whole_number
+from mechkin_cli.schema.scalars import FORMS, expression_text, plain_text, whole_number
 from mechkin_cli.schema.validate import InvalidDataError, validate
 
 
@@ -112,3 +113,16 @@ def test_keys_known_at_a_location(location: tuple[str | int, ...], key: str) -> 
 @pytest.mark.parametrize("location", [("joints",), ("links", "a", "mass"), ("nothing", 1)])
 def test_places_without_fixed_keys(location: tuple[str | int, ...]) -> None:
     assert known_keys(MechanismFile, location) is None
+
+
+def test_every_pattern_has_words_for_what_should_have_been() -> None:
+    patterns = {value for name, value in vars(scalars).items() if name.endswith("_PATTERN")}
+    assert patterns == FORMS.keys()
+
+
+def test_a_cycle_that_is_no_coordinate_is_told_so() -> None:
+    balance = {"name": "w", "type": "work", "cycle": "1/A.theta"}
+    with pytest.raises(InvalidDataError) as caught:
+        validate({"format": "1", "joints": {}, "balances": [balance]})
+    told = [e["ctx"] for e in caught.value.errors if e["type"] == "string_pattern_mismatch"]
+    assert [context["expected"] for context in told] == ["an input that turns, or time"]

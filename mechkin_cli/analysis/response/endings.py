@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.analysis.response.reasons import reason
 from mechkin_cli.analysis.response.weakest import weakest_coordinates
+from mechkin_cli.analysis.sweep.branch_end import MOST_SHOWN
 from mechkin_cli.diagnostics import Diagnostic, Number
-from mechkin_cli.solver.free_motion import Fault, MotionEnd
+from mechkin_cli.solver.free_motion import MotionEnd
 from mechkin_cli.solver.inputs import input_numbers, input_text
 from mechkin_cli.status import Status
 from mechkin_cli.units import TIME
@@ -21,38 +23,41 @@ if TYPE_CHECKING:
 
 
 def ending(
-    session: Session, response: Response, report: MotionReport, last: Floats
+    session: Session, free: Session, response: Response, report: MotionReport, last: Floats
 ) -> tuple[Status, list[Diagnostic]]:
     """The verdict of rows that were not reached, and what is to say about the motion; `last`
-    (states,) is the last state that is known."""
+    (states,) is the last place of it, `free` the session that moved."""
     notes = []
+    if report.crossings:
+        notes.append(_passed(session, response, report))
     if report.stiff:
         text = f"from {_moment(session, report.stiff_from)} on the motion is stiff"
         hint = "an implicit method of order 5 (Radau IIA) has taken over; nothing is to be done"
         notes.append(Diagnostic("stiff", "note", text, response.place, hint=hint))
-    if report.passed:
-        count = f"{report.passed} branch point{'s' * (report.passed > 1)}"
-        text = f"the motion passes {count} along the smooth continuation"
-        notes.append(Diagnostic("branch-point-passed", "note", text, response.place))
     if report.end in (MotionEnd.DONE, MotionEnd.STOPPED):
         return Status.ok, notes
     at = _moment(session, report.time)
-    status, code, text, hint = _reason(report)
-    if status is Status.singular_inertia:
+    why = reason(free, response, report)
+    text = why.text
+    if why.status is Status.singular_inertia:
         text = _without_inertia(weakest_coordinates(session, response, last))
-    numbers = place_numbers(session, last)
+    is_point = why.code == "branch-point"
+    numbers = place_numbers(session, np.array(report.branch_point) if is_point else last)
+    shown = ", ".join(map(input_text, numbers))
+    measured = shown if is_point else f"last place {shown}"
     notes.append(
         Diagnostic(
-            code,
+            why.code,
             "error",
             f"the response ends at {at}: {text}",
-            response.place,
-            measured=f"last row at {', '.join(map(input_text, numbers))}",
-            hint=hint,
+            why.place or response.place,
+            measured=f"{why.measured}, {measured}" if why.measured else measured,
+            limit=why.limit,
+            hint=why.hint,
             numbers=numbers,
         )
     )
-    return status, notes
+    return why.status, notes
 
 
 def place_numbers(session: Session, state: Floats) -> tuple[Number, ...]:
@@ -60,6 +65,22 @@ def place_numbers(session: Session, state: Floats) -> tuple[Number, ...]:
     free = len(session.problem.motion.inputs)
     values = [state[session.layout.state(edge, dof)] for edge, dof in session.graph.inputs[:free]]
     return input_numbers(session.problem, session.layout, np.array(values))
+
+
+def _passed(session: Session, response: Response, report: MotionReport) -> Diagnostic:
+    """The branch points that a motion passed straight on."""
+    places = [place_numbers(session, np.array(state)) for _, state in report.crossings]
+    shown = [", ".join(map(input_text, numbers)) for numbers in places[:MOST_SHOWN]]
+    more = len(places) - len(shown)
+    return Diagnostic(
+        "branch-point-passed",
+        "note",
+        f"the motion passes {'a branch point' if len(places) == 1 else 'branch points'} along its "
+        "smooth continuation, as assembly: {at_branch_points: straight} asks",
+        response.place,
+        measured="; ".join(shown) + (f" and {more} more" if more else ""),
+        numbers=tuple(number for numbers in places[:MOST_SHOWN] for number in numbers),
+    )
 
 
 def _without_inertia(names: list[str]) -> str:
@@ -75,34 +96,3 @@ def _without_inertia(names: list[str]) -> str:
 def _moment(session: Session, time: float) -> str:
     units = session.problem.units
     return f"{float(units.from_si(time, TIME)):.6g} {units.label(TIME)}"
-
-
-def _reason(report: MotionReport) -> tuple[Status, str, str, str]:
-    """Verdict, code, words and cure."""
-    if report.end is MotionEnd.STEP_LIMIT:
-        text = f"{report.steps + report.rejections} steps were not enough"
-        hint = "widen the tolerance, shorten the time, or look for what moves so fast"
-        return Status.step_limit, "step-limit", text, hint
-    if report.end is MotionEnd.HELD:
-        text = "on both sides of a jump of a load the motion goes back to it"
-        hint = "write what sticks as {type: friction, ...}, or make the load continuous"
-        return Status.friction_undecided, "held-at-jump", text, hint
-    if report.fault == Fault.NOT_FINITE or report.fault & Fault.UNDEFINED_LOAD:
-        text = "a load or a rate has no finite value beyond"
-        return Status.step_limit, "load-undefined", text, "write loads that hold along the motion"
-    if report.fault & Fault.FRICTION:
-        text = "friction has no answer there, or more than one: the mechanism may jam, or slip"
-        hint = "make a coefficient smaller, or bearings longer"
-        return Status.friction_undecided, "friction-undecided", text, hint
-    if report.fault & Fault.SINGULAR_INERTIA:
-        hint = "give the links that it moves a mass, or drive it"
-        return Status.singular_inertia, "singular-inertia", "", hint
-    if report.fault:
-        text = "no step, however short, is told to stay on the branch"
-        hint = (
-            "there is a branch point or a special position; at_branch_points: straight passes "
-            "branch points along the smooth continuation"
-        )
-        return Status.branch_lost, "branch-lost", text, hint
-    text = "no step, however short, keeps the tolerance"
-    return Status.step_limit, "step-limit", text, "widen the tolerance"

@@ -17,6 +17,7 @@ from mechkin_cli.solver.inputs import input_unit
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import DrivenLaws
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.response import Response, Stop
@@ -53,7 +54,37 @@ def rows_problem(
             _stopped(free, _part(item, count - 1), at[number])
             for number, item in enumerate(response.driven)
         )
+    if laws is not None and response.course is not None:
+        edges = response.course.edges[1:] * float(free.problem.units.to_si(1.0, TIME))
+        driven = _before_jumps(free, edges, laws, driven, moments)
     return replace(free.problem, motion=Motion(driven, count, moments, response.course))
+
+
+def _before_jumps(
+    free: Session,
+    edges: Floats,
+    laws: DrivenLaws,
+    driven: tuple[DrivenInput, ...],
+    moments: Moments,
+) -> tuple[DrivenInput, ...]:
+    """Accelerations of laws where a piece of one ends at a row, at an edge (s): those that the
+    motion came with, as the free coordinates have them there."""
+    rows = [k for k in range(1, moments.values.size) if moments.values[k] in edges]
+    if not rows:
+        return driven
+    accelerations = [item.accelerations.copy() for item in driven]
+    written = [item.written_orders.copy() for item in driven]
+    for row in rows:
+        at = laws.at(float(np.nextafter(moments.values[row], moments.values[0])))
+        for number, item in enumerate(driven):
+            second = at[number][2] * input_unit(free.layout, item)
+            dimension = dimension_of(item.coordinate) / TIME**2
+            accelerations[number][row] = second
+            written[number][2, row] = float(free.problem.units.from_si(second, dimension))
+    return tuple(
+        item._replace(accelerations=a, written_orders=w)
+        for item, a, w in zip(driven, accelerations, written, strict=True)
+    )
 
 
 def _part(item: DrivenInput, count: int) -> DrivenInput:

@@ -90,6 +90,10 @@ def prepare(problem: Problem, response: Response, packing: Packing = ANY_PACKING
     """
     chosen = Session(response_problem(problem, response), packing=packing)
     chosen, start = first_assembly(chosen)
+    place = response.place
+    start.diagnostics[:] = [
+        told if told.place else told._replace(place=place) for told in start.diagnostics
+    ]
     free = free_session(chosen, response.independent)
     if start.state is None:
         return Prepared(response, chosen, start, free, None, None)
@@ -170,9 +174,8 @@ def rows_of(one: Prepared, found: MotionRows) -> ResponseResult:
     rows.states = np.where(reached, found.states[:, part], 0.0)
     rows.reached, rows.nodes = reached, found.report.steps
     rows.turns = _all_turns(free, found.turns[:, part])
-    assert one.begun is not None
-    last = found.states[:, found.count - 1] if found.count else one.begun.state
-    status, notes = ending(chosen, response, found.report, last)
+    last = np.array(found.report.last)
+    status, notes = ending(chosen, free, response, found.report, last)
     rows.status[~reached] = status
     rows.diagnostics += notes
     energy = free.layout.length * free.layout.length

@@ -8,7 +8,6 @@
 
 namespace {
 
-constexpr double PART_OF_FORCE = 0.1;
 constexpr double FULL = 2.0 * 3.14159265358979323846;
 
 std::vector<char, AlignedAllocator<char>> wide_plan(const MotionUnit& unit, const std::vector<MotionStart>& starts) {
@@ -33,7 +32,6 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
     : unit_(unit), starts_(starts), lanes_(unit.lanes), plan_(*starts[0].plan), limits_(limits), rows_(rows),
       turns_(closing_turns(plan_, *kernel_unit(2))), turn_slots_(slots_of(turns_)), wide_(wide_plan(unit, starts)),
       workspace_((std::size_t)unit.workspace_size(wide_.data())), stops_(stops), driven_(driven) {
-  require(!rubs() || plan_.charts == 1, "friction is that of one freedom");
   for (int b = 0; b < plan_.blocks; ++b) entries_ += (long)plan_.block[b].rows * plan_.block[b].size;
   const auto make = [&](Packed& a, long count) { a.assign((std::size_t)(count * lanes_), 0.0); };
   make(origin_, plan_.states), make(origin_first_, plan_.columns), make(origin_second_, plan_.columns);
@@ -42,28 +40,33 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   make(inputs_, plan_.inputs), make(input_rates_, plan_.inputs), make(input_seconds_, plan_.inputs);
   make(miss_, plan_.columns), make(miss_elapsed_, 1);
   unit_.prepare(wide_.data(), workspace_.data());
-  make(time_, 1), make(over_, 1), make(side_, plan_.law.kinks), make(done_, 2);
+  make(time_, 1), make(side_, plan_.law.kinks), make(done_, 2);
   if (driven_) laws_memory_ = driven_->memory();
-  cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), energy_.assign(lanes_, 0.0), next_row_.assign(lanes_, 0);
+  make(chart_time_, 1), make(placed_, 1), make(placed_state_, plan_.states);
+  make(placed_tangent_, (long)(plan_.charts + plan_.inputs) * plan_.columns), make(placed_bend_, plan_.columns);
+  make(origin_inputs_, plan_.inputs), make(last_, plan_.states);
+  crossing_.resize(lanes_), crossings_.resize(lanes_);
+  for (Crossing& c : crossing_) c.offset.assign(plan_.charts, 0.0);
+  cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), next_row_.assign(lanes_, 0);
+  for (auto* a : {&energy_, &lightest_, &lightest_start_, &growth_}) a->assign(lanes_, 0.0);
   stop_start_.assign(stops_.size() * lanes_, 0.0), passed_.assign(stops_.size() * lanes_, 0);
   found_ = make_stage(), end_ = make_stage();
+  if (plan_.frictions) trial_ = make_stage();
   for (int l = 0; l < lanes_; ++l) {
     const MotionStart& s = starts_[l];
     for (int k = 0; k < plan_.states; ++k) origin_[k * lanes_ + l] = s.state[k];
     for (int k = 0; k < plan_.columns; ++k) origin_first_[k * lanes_ + l] = s.first[k];
-    origin_time_[l] = time_[l] = s.time;
+    origin_time_[l] = chart_time_[l] = time_[l] = s.time;
     drive(l, s.time);
     for (int k = 0; k < plan_.charts * plan_.columns; ++k) end_.tangent[k * lanes_ + l] = s.tangent[k];
     lay_chart(l);
   }
+  last_ = origin_, origin_inputs_ = inputs_;
   const std::vector<double> y = start();
   std::copy(y.begin() + (long)plan_.charts * lanes_, y.begin() + 2L * plan_.charts * lanes_, rate_.begin());
   std::fill(side_.begin(), side_.end(), 1.0);
-  sense_.assign(lanes_, 0.0), undecided_.assign(lanes_, 0);
-  for (int l = 0; l < lanes_ && rubs(); ++l) sense_[l] = (rate_[l] > 0.0) - (rate_[l] < 0.0);
+  if (plan_.frictions) begin_slips();
   evaluate(place_.data(), rate_.data(), &found_);
-  for (int l = 0; l < lanes_ && rubs(); ++l)
-    if (sense_[l] == 0.0) find_sense(l);
   jacobian_ = found_.jacobian, origin_second_ = found_.second, turn_ = found_.turned;
   for (std::size_t k = 0; k < stop_start_.size(); ++k)
     stop_start_[k] = found_.watched[(std::size_t)plan_.law.kinks * lanes_ + k];
@@ -73,8 +76,8 @@ ChartedMotion::Stage ChartedMotion::make_stage() const {
   const auto make = [&](long count) { return Packed((std::size_t)(count * lanes_), 0.0); };
   const long n = plan_.charts;
   return {make(plan_.states), make(plan_.columns), make(plan_.columns), make(plan_.columns), make(entries_),
-          make(n * plan_.columns), make(n), make(n), make(n * n), make(plan_.law.kinks + plan_.law.outputs - plan_.load_values), make(2),
-          make(turn_slots_), make(3), std::vector<unsigned char>((std::size_t)lanes_)};
+          make((n + plan_.inputs) * plan_.columns), make(n), make(n), make(n * n), make(plan_.law.kinks + plan_.law.outputs - plan_.load_values), make(2),
+          make(turn_slots_), make_slips(), std::vector<unsigned char>((std::size_t)lanes_)};
 }
 
 std::vector<double> ChartedMotion::start() const {
@@ -87,21 +90,30 @@ std::vector<double> ChartedMotion::start() const {
   return y;
 }
 
-void ChartedMotion::evaluate(const double* place, const double* rate, const MotionLimits& limits, Stage* found) {
+void ChartedMotion::evaluate(const double* place, const double* rate, Stage* found, double* bend) {
   StageGiven given = {};
-  given.sense = sense_.data();
+  given.sense = slips_.sense.data(), given.quiet = slips_.quiet.data(), given.aim = slips_.aim.data();
   given.origin = origin_.data(), given.origin_rate = origin_first_.data(), given.origin_second = origin_second_.data();
   given.miss = miss_.data(), given.miss_elapsed = miss_elapsed_.data();
   given.direction = direction_.data(), given.origin_jacobian = jacobian_.data(), given.elapsed = elapsed_.data();
   given.place = place, given.rate = rate;
   given.inputs = inputs_.data(), given.input_rates = input_rates_.data(), given.input_seconds = input_seconds_.data();
-  given.time = time_.data(), given.over = over_.data(), given.side = side_.data(), given.turned = turn_.data();
+  given.time = time_.data(), given.side = side_.data(), given.turned = turn_.data();
   given.turns = turns_.data(), given.turn_count = (int)turns_.size();
-  given.tight = limits.tight, given.coarse = limits.coarse, given.accept = limits.accept;
-  given.iterations = limits.iterations, given.jump = limits.jump, given.radius = limits.radius;
+  given.tight = limits_.tight, given.coarse = limits_.coarse, given.accept = limits_.accept;
+  given.iterations = limits_.iterations, given.jump = limits_.jump, given.radius = limits_.radius;
+  bool any_placed = false;
+  for (int l = 0; l < lanes_; ++l) any_placed = any_placed || placed_[l] != PREDICTED;
+  if (any_placed) {
+    given.placed = placed_.data(), given.placed_state = placed_state_.data();
+    given.placed_tangent = placed_tangent_.data(), given.placed_bend = placed_bend_.data();
+  }
   const StageFound out = {found->state.data(), found->first.data(), found->second.data(), found->miss.data(),
-                          found->jacobian.data(), found->tangent.data(), found->chart_second.data(), found->inertia.data(),
-                          found->watched.data(), found->power.data(), found->turned.data(), found->ways.data(),
+                          found->jacobian.data(), found->tangent.data(), found->chart_second.data(), bend,
+                          found->inertia.data(), found->watched.data(), found->power.data(), found->turned.data(),
+                          found->slip.rate.data(), found->slip.second.data(), found->slip.force.data(),
+                          found->slip.row.data(), found->slip.limit.data(), found->slip.loose.data(),
+                          found->slip.state.data(), found->slip.answer.data(), found->slip.level.data(),
                           found->flags.data()};
   unit_.evaluate(wide_.data(), given, out, workspace_.data());
 }
@@ -109,7 +121,7 @@ void ChartedMotion::evaluate(const double* place, const double* rate, const Moti
 std::vector<SwitchKind> ChartedMotion::switches() const {
   std::vector<SwitchKind> kinds(plan_.law.kinks, {true});
   kinds.insert(kinds.end(), edges(), {true});
-  kinds.insert(kinds.end(), rubs(), {false, true});
+  kinds.insert(kinds.end(), slip_switches(), {false, true});
   kinds.insert(kinds.end(), stops_.size(), {false});
   return kinds;
 }
@@ -127,7 +139,7 @@ void ChartedMotion::set_places(const Places& places) {
   for (int l = 0; l < lanes_; ++l) {
     const bool active = places.active[l];
     time_[l] = active ? places.time[l] : origin_time_[l];
-    elapsed_[l] = time_[l] - origin_time_[l];
+    elapsed_[l] = time_[l] - chart_time_[l];
     if (active && places.side) {
       for (int k = 0; k < kinks; ++k) side_[k * lanes_ + l] = places.side[k * lanes_ + l];
       cell_[l] = 0;
@@ -135,9 +147,12 @@ void ChartedMotion::set_places(const Places& places) {
     }
     drive(l, time_[l]);
     for (int i = 0; i < n; ++i) {
-      place_[i * lanes_ + l] = active ? places.y[i * lanes_ + l] : 0.0;
+      place_[i * lanes_ + l] = (active ? places.y[i * lanes_ + l] : 0.0) + crossing_[l].offset[i];
       rate_[i * lanes_ + l] = active ? places.y[(n + i) * lanes_ + l] : 0.0;
     }
+    placed_[l] = PREDICTED;
+    if (active) put_on_curve(l);
+    if (active && places.is_end) crossing_[l].at_end = crossing_[l].here;
   }
 }
 
@@ -147,14 +162,24 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
   Stage* const found = places.is_end ? &end_ : &found_;
   evaluate(place_.data(), rate_.data(), found);
   found->chart_rate = rate_;
+  if (plan_.frictions)
+    for (int l = 0; l < lanes_; ++l) stand_still(found, l);
   for (int l = 0; l < lanes_; ++l) {
     if (!places.active[l]) continue;
     for (int i = 0; i < n; ++i) rates.rates[i * lanes_ + l] = found->chart_second[i * lanes_ + l];
     for (int k = 0; k < 2; ++k) rates.rates[(n + k) * lanes_ + l] = found->power[k * lanes_ + l];
     rates.fault[l] = found->flags[l];
-    if (undecided_[l]) rates.fault[l] |= STAGE_FRICTION;
+    if (plan_.frictions && slips_.blocked[l]) rates.fault[l] |= STAGE_FRICTION;
+    if (found->flags[l] & STAGE_FRICTION) tell_undecided(*found, l);
     if (!found->flags[l]) keep_miss(l, *found);
+    if (found->flags[l] & STAGE_UNDEFINED_STOP) find_undefined(*found, l);
     write_switches(*found, l, time_[l], rates.switches);
+  }
+  if (plan_.frictions) look_for_ways(places, rates);
+  for (int l = 0; l < lanes_; ++l) {
+    if (!places.active[l]) continue;
+    if (is_beyond(l)) rates.fault[l] |= STAGE_OFF_BRANCH;
+    if (rates.fault[l] & (STAGE_OFF_BRANCH | STAGE_NOT_CLOSED)) look_ahead(l);
   }
 }
 
@@ -162,6 +187,14 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
 void ChartedMotion::keep_miss(int lane, const Stage& found) {
   miss_elapsed_[lane] = elapsed_[lane];
   for (int c = 0; c < plan_.columns; ++c) miss_[(long)c * lanes_ + lane] = at(found.miss, c, lane);
+}
+
+// The first stop whose value there is none is what ends the lane, if nothing helps.
+void ChartedMotion::find_undefined(const Stage& found, int lane) {
+  for (std::size_t s = stops_.size(); s-- > 0;) {
+    const double value = at(found.watched, plan_.law.kinks + (long)s, lane);
+    if (!(value == value)) stopped_[lane] = (int)s;
+  }
 }
 
 // What changes its sign where a stop is met.
@@ -173,8 +206,8 @@ double ChartedMotion::stop_value(int stop, int lane, double watched) const {
 }
 
 void ChartedMotion::write_switches(const Stage& found, int lane, double time, double* switches) const {
-  const int kinks = plan_.law.kinks, edges = this->edges(), stops = kinks + edges + rubs();
-  if (rubs()) switches[(stops - 1) * lanes_ + lane] = at(found.ways, 2, lane);
+  const int kinks = plan_.law.kinks, edges = this->edges(), stops = kinks + edges + slip_switches();
+  if (plan_.frictions) write_slip_switches(found, lane, switches + (long)(kinks + edges) * lanes_);
   for (int k = 0; k < kinks; ++k) switches[k * lanes_ + lane] = at(found.watched, k, lane);
   for (int e = 0; e < edges; ++e) switches[(kinks + e) * lanes_ + lane] = time - driven_->edges()[e];
   for (int s = 0; s < (int)stops_.size(); ++s)
@@ -238,11 +271,19 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
       for (long k = 0; k < count; ++k) to[k * lanes_ + l] = from[k * lanes_ + l];
     };
     longest[l] = limits_.longest;
-    origin_time_[l] = time[l], miss_elapsed_[l] = over_[l] = 0.0;
+    origin_time_[l] = time[l], miss_elapsed_[l] = 0.0;
     for (int k = 0; k < 2; ++k) done_[k * lanes_ + l] = y[(2 * n + k) * lanes_ + l];
+    if (plan_.frictions) hold_sticking(l);
+    continue_turns(l, end_.turned);
+    take(end_.state, plan_.states, last_);
+    const bool is_kept = keeps_curve(l, time[l], y);
+    for (int i = 0; i < n; ++i) y[i * lanes_ + l] = 0.0;
+    if (is_kept) continue;
     take(end_.state, plan_.states, origin_), take(end_.first, columns, origin_first_);
     take(end_.second, columns, origin_second_), take(end_.jacobian, entries_, jacobian_);
-    continue_turns(l, end_.turned);
+    chart_time_[l] = time[l], crossing_[l].looked = false;
+    drive(l, time[l]);
+    take(inputs_, plan_.inputs, origin_inputs_);
     lay_chart(l);
     for (int i = 0; i < n; ++i) {
       double first = 0.0, second = 0.0;
@@ -250,29 +291,8 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
         first += at(direction_, i * columns + c, l) * at(end_.first, c, l);
         second += at(direction_, i * columns + c, l) * at(end_.second, c, l);
       }
-      y[i * lanes_ + l] = 0.0, y[(n + i) * lanes_ + l] = first, rates[i * lanes_ + l] = second;
+      y[(n + i) * lanes_ + l] = first, rates[i * lanes_ + l] = second;
     }
-  }
-}
-
-// Works matter in parts of the energy that the motion has, or that its forces would give it over a tenth of a unit of its
-// chart: what a damper within a rigid part takes is rounding.
-void ChartedMotion::sizes(const unsigned char* lanes, double* size) {
-  const int n = plan_.charts;
-  for (int l = 0; l < lanes_; ++l) {
-    if (!lanes[l]) continue;
-    double energy = 0.0, coming = 0.0;
-    for (int i = 0; i < n; ++i) {
-      double rate = 0.0, force = 0.0;
-      for (int j = 0; j < n; ++j) {
-        const double m = at(end_.inertia, i * n + j, l);
-        rate += m * at(end_.chart_rate, j, l), force += m * at(end_.chart_second, j, l);
-      }
-      energy += 0.5 * at(end_.chart_rate, i, l) * rate;
-      coming += PART_OF_FORCE * std::fabs(force);
-    }
-    energy_[l] = std::max(energy_[l], energy);
-    for (int k = 1; k < 3; ++k) size[k * lanes_ + l] = std::max(size[k * lanes_ + l], energy + coming);
   }
 }
 
@@ -302,6 +322,8 @@ void ChartedMotion::row(const unsigned char* lanes, const long* row, const doubl
     const Places places = {time, y, lanes, nullptr, false};
     set_places(places);
     evaluate(place_.data(), rate_.data(), &found_);
+    found_.chart_rate = rate_;
+    for (int l = 0; l < lanes_ && plan_.frictions; ++l) stand_still(&found_, l);
   }
   for (int l = 0; l < lanes_; ++l) {
     if (!lanes[l]) continue;
@@ -312,7 +334,7 @@ void ChartedMotion::row(const unsigned char* lanes, const long* row, const doubl
 }
 
 bool ChartedMotion::event(int lane, int which, bool rising, double) {
-  const int stop = which - plan_.law.kinks - edges() - rubs();
+  const int stop = which - plan_.law.kinks - edges() - slip_switches();
   if (stop < 0) return false;
   const MotionStop& s = stops_[stop];
   if (s.kind == STOP_CROSSING && s.direction * (rising ? 1 : -1) < 0) return false;
@@ -322,29 +344,10 @@ bool ChartedMotion::event(int lane, int which, bool rising, double) {
   return true;
 }
 
-// A freedom at rest goes the way that friction lets it; `found_` is of the place at rest. Where it may go both ways, none
-// is right.
-void ChartedMotion::find_sense(int lane) {
-  const bool forth = at(found_.ways, 0, lane) > 0.0, back = at(found_.ways, 1, lane) < 0.0;
-  undecided_[lane] = (forth && back) || found_.flags[lane] & STAGE_FRICTION;
-  sense_[lane] = forth - back;
-}
-
 void ChartedMotion::stand_still() {
   std::fill(place_.begin(), place_.end(), 0.0), std::fill(rate_.begin(), rate_.end(), 0.0);
   for (int l = 0; l < lanes_; ++l) {
     time_[l] = origin_time_[l], elapsed_[l] = 0.0;
     drive(l, time_[l]);
   }
-}
-
-// The one freedom has come to rest, or a rest ends: by the way that friction holds no longer, to rounding.
-void ChartedMotion::move(int lane, int, double, double* y) {
-  const bool rested = sense_[lane] == 0.0;
-  stand_still();
-  y[plan_.charts * lanes_ + lane] = 0.0;
-  sense_[lane] = 0.0;
-  evaluate(place_.data(), rate_.data(), &found_);
-  find_sense(lane);
-  if (rested && sense_[lane] == 0.0) sense_[lane] = -at(found_.ways, 0, lane) <= at(found_.ways, 1, lane) ? 1.0 : -1.0;
 }

@@ -180,6 +180,7 @@ void March::pass(const Flags& mask, const std::vector<int>& which) {
     else
       states_.side[k] = (std::int8_t)-states_.side[k];
     ++control_[i].passed[which[i]];
+    ++control_[i].met[which[i]];
     anew[i] = is_kink;
     if (anew[i] && implicit_) implicit_->forget(i);
   }

@@ -19,7 +19,6 @@ struct Rubbing {
   Vec3* along;         // contacts: directions of their loads
   Vec3* reach;         // contacts: their loads by a unit of one actuator (actuated_balance.hpp)
   Pack* effort;        // inputs, or actuators: of the drives without friction
-  Pack* answer;        // frictions: acceleration of the one freedom by a unit of each (sliding.hpp)
   Pack softness;       // of magnitudes of loads, zero but on the way to a start (friction_solver.hpp)
   Pack self_locking;
 };
@@ -32,7 +31,7 @@ inline void lay_out_friction(const Plan& p, Take&& take, Rubbing* r) {
   r->applied = (Wrench*)take(p.links * sizeof(Wrench));
   r->drag = (Wrench*)take(n * sizeof(Wrench));
   Pack** const vectors[] = {&r->speed, &r->coefficient, &r->force, &r->normal, &r->state,
-                            &r->at_rest, &r->right, &r->step, &r->weight, &r->answer, &r->origin, &r->newton};
+                            &r->at_rest, &r->right, &r->step, &r->weight, &r->origin, &r->newton};
   for (Pack** each : vectors) *each = (Pack*)take(n * pack);
   r->matrix = (Pack*)take(n * n * pack);
   r->bound = (Pack*)take(n * n * pack);

@@ -30,8 +30,10 @@ struct FrictionOf {
   int turns, slides;
   int link;          // that carries the axis
   int falls;         // whether the coefficient depends on the speed; else it is `sliding`
+  int screws;        // whether turn and slide are one motion, by `pitch`
   Number axis[3];
   Number radius;     // of the surfaces that turn
+  Number pitch;      // of a screw: slide by turn; else 0
   Number at_rest, sliding, speed;  // coefficients, and the speed from one to the other
   int contact_begin, contact_end;  // into Plan::contact
 };

@@ -13,7 +13,7 @@
 //   set_gravity        g (3)
 //   add_load           point (3), other_point (3), vector (3)
 //   set_load_program   of each read data (3) and factor, then its own constants
-//   add_friction       axis (3), radius, at_rest, sliding, speed
+//   add_friction       axis (3), radius, pitch, at_rest, sliding, speed
 //   add_contact        weight, share, tilt, roll, direction (3)
 //   add_size_point     point (3)
 // Signs (+1, -1), codes and indices are structure. `assign` gives a plan other constants and recomputes what is derived

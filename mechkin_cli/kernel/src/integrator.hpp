@@ -39,10 +39,6 @@ struct SwitchKind {
   bool may_be_nothing() const { return kink && !moves; }
 };
 
-// What becomes of a motion at a place towards which its steps shrink: it goes on by itself, it is let over the place in one
-// step, or it ends before.
-enum class AtPlace { GOES_ON, PASSES, ENDS };
-
 class Motion {
  public:
   virtual ~Motion() = default;
@@ -69,12 +65,17 @@ class Motion {
   // Whether something moves beside the freedoms: powers are then not rounding where these rest.
   virtual bool is_driven() const { return false; }
 
-  // The steps of a lane shrink towards a place where stages are faults; `reach` is how long they may yet be. Where it is
-  // passed, the stages of this lane need not be joined with the origin until the next `accept`, or a reach of 0.
-  virtual AtPlace pass_over(int lane, double reach) {
+  // Asked where a step was refused that may not be made shorter: whether the same step may be tried again, as more is known
+  // of the places ahead.
+  virtual bool finds_more(int lane) {
     (void)lane;
-    (void)reach;
-    return AtPlace::GOES_ON;
+    return false;
+  }
+
+  // Asked where a step was refused for a fault: whether there is no use in shorter ones.
+  virtual bool gives_up(int lane) const {
+    (void)lane;
+    return false;
   }
 
   // Rows are reached; `row` (lanes). At the end of a step (`inside` false) that is the chart's origin, after `accept`. Inside
@@ -125,13 +126,14 @@ enum class LaneEnd : unsigned char {
 struct LaneReport {
   LaneEnd end = LaneEnd::DONE;
   unsigned char fault = 0;
-  int which = -1;                // the switch that ended the lane
+  int which = -1;                // the switch that ended the lane, or at STEP_LIMIT the one that was met most often
+  long met = 0;                  // how often that was
+  double step = 0.0;             // the last step that was tried
   bool stiff = false;            // the implicit method took over
   double stiff_from = 0.0;       // at this time
   double time = 0.0;             // how far the lane came
   long rows = 0;                 // rows that were reached
   long evaluations = 0, steps = 0, rejections = 0;
-  long passed = 0;               // places that were passed, see Motion::pass_over
 };
 
 // Integrates from `time` (lanes) and y, u = 0 in the motion's present charts, over all rows. Throws

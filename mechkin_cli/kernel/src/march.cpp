@@ -11,9 +11,6 @@ constexpr long MOST_STEPS = 1000000;
 constexpr double FAULT_MARGIN = 0.85;  // of the way to a fault, for the next try
 constexpr double FAULT_FACTOR = 0.5;   // of it where that failed, too
 constexpr double ROOM_GROWTH = 0.02;   // of the room after a fault, doubled with each step taken since
-// A place is passed from where steps have become so short, in parts of those before. The step over it is tried as long
-// as those and shorter: its stages have to stand off the place, which their errors tell.
-constexpr double PASS_FROM = 0.1, PASS_SHORTER = 0.8, PASS_LEAST = 5.0;
 
 void check(const Motion& motion, const IntegratorSettings& s, const double* time, const RowTimes& rows) {
   require(motion.lanes() > 0 && motion.freedoms() > 0, "at least one lane and one freedom");
@@ -48,6 +45,7 @@ March::March(Motion& motion, const IntegratorSettings& settings, const double* t
   require((long)y.size() == states_.entries, "one y for each lane");
   for (LaneControl& c : control_) {
     c.passed.assign(states_.kinds.size(), 0);
+    c.met.assign(states_.kinds.size(), 0);
     c.let_alone.assign(states_.kinds.size(), 0);
     c.implicit = settings.method == MethodChoice::IMPLICIT;
   }
@@ -78,7 +76,11 @@ void March::finish(int lane, LaneEnd end, int which) {
   LaneReport& report = states_.report[lane];
   control_[lane].running = false;
   report.end = end;
+  const std::vector<long>& met = control_[lane].met;
+  if (end == LaneEnd::STEP_LIMIT && !met.empty()) which = (int)(std::max_element(met.begin(), met.end()) - met.begin());
   report.which = which;
+  report.met = which < 0 ? 0 : met[which];
+  report.step = states_.step[lane];
   report.fault = end == LaneEnd::STUCK && states_.fault[lane] != NOT_SOLVED ? states_.fault[lane] : 0;
   report.time = states_.time[lane];
   report.evaluations = states_.evaluations[lane];
@@ -103,7 +105,7 @@ void March::plan(int lane) {
     until = steps > 1.0 ? states_.time[lane] + step : row_time(lane, c.next_row);
     return;
   }
-  step = c.over > 0.0 ? c.over : std::min({c.wanted, c.room, c.longest});
+  step = std::min({c.wanted, c.room, c.longest});
   until = cut_for_rows(lane, step);
   const double wanted = step;
   step = until - states_.time[lane];
@@ -139,37 +141,19 @@ void March::judge(Method& method, Flags* mask) {
       continue;
     } else {
       method.refused(states_, i);
-      control_[i].over > 0.0 ? pass_shorter(i) : refuse(i, states_.step[i] * states_.factor[i]);
+      refuse(i, states_.step[i] * states_.factor[i]);
     }
     (*mask)[i] = 0;
   }
 }
 
 void March::shorten_for_fault(int lane) {
-  LaneControl& c = control_[lane];
   const double step = states_.step[lane];
-  if (states_.settings.fixed_step > 0.0) return finish(lane, LaneEnd::STUCK);
-  if (c.over > 0.0) return pass_shorter(lane);
-  c.room = (c.was_refused ? FAULT_FACTOR : FAULT_MARGIN) * states_.reached[lane] * step;
-  c.room_growth = ROOM_GROWTH;
-  if (c.before_fault == 0.0) c.before_fault = step;
-  const double to_row = row_time(lane, c.next_row) - states_.time[lane];
-  const bool passes = c.room < PASS_FROM * c.before_fault && c.room < 0.7 * c.tried_from && to_row > PASS_LEAST * c.room;
-  if (passes) c.tried_from = c.room;
-  const AtPlace here = passes ? states_.motion.pass_over(lane, c.room) : AtPlace::GOES_ON;
-  if (here == AtPlace::ENDS) return finish(lane, LaneEnd::STUCK);
-  if (here == AtPlace::PASSES) c.over = std::min(c.before_fault, to_row);
-  refuse(lane, here == AtPlace::PASSES ? c.over : c.room);
-}
-
-// Another step over a place: its stages were too near, or its errors too large.
-void March::pass_shorter(int lane) {
-  LaneControl& c = control_[lane];
-  c.over *= PASS_SHORTER;
-  if (c.over > PASS_LEAST * c.room) return refuse(lane, c.over);
-  c.over = 0.0;
-  states_.motion.pass_over(lane, 0.0);
-  refuse(lane, c.room);
+  control_[lane].room = (control_[lane].was_refused ? FAULT_FACTOR : FAULT_MARGIN) * states_.reached[lane] * step;
+  control_[lane].room_growth = ROOM_GROWTH;
+  if (states_.settings.fixed_step > 0.0)
+    return states_.motion.finds_more(lane) ? refuse(lane, step) : finish(lane, LaneEnd::STUCK);
+  states_.motion.gives_up(lane) ? finish(lane, LaneEnd::STUCK) : refuse(lane, control_[lane].room);
 }
 
 void March::refuse(int lane, double step) {
@@ -251,12 +235,6 @@ void March::rewiden(int lane) {
   c.room *= 1.0 + c.room_growth;
   c.room_growth *= 2.0;
   c.was_refused = false;
-  if (c.over > 0.0) {
-    ++states_.report[lane].passed;
-    c.wanted = std::max(c.wanted, c.over), c.room = __builtin_inf();
-  }
-  if (c.over > 0.0 || states_.step[lane] >= c.before_fault) c.before_fault = 0.0, c.tried_from = __builtin_inf();
-  c.over = 0.0;
   if (c.implicit || states_.settings.method != MethodChoice::AUTOMATIC || !explicit_.is_stiff(lane)) return;
   c.implicit = true;
   states_.report[lane].stiff = true;

@@ -18,9 +18,6 @@ struct LaneControl {
   double longest = __builtin_inf();      // the step that the chart bears, as the motion says
   bool is_cut = false;                   // the step was made shorter for a row
   bool was_refused = false;
-  double before_fault = 0.0;             // the step that errors wanted where stages began to be faults; 0: none are
-  double tried_from = __builtin_inf();   // the room from which it was last tried to pass the place where they are
-  double over = 0.0;                     // the step over that place; 0: none is tried
   long next_row = 0;
   long attempts = 0;
   // The way to end a step at a zero of a switch: number, derivative of side * value by time, the step to try,
@@ -30,6 +27,7 @@ struct LaneControl {
   double landing_slope = 0.0, landing_step = 0.0, landing_before = 0.0, landing_value = 0.0;
   bool landed = false;
   std::vector<int> passed;               // switches: how often they were passed at this place
+  std::vector<long> met;                 // switches: how often they were passed at all
   // Switches that are let alone until a step is taken: kinks met again and again where both sides give the same.
   Flags let_alone;
 };
@@ -46,7 +44,6 @@ class March {
   void round(Method& method, Flags mask);
   void judge(Method& method, Flags* mask);
   void shorten_for_fault(int lane);
-  void pass_shorter(int lane);
   void refuse(int lane, double step);
   void take(Method& method, Flags mask);
   void move_on(const Flags& mask);

@@ -72,6 +72,61 @@ struct Placed {
   Mask closed, on_branch;
 };
 
+// The lanes with places of a kind.
+inline Mask lanes_placed(const StageGiven& given, double kind) {
+  return given.placed ? *packs(given.placed) == Pack(kind) : all_lanes(false);
+}
+
+inline void take_places(const Plan& p, Workspace& w, const StageGiven& given, Mask lanes) {
+  if (!any(lanes)) return;
+  for (int s = 0; s < p.states; ++s) w.q[s] = select(lanes, packs(given.placed_state)[s], w.q[s]);
+  for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = packs(given.inputs)[i];
+}
+
+// Limit of placed states' residuals in parts of that of closed ones: interpolation rounds some times.
+constexpr double PLACED_ROUNDING = 16.0;
+
+// The states of lanes that are placed, which Newton's method has moved, and whether they are closed.
+// Kept apart: see is_regular.
+__attribute__((noinline)) void place_again(const Plan& p, Workspace& w, int block, const StageGiven& given, Mask lanes, Closed* closed) {
+  take_places(p, w, given, lanes);
+  place_block(p, w, p.block[block]);
+  const Pack limit = PLACED_ROUNDING * given.accept;
+  Mask near = block_residual(p, w, p.block[block]).test <= limit;
+  if (any(lanes & ~near)) near = near | (residual_with_rounding(p, w, p.block[block], given.accept) <= limit);
+  const Mask side = block_side_conditions(p, w, p.block[block]);
+  closed->converged = (lanes & near) | (~lanes & closed->converged);
+  closed->side = (lanes & side) | (~lanes & closed->side);
+}
+
+// All links' motions by the rates, and the accelerations, of the columns.
+inline void move_all(const Plan& p, Workspace& w, bool second) {
+  for (int b = 0; b < p.blocks; ++b)
+    for (int o = p.block[b].joint_begin; o < p.block[b].joint_end; ++o) move_link(p, w, p.order[o], second);
+  for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], second);
+}
+
+// Rates and twists of lanes that are placed.
+inline void place_directions(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given, Mask lanes) {
+  if (!any(lanes)) return;
+  for (int d = 0; d < directions(p); ++d) {
+    for (int c = 0; c < p.columns; ++c) {
+      Pack& rate = m.tangent[d * p.columns + c];
+      rate = select(lanes, packs(given.placed_tangent)[d * p.columns + c], rate);
+      w.rate[c] = rate;
+    }
+    move_all(p, w, false);
+    for (int k = 0; k < p.links; ++k) m.twist[d * p.links + k] = w.motion[k].velocity;
+  }
+}
+
+inline void place_accelerations(const Plan& p, Workspace& w, const StageGiven& given, Mask lanes) {
+  if (!any(lanes)) return;
+  for (int c = 0; c < p.columns; ++c)
+    w.acceleration[c] = select(lanes, packs(given.placed_bend)[c], w.acceleration[c]);
+  move_all(p, w, true);
+}
+
 inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given,
                           const StageFound& found) {
   Request limits = {};
@@ -79,10 +134,12 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
   limits.iterations = given.iterations;
   const Pack room = Pack(given.jump) * way(p, w);
   Placed placed = {all_lanes(true), all_lanes(true)};
-  const Mask over = *packs(given.over) > Pack(0.0);
+  const Mask fixed = lanes_placed(given, PLACED);
+  take_places(p, w, given, fixed | lanes_placed(given, GUESSED));
   long entries = 0;
   for (int b = 0; b < p.blocks; ++b) {
-    const Closed closed = close_block(p, w, b, limits);
+    Closed closed = close_block(p, w, b, limits);
+    if (any(fixed)) place_again(p, w, b, given, fixed, &closed);
     const BlockMatrices at = matrices_of(p, w, b);
     const int size = at.m * at.n;
     block_screws(p, w, p.block[b]);
@@ -91,9 +148,10 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
     at.factor_jacobian();
     placed.closed = placed.closed & closed.converged & closed.side;
     placed.on_branch = placed.on_branch & (closed.correction <= room + Pack(given.coarse)) &
-                       (over | is_regular(p, w, b, packs(given.origin_jacobian) + entries, given.radius, m.radius));
+                       is_regular(p, w, b, packs(given.origin_jacobian) + entries, given.radius, m.radius);
     entries += size;
   }
+  placed.on_branch = placed.on_branch | fixed;
   for (int k = 0; k < p.rest_count; ++k) {
     place_joint(p, w, p.rest[k]);
     find_screws(p, w, p.rest[k]);
@@ -101,23 +159,31 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
   return placed;
 }
 
-// The values of loads, of kinks and of what else is watched; the lanes in which a load has none.
-inline Mask evaluate_program(const Plan& p, Workspace& w, const StageGiven& given, const StageValues& values,
+struct Undefined {
+  Mask load, stop;
+};
+
+// The values of loads, of kinks and of what else is watched; the lanes in which a load or a stop has none.
+inline Undefined evaluate_program(const Plan& p, Workspace& w, const StageGiven& given, const StageValues& values,
                              Pack* watched) {
-  Mask undefined = all_lanes(false);
+  Undefined undefined = {all_lanes(false), all_lanes(false)};
   if (!p.law.outputs) return undefined;
   run_on_sides(p, w, p.law, values, packs(given.side), w.law);
   for (int v = 0; v < p.load_values; ++v) {
     w.load[v] = w.law[p.law.output[v]];
-    undefined = undefined | ~(w.load[v] == w.load[v]);
+    undefined.load = undefined.load | ~(w.load[v] == w.load[v]);
   }
   for (int k = 0; k < p.law.kinks; ++k) watched[k] = kink_value(p.law, k, w.law);
-  for (int v = p.load_values; v < p.law.outputs; ++v)
-    watched[p.law.kinks + v - p.load_values] = w.law[p.law.output[v]];
+  for (int v = p.load_values; v < p.law.outputs; ++v) {
+    const Pack value = w.law[p.law.output[v]];
+    watched[p.law.kinks + v - p.load_values] = value;
+    undefined.stop = undefined.stop | ~(value == value);
+  }
   return undefined;
 }
 
-void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given, const StageFound& found) {
+void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const Slips& slips, const StageGiven& given,
+                    const StageFound& found) {
   copy(packs(given.direction), p.charts * p.columns, w.direction);
   copy(packs(given.origin), p.states, w.origin);
   copy(packs(given.place), p.charts, w.place);
@@ -129,24 +195,30 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
     missed = s < 0 ? Pack(0.0) : missed + (w.q[s] - packs(given.origin)[s]);
   }
 
+  const Mask fixed = lanes_placed(given, PLACED);
   for (int d = 0; d < directions(p); ++d) move_along(p, w, m, d);
+  place_directions(p, w, m, given, fixed);
   const Pack* const input_rate = packs(given.input_rates);
   move(p, w, m, packs(given.rate), input_rate, packs(given.input_seconds));
+  place_accelerations(p, w, given, fixed);
   const StageValues values = {given};
-  const Mask undefined = evaluate_program(p, w, given, values, packs(found.watched));
+  const Undefined undefined = evaluate_program(p, w, given, values, packs(found.watched));
   reduce_inertia(p, w, m);
   reduce_forces(p, w, m, values);
   Pack* const second = packs(found.chart_second);
   const Mask positive = solve_motion(p, m, second);
   Slid slid = {all_lanes(false), Pack(0.0)};
   if (p.frictions)
-    slid = slide(p, w, m, *packs(given.sense), *packs(given.rate), values, second, packs(found.ways));
+    slid = slide(p, w, m, slips, {packs(given.sense), packs(given.quiet), packs(given.aim)}, values, second,
+                 {packs(found.slip_rate), packs(found.slip_second), packs(found.slip_force), packs(found.slip_row),
+                  packs(found.slip_limit), packs(found.slip_loose), packs(found.slip_state), packs(found.slip_answer), packs(found.level)});
   powers_of_loads(p, w, m, second, input_rate, values, packs(found.power), packs(found.power) + 1);
   packs(found.power)[1] += slid.power;
 
   copy(w.q, p.states, packs(found.state));
   copy(w.rate, p.columns, packs(found.first));
-  copy(m.tangent, p.charts * p.columns, packs(found.tangent));
+  if (found.bend) copy(w.acceleration, p.columns, packs(found.bend));
+  copy(m.tangent, directions(p) * p.columns, packs(found.tangent));
   copy(m.inertia, p.charts * p.charts, packs(found.inertia));
   for (int c = 0; c < p.columns; ++c) {
     Pack sum = w.acceleration[c];
@@ -163,7 +235,8 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGi
     if (!lane(placed.closed, i)) f |= STAGE_NOT_CLOSED;
     if (!lane(placed.on_branch, i)) f |= STAGE_OFF_BRANCH;
     if (!lane(positive, i)) f |= STAGE_SINGULAR_INERTIA;
-    if (lane(undefined, i)) f |= STAGE_UNDEFINED_LOAD;
+    if (lane(undefined.load, i)) f |= STAGE_UNDEFINED_LOAD;
+    if (lane(undefined.stop, i)) f |= STAGE_UNDEFINED_STOP;
     if (lane(slid.undecided, i)) f |= STAGE_FRICTION;
     found.flags[i] = (unsigned char)f;
   }
@@ -175,6 +248,7 @@ const Plan& plan_at(const char* wide) { return *reinterpret_cast<const Plan*>(wi
 struct Laid {
   Workspace w;
   ReducedMotion m;
+  Slips slips;
 };
 constexpr long LAID = (sizeof(Laid) + 63) / 64 * 64;
 Laid& laid_at(char* memory) { return *reinterpret_cast<Laid*>(memory + (64 - (std::uintptr_t)memory % 64) % 64); }
@@ -182,21 +256,24 @@ Laid& laid_at(char* memory) { return *reinterpret_cast<Laid*>(memory + (64 - (st
 long workspace_size(const char* wide) {
   Workspace w;
   ReducedMotion m;
-  return lay_out(plan_at(wide), nullptr, &w) + lay_out_motion(plan_at(wide), nullptr, &m) + LAID + 128;
+  Slips s;
+  const Plan& p = plan_at(wide);
+  return lay_out(p, nullptr, &w) + lay_out_motion(p, nullptr, &m) + lay_out_slips(p, nullptr, &s) + LAID + 128;
 }
 
 void prepare(const char* wide, char* memory) {
   const Plan& p = plan_at(wide);
   Laid& laid = laid_at(memory);
   char* const at = reinterpret_cast<char*>(&laid) + LAID;
-  const long used = lay_out(p, at, &laid.w);
-  lay_out_motion(p, at + used, &laid.m);
+  long used = lay_out(p, at, &laid.w);
+  used += lay_out_motion(p, at + used, &laid.m);
+  lay_out_slips(p, at + used, &laid.slips);
   find_moving(p, laid.w);
 }
 
 void evaluate(const char* wide, const StageGiven& given, const StageFound& found, char* memory) {
   Laid& laid = laid_at(memory);
-  evaluate_stage(plan_at(wide), laid.w, laid.m, given, found);
+  evaluate_stage(plan_at(wide), laid.w, laid.m, laid.slips, given, found);
 }
 
 const MotionUnit unit = {LANES, widen, workspace_size, prepare, evaluate};

@@ -16,18 +16,25 @@ struct StageGiven {
   const double* elapsed;          // 1: time since the origin
   const double* time;             // 1
   const double* side;             // kinks of the plan's program: +1 or -1
-  const double* sense;            // 1: of a motion of one freedom with friction, see sliding.hpp
+  const double *sense, *quiet, *aim;  // frictions, frictions, slips: how joints slip, see SlipsGiven
   const double* place;            // charts: u
   const double* rate;             // charts: its rate
   const double *inputs, *input_rates, *input_seconds;  // inputs: of what is driven
-  const double* over;             // 1: not 0 where a stage need not be joined with the origin by regular Jacobians
   const double* turned;           // turn slots, see Request::turned, of the origin
   const ClosingTurn* turns;       // turn_count: what StageFound::turned holds
   int turn_count;
   double tight, coarse, accept;   // of closing, as in a Request
   int iterations;
   double jump, radius;            // what a stage may differ from the origin, as in StepLimits
+  // Places that are not predicted from the origin; null where there are none.
+  const double* placed;           // lanes: StagePlace
+  const double *placed_state, *placed_tangent, *placed_bend;  // states; as StageFound::tangent and bend
 };
+
+// Where a lane's place comes from.
+constexpr double PREDICTED = 0.0;  // the origin's derivatives
+constexpr double GUESSED = 1.0;    // placed_state is closed, whatever the Jacobian at the origin
+constexpr double PLACED = 2.0;     // placed_state and its derivatives are the place: the equations are singular near it
 
 enum StageFlag : unsigned char {
   STAGE_GOOD = 0,
@@ -35,7 +42,8 @@ enum StageFlag : unsigned char {
   STAGE_OFF_BRANCH = 2,      // not told to lie on the origin's branch
   STAGE_SINGULAR_INERTIA = 4,
   STAGE_UNDEFINED_LOAD = 8,  // a law of a load has no value
-  STAGE_FRICTION = 16        // friction has no answer, or not one alone
+  STAGE_FRICTION = 16,       // friction has no answer, or not one alone
+  STAGE_UNDEFINED_STOP = 32  // what is watched beside the loads has no value
 };
 
 struct StageFound {
@@ -44,13 +52,17 @@ struct StageFound {
   double* second;     // columns
   double* miss;       // columns: closed less predicted, of scalar coordinates
   double* jacobian;   // blocks' entries, not factored
-  double* tangent;    // charts x columns: rates of the columns by those of u
+  double* tangent;    // directions x columns: rates of the columns by those of u, then of the inputs
   double* chart_second;  // charts: u''
+  double* bend;       // columns: their accelerations at u'' = 0; null where nothing asks
   double* inertia;    // charts x charts: reduced inertia
   double* watched;    // kinks of the plan's program, then its outputs beyond the loads' values
   double* power;      // 2: of efforts and loads without a potential; lost in dampers
   double* turned;        // turn slots: angles and quaternions of the closing joints as the kernel finds them
-  double* ways;          // 3: with friction, see sliding.hpp
+  double *slip_rate, *slip_second, *slip_force;  // slips: see SlipsFound
+  double* slip_row;      // slips x charts
+  double *slip_limit, *slip_loose, *slip_state, *slip_answer;  // frictions
+  double* level;         // 1
   unsigned char* flags;  // lanes: StageFlag
 };
 

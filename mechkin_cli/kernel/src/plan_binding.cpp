@@ -283,7 +283,7 @@ void bind_builder(nb::module_& m) {
       .def("add_actuator", &PlanBuilder::add_actuator, "axis"_a, "reference"_a, "freedom"_a)
       .def("add_tie", &PlanBuilder::add_tie, "input"_a, "leader"_a)
       .def("add_friction", &PlanBuilder::add_friction, "place"_a, "turns"_a, "slides"_a, "link"_a, "falls"_a, "axis"_a,
-           "radius"_a, "at_rest"_a, "sliding"_a, "speed"_a)
+           "radius"_a, "pitch"_a, "at_rest"_a, "sliding"_a, "speed"_a)
       .def("add_contact", &PlanBuilder::add_contact, "code"_a, "weight"_a, "share"_a, "tilt"_a, "roll"_a,
            "direction"_a)
       .def("add_size_point", &PlanBuilder::add_size_point, "link"_a, "point"_a)

@@ -296,21 +296,22 @@ void PlanBuilder::set_load_program(const ProgramRecord& program) {
 }
 
 void PlanBuilder::add_friction(int place, int turns, int slides, int link, bool falls, const Triple& axis,
-                               double radius, double at_rest, double sliding, double speed) {
+                               double radius, double pitch, double at_rest, double sliding, double speed) {
   open();
   require(place >= 0 && place < (int)place_.size(), "friction of an unknown joint");
   const auto motion = [](int code) { return code >= -1 && code < FREE_CODES; };
   require(motion(turns) && motion(slides) && (turns >= 0 || slides >= 0), "friction of an unknown motion");
   check_link(link);
-  check_finite(axis), check_finite(radius), check_finite(at_rest), check_finite(sliding), check_finite(speed);
+  check_finite(axis), check_finite(radius), check_finite(pitch), check_finite(at_rest), check_finite(sliding), check_finite(speed);
   for (const Friction& other : friction_) require(other.place != place, "a joint has one friction");
   const int contacts = (int)contact_.size();
-  Friction f = {place, turns, slides, link, falls, {}, radius, at_rest, sliding, speed, contacts, contacts};
+  Friction f = {place, turns, slides, link, falls, pitch != 0.0, {}, radius, pitch, at_rest, sliding, speed, contacts, contacts};
   copy(axis, f.axis);
   const std::size_t at = friction_.size() * sizeof(Friction);
   friction_.push_back(f);
   number(ARRAY_FRICTION, at + offsetof(Friction, axis), 3);
   number(ARRAY_FRICTION, at + offsetof(Friction, radius), 1);
+  number(ARRAY_FRICTION, at + offsetof(Friction, pitch), 1);
   number(ARRAY_FRICTION, at + offsetof(Friction, at_rest), 1);
   number(ARRAY_FRICTION, at + offsetof(Friction, sliding), 1);
   number(ARRAY_FRICTION, at + offsetof(Friction, speed), 1);

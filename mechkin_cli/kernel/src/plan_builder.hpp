@@ -54,7 +54,7 @@ class PlanBuilder {
   void add_tie(int input, int leader);
   // The friction of a joint, see Friction; at most one a joint.
   void add_friction(int place, int turns, int slides, int link, bool falls, const Triple& axis, double radius,
-                    double at_rest, double sliding, double speed);
+                    double pitch, double at_rest, double sliding, double speed);
   // The next contact of the last friction, see Contact.
   void add_contact(int code, double weight, double share, double tilt, double roll, const Triple& direction);
   // A joint's point, see Plan::size_point: in the link's frame and length units, of ground in m.

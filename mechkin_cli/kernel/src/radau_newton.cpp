@@ -11,6 +11,7 @@ using namespace radau;
 namespace {
 
 constexpr double PROBE = 0x1p-26;  // of a difference, in parts of 1 or of the largest rate
+constexpr double STALLED = 0.03;   // tolerances: changes below it that do not shrink do a step no harm
 constexpr double ROUNDING = 2.220446049250313e-16;
 
 // How far the stages are solved for, in tolerances of the step.
@@ -214,7 +215,8 @@ bool Radau::converges(const LaneStates& s, int i, double change) {
   if (change == 0.0) return l.is_solved = true;
   if (l.iterations == 1) return true;
   const double rate = change / before;
-  // below the limit a change that does not shrink is rounding
+  // a change that shrinks no more is the rounding of places that are closed
+  if (rate >= 1.0 && std::max(change, before) < STALLED) return l.is_solved = true;
   if (change < limit || (rate < 1.0 && rate / (1.0 - rate) * change < limit)) return l.is_solved = true;
   return rate < 1.0 && l.iterations < ITERATIONS;
 }

@@ -41,7 +41,10 @@ void respond_pack(const ResponseTask& task, const MotionUnit& unit, long first, 
   for (const MotionStart& s : starts) begin.push_back(s.time);
   const std::vector<LaneReport> found =
       integrate(motion, settings, begin.data(), motion.start(), {task.times, moments, 0});
-  for (int l = 0; l < unit.lanes && first + l < count; ++l) (*reports)[first + l] = {found[l], motion.stopped_by(l), motion.energy(l)};
+  for (int l = 0; l < unit.lanes && first + l < count; ++l)
+    (*reports)[first + l] = {found[l], motion.stopped_by(l), motion.undecided_joints(l, found[l]),
+                             motion.lightest(l), motion.growth(l), motion.energy(l), motion.last_place(l), motion.crossings(l),
+                             motion.branch_point_near(l), motion.is_next_to_singular(l)};
 }
 
 }  // namespace

@@ -16,7 +16,14 @@ struct ResponseTask {
 struct ResponseReport {
   LaneReport lane;
   int stop;  // that ended it, -1: none
+  std::vector<int> joints;  // frictions that it ended by
+  double lightest;  // see ChartedMotion::lightest
+  double growth;    // see ChartedMotion::growth
   double energy;  // the largest kinetic energy at the ends of steps; kg, length units, s
+  std::vector<double> last;  // states at the end
+  std::vector<PassedBranchPoint> crossings;
+  std::vector<double> branch_point;  // states at the one that it has ended next to, empty without one
+  bool singular;                     // steps were refused there, however short
 };
 
 // How each variant ended; they do not depend on `lanes` and `threads`.

@@ -29,11 +29,19 @@ const double* checked(const Table& a, std::size_t variants, long width, const ch
 nb::dict report_of(const ResponseReport& report) {
   const LaneReport& r = report.lane;
   nb::dict d;
-  d["stop"] = report.stop;
+  d["stop"] = report.stop, d["joints"] = report.joints;
+  nb::list crossings;
+  for (const PassedBranchPoint& p : report.crossings) crossings.append(nb::make_tuple(p.time, p.state));
+  d["last"] = report.last, d["crossings"] = crossings, d["branch_point"] = report.branch_point;
+  d["singular"] = report.singular;
   d["energy"] = report.energy;
+  d["lightest"] = report.lightest;
+  d["growth"] = report.growth;
+  d["met"] = r.met;
+  d["step"] = r.step;
   d["end"] = (int)r.end, d["fault"] = (int)r.fault, d["which"] = r.which;
   d["stiff"] = r.stiff, d["stiff_from"] = r.stiff_from, d["time"] = r.time, d["rows"] = r.rows;
-  d["evaluations"] = r.evaluations, d["steps"] = r.steps, d["rejections"] = r.rejections, d["passed"] = r.passed;
+  d["evaluations"] = r.evaluations, d["steps"] = r.steps, d["rejections"] = r.rejections;
   return d;
 }
 

@@ -1,16 +1,19 @@
-// Friction of a motion of one freedom (docs/friction.md, Motions).
+// Friction of a motion (docs/friction.md, Motions): each joint that rubs slips one way, or sticks.
 //
-// The freedom moves one way or the other, its `sense`, and all joints slip with it, or it rests. The acceleration is
-// eliminated first: a friction force and what it accelerates act together, u'' = M^-1 (-r + sum of z_k g_k), so that
-// reactions are linear in the z_k alone and the small system of the forces is that of a sweep. At rest both ways are
-// tried with the coefficients of rest; it stays where neither moves.
+// The acceleration is eliminated first: a friction force and what it accelerates act together,
+//
+//     u'' = M^-1 (-r - sum of B_s^T z_s - B_h^T h),
+//
+// with B the rows of the slips along their units. So are the forces h of what sticks, by that its slip stays zero:
+// B_h M^-1 B_h^T h = the slip's derivative without h. Reactions are then linear in the forces z of what slips alone, and
+// the small system of these forces is that of a sweep (friction_solver.hpp).
 #pragma once
 
-#include "equations_of_motion.hpp"
+#include "held_slips.hpp"
 
 namespace {
 
-// What friction makes of a stage: lanes without an answer, and the power that it takes.
+// What friction makes of a stage: lanes without an answer, the power that it takes, and the efforts of driven inputs.
 struct Slid {
   Mask undecided;
   Pack power;
@@ -39,81 +42,138 @@ inline void accelerate(const Plan& p, Workspace& w, const ReducedMotion& m, cons
   }
 }
 
-// Directions, speeds and coefficients for a sense; `resting` lanes have the coefficients of rest.
-inline void aim_along(const Plan& p, Workspace& w, const ReducedMotion& m, Pack sense, Pack rate, Mask resting) {
-  Pack level = 0.0;
-  for (int k = 0; k < p.links; ++k) level = component_level(level, {m.twist[k].angular, m.twist[k].linear});
+// Units of friction and coefficients. What sticks has all its columns, what slips the first alone.
+inline void aim_slips(const Plan& p, const Workspace& w, const Slips& s, const SlipsGiven& given) {
   const Rubbing& r = w.rubbing;
+  const Pack rates = twist_level(p, w);
   for (int k = 0; k < p.frictions; ++k) {
     const Friction& f = p.friction[k];
-    const JointPlace& j = p.place[f.place];
-    const Twist a = j.first < 0 ? zero_twist() : m.twist[j.first], b = j.second < 0 ? zero_twist() : m.twist[j.second];
-    const Slip slip = slip_of(f, r.axis[k], b.angular - a.angular, b.at(r.point[k]) - a.at(r.point[k]));
-    const Pack radius = f.radius, lever = (f.slides < 0 ? Pack(0.0) : Pack(1.0)) + (f.turns < 0 ? Pack(0.0) : radius);
-    const Mask moves = slip.speed > Pack(JOINT_AT_REST) * lever * level;
-    const Pack scale = select(moves, sense / select(moves, slip.speed, Pack(1.0)), Pack(0.0));
-    r.drag[k] = force_at(r.point[k], scale * slip.slide);
-    r.drag[k].moment += (scale * radius * radius) * slip.turn;
-    r.speed[k] = select(moves, slip.speed * abs(rate), Pack(0.0));
-    r.coefficient[k] = select(resting, Pack(f.at_rest), coefficient_at(f, r.speed[k]));
+    const int begin = s.first[k], end = s.first[k + 1];
+    const Mask sticks = given.sense[k] == Pack(0.0);
+    Pack square = 0.0;
+    for (int c = begin; c < end; ++c) {
+      square += s.rate[c] * s.rate[c];
+      s.sticks[c] = sticks;
+      s.unit[c] = select(sticks, s.frame[c], zero_wrench());
+    }
+    const Pack speed = sqrt(square);
+    if (end - begin == 1) {
+      s.unit[begin] = select(sticks, Pack(1.0), given.sense[k]) * s.frame[begin];
+    } else {
+      const Pack lever = (f.slides < 0 ? Pack(0.0) : Pack(1.0)) + (f.turns < 0 ? Pack(0.0) : Pack(f.radius));
+      const Mask begins = speed <= Pack(JOINT_AT_REST) * lever * rates;
+      const Pack per = Pack(1.0) / select(begins, Pack(1.0), speed);
+      Wrench along = zero_wrench();
+      for (int c = begin; c < end; ++c) along += select(begins, given.aim[c], per * s.rate[c]) * s.frame[c];
+      s.unit[begin] = select(sticks, s.unit[begin], along);
+    }
+    // beyond its zero a slip goes on with its sense
+    r.speed[k] = select(sticks, Pack(0.0), end - begin == 1 ? given.sense[k] * s.rate[begin] : speed);
+    const Mask quiet = ~(given.quiet[k] == Pack(0.0));
+    r.coefficient[k] = select(sticks, Pack(0.0), select(quiet, Pack(f.at_rest), coefficient_at(f, speed)));
     r.state[k] = (double)FRICTION_DECIDED;
   }
 }
 
-// Friction forces for the directions, and u'' with them; lanes without an answer. `second` is u'' without friction,
-// r.applied what the links need at u'' = 0.
-inline Mask slide_along(Balance& balance, const ReducedMotion& m, const Pack* second, Pack* out) {
+// Whether some lane has friction along a column.
+inline bool acts(const Slips& s, int k, int c) { return c == s.first[k] || any(s.sticks[c]); }
+
+// Accelerations by a unit along each column, and what the contacts carry of it.
+inline void find_answers(Balance& balance, const ReducedMotion& m, const Slips& s, const Pack* second) {
   const Plan& p = balance.p;
   Workspace& w = balance.w;
-  Rubbing& r = w.rubbing;
-  for (int k = 0; k < p.links; ++k) w.carried[k] = r.applied[k];
-  accelerate(p, w, m, second);
-  distribute(p, w, 0);
-  read_contacts(p, w, r.base, 1);
-  for (int f = 0; f < p.frictions; ++f) {
-    for (int k = 0; k < p.links; ++k) w.carried[k] = zero_wrench();
-    rub(balance, f, Pack(1.0));
-    Pack by = 0.0;
-    for (int k = 0; k < p.links; ++k) by -= power(m.twist[k], w.carried[k]);
-    solve_factored(p, m, &by);
-    r.answer[f] = by;
-    accelerate(p, w, m, &by);
-    distribute(p, w, 0);
-    read_contacts(p, w, r.gain + f, p.frictions);
-  }
-  solve_friction(p, r);
-  Mask undecided = all_lanes(false);
-  *out = *second;
+  const int d = directions(p), n = p.charts;
   for (int k = 0; k < p.frictions; ++k) {
-    undecided = undecided | ~(r.state[k] == Pack((double)FRICTION_DECIDED));
-    *out += r.force[k] * r.answer[k];
+    const JointPlace& j = p.place[p.friction[k].place];
+    for (int c = s.first[k]; c < s.first[k + 1]; ++c) {
+      for (int i = 0; i < d; ++i) s.along[c * d + i] = power(direction_of(p, m, j, i), s.unit[c]);
+      s.start[c] = convective_slip(w, j, w.rubbing.point[k], s.unit[c]);
+      for (int i = 0; i < n; ++i) {
+        s.start[c] += s.along[c * d + i] * second[i];
+        s.by[c * n + i] = -s.along[c * d + i];
+      }
+      if (!acts(s, k, c)) {
+        for (int i = 0; i < n; ++i) s.by[c * n + i] = 0.0;
+        for (int e = 0; e < p.contacts; ++e) s.load[e * s.columns + c] = zero3();
+        continue;
+      }
+      solve_factored(p, m, s.by + c * n);
+      for (int l = 0; l < p.links; ++l) w.carried[l] = zero_wrench();
+      balance.apply(j.second, Pack(-1.0) * s.unit[c]);
+      balance.apply(j.first, s.unit[c]);
+      accelerate(p, w, m, s.by + c * n);
+      distribute(p, w, 0);
+      read_contacts(p, w, s.load + c, s.columns);
+    }
   }
-  return undecided;
 }
 
-// u'' of one freedom with friction in the place of `second`. `sense`: 1, -1, or 0 at rest, where `ways` are the
-// accelerations that both ways would have; its third entry is the switch at whose zero the sense changes.
+// Forces along the columns' units, and u'' with them.
+inline void gather_forces(const Plan& p, const Slips& s, const Rubbing& r, Pack* second) {
+  const int m = s.columns, n = p.frictions;
+  for (int k = 0; k < n; ++k)
+    for (int c = s.first[k]; c < s.first[k + 1]; ++c) {
+      Pack held = s.hold[c * (n + 1)];
+      for (int f = 0; f < n; ++f) held += r.force[f] * s.hold[c * (n + 1) + f + 1];
+      s.force[c] = select(s.sticks[c], held, c == s.first[k] ? r.force[k] : Pack(0.0));
+    }
+  for (int c = 0; c < m; ++c)
+    for (int i = 0; i < p.charts; ++i) second[i] += s.force[c] * s.by[c * p.charts + i];
+}
+
+// What is told of the slips: along the frame, not along the units.
+inline void tell_slips(const Plan& p, const Slips& s, const Rubbing& r, const SlipsGiven& given, const Pack* second,
+                       const SlipsFound& found) {
+  const int d = directions(p);
+  for (int k = 0; k < p.frictions; ++k) {
+    const int begin = s.first[k], end = s.first[k + 1];
+    found.limit[k] = Pack(p.friction[k].at_rest) * r.normal[k];
+    found.state[k] = r.state[k];
+    found.answer[k] = 0.0;
+    for (int c = begin; c < end; ++c) {
+      const Pack per = Pack(1.0) / select(r.speed[k] > Pack(0.0), r.speed[k], Pack(1.0));
+      const Pack part = end - begin == 1 ? given.sense[k] : select(r.speed[k] > Pack(0.0), per * s.rate[c], given.aim[c]);
+      found.rate[c] = s.rate[c];
+      found.force[c] = select(s.sticks[c], s.force[c], part * s.force[begin]);
+      found.answer[k] = max(found.answer[k], s.inverse[c * s.columns + c]);
+      found.second[c] = s.convective[c];
+      for (int i = 0; i < p.charts; ++i) {
+        found.second[c] += s.row[c * d + i] * second[i];
+        found.row[c * p.charts + i] = select(s.mobile[c], s.row[c * d + i], Pack(0.0));
+      }
+    }
+  }
+}
+
+// u'' with friction in the place of `second`.
 template <class RowValue>
-inline Slid slide(const Plan& p, Workspace& w, const ReducedMotion& m, Pack sense, Pack rate, const RowValue& row_value,
-                  Pack* second, Pack* ways) {
+inline Slid slide(const Plan& p, Workspace& w, const ReducedMotion& m, const Slips& s, const SlipsGiven& given,
+                  const RowValue& row_value, Pack* second, const SlipsFound& found) {
   Balance balance = {p, w, zero_wrench(), zero_wrench(), true, Pack(0.0)};
+  Rubbing& r = w.rubbing;
   apply_inertia(balance, true);
   for (int l = 0; l < p.loads; ++l) apply_load(balance, p.load[l], row_value);
-  for (int k = 0; k < p.links; ++k) w.rubbing.applied[k] = w.carried[k];
   place_contacts(p, w);
-  const Mask resting = sense == Pack(0.0);
-  aim_along(p, w, m, select(resting, Pack(1.0), sense), rate, resting);
-  Slid found = {slide_along(balance, m, second, ways), Pack(0.0)};
-  for (int k = 0; k < p.frictions; ++k) found.power += w.rubbing.force[k] * w.rubbing.speed[k];
-  found.power = select(resting, Pack(0.0), found.power);
-  ways[1] = ways[0];
-  if (any(resting)) {
-    aim_along(p, w, m, Pack(-1.0), rate, resting);
-    found.undecided = found.undecided | (resting & slide_along(balance, m, second, ways + 1));
+  find_slips(p, w, m, s);
+  aim_slips(p, w, s, given);
+  accelerate(p, w, m, second);
+  distribute(p, w, 0);
+  read_contacts(p, w, s.base, 1);
+  *found.level = reaction_level(p, w);
+  find_answers(balance, m, s, second);
+  for (int k = 0; k < p.frictions; ++k) found.loose[k] = 0.0;
+  Slid slid = {factor_held(p, s, given, found.loose), Pack(0.0)};
+  hold_slips(p, s, r);
+  solve_friction(p, r);
+  gather_forces(p, s, r, second);
+  tell_slips(p, s, r, given, second, found);
+  for (int k = 0; k < p.frictions; ++k) {
+    slid.undecided = slid.undecided | ~(r.state[k] == Pack((double)FRICTION_DECIDED));
+    slid.power += r.force[k] * r.speed[k];
   }
-  ways[2] = select(resting, min(-ways[0], ways[1]), sense * rate);
-  *second = select(resting, Pack(0.0), ways[0]);
-  return found;
+  for (int i = p.charts; i < directions(p); ++i)
+    for (int c = 0; c < s.columns; ++c) m.force[i] += s.force[c] * s.along[c * directions(p) + i];
+  return slid;
 }
 
 }  // namespace

@@ -163,8 +163,9 @@ inline void widen_frictions(const LanePlan& first, const Lanes& lanes, Plan* w, 
   if (!room.memory) return;
   for (int f = 0; f < first.frictions; ++f) {
     const auto& from = first.friction[f];
-    friction[f] = {from.place, from.turns, from.slides, from.link, from.falls, {},
+    friction[f] = {from.place, from.turns, from.slides, from.link, from.falls, from.screws, {},
                    lanes.number([&](const LanePlan& p) { return p.friction[f].radius; }),
+                   lanes.number([&](const LanePlan& p) { return p.friction[f].pitch; }),
                    lanes.number([&](const LanePlan& p) { return p.friction[f].at_rest; }),
                    lanes.number([&](const LanePlan& p) { return p.friction[f].sliding; }),
                    lanes.number([&](const LanePlan& p) { return p.friction[f].speed; }),

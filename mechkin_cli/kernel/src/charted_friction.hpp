@@ -1,0 +1,24 @@
+// What a motion keeps of the joints that rub: how each slips, lane by lane.
+#pragma once
+
+#include <vector>
+
+#include "aligned.hpp"
+#include "sign_vectors.hpp"
+
+// A stage's slips, as StageFound has them.
+struct SlipStage {
+  Packed rate, second, force, row, limit, loose, state, answer, level;
+};
+
+struct SlipMemory {
+  int columns = 0;
+  std::vector<int> first;            // frictions + 1: of their columns
+  Packed sense, quiet, aim;          // as StageGiven has them
+  std::vector<unsigned char> armed;  // frictions x lanes: slips in several directions that have begun
+  std::vector<double> fastest;       // lanes: the largest rate of a chart so far
+  std::vector<std::vector<Signs>> ways;  // lanes: senses in which what rests with forces that are not unique could go
+  std::vector<unsigned char> rests;  // lanes: what sticks leaves nothing to move
+  std::vector<unsigned char> blocked;  // lanes: at rest friction has no answer, or several
+  std::vector<std::vector<int>> doubtful;  // lanes: whose friction was met last without an answer
+};

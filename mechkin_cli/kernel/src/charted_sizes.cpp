@@ -1,0 +1,54 @@
+// What a motion under forces is measured by: its energies, its inertia, and how fast its rates grow.
+#include <algorithm>
+#include <cmath>
+
+#include "charted_motion.hpp"
+
+namespace {
+
+constexpr double PART_OF_FORCE = 0.1;
+
+}  // namespace
+
+// Works matter in parts of the energy that the motion has, or that its forces would give it over a tenth of a unit of its
+// chart: what a damper within a rigid part takes is rounding.
+void ChartedMotion::sizes(const unsigned char* lanes, double* size) {
+  const int n = plan_.charts;
+  for (int l = 0; l < lanes_; ++l) {
+    if (!lanes[l]) continue;
+    double energy = 0.0, coming = 0.0;
+    for (int i = 0; i < n; ++i) {
+      double rate = 0.0, force = 0.0;
+      for (int j = 0; j < n; ++j) {
+        const double m = at(end_.inertia, i * n + j, l);
+        rate += m * at(end_.chart_rate, j, l), force += m * at(end_.chart_second, j, l);
+      }
+      energy += 0.5 * at(end_.chart_rate, i, l) * rate;
+      coming += PART_OF_FORCE * std::fabs(force);
+    }
+    energy_[l] = std::max(energy_[l], energy);
+    weigh(l);
+    for (int k = 1; k < 3; ++k) size[k * lanes_ + l] = std::max(size[k * lanes_ + l], energy + coming);
+  }
+}
+
+// The pivots of the inertia where a lane stands, and how fast its rates grow.
+void ChartedMotion::weigh(int lane) {
+  const int n = plan_.charts;
+  std::vector<double> m((std::size_t)n * n);
+  for (int k = 0; k < n * n; ++k) m[k] = at(end_.inertia, k, lane);
+  lightest_[lane] = __builtin_inf();
+  double rate = 0.0, second = 0.0;
+  for (int i = 0; i < n; ++i) {
+    rate = std::max(rate, std::fabs(at(end_.chart_rate, i, lane)));
+    second = std::max(second, std::fabs(at(end_.chart_second, i, lane)));
+  }
+  growth_[lane] = rate > 0.0 ? second / rate : 0.0;
+  for (int j = 0; j < n; ++j) {
+    const double pivot = m[j * n + j];
+    lightest_[lane] = std::min(lightest_[lane], pivot);
+    for (int r = j + 1; r < n; ++r)
+      for (int c = j + 1; c < n; ++c) m[r * n + c] -= m[r * n + j] * m[j * n + c] / pivot;
+  }
+  if (lightest_start_[lane] == 0.0) lightest_start_[lane] = lightest_[lane];
+}
