@@ -63,6 +63,7 @@ KIND_OF_DIMENSION = {
     "angle/time^3": "angular_jerk",
     "mass*length/time^2": "force",
     "mass*length^2/time^2": "moment",
+    "mass*length^2/time^3": "power",
     "": "number",
 }
 NEITHER = ("row.", "transmission_angle", ".mechanical_advantage", ".finite_", ".screw_")
@@ -151,7 +152,7 @@ def only_chooses(template: str, place: re.Match[str]) -> bool:
     after = template[place.end() :].splitlines()[0]
     is_last_row = before.endswith("to: ") and "step:" in after
     is_first_moment = before.endswith("time: {from: ")
-    directs = any(key in before for key in ("near:", "step:", "vector:", "axis:"))
+    directs = any(key in before for key in ("near:", "step:", "vector:", "axis:", "across:"))
     return is_last_row or is_first_moment or directs
 
 
@@ -215,12 +216,7 @@ def test_the_templates_use_every_dimensional_field(tmp_path: Path) -> None:
 
 
 ELSEWHERE = {
-    *(
-        ("FrictionAtJoint", key)
-        for key in ("across", "collar", "flank", "length", "radius", "width")
-    ),
     *(("Response", key) for key in ("efforts", "fixed_step", "near", "start")),
-    ("FallingCoefficient", "speed"),
     ("HeldCoordinate", "at"),
     ("ListedTime", "values"),
     ("Crossing", "at"),
@@ -228,14 +224,12 @@ ELSEWHERE = {
     ("FlywheelBalance", "rate"),
     ("HarmonicsBalance", "of"),
 }
-"""Of friction and responses, whose own tests change their units, and of balances, of which none
+"""Of responses, whose own tests change their units, and of balances, of which none
 does yet."""
 
 WITHOUT = {
     ("SpherePlaneJoint", "normal"),
     ("SphereGrooveJoint", "groove"),
-    ("UniversalJoint", "axis"),
-    ("UniversalJoint", "axis2"),
     ("PlanarJoint", "normal"),
     ("PlanarJoint", "x"),
     ("AxisJoint", "zero"),
