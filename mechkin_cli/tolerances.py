@@ -763,6 +763,10 @@ LOST_INERTIA: Final = 1e-3
 """Parts of the least inertia at the start below which rates that run away do so for want of it; it
 is 1e-8 to 1e-10 where such steps end."""
 
+KINK_ROUNDING: Final = 1e-12
+"""What a load takes the sign of, in SI, is rounding if it never was above: loops are closed to
+1e-14 of the size."""
+
 MANY_KINKS: Final = 0.2
 """Parts of all steps that end at one kink from which on a response is said to run out of steps by
 it."""

@@ -50,7 +50,8 @@ class MotionReport(NamedTuple):
     """What a motion came to: the stop that ended it or that had no value where it ended (-1: none),
     the largest kinetic energy at the ends of its steps (kg, length units, s), the least inertia at
     the last of them in parts of that at the start, the accelerations there in parts of the rates
-    (1/s), how often the switch `which` was met, the last step in s, its end, the fault of the last
+    (1/s), how often the switch `which` was met, the last step in s and the
+    largest value of that switch, its end, the fault of the last
     refused step, the switch that held it or that was met most often when steps ran out, whether and
     from when the implicit method took over, the last time in s, the counts of rows, evaluations,
     steps and rejections, the last states, the branch points that were passed (time in s, states),
@@ -64,6 +65,7 @@ class MotionReport(NamedTuple):
     growth: float
     met: int
     step: float
+    value: float
     end: MotionEnd
     fault: int
     which: int

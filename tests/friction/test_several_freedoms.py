@@ -306,3 +306,36 @@ def test_lanes_do_not_change_bits() -> None:
     here = model.respond("go", names)
     other = model.respond("go", names, lanes=4)
     assert all(other[name].tobytes() == here[name].tobytes() for name in names)
+
+
+UNLOADED = f"""{HEAD}name: arm on a table
+links:
+  a: {{mass: 2, center_of_mass: [0.5, 0, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}
+  b: {{mass: 1, center_of_mass: [1.4, 0, 0], inertia: {{xx: 0.5, yy: 0.5, zz: 0.5}}}}
+joints:
+  A: {{type: R, links: [ground, a], point: [0, 0, 0], axis: [0, 0, 1]}}
+  B: {{type: R, links: [a, b], point: [1, 0, 0], axis: [0, 0, 1]}}
+loads:
+  - {{type: friction, joint: A, coefficient: 0.3, radius: 0.1}}
+responses:
+  go:
+    start: {{A.theta: 0, B.theta: 0}}
+    time: {{from: 0, to: 2, step: 0.1}}
+    efforts: {{A.theta: "EFFORT N*m/s*time"}}
+"""
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_pin_that_carries_nothing_at_first_gives_way_to_any_push(sign: int) -> None:
+    names = ["A.theta", "B.theta", "row.energy_error"]
+    found = mk.loads(UNLOADED.replace("EFFORT", str(sign))).respond("go", names)
+    assert errors(found) == []
+    assert (sign * np.diff(found["A.theta"]) > 0.0).all()
+    assert (found["row.energy_error"][1:] <= 1e-10).all()
+
+
+def test_several_pins_that_carry_nothing_at_first_are_not_held_without_a_word() -> None:
+    other = "  - {type: friction, joint: B, coefficient: 0.3, radius: 0.1}\nresponses:"
+    text = UNLOADED.replace("EFFORT", "1").replace("responses:", other)
+    found = mk.loads(text).respond("go", ["A.theta"])
+    assert errors(found) or (np.diff(found["A.theta"]) > 0.0).all()

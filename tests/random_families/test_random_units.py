@@ -9,7 +9,10 @@ from __future__ import annotations
 import os
 import random
 import re
+import tempfile
 from collections.abc import Iterator
+from functools import cache
+from math import inf
 from pathlib import Path
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin
@@ -26,6 +29,8 @@ from random_families.unit_systems import (
 )
 
 import mechkin_cli as mk
+from mechkin_cli.building.columns import quantities_of
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.schema.base import Section, fields_of
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.schema.rules import Dimension
@@ -44,6 +49,7 @@ CURVES = {
     "push.csv": ("length", "force", [(0.0, 1.0), (0.02, 4.0), (0.04, 2.0), (0.06, 3.0)]),
     "slide.csv": ("time", "length", [(0.0, 0.0), (0.2, 0.03), (0.4, 0.05), (0.6, 0.02)]),
     "wind.csv": ("time", "force", [(0.0, 1.0), (0.2, 4.0), (0.4, 2.0), (0.6, 3.0)]),
+    "brake.csv": ("angular_rate", "moment", [(-20.0, 0.3), (0.0, 0.1), (9.0, -0.4), (20.0, -0.9)]),
     "swirl.csv": ("time", "moment", [(0.0, 0.1), (0.2, 0.4), (0.4, 0.2), (0.6, 0.3)]),
 }
 """CSV files beside the templates: kinds and rows in SI."""
@@ -67,8 +73,18 @@ KIND_OF_DIMENSION = {
     "": "number",
 }
 NEITHER = ("row.", "transmission_angle", ".mechanical_advantage", ".finite_", ".screw_")
+"""Quantities left out: verdicts, and what is no matter of units."""
 COEFFICIENTS = (".per_acceleration", ".per.", ".without_acceleration", ".reduced_inertia")
-"""Quantities left out: verdicts, what is no matter of units, and quotients of what is here."""
+"""Left out of responses, for time's sake."""
+ENERGIES = ("row.kinetic_energy", "row.potential_energy", "row.work", "row.dissipated")
+BALANCES = {
+    "work": "moment",
+    "drive": "moment",
+    "work_fluctuation": "moment",
+    **dict.fromkeys(("flywheel", "estimate", "least_inertia", "largest_inertia"), "inertia"),
+    **dict.fromkeys(("cosine", "sine", "amplitude"), ""),
+}
+"""Kinds of columns of balances; harmonics have the kind that their table is called by."""
 
 Answers = dict[str, tuple[str, np.ndarray[Any, Any]]]
 
@@ -87,28 +103,59 @@ def answers(
         (folder / file).write_text("\n".join(["x,y", *lines]) + "\n")
     (folder / "m.yaml").write_text(written(text or TEMPLATES[which], words, rng, explicit))
     model = mk.load(folder / "m.yaml")
-    quantities = {
-        name: KIND_OF_DIMENSION[str(found.dimension)]
-        for name, found in model.problem.quantities().items()
-        if not any(part in name for part in NEITHER + COEFFICIENTS)
-        and name not in model.problem.parameters
+    return dict(each for run in model.runs for each in read(model, run, words))
+
+
+@cache
+def wanted_of(which: str) -> Answers:
+    """The answers of a template in SI."""
+    with tempfile.TemporaryDirectory() as folder:
+        return answers(which, Path(folder), SI, random.Random(which), 0.0)
+
+
+def read(model: mk.Model, run: str, words: dict[str, str]) -> Iterator[tuple[str, Any]]:
+    """The quantities of a run, and the balances of a sweep."""
+    known = quantities_of(model.problem, run)
+    neither = NEITHER if run == SWEEP else NEITHER + COEFFICIENTS
+    kinds = {
+        name: kind_of(str(found.dimension))
+        for name, found in known.items()
+        if name in ENERGIES or not any(part in name for part in neither)
+        if name not in model.problem.parameters
     }
-    found = model.analyze(list(quantities))
-    assert set(found["row.status"]) == {"ok"}, (which, words)
-    return {
-        name: (kind, np.asarray(found[name]) * factor(kind, words))
-        for name, kind in quantities.items()
-    }
+    found = model.analyze(list(kinds)) if run == SWEEP else model.respond(run, list(kinds))
+    assert set(found["row.status"]) == {"ok"}, (run, words)
+    for name, kind in kinds.items():
+        yield f"{run}: {name}", (kind, np.asarray(found[name]) * factor(kind, words))
+    for name, table in found.balances.items():
+        for label, own in BALANCES.items():
+            if label in table:
+                kind = own or name
+                yield f"{name}: {label}", (kind, np.asarray(table[label]) * factor(kind, words))
+
+
+def kind_of(dimension: str) -> str:
+    """The kind of a dimension; of other quotients powers of mass and length, angles in rad."""
+    if dimension in KIND_OF_DIMENSION:
+        return KIND_OF_DIMENSION[dimension]
+    found = re.findall(r"(/?)([a-z]+)(?:\^([0-9]+))?", dimension)
+    powers = [(name, f"{'-' if over else ''}{power or 1}") for over, name, power in found]
+    assert {name for name, _ in powers} <= {"mass", "length", "angle"}, dimension
+    return " ".join(f"{name}^{power}" for name, power in powers if name != "angle")
 
 
 def worst(found: Answers, wanted: Answers) -> float:
     """The largest difference in parts of the largest number of its kind."""
     sizes: dict[str, float] = {}
     for kind, values in wanted.values():
-        sizes[kind] = max(sizes.get(kind, 0.0), float(np.abs(values).max()))
+        sizes[kind] = max(sizes.get(kind, 0.0), float(np.nanmax(np.abs(values), initial=0.0)))
     assert found.keys() == wanted.keys()
+    if any(values.shape != wanted[name][1].shape for name, (_, values) in found.items()):
+        return inf
+    gone = {name: np.isnan(values) for name, (_, values) in wanted.items()}
+    assert all(np.array_equal(np.isnan(found[name][1]), gone[name]) for name in gone)
     return max(
-        float(np.abs(values - wanted[name][1]).max()) / (sizes[kind] or 1.0)
+        float(np.nanmax(np.abs(values - wanted[name][1]), initial=0.0)) / (sizes[kind] or 1.0)
         for name, (kind, values) in found.items()
     )
 
@@ -117,7 +164,7 @@ def worst(found: Answers, wanted: Answers) -> float:
 @pytest.mark.parametrize("explicit", [0.0, 1.0, 0.5], ids=["bare", "with units", "mixed"])
 def test_the_same_answers_in_any_units(which: str, explicit: float, tmp_path: Path) -> None:
     rng = random.Random(f"{which} {explicit}")
-    wanted = answers(which, tmp_path, SI, rng, 0.0)
+    wanted = wanted_of(which)
     for _ in range(5 * TIMES):
         words = random_words(rng)
         error = worst(answers(which, tmp_path, words, rng, explicit), wanted)
@@ -128,7 +175,7 @@ def test_the_same_answers_in_any_units(which: str, explicit: float, tmp_path: Pa
 def test_each_unit_by_itself(entry: str, tmp_path: Path) -> None:
     rng = random.Random(entry)
     for which in TEMPLATES:
-        wanted = answers(which, tmp_path, SI, rng, 0.0)
+        wanted = wanted_of(which)
         for word in WORDS[entry]:
             assert worst(answers(which, tmp_path, SI | {entry: word}, rng, 0.0), wanted) < ROUNDING
 
@@ -138,7 +185,7 @@ def test_every_number_matters(which: str, tmp_path: Path) -> None:
     """A number that were read in a wrong unit would be seen: even a hundredth of it is."""
     template = TEMPLATES[which]
     rng = random.Random(0)
-    wanted = answers(which, tmp_path, SI, rng, 0.0)
+    wanted = wanted_of(which)
     for place in places(template):
         if float(place[1]) == 0.0 or only_chooses(template, place):
             continue
@@ -212,20 +259,8 @@ def test_the_templates_use_every_dimensional_field(tmp_path: Path) -> None:
         used.update(used_fields(mk.load(tmp_path / "m.yaml").built.read.file))
     wanted = dimensional_fields()
     assert len(wanted) > 50
-    assert wanted - used == WITHOUT | ELSEWHERE
+    assert wanted - used == WITHOUT
 
-
-ELSEWHERE = {
-    *(("Response", key) for key in ("efforts", "fixed_step", "near", "start")),
-    ("HeldCoordinate", "at"),
-    ("ListedTime", "values"),
-    ("Crossing", "at"),
-    ("Crossing", "value"),
-    ("FlywheelBalance", "rate"),
-    ("HarmonicsBalance", "of"),
-}
-"""Of responses, whose own tests change their units, and of balances, of which none
-does yet."""
 
 WITHOUT = {
     ("SpherePlaneJoint", "normal"),

@@ -62,9 +62,10 @@ def random_words(rng: random.Random) -> dict[str, str]:
 
 
 def factor(kind: str, words: dict[str, str]) -> float:
-    """The SI value of the bare number 1 of a kind in a file of these units."""
+    """The SI value of the bare number 1 of a kind, or of powers of units, in a file of these
+    units."""
     value = 1.0
-    for part in KINDS[kind].split():
+    for part in KINDS.get(kind, kind).split():
         entry, _, power = part.partition("^")
         base = WORDS[entry][words[entry]] if entry in WORDS else 1.0
         value *= base ** int(power or 1)

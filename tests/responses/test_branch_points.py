@@ -242,3 +242,45 @@ def test_no_bit_depends_on_the_lanes() -> None:
     )
     cells = [mk.loads(text).respond("run", lanes=lanes)["A2.theta"].tobytes() for lanes in widths()]
     assert len(set(cells)) == 1
+
+
+def test_double_speed_takes_half_the_time() -> None:
+    def moved(rate: float, end: float) -> Any:
+        text = parallel_cranks(
+            2,
+            f"start: {{A0.theta: 0.3, A0.theta_dot: {rate} rad/s}}",
+            f"time: {{values: [0, {end}, {2 * end}]}}",
+            "tolerance: 1e-12",
+        )
+        return mk.loads(text.replace("-9.81", "0")).respond("run")["A2.theta"]
+
+    assert np.max(np.abs(moved(3.0, 1.0) - moved(6.0, 0.5))) < 1e-10
+
+
+def test_neither_order_nor_names_matter() -> None:
+    text = parallel_cranks(
+        2,
+        "start: {A0.theta: 0.3, A0.theta_dot: 4 rad/s}",
+        "time: {from: 0, to: 2, step: 0.5}",
+        "tolerance: 1e-12",
+    )
+    begin, end = text.index("joints:\n") + len("joints:\n"), text.index("loads:")
+    turned = "".join(reversed(text[begin:end].splitlines(keepends=True)))
+    other = text[:begin] + turned + text[end:]
+    other = other.replace("crank1", "alpha").replace("bar0", "zeta")
+    found, again = (mk.loads(one).respond("run")["A1.theta"] for one in (text, other))
+    assert np.max(np.abs(found - again)) < 1e-9
+
+
+def test_variants_that_cross_at_their_own_times_are_as_alone() -> None:
+    text = parallel_cranks(
+        2, "start: {A0.theta: 0.1, A0.theta_dot: 4 rad/s}", "time: {from: 0, to: 1, step: 0.5}"
+    )
+    text = text.replace("mass: 1,", "mass: m * 1 kg,", 1)
+    text = text.replace("links:\n", "parameters: {m: 1}\nlinks:\n", 1)
+    masses = [0.5, 1.0, 3.0]
+    together = mk.loads(text).vary({"m": masses}, ["A2.theta"], run="run")["A2.theta"]
+    for row, mass in zip(together, masses, strict=True):
+        alone = mk.loads(text.replace("{m: 1}", f"{{m: {mass}}}")).respond("run")
+        assert set(alone["row.status"]) == {"ok"}
+        assert row.tobytes() == alone["A2.theta"].tobytes()

@@ -45,3 +45,14 @@ def test_the_same_kinks_of_what_moves_are_there() -> None:
     load = f'  - {at_joint}"-0.1 N*m*sign(A.theta_dot)"}}\nresponses:'
     rows = swing(RESTING.replace("responses:", load))
     assert np.abs(rows["A.theta"] - SMOOTH["A.theta"]).max() > 1e-3
+
+
+def test_a_jump_by_the_sign_of_rounding_says_so() -> None:
+    """The slide does not move, but the crank would: the load has no one value."""
+    at_joint = "{type: torque, joint: A, value: "
+    load = f'  - {at_joint}"0.5 N*m*sign(C.s/1 m)"}}\nresponses:'
+    rows = swing(RESTING.replace("responses:", load))
+    assert set(rows["row.status"]) == {"ok", "friction-undecided"}
+    (error,) = (d for d in rows.diagnostics if d.severity == "error")
+    assert error.code == "held-at-jump"
+    assert '"0.5 N*m*sign(C.s/1 m)" jumps with the sign of what is zero' in error.message

@@ -158,3 +158,44 @@ def test_a_stop_just_before_a_dead_centre_is_met(at: str, count: int) -> None:
     # the angle is known to 1e-10, and nearly turns
     assert found["A.theta"][-1] == pytest.approx(-float(at), abs=1e-9)
     assert last_time(found) == pytest.approx(float(moment), abs=3e-8 if "99999" in at else 1e-9)
+
+
+SLIDER_CRANK = """format: 1
+name: slider-crank
+units: {{angle: rad}}
+links:
+  crank: {{mass: 2, center_of_mass: [0, 0.1, 0], inertia: {{zz: 0.1}}}}
+  rod: {{mass: 1, center_of_mass: [0.45, 0.1, 0], inertia: {{zz: 0.1}}}}
+  slider: {{mass: 1, center_of_mass: [{x}, 0, 0]}}
+joints:
+  A: {{type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}}
+  B: {{type: S, links: [crank, rod], point: [0, 0.2, 0]}}
+  C: {{type: C, links: [rod, slider], point: [{x}, 0, 0], axis: [0, 0, 1]}}
+  D: {{type: P, links: [ground, slider], point: [{x}, 0, 0], axis: [1, 0, 0]}}
+loads:
+  - {{type: gravity, g: [0, -9.81, 0]}}
+responses:
+  run:
+    start: {{A.theta: 0, A.theta_dot: {rate}}}
+    time: {{from: 0, to: 2, count: {count}}}
+    stop: [{{value: D.s, at: {at!r}}}]
+"""
+
+
+@pytest.mark.parametrize("rate", [-9, 9])
+@pytest.mark.parametrize("short", [1e-3, 1e-6, 1e-9])
+def test_a_slide_is_stopped_just_before_its_end(short: float, rate: int) -> None:
+    """The end is r + l; there cos(turn) = (s^2 + r^2 - l^2) / (2 r s), whatever moves it. At every
+    spacing of the rows it is met at the first pass."""
+    r, length = 0.2, 0.9
+    x = math.sqrt(length**2 - r**2)
+    s = r + length - short
+    with mp.workdps(30):
+        cosine = (mp.mpf(s) ** 2 + mp.mpf(r) ** 2 - mp.mpf(length) ** 2) / (2 * mp.mpf(r) * s)
+        away = mp.acos(cosine)
+    expected = float(-mp.pi / 2 + away) if rate < 0 else float(3 * mp.pi / 2 - away)
+    for count in (2, 3, 4, 6, 9, 14, 22, 35, 101, 401):
+        found = respond(
+            SLIDER_CRANK.format(x=repr(x), rate=rate, count=count, at=s - x), energy=1e-9
+        )
+        assert found["A.theta"][-1] == pytest.approx(expected, abs=1e-12 / math.sqrt(short))

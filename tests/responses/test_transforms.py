@@ -185,6 +185,79 @@ def test_a_part_that_carries_nothing(original: Any) -> None:
     check(respond(to_text(data)), original)
 
 
+def with_bodies(data: dict[str, Any], factor: float) -> dict[str, Any]:
+    """The file with masses and inertias times a factor."""
+    for body in data["links"].values():
+        body["mass"] = repr(factor * float(body["mass"]))
+        for key, value in body["inertia"].items():
+            if key != "axes":
+                body["inertia"][key] = repr(factor * float(value))
+    return data
+
+
+def test_twice_the_masses_and_efforts_move_alike(original: Any) -> None:
+    data = with_bodies(spring_driven(), 2.0)
+    data["responses"]["run"]["efforts"] = {
+        "O1.theta": "-200 lbm*in^2/s^2 - 60 lbm*in^2/s*O1.theta_dot"
+    }
+    found = respond(to_text(data))
+    check(found, original)
+    for name in (*FORCES, "row.work", "row.kinetic_energy"):
+        assert off(found[name], 2 * original[name]) < 10 * SAME, name
+
+
+def test_twice_as_fast_under_four_times_the_forces(original: Any) -> None:
+    """Loads times four, what is viscous and rates times two: the same way in half the time."""
+    data = spring_driven()
+    data["loads"] = [{"type": "gravity", "g": ["0", "-160", "60"]}]
+    data["responses"]["run"] |= {
+        "start": {"O1.theta": "20 deg", "O1.theta_dot": "-1 rad/s"},
+        "efforts": {"O1.theta": "-400 lbm*in^2/s^2 - 60 lbm*in^2/s*O1.theta_dot"},
+        "time": {"from": "0 s", "to": "0.5 s", "step": "0.125 s"},
+    }
+    found = respond(to_text(data))
+    check(found, original, NAMES)
+    for name in RATES:
+        assert off(found[name], 2 * original[name]) < SAME, name
+    for name in FORCES:
+        assert off(found[name], 4 * original[name]) < 10 * SAME, name
+
+
+def test_a_link_in_two_halves(original: Any) -> None:
+    """Half of each body is a link of its own, welded on."""
+    data = with_bodies(spring_driven(), 0.5)
+    for name in list(data["links"]):
+        data["links"][f"{name}_b"] = data["links"][name]
+        data["joints"][f"weld_{name}"] = {"type": "W", "links": [name, f"{name}_b"]}
+    check(respond(to_text(data)), original)
+
+
+@pytest.mark.parametrize("joint", ["O2", "O4"])
+def test_a_joint_written_from_the_other_side(joint: str, original: Any) -> None:
+    data = spring_driven()
+    data["joints"][joint]["links"].reverse()
+    near = data["assembly"]["near"]
+    for name in near:
+        if name.startswith(joint):
+            near[name] = f"-({near[name]})"
+    found = respond(to_text(data))
+    for name in NAMES + RATES:
+        sign = -1 if name.startswith(joint) else 1
+        assert off(sign * found[name], original[name]) < SAME, name
+    assert off(-found[f"{joint}.force"], original[f"{joint}.force"]) < 10 * SAME
+
+
+def test_what_nothing_reads_changes_no_bit(original: Any) -> None:
+    data = spring_driven()
+    data["points"]["unused"] = {"link": "coupler", "at": ["1", "2", "3"]}
+    data["parameters"]["unused_too"] = "3 in"
+    data["directions"] = {**data["directions"], "off": {"link": "crank", "vector": ["1", "0", "0"]}}
+    data["tables"] = [{"name": "t", "columns": ["time", "unused.position.x"]}]
+    found = respond(to_text(data))
+    for name in (*NAMES, *RATES, *FORCES, "row.work", "row.energy_error"):
+        assert np.array_equal(found[name], original[name]), name
+
+
 @pytest.mark.parametrize("lanes", [2, 4, 8])
 def test_lanes_and_threads_change_no_bit(lanes: int, original: Any) -> None:
     if lanes not in widths():

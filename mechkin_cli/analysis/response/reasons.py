@@ -34,6 +34,9 @@ class Reason(NamedTuple):
 
 def reason(free: Session, response: Response, report: MotionReport) -> Reason:
     """The reason of an end that was not wanted; `free` is the session that moved."""
+    law = _law(free, report.which) if report.met else None
+    if law is not None and report.value < tolerances.KINK_ROUNDING:
+        return _rounding(law, report)
     if report.end is MotionEnd.STEP_LIMIT and not report.singular:
         return _step_limit(free, report)
     if report.end is MotionEnd.HELD:
@@ -122,6 +125,14 @@ def _held(free: Session, report: MotionReport) -> Reason:
         "max(-1, min(1, x/small)) for sign(x)"
     )
     return Reason(Status.friction_undecided, "held-at-jump", text, hint, "", law.place)
+
+
+def _rounding(law: LoadLaw, report: MotionReport) -> Reason:
+    """A jump whose side rounding chooses, of a load that moves something."""
+    text = f"{_words(law)} jumps with the sign of what is zero all along but for rounding"
+    hint = "leave the jump out: what it asks for does not move"
+    measured = f"at most {report.value:.1e}"
+    return Reason(Status.friction_undecided, "held-at-jump", text, hint, measured, law.place)
 
 
 def _undefined_stop(response: Response, report: MotionReport) -> Reason:

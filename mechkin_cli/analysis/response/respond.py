@@ -236,6 +236,8 @@ def read(result: ResponseResult, quantities: Iterable[str]) -> None:
         wanted = [q for q in wanted if not result.is_given(q)]
         wanted += result.friction.beside(result.problem, wanted, demand)
         batch = result.run(wanted, demand, iterations=tolerances.NEWTON_ITERATIONS)
+        # what is read later is read on the same states
+        rows.states = np.where(rows.reached & batch.good, batch.states, rows.states)
         failed = rows.reached & ~batch.good
         rows.status[failed] = Status.not_converged
         rows.reached &= ~failed

@@ -29,6 +29,8 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
+constexpr double LEAST = 1e-300;
+
 }  // namespace
 
 SlipStage ChartedMotion::make_slips() const {
@@ -51,6 +53,7 @@ void ChartedMotion::begin_slips() {
   s.columns = s.first.back();
   s.sense.assign((std::size_t)n * lanes_, 1.0), s.quiet.assign((std::size_t)n * lanes_, 0.0);
   s.aim.assign((std::size_t)s.columns * lanes_, 0.0), s.armed.assign((std::size_t)n * lanes_, 0);
+  s.pushed.assign((std::size_t)n * lanes_, 1);
   s.fastest.assign(lanes_, 0.0), s.ways.resize(lanes_), s.doubtful.resize(lanes_);
   s.rests.assign(lanes_, 0), s.blocked.assign(lanes_, 0);
   const Packed rate = rate_;
@@ -98,9 +101,15 @@ double ChartedMotion::slip_switch(const Stage& found, int lane, int k) const {
   return (limit - force) * (limit + force) + least * least;
 }
 
-void ChartedMotion::write_slip_switches(const Stage& found, int lane, double* switches) const {
+void ChartedMotion::write_slip_switches(const Stage& found, int lane, double* switches) {
   const int n = plan_.frictions;
-  for (int k = 0; k < n; ++k) switches[(long)k * lanes_ + lane] = slip_switch(found, lane, k);
+  for (int k = 0; k < n; ++k) {
+    const double value = slip_switch(found, lane, k);
+    // a zero has no side, and this is the good one
+    switches[(long)k * lanes_ + lane] = value == 0.0 ? LEAST : value;
+    if (sense(lane, k) == 0.0 && value < 0.0)
+      slips_.pushed[(std::size_t)k * lanes_ + lane] = at(found.slip.force, slips_.first[k], lane) < 0.0 ? -1 : 1;
+  }
   switches[(long)n * lanes_ + lane] = 1.0;
 }
 

@@ -15,6 +15,7 @@ struct SlipMemory {
   int columns = 0;
   std::vector<int> first;            // frictions + 1: of their columns
   Packed sense, quiet, aim;          // as StageGiven has them
+  std::vector<signed char> pushed;   // frictions x lanes: the sign of a force that was last more than friction holds
   std::vector<unsigned char> armed;  // frictions x lanes: slips in several directions that have begun
   std::vector<double> fastest;       // lanes: the largest rate of a chart so far
   std::vector<std::vector<Signs>> ways;  // lanes: senses in which what rests with forces that are not unique could go

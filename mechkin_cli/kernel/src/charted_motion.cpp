@@ -205,7 +205,7 @@ double ChartedMotion::stop_value(int stop, int lane, double watched) const {
   return std::fabs(watched - stop_start_[(std::size_t)stop * lanes_ + lane]) - FULL * s.count;
 }
 
-void ChartedMotion::write_switches(const Stage& found, int lane, double time, double* switches) const {
+void ChartedMotion::write_switches(const Stage& found, int lane, double time, double* switches) {
   const int kinks = plan_.law.kinks, edges = this->edges(), stops = kinks + edges + slip_switches();
   if (plan_.frictions) write_slip_switches(found, lane, switches + (long)(kinks + edges) * lanes_);
   for (int k = 0; k < kinks; ++k) switches[k * lanes_ + lane] = at(found.watched, k, lane);

@@ -133,7 +133,7 @@ class ChartedMotion : public Motion {
   double slip_size(const Packed& of, int lane, int k) const;
   double lever(const Stage& found, int lane, int k) const;
   double slip_switch(const Stage& found, int lane, int k) const;
-  void write_slip_switches(const Stage& found, int lane, double* switches) const;
+  void write_slip_switches(const Stage& found, int lane, double* switches);
   void look_for_ways(const Places& places, const Rates& rates);
   void tell_undecided(const Stage& found, int lane);
   std::vector<int> sticking(int lane) const;
@@ -168,7 +168,7 @@ class ChartedMotion : public Motion {
   void settle(int lane, int event, std::vector<double>* v);
   bool settled(int lane, int event, std::vector<double>* v);
   double stop_value(int stop, int lane, double watched) const;
-  void write_switches(const Stage& found, int lane, double time, double* switches) const;
+  void write_switches(const Stage& found, int lane, double time, double* switches);
   void keep_miss(int lane, const Stage& found);
   void lay_chart(int lane);
   void continue_turns(int lane, const Packed& found);

@@ -156,7 +156,10 @@ bool ChartedMotion::settled(int lane, int event, std::vector<double>* v) {
   const bool breaks = event >= 0 && event < n && sense(lane, event) == 0.0;
   std::vector<int> open = resting(lane, event);
   if (open.empty()) return true;
-  const double push = breaks ? at(trial_.slip.force, slips_.first[event], lane) : 0.0;
+  // where nothing pushes yet, it goes as it was pushed beyond
+  double push = breaks ? at(trial_.slip.force, slips_.first[event], lane) : 0.0;
+  if (breaks && !(std::fabs(push) > NO_FORCE * at(trial_.slip.level, 0, lane)))
+    push = slips_.pushed[(std::size_t)event * lanes_ + lane];
   hold_rates(&trial_, lane, open, v->data());
   for (int k : open) {
     sense(lane, k) = 0.0;

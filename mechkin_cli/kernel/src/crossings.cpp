@@ -83,6 +83,10 @@ bool March::may_dip(int lane, int landing) const {
 
 void March::look_for_crossings(Method& method, Flags* mask) {
   Flags crossed(states_.lanes, 0), suspected(states_.lanes, 0);
+  for (std::size_t k = 0; k < states_.switch_end.size(); ++k) {
+    double& largest = control_[k % states_.lanes].largest[k / states_.lanes];
+    if ((*mask)[k % states_.lanes]) largest = std::max(largest, std::fabs(states_.switch_end[k]));
+  }
   mute(mask);
   for (int i = 0; i < states_.lanes; ++i) {
     if (!(*mask)[i]) continue;

@@ -126,9 +126,10 @@ enum class LaneEnd : unsigned char {
 struct LaneReport {
   LaneEnd end = LaneEnd::DONE;
   unsigned char fault = 0;
-  int which = -1;                // the switch that ended the lane, or at STEP_LIMIT the one that was met most often
+  int which = -1;                // the switch that ended the lane; at STUCK and STEP_LIMIT the one that was met most often
   long met = 0;                  // how often that was
   double step = 0.0;             // the last step that was tried
+  double value = 0.0;            // the largest of that switch at the end of any step that was tried
   bool stiff = false;            // the implicit method took over
   double stiff_from = 0.0;       // at this time
   double time = 0.0;             // how far the lane came

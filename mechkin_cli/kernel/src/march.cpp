@@ -46,6 +46,7 @@ March::March(Motion& motion, const IntegratorSettings& settings, const double* t
   for (LaneControl& c : control_) {
     c.passed.assign(states_.kinds.size(), 0);
     c.met.assign(states_.kinds.size(), 0);
+    c.largest.assign(states_.kinds.size(), 0.0);
     c.let_alone.assign(states_.kinds.size(), 0);
     c.implicit = settings.method == MethodChoice::IMPLICIT;
   }
@@ -77,10 +78,12 @@ void March::finish(int lane, LaneEnd end, int which) {
   control_[lane].running = false;
   report.end = end;
   const std::vector<long>& met = control_[lane].met;
-  if (end == LaneEnd::STEP_LIMIT && !met.empty()) which = (int)(std::max_element(met.begin(), met.end()) - met.begin());
+  const bool asks = end == LaneEnd::STEP_LIMIT || end == LaneEnd::STUCK;
+  if (asks && !met.empty()) which = (int)(std::max_element(met.begin(), met.end()) - met.begin());
   report.which = which;
   report.met = which < 0 ? 0 : met[which];
   report.step = states_.step[lane];
+  report.value = which < 0 ? 0.0 : control_[lane].largest[which];
   report.fault = end == LaneEnd::STUCK && states_.fault[lane] != NOT_SOLVED ? states_.fault[lane] : 0;
   report.time = states_.time[lane];
   report.evaluations = states_.evaluations[lane];

@@ -28,6 +28,7 @@ struct LaneControl {
   bool landed = false;
   std::vector<int> passed;               // switches: how often they were passed at this place
   std::vector<long> met;                 // switches: how often they were passed at all
+  std::vector<double> largest;           // switches: their largest values at the ends of steps
   // Switches that are let alone until a step is taken: kinks met again and again where both sides give the same.
   Flags let_alone;
 };

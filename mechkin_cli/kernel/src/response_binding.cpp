@@ -39,6 +39,7 @@ nb::dict report_of(const ResponseReport& report) {
   d["growth"] = report.growth;
   d["met"] = r.met;
   d["step"] = r.step;
+  d["value"] = r.value;
   d["end"] = (int)r.end, d["fault"] = (int)r.fault, d["which"] = r.which;
   d["stiff"] = r.stiff, d["stiff_from"] = r.stiff_from, d["time"] = r.time, d["rows"] = r.rows;
   d["evaluations"] = r.evaluations, d["steps"] = r.steps, d["rejections"] = r.rejections;
