@@ -111,6 +111,12 @@ loads:
   - {type: friction, joint: B, coefficient: 0.1, radius: 0.006, length: 0.03}
   - {type: friction, joint: C, coefficient: 0.15, radius: 0.005}
 """
+RCSR_RUBBING = """
+  - {type: friction, joint: O1, coefficient: 0.1, radius: 0.1, length: 1, collar: 0.15}
+  - {type: friction, joint: O2, coefficient: 0.1, radius: 0.1, length: 1}
+  - {type: friction, joint: O3, coefficient: {static: 0.15, sliding: 0.1, speed: 1}, radius: 0.1}
+  - {type: friction, joint: O4, coefficient: 0.1, radius: 0.1, length: 1, collar: 0.15}
+"""
 STIFFNESS, DAMPING, STRETCHED = 8e5, 4e4, 1e-3
 
 COLUMNS = (
@@ -338,15 +344,15 @@ def lanes(rounds: int, variants: int) -> Table:
 
 def friction(rounds: int, _: int) -> Table:
     """A sweep's row with friction in its joints against the same without."""
-    calls = {name: sweep_call(text) for name, text in sweep_texts().items()}
+    calls = {name: sweep_call(*case) for name, case in sweep_cases().items()}
     times = in_turns(calls, rounds)
     lines = [cost(name, 1e6 * t.median / BATCH, "us a row", t.spread) for name, t in times.items()]
     for name in calls:
-        if name.startswith("friction"):
-            lines.append(
-                cost(f"{name} over none", times[name].ratio(times["none"]), limit=MOST_FRICTION)
-            )
-    return Table("friction", "sweep with friction, slider-crank", COSTS, lines, ())
+        own, _, where = name.partition(", ")
+        if where != "none":
+            ratio = times[name].ratio(times[f"{own}, none"])
+            lines.append(cost(f"{name} over none", ratio, limit=MOST_FRICTION))
+    return Table("friction", "sweep with friction", COSTS, lines, ())
 
 
 def cost(
@@ -372,24 +378,27 @@ def cost(
     }
 
 
-def sweep_texts() -> dict[str, str]:
-    """A slider-crank without redundant constraints: without friction, with it at two joints and at
-    all four."""
+def sweep_cases() -> dict[str, tuple[str, str]]:
+    """Mechanisms without redundant constraints and the effort asked for: a slider-crank without
+    friction, with it at two joints and at all four, and RCSR without and with it at all four."""
     lines = SLIDER_CRANK.splitlines(keepends=True)
     rubbing = [line for line in lines if "friction" in line]
     bare = "".join(line for line in lines if line not in rubbing)
+    rcsr = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8").partition("\ntables:")[0].rstrip()
     return {
-        "none": bare,
-        "friction at two joints": bare + "".join(rubbing[:2]),
-        "friction at four": bare + "".join(rubbing),
+        "crank, none": (bare, "A.effort"),
+        "crank, two joints": (bare + "".join(rubbing[:2]), "A.effort"),
+        "crank, four": (bare + "".join(rubbing), "A.effort"),
+        "RCSR, none": (rcsr, "O1.effort"),
+        "RCSR, four": (rcsr + RCSR_RUBBING, "O1.effort"),
     }
 
 
-def sweep_call(text: str) -> Callable[[], object]:
+def sweep_call(text: str, effort: str) -> Callable[[], object]:
     """The kernel's run of `BATCH` rows with the input's effort, verdicts included."""
-    result = analyze(Session(mk.loads(text).problem), ["A.effort"])
+    result = analyze(Session(mk.loads(text).problem), [effort])
     known, session = result.problem.quantities(), result.session
-    wanted, demand = at_once(session, [known["A.effort"]], verdicts=True)
+    wanted, demand = at_once(session, [known[effort]], verdicts=True)
     wanted += result.friction.beside(result.problem, wanted, demand)
     inputs = session.inputs
     return partial(

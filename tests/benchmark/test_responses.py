@@ -40,7 +40,7 @@ def test_orders_are_those_of_the_methods() -> None:
 
 
 def test_lines_of_lanes_and_friction() -> None:
-    for figure, count in ((responses.lanes, 6), (responses.friction, 5)):
+    for figure, count in ((responses.lanes, 6), (responses.friction, 8)):
         table = figure(1, 16)
         assert len(table.rows) == count
         assert min(ordered(table.rows, "value")) > 0.0

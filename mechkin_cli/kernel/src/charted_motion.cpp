@@ -57,6 +57,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
     for (int k = 0; k < plan_.states; ++k) origin_[k * lanes_ + l] = s.state[k];
     for (int k = 0; k < plan_.columns; ++k) origin_first_[k * lanes_ + l] = s.first[k];
     origin_time_[l] = chart_time_[l] = time_[l] = s.time;
+    for (int e = 0; e < edges(); ++e) cell_[l] += s.time >= driven_->edges()[e];
     drive(l, s.time);
     for (int k = 0; k < plan_.charts * plan_.columns; ++k) end_.tangent[k * lanes_ + l] = s.tangent[k];
     lay_chart(l);
@@ -120,7 +121,9 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
 
 std::vector<SwitchKind> ChartedMotion::switches() const {
   std::vector<SwitchKind> kinds(plan_.law.kinks, {true});
-  kinds.insert(kinds.end(), edges(), {true});
+  // all motions begin at one time
+  for (int e = 0; e < edges(); ++e)
+    kinds.push_back({true, false, (signed char)(starts_[0].time < driven_->edges()[e] ? -1 : 1)});
   kinds.insert(kinds.end(), slip_switches(), {false, true});
   kinds.insert(kinds.end(), stops_.size(), {false});
   return kinds;
