@@ -36,7 +36,8 @@ constexpr double LEAST = 1e-300;
 SlipStage ChartedMotion::make_slips() const {
   const auto make = [&](long count) { return Packed((std::size_t)(count * lanes_), 0.0); };
   const long m = ::slip_columns(plan_), n = plan_.frictions;
-  return {make(m), make(m), make(m), make(m * plan_.charts), make(n), make(n), make(n), make(n), make(1)};
+  return {make(m), make(m), make(m), make(m * plan_.charts), make(n), make(n), make(n), make(n), make(1),
+          make(n * TOLD_NUMBERS)};
 }
 
 bool ChartedMotion::rubs(int lane, int k) const {

@@ -8,7 +8,7 @@
 
 // A stage's slips, as StageFound has them.
 struct SlipStage {
-  Packed rate, second, force, row, limit, loose, state, answer, level;
+  Packed rate, second, force, row, limit, loose, state, answer, level, told;
 };
 
 struct SlipMemory {

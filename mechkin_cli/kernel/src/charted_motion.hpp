@@ -60,6 +60,7 @@ struct MotionRows {
   double* chart_rate;     // charts
   double* chart_second;   // charts
   double* turn;           // turn slots
+  double* friction_told;  // frictions x TOLD_NUMBERS
   double* work;           // 2: put in, lost; kg, length units, s
   unsigned char* flags;   // StageFlag
 };

@@ -196,4 +196,8 @@ void ChartedMotion::move(int lane, int which, double, double* y) {
     origin_first_[e] = end_.first[e] = trial_.first[e];
     origin_second_[e] = end_.second[e] = trial_.second[e];
   }
+  for (int k = 0; k < plan_.frictions * TOLD_NUMBERS; ++k) {
+    const std::size_t e = (std::size_t)k * lanes_ + lane;
+    end_.slip.told[e] = trial_.slip.told[e];
+  }
 }
