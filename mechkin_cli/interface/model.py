@@ -40,6 +40,7 @@ class Model:
         self.built = built
         self.stem = stem
         self._solvers: dict[tuple[str, ...] | None, Solver] = {}
+        self._sessions: dict[str, Session] = {}
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled and copied as the text of the file; tables that it names are read again."""
@@ -311,8 +312,11 @@ class Model:
         """
         if run == SWEEP:
             return self.session
-        graph = self.response_graph(run)
-        return Session(response_problem(self.problem, self.problem.responses[run]), graph)
+        if run not in self._sessions:
+            graph = self.response_graph(run)
+            first = response_problem(self.problem, self.problem.responses[run])
+            self._sessions[run] = Session(first, graph)
+        return self._sessions[run]
 
     def modes(
         self, at: Setting | Mapping[str, Setting] | None = None, *, run: str | None = None

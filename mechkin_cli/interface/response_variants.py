@@ -102,9 +102,9 @@ class _Study:
         try:
             built = self.base.built(dict(zip(self.names, row.tolist(), strict=True)))
             model = Model(built, self.base.model.stem)
-            model.response_graph(self.name)
+            session = model.session_of(self.name)
             response = built.problem.responses[self.name]
-            models[number] = model, prepare(built.problem, response, self.packing)
+            models[number] = model, prepare(built.problem, response, self.packing, session)
         except MechkinError as error:
             self.errors[number] = error
 

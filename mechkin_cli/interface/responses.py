@@ -11,7 +11,6 @@ from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.interface.asking import a_packing, chosen_tables, known_mode, wanted_names
-from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.nearest import nearest_hint
 
 if TYPE_CHECKING:
@@ -30,17 +29,18 @@ def respond(
     """Runs a response of a model; arguments and errors are those of `Model.respond`."""
     packing = a_packing(lanes, threads)
     run = response_name(model, name)
-    model.response_graph(run)
+    session = model.session_of(run)
     problem = model.problem
     response = problem.responses[run]
     if mode is not None:
         a_text("mode", mode, '"A"')
         assembly = replace(response.assembly, near={}, mode=mode)
         response = replace(response, assembly=assembly)
+        session = session.assembled(assembly)
     layouts = chosen_tables(model.built, tables, run)
-    known = response_problem(problem, response).quantities()
-    names = wanted_names(layouts, quantities, lambda: known, run)
-    analysis = Analysis(model, layouts, run_response(problem, response, names, packing), run)
+    names = wanted_names(layouts, quantities, session.problem.quantities, run)
+    result = run_response(problem, response, names, packing, session)
+    analysis = Analysis(model, layouts, result, run)
     return analysis if mode is None else known_mode(analysis)
 
 

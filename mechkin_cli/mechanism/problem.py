@@ -87,6 +87,13 @@ class Problem:
 
         return Laws(self.load_laws, self.parameters, self.quantities(), watched)
 
+    def moved(self, motion: Motion) -> Problem:
+        """The problem with another motion; those of a response have the same quantities."""
+        other = replace(self, motion=motion)
+        if self.response is not None:
+            other.__dict__["_quantities"] = self._quantities
+        return other
+
     def quantities(self) -> Mapping[str, Wanted]:
         """The quantities that the mechanism has, by name."""
         return self._quantities

@@ -1,6 +1,9 @@
 """Responses: error against evaluations, and what lanes and friction cost; medians, in turns.
 
-    python -P tests/benchmark/responses.py [--rounds N] [--variants N] [--json]
+    python -P tests/benchmark/responses.py [--rounds N] [--variants N] [--json] [FIGURE ...]
+
+Figures: speed, accuracy (steps by tolerance), slopes (equal steps, for the orders of both
+integrators), lanes, friction; without names all of them.
 
 Times are those of the kernel's call alone, on one thread by its processor time; run it on an
 otherwise idle machine. The yardstick of the same run is one row of RCSR with all that its loads
@@ -28,6 +31,7 @@ import mechkin_cli as mk
 from mechkin_cli.analysis.response.respond import Prepared, prepare, read, rows_of
 from mechkin_cli.analysis.sweep.sweep import analyze, at_once
 from mechkin_cli.arrays import Floats
+from mechkin_cli.benchmark import sevenr
 from mechkin_cli.benchmark.kernel_case import (
     BATCH,
     KernelCase,
@@ -50,6 +54,18 @@ TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 REFERENCE = 1e-13
 AUTOMATIC, EXPLICIT, IMPLICIT = range(3)
 LEAST_GAIN, MOST_FRICTION = 4.0, 3.0
+SOLVED = 1e-10
+ASKED = 1e-7
+"""The tolerance of the times that are asked for."""
+
+MOST_RCSR, MOST_7R = 0.15, 0.5
+"""ms for 2 s of response."""
+
+EQUAL_STEPS = {
+    "explicit": (0.05, 0.025, 0.0125),
+    "implicit": (0.005, 0.0025),
+}
+"""Of the double pendulum, s."""
 
 DOUBLE_PENDULUM = """format: 1
 name: double pendulum
@@ -95,6 +111,12 @@ loads:
   - {type: friction, joint: B, coefficient: 0.1, radius: 0.006, length: 0.03}
   - {type: friction, joint: C, coefficient: 0.15, radius: 0.005}
 """
+RCSR_RUBBING = """
+  - {type: friction, joint: O1, coefficient: 0.1, radius: 0.1, length: 1, collar: 0.15}
+  - {type: friction, joint: O2, coefficient: 0.1, radius: 0.1, length: 1}
+  - {type: friction, joint: O3, coefficient: {static: 0.15, sliding: 0.1, speed: 1}, radius: 0.1}
+  - {type: friction, joint: O4, coefficient: 0.1, radius: 0.1, length: 1, collar: 0.15}
+"""
 STIFFNESS, DAMPING, STRETCHED = 8e5, 4e4, 1e-3
 
 COLUMNS = (
@@ -107,6 +129,14 @@ COLUMNS = (
     Column("time", "time\nms", "time"),
     Column("rows", "in rows", "time"),
     Column("spread", "+-\n%", "percent"),
+)
+SLOPES = (
+    Column("case", "case"),
+    Column("step", "step\nms", "number"),
+    Column("evaluations", "evalu-\nations", "number"),
+    Column("error", "largest\nerror", "error"),
+    Column("order", "order", "ratio"),
+    Column("digits", "right digits"),
 )
 COSTS = (
     Column("case", "case"),
@@ -136,7 +166,11 @@ class Case:
         return prepare(problem, response)
 
     def integrate(
-        self, tolerance: float, method: int = AUTOMATIC, starts: int = 1
+        self,
+        tolerance: float,
+        method: int = AUTOMATIC,
+        starts: int = 1,
+        fixed_step: float | None = None,
     ) -> list[MotionRows]:
         """The kernel's call alone, on one thread, for so many variants."""
         one = self.prepared
@@ -148,7 +182,7 @@ class Case:
             float(times[0]),
             times,
             tolerance=tolerance,
-            fixed_step=None,
+            fixed_step=fixed_step,
             packing=Packing(0, 1),
             method=method,
         )
@@ -186,12 +220,46 @@ def cases() -> tuple[Case, ...]:
     rcsr = (MECHANISMS / "rcsr_response.yaml").read_text(encoding="utf-8")
     rcsr = rcsr[: rcsr.index("\ntables:")].replace("step: 0.1}", "step: 1}")
     both = {"explicit": EXPLICIT, "implicit": IMPLICIT}
-    alone = {"": AUTOMATIC}
     return (
-        Case("RCSR", rcsr, "O1.theta", TOLERANCES, alone, of_rcsr),
-        Case("double pendulum", DOUBLE_PENDULUM, "B.theta", TOLERANCES, alone, of_itself),
+        Case("RCSR", rcsr, "O1.theta", TOLERANCES, {"": AUTOMATIC}, of_rcsr),
+        Case("double pendulum", DOUBLE_PENDULUM, "B.theta", TOLERANCES[:4], both, of_itself),
         Case("spring-damper", SPRING_DAMPER, "S.s", (1e-6, 1e-7, 1e-8), both, of_spring),
     )
+
+
+def loops() -> dict[str, tuple[Case, float | None]]:
+    """Responses of 2 s whose times are told, with what is asked of them, ms."""
+    free, falling = (
+        Case("7R", sevenr_response(falls), "J1.theta", (ASKED,), {"": AUTOMATIC}, of_itself)
+        for falls in (False, True)
+    )
+    return {
+        "RCSR": (cases()[0], MOST_RCSR),
+        "7R, at 1 rad/s without gravity": (free, MOST_7R),
+        "7R, falling": (falling, None),
+    }
+
+
+def sevenr_response(falls: bool) -> str:
+    """The general 7R loop, let go at a rate."""
+    links = sevenr.text().partition("motion:")[0]
+    gravity = f"loads: [{{type: gravity, g: {list(sevenr.GRAVITY)}}}]\n" if falls else ""
+    start = "start: {J1.theta: 0, J1.theta_dot: 1}"
+    return f"{links}{gravity}responses:\n  run: {{{start}, time: {{from: 0, to: 2, step: 1}}}}\n"
+
+
+def speed(rounds: int, _: int) -> Table:
+    """The kernel's time of whole responses at the tolerance that is asked for."""
+    known = loops()
+    times = in_turns(
+        {name: partial(case.integrate, ASKED) for name, (case, _) in known.items()}, rounds
+    )
+    lines = []
+    for name, (case, limit) in known.items():
+        evaluations = case.integrate(ASKED)[0].report.evaluations
+        text = f"{name}: {evaluations} evaluations"
+        lines.append(cost(text, 1e3 * times[name].median, "ms", times[name].spread, limit=limit))
+    return Table("speed", f"2 s of response, tolerance {ASKED:g}", COSTS, lines, ())
 
 
 def yardstick() -> Callable[[], object]:
@@ -233,6 +301,32 @@ def accuracy_of(case: Case, rounds: int) -> Iterator[dict[str, Cell]]:
         }
 
 
+def slopes(_: int, __: int) -> Table:
+    """Error against evaluations in equal steps, and by which power of the step it falls."""
+    case = cases()[1]
+    known = case.known(case)
+    lines = []
+    for name, steps in EQUAL_STEPS.items():
+        before = None
+        for step in steps:
+            # the tolerance is that of solving the implicit stages
+            (found,) = case.integrate(SOLVED, case.methods[name], fixed_step=step)
+            error = relative_error(case.answer(found)[0], known)
+            lines.append(
+                {
+                    "case": f"{case.name} {name}",
+                    "step": 1e3 * step,
+                    "evaluations": found.report.evaluations,
+                    "error": error,
+                    "order": None if before is None else float(np.log2(before / error)),
+                    "digits": "#" * max(0, round(-2.0 * np.log10(error))),
+                }
+            )
+            before = error
+    note = "order: power of the step in the error; DOP853 has 8, Radau IIA 5; ## is a right digit"
+    return Table("slopes", "responses: error against work in equal steps", SLOPES, lines, (note,))
+
+
 def lanes(rounds: int, variants: int) -> Table:
     """What a variant costs among many, against one alone."""
     lines = []
@@ -250,15 +344,15 @@ def lanes(rounds: int, variants: int) -> Table:
 
 def friction(rounds: int, _: int) -> Table:
     """A sweep's row with friction in its joints against the same without."""
-    calls = {name: sweep_call(text) for name, text in sweep_texts().items()}
+    calls = {name: sweep_call(*case) for name, case in sweep_cases().items()}
     times = in_turns(calls, rounds)
     lines = [cost(name, 1e6 * t.median / BATCH, "us a row", t.spread) for name, t in times.items()]
     for name in calls:
-        if name.startswith("friction"):
-            lines.append(
-                cost(f"{name} over none", times[name].ratio(times["none"]), limit=MOST_FRICTION)
-            )
-    return Table("friction", "sweep with friction, slider-crank", COSTS, lines, ())
+        own, _, where = name.partition(", ")
+        if where != "none":
+            ratio = times[name].ratio(times[f"{own}, none"])
+            lines.append(cost(f"{name} over none", ratio, limit=MOST_FRICTION))
+    return Table("friction", "sweep with friction", COSTS, lines, ())
 
 
 def cost(
@@ -284,24 +378,27 @@ def cost(
     }
 
 
-def sweep_texts() -> dict[str, str]:
-    """A slider-crank without redundant constraints: without friction, with it at two joints and at
-    all four."""
+def sweep_cases() -> dict[str, tuple[str, str]]:
+    """Mechanisms without redundant constraints and the effort asked for: a slider-crank without
+    friction, with it at two joints and at all four, and RCSR without and with it at all four."""
     lines = SLIDER_CRANK.splitlines(keepends=True)
     rubbing = [line for line in lines if "friction" in line]
     bare = "".join(line for line in lines if line not in rubbing)
+    rcsr = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8").partition("\ntables:")[0].rstrip()
     return {
-        "none": bare,
-        "friction at two joints": bare + "".join(rubbing[:2]),
-        "friction at four": bare + "".join(rubbing),
+        "crank, none": (bare, "A.effort"),
+        "crank, two joints": (bare + "".join(rubbing[:2]), "A.effort"),
+        "crank, four": (bare + "".join(rubbing), "A.effort"),
+        "RCSR, none": (rcsr, "O1.effort"),
+        "RCSR, four": (rcsr + RCSR_RUBBING, "O1.effort"),
     }
 
 
-def sweep_call(text: str) -> Callable[[], object]:
+def sweep_call(text: str, effort: str) -> Callable[[], object]:
     """The kernel's run of `BATCH` rows with the input's effort, verdicts included."""
-    result = analyze(Session(mk.loads(text).problem), ["A.effort"])
+    result = analyze(Session(mk.loads(text).problem), [effort])
     known, session = result.problem.quantities(), result.session
-    wanted, demand = at_once(session, [known["A.effort"]], verdicts=True)
+    wanted, demand = at_once(session, [known[effort]], verdicts=True)
     wanted += result.friction.beside(result.problem, wanted, demand)
     inputs = session.inputs
     return partial(
@@ -315,7 +412,7 @@ def sweep_call(text: str) -> Callable[[], object]:
     )
 
 
-FIGURES = {f.__name__: f for f in (accuracy, lanes, friction)}
+FIGURES = {f.__name__: f for f in (speed, accuracy, slopes, lanes, friction)}
 
 
 def main() -> None:
@@ -323,8 +420,13 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=ROUNDS)
     parser.add_argument("--variants", type=int, default=VARIANTS)
     parser.add_argument("--json", action="store_true", help="one JSON object")
+    parser.add_argument("figures", nargs="*", metavar="FIGURE", help=", ".join(FIGURES))
     options = parser.parse_args()
-    found = (figure(options.rounds, options.variants) for figure in FIGURES.values())
+    unknown = [name for name in options.figures if name not in FIGURES]
+    if unknown:
+        parser.error(f"unknown figure {unknown[0]}; figures are {', '.join(FIGURES)}")
+    wanted = [FIGURES[name] for name in options.figures or FIGURES]
+    found = (figure(options.rounds, options.variants) for figure in wanted)
     if options.json:
         record = {"machine": machine()} | {table.name: table.record() for table in found}
         print(json_text(record), end="")

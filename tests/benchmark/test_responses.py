@@ -16,7 +16,7 @@ def ordered(lines: Sequence[Mapping[str, Cell]], key: str) -> list[float]:
 
 def test_tighter_steps_cost_more_and_err_less() -> None:
     _, double, stiff = responses.cases()
-    for case, methods in ((double, [""]), (stiff, ["implicit"])):
+    for case, methods in ((double, ["explicit", "implicit"]), (stiff, ["implicit"])):
         lines = list(responses.accuracy_of(case, 1))
         assert len(lines) == len(case.methods) * len(case.tolerances)
         for method in methods:
@@ -31,8 +31,16 @@ def test_the_response_of_the_source_is_exact() -> None:
     assert max(ordered(lines, "energy")) < 1e-8
 
 
+def test_orders_are_those_of_the_methods() -> None:
+    table = responses.slopes(1, 1)
+    for name, order in (("explicit", 8), ("implicit", 5)):
+        found = [line["order"] for line in table.rows if str(line["case"]).endswith(name)]
+        assert order - 0.5 < float(found[-1] or 0.0) < order + 1.5
+    assert width(table) <= 80
+
+
 def test_lines_of_lanes_and_friction() -> None:
-    for figure, count in ((responses.lanes, 6), (responses.friction, 5)):
+    for figure, count in ((responses.lanes, 6), (responses.friction, 8)):
         table = figure(1, 16)
         assert len(table.rows) == count
         assert min(ordered(table.rows, "value")) > 0.0

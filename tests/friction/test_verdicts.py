@@ -141,3 +141,46 @@ loads:
     assert (found.status[1] == "friction-undecided").all()
     assert np.isnan(found["D.effort"][1]).all()
     assert found["D.effort"][0] == pytest.approx(np.full(3, 50 / 0.6))
+
+
+PUSHED = """
+format: 1
+name: block
+links: {block: {mass: 2, center_of_mass: [0, 0, 0]}}
+joints: {D: {type: P, links: [ground, block], point: [0, 0, 0], axis: [1, 0, 0]}}
+motion:
+  time: {from: 0, to: LAST}
+  inputs: {D.s: {law: polynomial, coefficients: [COEFFICIENTS]}}
+loads:
+  - {type: gravity, g: [0, -9.81, 0]}
+  - {type: friction, joint: D, coefficient: {static: 0.3, sliding: 0.1}, length: 1}
+"""
+
+
+@pytest.mark.parametrize(
+    ("coefficients", "at_rest"),
+    [("0 m, 3 m/s, -3 m/s^2, 1 m/s^3", None), ("0 m, -2 m/s, 1 m/s^2", 4 + 0.3 * 19.62)],
+)
+def test_a_row_in_which_a_slip_stands_still(coefficients, at_rest):
+    """At one second, between rows that know nothing of it: of (t - 1)^3 nothing tells where it goes
+    on, of (t - 1)^2 the acceleration does, and the coefficient is that of rest."""
+    text = PUSHED.replace("COEFFICIENTS", coefficients)
+    names = ["D.effort", "D.friction_force", "row.power_error"]
+    every = mk.loads(text.replace("LAST", "2, step: 0.5")).analyze(names, tables=[])
+    alone = mk.loads(text.replace("LAST", "1.5, step: 1.5")).analyze(names, tables=[])
+    statuses = [str(status) for status in every["row.status"]]
+    if at_rest is None:
+        assert statuses == ["ok", "ok", "friction-undecided", "ok", "ok"]
+        (said,) = (d for d in every.diagnostics if d.code == "friction-undecided")
+        assert "no direction" in said.message
+        assert "row 3" in said.message
+        assert np.isnan(every["D.effort"][2])
+        assert np.isnan(every["D.friction_force"][2]).all()
+    else:
+        assert statuses == ["ok"] * 5
+        assert every["D.effort"][2] == pytest.approx(at_rest, abs=1e-13)
+    for name in names[:2]:
+        assert every[name][3].tobytes() == alone[name][1].tobytes()
+    sliding = 0.1 * 19.62
+    wanted = [-6 + sliding, 6 + sliding] if at_rest is None else [4 - sliding, 4 + sliding]
+    assert every["D.effort"][[1, 3]] == pytest.approx(wanted, abs=1e-13)

@@ -37,6 +37,7 @@ KINDS = {
     "force": "force",
     "time": "time",
     "moment": "force length",
+    "power": "force length time^-1",
     "inertia": "mass length^2",
     "velocity": "length time^-1",
     "acceleration": "length time^-2",

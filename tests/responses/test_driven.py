@@ -86,3 +86,13 @@ def test_a_row_where_a_law_begins_or_ends_tells_of_one_side(row: float) -> None:
 
 
 START = "{A.theta: 0.3, A.theta_dot: 1 rad/s}"
+
+
+def test_a_law_in_a_loop_that_begins_after_the_start() -> None:
+    """Before, the loop rests: what the law would be there by its later formula is never asked."""
+    law = "{law: harmonic, from: 0.3, to: 1, start: 0.5, duration: 0.5}"
+    text = FILE.format(law=law).replace(
+        "{from: 0, to: 1.5, step: 0.25}", "{values: [0, 0.4, 0.75]}"
+    )
+    found = respond(text)
+    assert found["A.theta"] == pytest.approx([0.3, 0.3, 0.65], abs=1e-12)

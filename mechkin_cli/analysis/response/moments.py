@@ -3,7 +3,6 @@ them."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import nan
 from typing import TYPE_CHECKING
 
@@ -57,7 +56,7 @@ def rows_problem(
     if laws is not None and response.course is not None:
         edges = response.course.edges[1:] * float(free.problem.units.to_si(1.0, TIME))
         driven = _before_jumps(free, edges, laws, driven, moments)
-    return replace(free.problem, motion=Motion(driven, count, moments, response.course))
+    return free.problem.moved(Motion(driven, count, moments, response.course))
 
 
 def _before_jumps(

@@ -49,6 +49,7 @@ def respond(
     response: Response,
     quantities: Iterable[str] = (),
     packing: Packing = ANY_PACKING,
+    session: Session | None = None,
 ) -> ResponseResult:
     """Integrates a response and reads the quantities asked for.
 
@@ -57,13 +58,14 @@ def respond(
         response: one of its responses.
         quantities: names out of `response_problem(problem, response).quantities()`.
         packing: how variants and rows are packed.
+        session: of that problem, where there is one; it keeps what is found of the start.
 
     Raises:
         UnsolvableGraph: the start names too few or too many coordinates, or such that do not fix
             the place.
         KeyError: an unknown quantity.
     """
-    prepared = prepare(problem, response, packing)
+    prepared = prepare(problem, response, packing, session)
     (result,) = integrated([prepared], packing)
     read(result, quantities)
     return result
@@ -82,13 +84,25 @@ class Prepared:
     driven: DrivenLaws | None
 
 
-def prepare(problem: Problem, response: Response, packing: Packing = ANY_PACKING) -> Prepared:
-    """The first assembly of a response, and how it moves there.
+def prepare(
+    problem: Problem,
+    response: Response,
+    packing: Packing = ANY_PACKING,
+    session: Session | None = None,
+) -> Prepared:
+    """The first assembly of a response, and how it moves there; arguments as those of `respond`.
 
     Raises:
         UnsolvableGraph: as `respond`.
     """
-    chosen = Session(response_problem(problem, response), packing=packing)
+    if session is None:
+        session = Session(response_problem(problem, response))
+    key = ("prepared", str(session.problem.assembly))
+    found = session.once(key, lambda: _prepared(session, response))
+    return replace(found, chosen=found.chosen.packed(packing), free=found.free.packed(packing))
+
+
+def _prepared(chosen: Session, response: Response) -> Prepared:
     chosen, start = first_assembly(chosen)
     place = response.place
     start.diagnostics[:] = [
@@ -101,7 +115,7 @@ def prepare(problem: Problem, response: Response, packing: Packing = ANY_PACKING
     unfounded = unfounded_in_motion(free.problem, redundant=free.is_redundant)
     begun = begun if unfounded is None else unfounded
     if not isinstance(begun, Beginning):
-        start.diagnostics.append(begun)
+        start = replace(start, diagnostics=[*start.diagnostics, begun])
         return Prepared(response, chosen, start, free, None, None)
     return Prepared(response, chosen, start, free, begun, driven_laws(free, response))
 

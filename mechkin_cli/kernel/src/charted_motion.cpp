@@ -57,6 +57,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
     for (int k = 0; k < plan_.states; ++k) origin_[k * lanes_ + l] = s.state[k];
     for (int k = 0; k < plan_.columns; ++k) origin_first_[k * lanes_ + l] = s.first[k];
     origin_time_[l] = chart_time_[l] = time_[l] = s.time;
+    for (int e = 0; e < edges(); ++e) cell_[l] += s.time >= driven_->edges()[e];
     drive(l, s.time);
     for (int k = 0; k < plan_.charts * plan_.columns; ++k) end_.tangent[k * lanes_ + l] = s.tangent[k];
     lay_chart(l);
@@ -90,7 +91,7 @@ std::vector<double> ChartedMotion::start() const {
   return y;
 }
 
-void ChartedMotion::evaluate(const double* place, const double* rate, Stage* found, double* bend) {
+void ChartedMotion::evaluate(const double* place, const double* rate, Stage* found, double* bend, bool turns) {
   StageGiven given = {};
   given.sense = slips_.sense.data(), given.quiet = slips_.quiet.data(), given.aim = slips_.aim.data();
   given.origin = origin_.data(), given.origin_rate = origin_first_.data(), given.origin_second = origin_second_.data();
@@ -99,7 +100,7 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
   given.place = place, given.rate = rate;
   given.inputs = inputs_.data(), given.input_rates = input_rates_.data(), given.input_seconds = input_seconds_.data();
   given.time = time_.data(), given.side = side_.data(), given.turned = turn_.data();
-  given.turns = turns_.data(), given.turn_count = (int)turns_.size();
+  given.turns = turns_.data(), given.turn_count = turns ? (int)turns_.size() : 0;
   given.tight = limits_.tight, given.coarse = limits_.coarse, given.accept = limits_.accept;
   given.iterations = limits_.iterations, given.jump = limits_.jump, given.radius = limits_.radius;
   bool any_placed = false;
@@ -120,7 +121,9 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
 
 std::vector<SwitchKind> ChartedMotion::switches() const {
   std::vector<SwitchKind> kinds(plan_.law.kinks, {true});
-  kinds.insert(kinds.end(), edges(), {true});
+  // all motions begin at one time
+  for (int e = 0; e < edges(); ++e)
+    kinds.push_back({true, false, (signed char)(starts_[0].time < driven_->edges()[e] ? -1 : 1)});
   kinds.insert(kinds.end(), slip_switches(), {false, true});
   kinds.insert(kinds.end(), stops_.size(), {false});
   return kinds;
@@ -160,7 +163,8 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
   const int n = plan_.charts;
   set_places(places);
   Stage* const found = places.is_end ? &end_ : &found_;
-  evaluate(place_.data(), rate_.data(), found);
+  // turns are kept of places that may become origins or rows
+  evaluate(place_.data(), rate_.data(), found, nullptr, places.is_end);
   found->chart_rate = rate_;
   if (plan_.frictions)
     for (int l = 0; l < lanes_; ++l) stand_still(found, l);

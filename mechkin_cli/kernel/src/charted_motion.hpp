@@ -114,7 +114,8 @@ class ChartedMotion : public Motion {
   };
 
   Stage make_stage() const;
-  void evaluate(const double* place, const double* rate, Stage* found, double* bend = nullptr);
+  // Without `turns` those of `found` stay as they are.
+  void evaluate(const double* place, const double* rate, Stage* found, double* bend = nullptr, bool turns = true);
   void set_places(const Places& places);
   void drive(int lane, double time);
   int edges() const { return driven_ ? (int)driven_->edges().size() : 0; }

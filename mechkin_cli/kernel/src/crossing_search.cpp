@@ -106,7 +106,7 @@ void CrossingSearch::forget_kinks(int lane) {
     const double bad = -states_.side[k] * switches_[k];
     if (!states_.kinds[s].may_be_nothing() || ignored_[k] || !(bad > compared_[k])) continue;
     compared_[k] = MUCH * bad;
-    ignored_[k] = is_same_(lane, (int)s, at_.data(), place_.data(), slope_.data(), switches_.data() + s * states_.lanes);
+    ignored_[k] = is_same_(lane, (int)s, at_.data(), place_.data(), slope_.data(), switches_.data());
     if (ignored_[k]) bracket_[lane].at_low[s] = bracket_[lane].at_high[s] = 0.0;
   }
 }

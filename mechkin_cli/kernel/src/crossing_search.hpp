@@ -23,8 +23,8 @@ struct Crossing {
 
 class CrossingSearch {
  public:
-  // Whether the other side of kink `which` makes no difference at a place (entries, with its slope) where a lane's value of
-  // it is bad.
+  // Whether the other side of kink `which` makes no difference at a place (entries, with its slope and the values of all
+  // switches) where a lane's value of it is bad.
   using IsSame = std::function<bool(int lane, int which, const double* time, const double* place, const double* slope,
                                     const double* values)>;
   // `ignored`: switches x lanes; kinks that are found to make no difference are added.

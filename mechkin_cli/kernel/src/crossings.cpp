@@ -186,20 +186,29 @@ void March::pass(const Flags& mask, const std::vector<int>& which) {
     ++control_[i].passed[which[i]];
     ++control_[i].met[which[i]];
     anew[i] = is_kink;
-    if (anew[i] && implicit_) implicit_->forget(i);
+    if (is_kink) control_[i].sides_checked = true;
   }
   if (!any(anew)) return;
   const Flags asked = anew;
   std::vector<double>& slope = other_slope_;
-  states_.evaluate(states_.time.data(), states_.y.data(), false, &anew, slope.data(), values_.data());
+  const auto evaluate = [&](Flags* lanes_there) {
+    states_.evaluate(states_.time.data(), states_.y.data(), false, lanes_there, slope.data(), values_.data());
+  };
+  evaluate(&anew);
+  Flags changed(lanes, 0);
+  for (int i = 0; i < lanes; ++i) changed[i] = asked[i] && has_changed(i, which[i], values_);
+  if (any(changed)) {
+    settle_sides(changed, which, false);
+    anew = asked;
+    evaluate(&anew);
+  }
   states_.error_scales(states_.y.data(), states_.y.data(), scale_.data());
   for (int i = 0; i < lanes; ++i) {
     if (asked[i] && !anew[i]) finish(i, LaneEnd::STUCK);
     if (!anew[i]) continue;
     if (control_[i].passed[which[i]] >= RETURNS) hold(i, which[i]);
-    for (long k = i; k < states_.entries; k += lanes) states_.slope[k] = slope[k];
+    renew(i);
     states_.speed[i] = std::max(states_.speed[i], states_.speed_in(states_.y.data(), i));
-    for (std::size_t k = i; k < values_.size(); k += lanes) states_.switch_value[k] = values_[k];
   }
 }
 

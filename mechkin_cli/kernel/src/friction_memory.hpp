@@ -11,6 +11,7 @@ struct Rubbing {
   Wrench* drag;     // frictions: what a unit of friction takes from the second link
   Pack *speed, *coefficient, *force, *normal, *state, *at_rest;  // frictions: of the surfaces, and what was found
   Pack *matrix, *bound, *right, *step, *weight;  // of the small system: squares, then vectors
+  Pack *origin, *newton;  // frictions: where a step begins, and Newton's step from there
   Mask* swap;
   Vec3 *axis, *point;  // frictions: now
   Vec3* direction;     // contacts: now
@@ -20,6 +21,7 @@ struct Rubbing {
   Pack* effort;        // inputs, or actuators: of the drives without friction
   Pack* told;          // frictions x TOLD_NUMBERS, see FrictionTold
   bool is_told;
+  Pack softness;       // of magnitudes of loads, zero but on the way to a start (friction_solver.hpp)
   Pack self_locking;
 };
 
@@ -31,7 +33,7 @@ inline void lay_out_friction(const Plan& p, Take&& take, Rubbing* r) {
   r->applied = (Wrench*)take(p.links * sizeof(Wrench));
   r->drag = (Wrench*)take(n * sizeof(Wrench));
   Pack** const vectors[] = {&r->speed, &r->coefficient, &r->force, &r->normal, &r->state,
-                            &r->at_rest, &r->right, &r->step, &r->weight};
+                            &r->at_rest, &r->right, &r->step, &r->weight, &r->origin, &r->newton};
   for (Pack** each : vectors) *each = (Pack*)take(n * pack);
   r->matrix = (Pack*)take(n * n * pack);
   r->bound = (Pack*)take(n * n * pack);

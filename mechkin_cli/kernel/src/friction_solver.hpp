@@ -6,9 +6,10 @@
 //     z_k = mu_k N_k(z),    N_k(z) = sum over contacts of weight |base + sum_j gain_j z_j|
 //
 // Solved by semismooth Newton. With L_kj = mu_k sum weight |gain_j| the right-hand side is a contraction where the
-// spectral radius of L is below 1, in the maximum norm weighted by w = (I - L)^-1 1: there is one solution, and a step
-// z := mu N(z) leads towards it wherever Newton's does not. w > 0 with L w < w proves that radius (Collatz 1942), and is
-// there whenever it is below 1 (Berman and Plemmons, Nonnegative Matrices, 1979, chapter 6).
+// spectral radius of L is below 1, in the maximum norm weighted by w = (I - L)^-1 1: there is one solution. In that norm the
+// residual falls along Newton's step, which is halved where it does not fall enough; z := mu N(z) leads on wherever that
+// does not. w > 0 with L w < w proves that radius (Collatz 1942), and is there whenever it is below 1 (Berman and
+// Plemmons, Nonnegative Matrices, 1979, chapter 6).
 #pragma once
 
 #include "position.hpp"
@@ -19,7 +20,12 @@ namespace {
 constexpr double CONTRACTION_MARGIN = 1e-12;
 // Residuals, in parts of the largest friction force: a few roundings of the sums; where Newton gets no further; accepted.
 constexpr double FRICTION_TIGHT = 4e-15, FRICTION_STALLED = 1e-12, FRICTION_ACCEPT = 1e-10;
-constexpr int FRICTION_ITERATIONS = 200;
+constexpr int FRICTION_ITERATIONS = 60;
+// Softness of magnitudes in parts of the loads at which they hardly bend, and steps, two for each halving, to their rounding.
+constexpr double FRICTION_SOFTEST = 16.0;
+constexpr int FRICTION_LEVELS = 112;
+// Part of Newton's step below which z := mu N(z) is taken instead: at kinks of the magnitudes steps of an eighth help.
+constexpr double FRICTION_SHORTEST = 1.0 / 1024.0;
 
 MECHKIN_INLINE Pack magnitude(Vec3 a) { return sqrt(dot(a, a)); }
 // At least |a|, at most 1.74 times as much.
@@ -95,7 +101,7 @@ inline void load_contacts(const Plan& p, const Rubbing& r) {
     for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
       Vec3 load = r.base[c];
       for (int j = 0; j < n; ++j) load += r.force[j] * r.gain[c * n + j];
-      const Pack size = magnitude(load);
+      const Pack size = sqrt(dot(load, load) + r.softness * r.softness);
       const Mask none = size == Pack(0.0);
       r.along[c] = select(none, Pack(0.0), Pack(1.0) / select(none, Pack(1.0), size)) * load;
       normal += Pack(p.contact[c].weight) * size;
@@ -150,6 +156,72 @@ inline LeftOver left_over(const Plan& p, const Rubbing& r) {
   return found;
 }
 
+// Newton's method from r.force on for lanes that are not `done`; loads and residuals of all are those of r.force after it.
+inline void iterate_friction(const Plan& p, Rubbing& r, Mask done) {
+  const int n = p.frictions;
+  // each lane tries a length of Newton's step from `origin`; that of zero stands for z := mu N(z)
+  Mask moved = all_lanes(false);
+  Pack before = __builtin_inf(), length = 0.0;
+  const Pack infinite = __builtin_inf();
+  for (int iteration = 0; iteration < FRICTION_ITERATIONS; ++iteration) {
+    load_contacts(p, r);
+    const LeftOver now = left_over(p, r);
+    const Mask back = ~done & (length > Pack(0.0)) & ~(now.left <= (Pack(1.0) - Pack(0.1) * length) * before);
+    done = done | (~back & (now.left <= Pack(FRICTION_TIGHT) * now.scale));
+    done = done | (back & (before <= Pack(FRICTION_STALLED) * now.scale));
+    done = done | ~(now.left < infinite);  // nothing to hope for
+    moved = back;
+    const Mask shorter = back & (length > Pack(FRICTION_SHORTEST)) & ~done;
+    const Mask plain = back & ~shorter;
+    length = select(shorter, Pack(0.5) * length, Pack(1.0));
+    if (any(back)) {
+      for (int k = 0; k < n; ++k) {
+        r.force[k] = select(shorter, r.origin[k] + length * r.newton[k], r.force[k]);
+        r.force[k] = select(plain, r.step[k], r.force[k]);
+      }
+      length = select(plain, Pack(0.0), length);
+    }
+    if (all(done)) break;
+    const Mask go = ~back & ~done;
+    before = select(go, now.left, before);
+    if (!any(go)) continue;
+    for (int k = 0; k < n; ++k) {
+      r.origin[k] = select(go, r.force[k], r.origin[k]);
+      r.step[k] = select(go, r.force[k] + r.right[k], r.step[k]);
+    }
+    differentiate_loads(p, r);
+    eliminate(r, n);
+    for (int k = 0; k < n; ++k) {
+      r.newton[k] = select(go, r.right[k], r.newton[k]);
+      r.force[k] = select(go, r.force[k] + r.right[k], r.force[k]);
+    }
+  }
+  // where the forces were moved after their loads had been found, or were not found in time
+  if (any(moved) | !all(done)) load_contacts(p, r);
+}
+
+// A start next to the solution for lanes that are not `done`: magnitudes sqrt(|load|^2 + softness^2) have no kinks and the
+// same Lipschitz matrix; their solution is followed while the softness falls from far above the loads to their rounding.
+inline void start_softly(const Plan& p, Rubbing& r, Mask done) {
+  const int n = p.frictions;
+  Pack size = 0.0;
+  for (int c = 0; c < p.contacts; ++c) size = max(size, sum_of_components(r.base[c]));
+  for (int k = 0; k < n; ++k) {
+    r.origin[k] = r.force[k];
+    r.force[k] = select(done, r.force[k], Pack(0.0));
+  }
+  r.softness = Pack(FRICTION_SOFTEST) * size;
+  for (int level = 0; level < FRICTION_LEVELS; ++level) {
+    load_contacts(p, r);
+    differentiate_loads(p, r);
+    eliminate(r, n);
+    for (int k = 0; k < n; ++k) r.force[k] += r.right[k];
+    if (level & 1) r.softness *= Pack(0.5);
+  }
+  r.softness = 0.0;
+  for (int k = 0; k < n; ++k) r.force[k] = select(done, r.origin[k], r.force[k]);
+}
+
 // Friction forces into r.force, normal loads into r.normal, FrictionState into r.state where there is no answer, from
 // coefficients, base and gain; r.state is FRICTION_DECIDED.
 inline void solve_friction(const Plan& p, Rubbing& r) {
@@ -162,34 +234,15 @@ inline void solve_friction(const Plan& p, Rubbing& r) {
       normal += Pack(p.contact[c].weight) * magnitude(r.base[c]);
     r.force[k] = r.coefficient[k] * normal;
   }
-  Mask done = all_lanes(false), newton = all_lanes(false), moved = all_lanes(false);
-  Pack before = __builtin_inf();
-  const Pack infinite = __builtin_inf();
-  for (int iteration = 0; iteration < FRICTION_ITERATIONS; ++iteration) {
-    load_contacts(p, r);
-    const LeftOver now = left_over(p, r);
-    // a step of Newton's that did not help is taken back, for the one that does
-    const Mask back = ~done & newton & ~(now.left <= Pack(0.9) * before);
-    done = done | (~back & (now.left <= Pack(FRICTION_TIGHT) * now.scale));
-    done = done | (back & (before <= Pack(FRICTION_STALLED) * now.scale));
-    done = done | ~(now.left < infinite);  // nothing to hope for
-    moved = back;
-    if (any(back))
-      for (int k = 0; k < n; ++k) r.force[k] = select(back, r.step[k], r.force[k]);
-    if (all(done)) break;
-    const Mask go = ~back & ~done;
-    for (int k = 0; k < n; ++k) r.step[k] = select(go, r.force[k] + r.right[k], r.step[k]);
-    differentiate_loads(p, r);
-    eliminate(r, n);
-    for (int k = 0; k < n; ++k) r.force[k] = select(go, r.force[k] + r.right[k], r.force[k]);
-    newton = go;
-    before = select(go, now.left, infinite);
-  }
-  // where the forces were moved after their loads had been found, or were not found in time
-  if (any(moved) | !all(done)) load_contacts(p, r);
-  const LeftOver last = left_over(p, r);
-  const Mask solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
+  r.softness = 0.0;
+  iterate_friction(p, r, all_lanes(false));
+  LeftOver last = left_over(p, r);
+  Mask solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
   if (all(solved)) return;
+  start_softly(p, r, solved);
+  iterate_friction(p, r, solved);
+  last = left_over(p, r);
+  solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
   for (int k = 0; k < n; ++k) {
     const Mask open = ~solved & (r.state[k] == Pack((double)FRICTION_DECIDED));
     r.state[k] = select(open, Pack((double)FRICTION_NOT_SOLVED), r.state[k]);

@@ -35,6 +35,7 @@ constexpr unsigned char NOT_FINITE = 255;  // the fault where a rate is not fini
 struct SwitchKind {
   bool kink;
   bool moves = false;
+  signed char first = 1;  // side on which the first rates are taken; where it is known before, they do not reach beyond
   // A kink that stays where it is: where both its sides give the same rates it is passed without a word.
   bool may_be_nothing() const { return kink && !moves; }
 };

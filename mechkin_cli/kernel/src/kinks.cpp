@@ -9,6 +9,7 @@ namespace {
 
 // What the other side of a kink may do to a step, in parts of the error that a step may have; at least so many roundings.
 constexpr double NOTHING = 1e-2, ROUNDINGS = 1e3 * 2.220446049250313e-16;
+constexpr double ROUNDING = 2.220446049250313e-16;  // of a rate
 
 }  // namespace
 
@@ -26,30 +27,57 @@ bool March::bends_nothing(int lane, const double* y, const double* a, const doub
   const int end = rests(lane, y) ? 2 * n : states_.size;
   for (int c = n; c < end; ++c) {
     const std::size_t k = (std::size_t)c * lanes + lane;
-    const double jump = step * std::fabs(a[k] - b[k]);
+    // a difference that is lost in the rates' rounding may be as large
+    const double jump = step * (std::fabs(a[k] - b[k]) + ROUNDING * std::fabs(a[k]));
     if (jump > 0.0 && !(jump <= most * scale_[k])) return false;
   }
   return true;
 }
 
+// The rates at a place on the other side of a kink, and of the kinks around it that turn with it there, in `other_slope_`;
+// `values` are those there on this side. Lanes with a fault leave `told`.
+void March::turn_with_outer(int which, const double* time, const double* place, const double* values, const Flags& mask,
+                            Flags* told) {
+  const int lanes = states_.lanes, switches = (int)states_.kinds.size();
+  const std::vector<std::int8_t> kept = states_.side;
+  const auto turn = [&](int s, int i) {
+    std::int8_t& side = states_.side[(std::size_t)s * lanes + i];
+    side = (std::int8_t)-side;
+  };
+  Flags open = mask;
+  for (int i = 0; i < lanes; ++i)
+    if (open[i]) turn(which, i);
+  for (int k = 0; k <= switches && any(open); ++k) {
+    Flags asked = open;
+    states_.evaluate(time, place, false, &asked, other_slope_.data(), values_.data());
+    for (int i = 0; i < lanes; ++i) {
+      if (!open[i]) continue;
+      (*told)[i] = asked[i];
+      open[i] = 0;
+      for (int s = which + 1; s < switches && !open[i]; ++s) {
+        const std::size_t at = (std::size_t)s * lanes + i;
+        if (!states_.kinds[s].may_be_nothing() || values_[at] == values[at]) continue;
+        open[i] = states_.side[at] * values_[at] < 0.0;
+        if (open[i]) turn(s, i);
+      }
+    }
+  }
+  states_.side = kept;
+}
+
 // Whether the other side of a kink makes no difference to the step that was tried, where `slope` is known at a place of it
-// and the kink's value is `value`: as far from zero as that there, elsewhere as far as the stages tell. Asks all lanes in the mask, which
-// keeps those where it makes none. `scale_` is the step's.
-void March::compare_sides(int which, const double* time, const double* place, const double* slope, const double* value,
+// and the switches' values are `values`: as far from zero as that there, elsewhere as far as the stages tell. Asks all lanes
+// in the mask, which keeps those where it makes none. `scale_` is the step's.
+void March::compare_sides(int which, const double* time, const double* place, const double* slope, const double* values,
                           Flags* mask) {
   const int lanes = states_.lanes;
-  std::int8_t* const side = states_.side.data() + (std::size_t)which * lanes;
-  Flags told = *mask;
-  const auto turn = [&] {
-    for (int i = 0; i < lanes; ++i)
-      if ((*mask)[i]) side[i] = (std::int8_t)-side[i];
-  };
-  turn();
-  states_.evaluate(time, place, false, &told, other_slope_.data(), values_.data());
-  turn();
+  const double* const value = values + (std::size_t)which * lanes;
+  Flags told(lanes, 0);
+  turn_with_outer(which, time, place, values, *mask, &told);
   for (int i = 0; i < lanes; ++i) {
     if (!(*mask)[i]) continue;
-    const double deepest = -least_inside(i, which, false), here = std::fabs(value[i]);
+    const double at_end = -states_.side[(std::size_t)which * lanes + i] * states_.switch_end[(std::size_t)which * lanes + i];
+    const double deepest = std::max(-least_inside(i, which, false), at_end), here = std::fabs(value[i]);
     const double step = states_.step[i] * (deepest > here ? deepest / here : 1.0);
     (*mask)[i] = told[i] && step < __builtin_inf() && bends_nothing(i, place, slope, other_slope_.data(), step);
     states_.fault[i] = 0;
@@ -70,7 +98,7 @@ void March::mute(Flags* mask) {
       asked[i] = (*mask)[i] && control_[i].landing != s && (is_crossed_by(i, s) || least_inside(i, s, false) < 0.0);
     if (!any(asked)) continue;
     Flags same = asked;
-    compare_sides(s, states_.until.data(), states_.y_end.data(), states_.slope_end.data(), states_.switch_end.data() + at,
+    compare_sides(s, states_.until.data(), states_.y_end.data(), states_.slope_end.data(), states_.switch_end.data(),
                   &same);
     for (int i = 0; i < lanes; ++i) {
       if (!asked[i]) continue;

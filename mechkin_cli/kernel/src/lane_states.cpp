@@ -18,7 +18,7 @@ LaneStates::LaneStates(Motion& m, const IntegratorSettings& s)
   for (auto* a : {&y, &slope, &y_end, &slope_end}) a->assign(entries, 0.0);
   for (auto* a : {&switch_value, &switch_end, &switch_inner[0], &switch_inner[1], &switch_least})
     a->assign(switches, 0.0);
-  side.assign(switches, 1);
+  for (const SwitchKind& kind : kinds) side.insert(side.end(), lanes, kind.first);
   work.assign((std::size_t)quadratures * lanes, 0.0);
   evaluations.assign(lanes, 0);
   fault.assign(lanes, 0);

@@ -23,6 +23,7 @@ MECHKIN_INLINE void factor_sized(Factors f, int runtime) {
     for (int i = k + 1; i < n; ++i) {
       const Mask c = abs(f.a[i * n + k]) > abs(f.a[k * n + k]);
       f.swap[s++] = c;
+      if (!any(c)) continue;
       for (int j = 0; j < n; ++j) {
         const Pack x = f.a[k * n + j], y = f.a[i * n + j];
         f.a[k * n + j] = select(c, y, x);

@@ -127,6 +127,10 @@ void March::round(Method& method, Flags mask) {
       states_.fault[i] = 0;
     }
   }
+  if (!states_.kinds.empty()) {
+    check_sides(mask);
+    for (int i = 0; i < states_.lanes; ++i) mask[i] = mask[i] && control_[i].running;
+  }
   if (!any(mask)) return;
   method.attempt(states_, mask);
   judge(method, &mask);
@@ -192,9 +196,14 @@ void March::take(Method& method, Flags mask) {
 // An event that rested at its zero, or a kink that bends nothing, goes on from the side where the step has led it.
 void March::settle_ignored(int lane) {
   std::vector<int>& passed = control_[lane].passed;
+  control_[lane].sides_checked = false;
   for (int s = 0; s < (int)passed.size(); ++s) {
     const std::size_t k = (std::size_t)s * states_.lanes + lane;
-    if (is_ignored(lane, s)) states_.side[k] = states_.switch_end[k] < 0.0 ? -1 : 1;
+    if (is_ignored(lane, s)) {
+      const std::int8_t side = states_.switch_end[k] < 0.0 ? -1 : 1;
+      control_[lane].sides_stale |= states_.kinds[s].may_be_nothing() && side != states_.side[k] && passed.size() > 1;
+      states_.side[k] = side;
+    }
     passed[s] = 0;
     control_[lane].let_alone[s] = 0;
   }

@@ -26,6 +26,8 @@ struct LaneControl {
   int landing_tries = 0, landing_searches = 0;
   double landing_slope = 0.0, landing_step = 0.0, landing_before = 0.0, landing_value = 0.0;
   bool landed = false;
+  bool sides_checked = true;             // against their values where the lane stands
+  bool sides_stale = false;              // a side has changed since the values were told
   std::vector<int> passed;               // switches: how often they were passed at this place
   std::vector<long> met;                 // switches: how often they were passed at all
   std::vector<double> largest;           // switches: their largest values at the ends of steps
@@ -55,7 +57,7 @@ class March {
 
   // march_start.cpp
   void start(const double* time, const std::vector<double>& y);
-  void first_sides(const Flags& mask);
+  void first_sides(Flags* mask);
   void first_steps(const Flags& mask);
   void size_up(const Flags& mask);
 
@@ -74,9 +76,21 @@ class March {
   double least_inside(int lane, int which, bool stages_alone) const;
   void hold(int lane, int which);
 
+  // sides.cpp
+  std::vector<double> roundings(const Flags& mask, const std::vector<double>& values);
+  std::vector<std::int8_t> sides_ahead(const Flags& mask, const std::vector<double>& slope,
+                                       const std::vector<double>& values, const std::vector<double>& rounding);
+  void settle_sides(Flags mask, std::vector<int> known, bool is_start);
+  bool has_changed(int lane, int but, const std::vector<double>& values) const;
+  void check_sides(const Flags& mask);
+  bool is_wrong(int lane, int which) const;
+  void renew(int lane);
+
   // kinks.cpp
   void mute(Flags* mask);
-  void compare_sides(int which, const double* time, const double* place, const double* slope, const double* value,
+  void turn_with_outer(int which, const double* time, const double* place, const double* values, const Flags& mask,
+                       Flags* told);
+  void compare_sides(int which, const double* time, const double* place, const double* slope, const double* values,
                      Flags* mask);
   bool bends_nothing(int lane, const double* y, const double* a, const double* b, double step) const;
   bool rests(int lane, const double* y) const;

@@ -6,8 +6,6 @@
 
 namespace {
 
-constexpr double LOOK_AHEAD = 1e-6;  // of the duration: where a switch that begins at zero is asked for its side
-
 double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
 
 }  // namespace
@@ -22,10 +20,10 @@ void March::start(const double* time, const std::vector<double>& y) {
     states_.speed[i] = states_.speed_in(y.data(), i);
   }
   states_.evaluate(time, y.data(), true, &mask, states_.slope.data(), states_.switch_value.data());
+  size_up(mask);
+  first_sides(&mask);
   for (int i = 0; i < lanes; ++i)
     if (!mask[i]) finish(i, LaneEnd::STUCK);
-  size_up(mask);
-  first_sides(mask);
   for (int i = 0; i < lanes; ++i) mask[i] = control_[i].running;
   rows_here(mask);
   for (int i = 0; i < lanes; ++i) {
@@ -36,31 +34,19 @@ void March::start(const double* time, const std::vector<double>& y) {
 }
 
 // A switch begins on the side that its value tells, or that it has a moment later where it is zero. Rates that were
-// taken on another side are taken anew.
-void March::first_sides(const Flags& mask) {
+// taken on another side are taken anew; lanes that had a fault on that side alone come into the mask.
+void March::first_sides(Flags* mask) {
   const int lanes = states_.lanes;
-  const std::size_t switches = states_.kinds.size();
-  if (!switches || !any(mask)) return;
-  const long moved = (long)states_.freedoms * lanes;
-  for (int i = 0; i < lanes; ++i) at_[i] = states_.time[i] + LOOK_AHEAD * states_.duration[i];
-  for (long k = 0; k < states_.entries; ++k) {
-    const double h = LOOK_AHEAD * states_.duration[k % lanes];
-    const double bend = k < moved ? 0.5 * h * h * states_.slope[k + moved] : 0.0;
-    place_[k] = states_.y[k] + (h * states_.slope[k] + bend);
-  }
-  std::vector<double> slope(states_.entries);
-  Flags ahead = mask;
-  states_.evaluate(at_.data(), place_.data(), false, &ahead, slope.data(), values_.data());
-  for (std::size_t k = 0; k < states_.side.size(); ++k) {
-    const double here = states_.switch_value[k];
-    const double value = here != 0.0 || !ahead[k % lanes] ? here : values_[k];
-    states_.side[k] = value < 0.0 ? -1 : 1;
-  }
-  Flags again = mask;
-  states_.evaluate(states_.time.data(), states_.y.data(), true, &again, states_.slope.data(),
+  if (states_.kinds.empty()) return;
+  for (std::size_t k = 0; k < states_.side.size(); ++k) states_.side[k] = states_.switch_value[k] < 0.0 ? -1 : 1;
+  settle_sides(Flags(lanes, 1), std::vector<int>(lanes, -1), true);
+  Flags stands(lanes, 1);
+  states_.evaluate(states_.time.data(), states_.y.data(), true, &stands, states_.slope.data(),
                    states_.switch_value.data());
-  for (int i = 0; i < lanes; ++i)
-    if (mask[i] && !again[i]) finish(i, LaneEnd::STUCK);
+  Flags recovered(lanes, 0);
+  for (int i = 0; i < lanes; ++i) recovered[i] = stands[i] && !(*mask)[i];
+  *mask = stands;
+  if (any(recovered)) size_up(recovered);
 }
 
 void March::size_up(const Flags& mask) {

@@ -127,6 +127,11 @@ inline void place_accelerations(const Plan& p, Workspace& w, const StageGiven& g
   move_all(p, w, true);
 }
 
+// Kept apart as is_regular is.
+__attribute__((noinline)) Closed close_in_chart(const Plan& p, Workspace& w, int block, const Request& limits) {
+  return close_block<true>(p, w, block, limits);
+}
+
 inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given,
                           const StageFound& found) {
   Request limits = {};
@@ -138,7 +143,7 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
   take_places(p, w, given, fixed | lanes_placed(given, GUESSED));
   long entries = 0;
   for (int b = 0; b < p.blocks; ++b) {
-    Closed closed = close_block(p, w, b, limits);
+    Closed closed = close_in_chart(p, w, b, limits);
     if (any(fixed)) place_again(p, w, b, given, fixed, &closed);
     const BlockMatrices at = matrices_of(p, w, b);
     const int size = at.m * at.n;

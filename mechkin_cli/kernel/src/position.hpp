@@ -295,7 +295,24 @@ inline void take_back_factors(const Workspace& w, const BlockMatrices& at, Mask 
 // A Newton step (rad, length units) that no residual at rounding level gives where the condition is below 1e8.
 constexpr double LONG_STEP = 1e-6;
 
-// Closes one block from the guess in w.q.
+inline Pack largest(const Pack* step, int size) {
+  Pack length = 0.0;
+  for (int u = 0; u < size; ++u) length = select(abs(step[u]) <= length, length, abs(step[u]));  // a NaN wins
+  return length;
+}
+
+// The second step with the factors of the first, whose length was `before`, into `step`; where it may be the last. One of
+// length a leaves 2 a^2 / before, where Newton's last one may leave coarse^2.
+inline Mask step_again(const Workspace& w, const BlockMatrices& at, Pack before, double coarse, Pack* step) {
+  for (int i = 0; i < at.m; ++i) step[i] = w.right[i];
+  at.solve_equations(step);
+  const Pack length = largest(step, at.n);
+  return Pack(2.0) * length * length <= Pack(coarse) * Pack(coarse) * before;
+}
+
+// Closes one block from the guess in w.q. With `AGAIN` factors serve two steps where they are good enough, which pays
+// where no condition is wanted of them.
+template <bool AGAIN = false>
 inline Closed close_block(const Plan& p, Workspace& w, int index, const Request& r) {
   const Block& b = p.block[index];
   const BlockMatrices at = matrices_of(p, w, index);
@@ -310,20 +327,23 @@ inline Closed close_block(const Plan& p, Workspace& w, int index, const Request&
     // a short step leaves its square times condition and curvature, which may yet be too much
     done = done | (polished & (residual.test <= Pack(r.accept))) | (residual.test <= Pack(r.tight));
     if ((all(done) && !(keeps_factors && iteration == 0)) || iteration == r.iterations) break;
-    moving_screws(p, w, b);
-    const bool keep = keeps_factors && iteration > 0 && any(done);
-    if (keep) keep_factors(w, at);
-    block_jacobian(p, w, index, at.jacobian);
-    at.factor_jacobian();
-    at.solve_equations(w.right);
-    if (keep) take_back_factors(w, at, done);
-    Pack length = 0.0;
-    for (int u = 0; u < b.size; ++u) {
-      w.right[u] = -w.right[u];
-      length = select(abs(w.right[u]) <= length, length, abs(w.right[u]));  // a NaN wins
+    Mask again = all_lanes(false);
+    if (AGAIN && iteration == 1) again = step_again(w, at, last_step, r.coarse, w.scratch);
+    if (!AGAIN || !all(again | done)) {
+      moving_screws(p, w, b);
+      const bool keep = keeps_factors && iteration > 0 && any(done);
+      if (keep) keep_factors(w, at);
+      block_jacobian(p, w, index, at.jacobian);
+      at.factor_jacobian();
+      at.solve_equations(w.right);
+      if (keep) take_back_factors(w, at, done);
     }
+    if (AGAIN && iteration == 1)
+      for (int u = 0; u < b.size; ++u) w.right[u] = select(again, w.scratch[u], w.right[u]);
+    for (int u = 0; u < b.size; ++u) w.right[u] = -w.right[u];
+    const Pack length = largest(w.right, b.size);
     last_step = select(done, iteration ? last_step : Pack(0.0), length);
-    polished = length <= Pack(r.coarse);
+    polished = again | (length <= Pack(r.coarse));
     // where the Jacobian is singular there is no step: the lane stays where it is (NaN, infinity, or 1e100, whose
     // products would soon be infinite)
     done = done | ~(length < Pack(1e100));
