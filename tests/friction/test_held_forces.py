@@ -135,3 +135,35 @@ responses:
     assert np.isnan(found["A.friction_moment"]).all()
     assert (found.result.status == Status.friction_undecided).all()
     assert "friction-undecided" in [d.code for d in found.diagnostics]
+
+
+def pulled(coefficient: str, force: str, count: int) -> mk.Analysis:
+    """A kilogram on a table, g = 10, pulled from rest for 3 s."""
+    text = f"""{HEAD}name: block
+links: {{a: {{mass: 1, center_of_mass: [0, 0, 0]}}}}
+joints: {{A: {{type: P, links: [ground, a], point: [0, 0, 0], axis: [1, 0, 0]}}}}
+loads:
+  - {{type: gravity, g: [0, 0, -10]}}
+  - {{type: friction, joint: A, coefficient: {coefficient}}}
+  - {{type: force, joint: A, value: "{force}"}}
+responses:
+  go: {{start: {{A.s: 0, A.s_dot: 0}}, time: {{from: 0, to: 3, count: {count}}}}}
+"""
+    return mk.loads(text).respond("go", ["A.s"])
+
+
+@pytest.mark.parametrize("count", [2, 3, 51])
+def test_a_pull_that_comes_and_goes_between_rows_is_seen(count: int) -> None:
+    found = pulled(
+        "{static: 0.666, sliding: 0.385}", "-1.34 N + 6.02 N*sin(7.88 rad/s*time)", count
+    )
+    # by an integration from event to event
+    assert found["A.s"][-1] == pytest.approx(-0.36777322, abs=1e-7)
+
+
+@pytest.mark.parametrize("count", [2, 51])
+def test_a_growing_pull_lets_go_without_a_jump_of_the_coefficient(count: int) -> None:
+    found = pulled("0.33", "-0.668 N + 7.58 N/s*time", count)
+    left = 3 - (3.3 + 0.668) / 7.58
+    assert errors(found) == []
+    assert found["A.s"][-1] == pytest.approx(7.58 * left**3 / 6, rel=1e-8)
