@@ -64,6 +64,8 @@ class Motion {
   }
 
   // Whether something moves beside the freedoms: powers are then not rounding where these rest.
+  // The longest first step.
+  virtual double longest() const { return __builtin_inf(); }
   virtual bool is_driven() const { return false; }
 
   // Asked where a step was refused that may not be made shorter: whether the same step may be tried again, as more is known
