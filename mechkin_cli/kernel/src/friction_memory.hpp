@@ -16,7 +16,8 @@ struct Rubbing {
   Vec3 *axis, *point;  // frictions: now
   Vec3* direction;     // contacts: now
   Vec3 *base, *gain;   // contacts: their loads without friction; by a unit of each friction
-  Vec3* along;         // contacts: directions of their loads
+  Vec3* load;          // contacts: their loads with the friction forces
+  Pack* size;          // contacts: magnitudes of these
   Vec3* reach;         // contacts: their loads by a unit of one actuator (actuated_balance.hpp)
   Pack* effort;        // inputs, or actuators: of the drives without friction
   Pack* told;          // frictions x TOLD_NUMBERS, see FrictionTold
@@ -40,8 +41,9 @@ inline void lay_out_friction(const Plan& p, Take&& take, Rubbing* r) {
   r->swap = (Mask*)take((n * (n - 1) / 2 + 1) * sizeof(Mask));
   r->axis = (Vec3*)take(n * sizeof(Vec3));
   r->point = (Vec3*)take(n * sizeof(Vec3));
-  Vec3** const of_contacts[] = {&r->direction, &r->base, &r->along, &r->reach};
+  Vec3** const of_contacts[] = {&r->direction, &r->base, &r->load, &r->reach};
   for (Vec3** each : of_contacts) *each = (Vec3*)take(p.contacts * sizeof(Vec3));
+  r->size = (Pack*)take(p.contacts * pack);
   r->gain = (Vec3*)take(p.contacts * n * sizeof(Vec3));
   r->told = (Pack*)take(p.charts ? n * TOLD_NUMBERS * pack : 0);
   r->is_told = false;

@@ -93,7 +93,7 @@ inline void prove_unique(const Plan& p, const Rubbing& r) {
   if (!all(proven)) prove_thoroughly(p, r, proven);
 }
 
-// Normal loads of the friction forces in r.force, with the directions of the contacts' loads, and mu N - z into r.right.
+// Normal loads of the friction forces in r.force, with the contacts' loads and their magnitudes, and mu N - z into r.right.
 inline void load_contacts(const Plan& p, const Rubbing& r) {
   const int n = p.frictions;
   for (int k = 0; k < n; ++k) {
@@ -101,10 +101,9 @@ inline void load_contacts(const Plan& p, const Rubbing& r) {
     for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
       Vec3 load = r.base[c];
       for (int j = 0; j < n; ++j) load += r.force[j] * r.gain[c * n + j];
-      const Pack size = sqrt(dot(load, load) + r.softness * r.softness);
-      const Mask none = size == Pack(0.0);
-      r.along[c] = select(none, Pack(0.0), Pack(1.0) / select(none, Pack(1.0), size)) * load;
-      normal += Pack(p.contact[c].weight) * size;
+      r.load[c] = load;
+      r.size[c] = sqrt(dot(load, load) + r.softness * r.softness);
+      normal += Pack(p.contact[c].weight) * r.size[c];
     }
     r.normal[k] = normal;
     r.right[k] = r.coefficient[k] * normal - r.force[k];
@@ -118,8 +117,10 @@ inline void differentiate_loads(const Plan& p, const Rubbing& r) {
     Pack* const row = r.matrix + k * n;
     for (int j = 0; j < n; ++j) row[j] = k == j ? 1.0 : 0.0;
     for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
+      const Mask none = r.size[c] == Pack(0.0);
+      const Vec3 along = select(none, Pack(0.0), Pack(1.0) / select(none, Pack(1.0), r.size[c])) * r.load[c];
       const Pack share = r.coefficient[k] * Pack(p.contact[c].weight);
-      for (int j = 0; j < n; ++j) row[j] -= share * dot(r.along[c], r.gain[c * n + j]);
+      for (int j = 0; j < n; ++j) row[j] -= share * dot(along, r.gain[c * n + j]);
     }
   }
 }
