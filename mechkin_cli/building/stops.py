@@ -67,10 +67,10 @@ class StopBuilder:
             return None
         law, dimension = found
         at = self.fields.number((*path, "at"), section.at, dimension)
-        in_file = float(self.fields.units.from_si(at, dimension))
+        in_file = float(self.fields.units.from_si(at, dimension)) + 0.0  # no -0
         amount = f"{in_file:.12g} {self.fields.units.label(dimension)}".rstrip()
         words = f"{section.value.strip()} = {amount}{_WAYS[section.direction]}"
-        return Crossing(words, law.place, law, at, section.direction)
+        return Crossing(words, law.place, law, dimension, at, section.direction)
 
     def _is_known(self, path: Path, name: str) -> bool:
         """Whether the value at `path` names a coordinate; if not, that is noted."""

@@ -636,7 +636,7 @@ def respond(
     tangent: Floats,
     begin: float,
     times: Floats,
-    stops: Sequence[tuple[int, int, int, float]],
+    stops: Sequence[tuple[int, int, int, float, int, int]],
     driven: DrivenLaws | None,
     tolerance: float,
     fixed_step: float,

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.model import Amount, Mechanism
     from mechkin_cli.mechanism.motion import Assembly
     from mechkin_cli.mechanism.problem import Problem
-    from mechkin_cli.units import UnitSystem
+    from mechkin_cli.units import Dimension, UnitSystem
 
 Direction = Literal["up", "down", "any"]
 
@@ -70,6 +70,7 @@ class Crossing:
     words: str
     place: Place
     law: LoadLaw
+    dimension: Dimension
     at: float
     direction: Direction
 

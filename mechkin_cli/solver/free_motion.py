@@ -104,12 +104,15 @@ class MotionRows:
 class WatchedStop(NamedTuple):
     """What ends a motion, by a value that is watched: 0 it crosses `at`, upwards (1), downwards
     (-1) or either way (0); 1 it changes its sign for the `times`th time; 2 it lies `times` turns
-    from where it began."""
+    from where it began. `lengths` and `rates` are the powers of length and 1/time in the value's
+    dimension, which tell what of it is rounding; `rates` -1: not known."""
 
     kind: int
     direction: int
     times: int
     at: float
+    lengths: int = 0
+    rates: int = -1
 
 
 @dataclass(frozen=True)
@@ -166,7 +169,7 @@ def integrate(
         tangent=np.ascontiguousarray([start.tangents.ravel() for start in starts]),
         begin=begin,
         times=np.ascontiguousarray(times),
-        stops=[(s.kind, s.direction, s.times, s.at) for s in stops],
+        stops=[(s.kind, s.direction, s.times, s.at, s.lengths, s.rates) for s in stops],
         driven=driven,
         tolerance=tolerance,
         fixed_step=fixed_step or 0.0,

@@ -127,6 +127,7 @@ class HostileMotions(HostileRuns):
         if not self.bad():
             return stops
         one = (self.small() % 7, self.index(-2, 3), self.index(-3, 9), self.number())
+        one = (*one, self.index(-99, 99), self.index(-3, 99))
         return self.random.choice([[], [*stops, one], [one] * len(stops), [(0, 0)], None])
 
     def settings(self) -> dict[str, Any]:

@@ -85,7 +85,7 @@ def test_motions_in_time_refuse_bad_calls() -> None:
         ({"method": 3}, "method: unknown"),
         ({"iterations": 10001}, "0 to 10000"),
         ({"jump": float("nan")}, "from 0 on"),
-        ({"stops": [(0, 0, 1, 0.5)]}, "one for each watched value"),
+        ({"stops": [(0, 0, 1, 0.5, 0, 0)]}, "one for each watched value"),
         (
             {"driven": _kernel.DrivenLaws(None, [], [], [], [], 1.0, [0.0])},
             "one law for each input",

@@ -199,3 +199,42 @@ def test_a_slide_is_stopped_just_before_its_end(short: float, rate: int) -> None
             SLIDER_CRANK.format(x=repr(x), rate=rate, count=count, at=s - x), energy=1e-9
         )
         assert found["A.theta"][-1] == pytest.approx(expected, abs=1e-12 / math.sqrt(short))
+
+
+HELD = """format: 1
+name: a pin that the loop holds
+units: {{length: m, angle: rad}}
+links:
+  L1: {{}}
+  L2: {{mass: 1.16, center_of_mass: [0.118, -0.375, -0.726],
+    inertia: {{xx: 0.17, yy: 0.18, zz: 0.12, xy: -0.02, xz: 0.08, yz: 0.01}}}}
+joints:
+  J0: {{type: S, links: [ground, L1], point: [-0.53, -0.406, 0.112]}}
+  J1: {{type: R, links: [L2, L1], point: [-0.471, -0.067, -0.231], axis: [0.9175, 0.3971, 0.0205]}}
+  J2: {{type: E, links: [ground, L2], point: [-0.105, 0.001, -0.427],
+    normal: [0.655, -0.7497, 0.0948], x: [-0.7497, -0.655, 0]}}
+loads:
+  - {{type: torque, joint: J1, value: "5.63 N*m*sin(1.35 rad/s*time)"}}
+responses:
+  run:
+    start: {{J2.x: 0, J2.x_dot: 1.123}}
+    time: {{from: 0, to: 1.5, count: {rows}}}
+    stop: [{stop}]
+"""
+
+
+@pytest.mark.parametrize("rows", [4, 11, 16, 101])
+@pytest.mark.parametrize(
+    "stop",
+    [
+        "{value: J1.theta, at: 0}",
+        "{value: J1.theta_dot, at: 0}",
+        "{value: J1.theta*J2.x, at: 0}",
+        "{dead_centre: J1.theta}",
+    ],
+)
+def test_a_coordinate_that_the_loop_holds_passes_nothing(stop: str, rows: int) -> None:
+    """By two of three conditions of S and E the pin cannot turn; its angle is rounding alone."""
+    found = respond(HELD.format(stop=stop, rows=rows))
+    assert found["time"].tolist() == pytest.approx(np.linspace(0, 1.5, rows).tolist())
+    assert not any(found["row.event"])

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.response import Response, Stop
     from mechkin_cli.solver.free_motion import MotionRows
     from mechkin_cli.solver.session import Session
+    from mechkin_cli.units import Dimension
 
 _WAYS = {"up": 1, "down": -1, "any": 0}
 
@@ -29,8 +30,19 @@ _WAYS = {"up": 1, "down": -1, "any": 0}
 def watched_stop(stop: Stop) -> WatchedStop:
     """A stop as the kernel takes it."""
     if isinstance(stop, Crossing):
-        return WatchedStop(0, _WAYS[stop.direction], 1, stop.at)
-    return WatchedStop(1 if isinstance(stop, DeadCentre) else 2, 0, stop.count, 0.0)
+        return WatchedStop(0, _WAYS[stop.direction], 1, stop.at, *_powers(stop.dimension))
+    if isinstance(stop, DeadCentre):
+        rate = dimension_of(stop.coordinate) / TIME
+        return WatchedStop(1, 0, stop.count, 0.0, *_powers(rate))
+    return WatchedStop(2, 0, stop.count, 0.0)
+
+
+def _powers(dimension: Dimension) -> tuple[int, int]:
+    """`lengths` and `rates` of a `WatchedStop`."""
+    length, mass, time, _ = dimension.exponents
+    if mass or time > 0 or length != int(length) or time != int(time):
+        return 0, -1
+    return int(length), -int(time)
 
 
 def rows_problem(

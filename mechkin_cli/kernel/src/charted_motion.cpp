@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "requirements.hpp"
 #include "units.hpp"
@@ -9,6 +10,8 @@
 namespace {
 
 constexpr double FULL = 2.0 * 3.14159265358979323846;
+// Of rad, sizes and speeds: what closing leaves of a coordinate that cannot move is some ten roundings.
+constexpr double NO_VALUE = 1e-14;
 
 std::vector<char, AlignedAllocator<char>> wide_plan(const MotionUnit& unit, const std::vector<MotionStart>& starts) {
   std::vector<const Plan*> plans;
@@ -215,8 +218,29 @@ void ChartedMotion::write_switches(const Stage& found, int lane, double time, do
   if (plan_.frictions) write_slip_switches(found, lane, switches + (long)(kinks + edges) * lanes_);
   for (int k = 0; k < kinks; ++k) switches[k * lanes_ + lane] = at(found.watched, k, lane);
   for (int e = 0; e < edges; ++e) switches[(kinks + e) * lanes_ + lane] = time - driven_->edges()[e];
-  for (int s = 0; s < (int)stops_.size(); ++s)
-    switches[(stops + s) * lanes_ + lane] = stop_value(s, lane, at(found.watched, kinks + s, lane));
+  const double speed = stops_.empty() ? 0.0 : speed_of(found, lane);
+  for (int s = 0; s < (int)stops_.size(); ++s) {
+    const double value = stop_value(s, lane, at(found.watched, kinks + s, lane));
+    switches[(stops + s) * lanes_ + lane] = is_rounding(stops_[s], lane, value, speed) ? 0.0 : value;
+  }
+}
+
+// The fastest coordinate, in rad and parts of the size.
+double ChartedMotion::speed_of(const Stage& found, int lane) const {
+  double speed = 0.0;
+  for (int c = 0; c < plan_.columns; ++c)
+    speed = std::max(speed, std::fabs(at(found.first, c, lane)) / starts_[lane].plan->column_weight[c]);
+  return speed;
+}
+
+// What never moves is zero but for rounding, whose signs are no passages.
+bool ChartedMotion::is_rounding(const MotionStop& stop, int lane, double value, double speed) const {
+  if (stop.kind == STOP_TURNS || stop.rates < 0) return false;
+  double unit = NO_VALUE;
+  for (int k = 0; k < stop.rates; ++k) unit *= speed;
+  for (int k = 0; k < std::abs(stop.lengths); ++k)
+    unit = stop.lengths > 0 ? unit * starts_[lane].plan->size : unit / starts_[lane].plan->size;
+  return std::fabs(value) <= unit;
 }
 
 // The tangents of the old chart, made orthonormal in the columns in parts of their weights (Gram-Schmidt, twice).

@@ -36,6 +36,9 @@ enum StopKind : int {
 struct MotionStop {
   int kind, direction, count;
   double at;
+  // Powers of length and of rate in the value's dimension: what rounding leaves of a value that is zero goes by the size
+  // (m) and by the speed. `rates` below zero: not known.
+  int lengths, rates;
 };
 
 struct MotionLimits {
@@ -173,6 +176,8 @@ class ChartedMotion : public Motion {
   void settle(int lane, int event, std::vector<double>* v);
   bool settled(int lane, int event, std::vector<double>* v);
   double stop_value(int stop, int lane, double watched) const;
+  bool is_rounding(const MotionStop& stop, int lane, double value, double speed) const;
+  double speed_of(const Stage& found, int lane) const;
   void write_switches(const Stage& found, int lane, double time, double* switches);
   void keep_miss(int lane, const Stage& found);
   void lay_chart(int lane);

@@ -4,6 +4,9 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <cstdlib>
+#include <tuple>
+
 #include "bindings.hpp"
 #include "frozen_plan.hpp"
 #include "new_array.hpp"
@@ -46,7 +49,8 @@ nb::dict report_of(const ResponseReport& report) {
   return d;
 }
 
-using Stops = std::vector<std::tuple<int, int, int, double>>;
+using Stops = std::vector<std::tuple<int, int, int, double, int, int>>;
+constexpr int MOST_POWER = 64;
 constexpr int MOST_ITERATIONS = 10000;
 
 void need(bool holds, const char* message) {
@@ -76,11 +80,12 @@ MotionLimits limits_of(const std::vector<double>& tests, int iterations, double 
 
 std::vector<MotionStop> stops_of(const Stops& stops) {
   std::vector<MotionStop> made;
-  for (const auto& [kind, direction, count, at] : stops) {
+  for (const auto& [kind, direction, count, at, lengths, rates] : stops) {
     need(kind >= STOP_CROSSING && kind <= STOP_TURNS, "stops: unknown kind");
     need(direction >= -1 && direction <= 1, "stops: a direction is -1, 0 or 1");
     need(all_finite(&at, 1), "stops: not finite");
-    made.push_back({kind, direction, count, at});
+    need(std::abs(lengths) <= MOST_POWER && rates <= MOST_POWER, "stops: a power is too large");
+    made.push_back({kind, direction, count, at, lengths, rates});
   }
   return made;
 }
