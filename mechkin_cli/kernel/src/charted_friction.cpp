@@ -57,7 +57,7 @@ void ChartedMotion::begin_slips() {
   s.aim.assign((std::size_t)s.columns * lanes_, 0.0), s.armed.assign((std::size_t)n * lanes_, 0);
   s.pushed.assign((std::size_t)n * lanes_, 1);
   s.fastest.assign(lanes_, 0.0), s.ways.resize(lanes_), s.doubtful.resize(lanes_);
-  s.rests.assign(lanes_, 0), s.blocked.assign(lanes_, 0);
+  s.rests.assign(lanes_, 0), s.blocked.assign(lanes_, 0), s.measured.assign(lanes_, 0);
   const Packed rate = rate_;
   for (int l = 0; l < lanes_; ++l) {
     std::vector<double> v;
@@ -105,11 +105,11 @@ double ChartedMotion::slip_switch(const Stage& found, int lane, int k) const {
 }
 
 // What rests shows nothing of a load that comes and goes. The forces of what sticks, and what friction can hold, are
-// integrated beside the motion, so that its steps are as short as these want it.
+// integrated beside the motion, so that its steps are as short as these want it; from where a load tells what is rounding.
 void ChartedMotion::write_held(const Stage& found, int lane, double* rates) const {
   const long m = slips_.columns;
   for (int k = 0; k < plan_.frictions; ++k) {
-    const bool sticks = slips_.sense[(std::size_t)k * lanes_ + lane] == 0.0 && rubs(lane, k);
+    const bool sticks = slips_.sense[(std::size_t)k * lanes_ + lane] == 0.0 && rubs(lane, k) && slips_.measured[lane];
     for (int c = slips_.first[k]; c < slips_.first[k + 1]; ++c)
       rates[(long)c * lanes_ + lane] = sticks ? at(found.slip.force, c, lane) : 0.0;
     rates[(m + k) * lanes_ + lane] = sticks ? at(found.slip.limit, k, lane) : 0.0;

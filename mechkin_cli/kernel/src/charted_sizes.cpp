@@ -31,6 +31,7 @@ void ChartedMotion::sizes(const unsigned char* lanes, double* size) {
     energy_[l] = std::max(energy_[l], energy);
     weigh(l);
     for (int k = 1; k <= works(); ++k) size[k * lanes_ + l] = std::max(size[k * lanes_ + l], energy + coming);
+    if (plan_.frictions && at(end_.slip.level, 0, l) > 0.0) slips_.measured[l] = 1;
     const double duration = size[l] > 0.0 ? SLOWEST / size[l] : 0.0;
     for (int k = 0; k < plan_.frictions; ++k) {
       const double held = HELD * duration * held_size(l, k);
