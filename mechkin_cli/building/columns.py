@@ -46,6 +46,7 @@ def build_tables(fields: Fields, file: MechanismFile, problem: Problem) -> tuple
         if run not in read and run not in named:
             tables.append(_default(problem, run))
             _refuse_taken(fields, file, run)
+    _warn_of_missing_print(fields, file)
     return tuple(tables)
 
 
@@ -81,7 +82,7 @@ def _table(
         if layout is not None:
             columns.append(layout)
     title = section.title or section.name
-    published = _published(fields, (*path, "published"), section.published)
+    published = _published(section.published)
     return TableLayout(section.name, title, tuple(columns), published, run)
 
 
@@ -105,22 +106,33 @@ def _refuse_taken(fields: Fields, file: MechanismFile, run: str) -> None:
             fields.error("table-clash", ("tables", i, "name"), text, hint)
 
 
-def _published(
-    fields: Fields, path: Path, section: written.PublishedValues | None
-) -> PublishedValues | None:
-    """What is known of the print; a file that is not there is warned of, since the table needs none
-    until it is compared."""
+def _published(section: written.PublishedValues | None) -> PublishedValues | None:
     if section is None:
         return None
-    folder = fields.document.folder
-    if folder is not None and not (folder / section.file).is_file():
-        at = path if fields.document.node((*path, "file")) is None else (*path, "file")
-        place = fields.document.place(at)
-        text = f"there are no printed values in {folder / section.file}"
-        hint = "the path leads from the folder of the mechanism file; put the file there"
-        fields.note(Diagnostic("published-missing", "warning", text, place, hint=hint))
     remarks = tuple(PrintedRemark(r.text, r.columns or (), r.data or ()) for r in section.remarks)
     return PublishedValues(section.file, remarks, section.rows_by)
+
+
+def _warn_of_missing_print(fields: Fields, file: MechanismFile) -> None:
+    """Files of printed values that are not there are warned of, all at once, since tables need none
+    until they are compared."""
+    folder = fields.document.folder
+    missing: list[tuple[Path, str]] = []
+    for i, table in enumerate(file.tables):
+        printed = table.published
+        if folder is None or printed is None or (folder / printed.file).is_file():
+            continue
+        path: Path = ("tables", i, "published")
+        at = path if fields.document.node((*path, "file")) is None else (*path, "file")
+        missing.append((at, str(folder / printed.file)))
+    if not missing:
+        return
+    (path, first), *others = missing
+    more = f", nor in {len(others)} other{'s' * (len(others) > 1)}" if others else ""
+    text = f"there are no printed values in {first}{more}"
+    hint = "the path leads from the folder of the mechanism file; put the file there"
+    place = fields.document.place(path)
+    fields.note(Diagnostic("published-missing", "warning", text, place, hint=hint))
 
 
 def _column(

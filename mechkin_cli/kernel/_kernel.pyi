@@ -352,6 +352,7 @@ class Plan:
         jerks: Floats | None = None,
         ties: Floats | None = None,
         turned: Floats | None = None,
+        friction_told: Floats | None = None,
         whole: Floats | None = None,
         full: Floats | None = None,
         time: Floats | None = None,

@@ -24,12 +24,14 @@ RESIDUAL_TESTS = (
 
 
 class Chart(NamedTuple):
-    """Directions (charts * columns, rows) of a chart about each row's guess, and the rates and
-    accelerations (charts, rows) of its coordinates."""
+    """Directions (charts * columns, rows) of a chart about each row's guess, the rates and
+    accelerations (charts, rows) of its coordinates, and what the motion tells of friction (numbers,
+    rows), as the kernel's `FrictionTold`: of what sticks, and of what just starts to slip."""
 
     direction: Floats
     rates: Floats
     accelerations: Floats
+    friction: Floats
 
     def at(self, rows: NDArray[np.intp] | slice) -> Chart:
         """Some of the rows."""
@@ -39,6 +41,11 @@ class Chart(NamedTuple):
         """As `Plan.run` takes them."""
         return {
             "chart": _contiguous(self.direction),
+            "friction_told": (
+                _contiguous(self.friction)
+                if self.friction.size and demand & Demand.FORCES
+                else None
+            ),
             "chart_rates": _contiguous(self.rates) if demand & Demand.VELOCITY else None,
             "chart_accelerations": (
                 _contiguous(self.accelerations) if demand & Demand.ACCELERATION else None

@@ -186,9 +186,9 @@ def integrate(
     )
     found = []
     for number, told in enumerate(reports):
-        states, direction, rates, seconds, turns, work, flags = (a[number] for a in arrays)
+        states, direction, rates, seconds, turns, told_of, work, flags = (a[number] for a in arrays)
         report = MotionReport(**{**told, "end": MotionEnd(told["end"])})
-        chart = Chart(direction, rates, seconds)
+        chart = Chart(direction, rates, seconds, told_of)
         found.append(MotionRows(report, states, chart, turns, work, flags))
     return found
 

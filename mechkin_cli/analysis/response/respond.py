@@ -225,7 +225,8 @@ def _nothing(one: Prepared) -> ResponseResult:
     rows = Rows.without_guesses(free.layout.states, turn_count(free.plan), count)
     rows.status[:] = Status.not_assembled if start.state is None else Status.branch_lost
     zeros = np.zeros((charts, count))
-    chart = Chart(np.zeros((charts * free.plan.columns, count)), zeros, zeros)
+    directions = np.zeros((charts * free.plan.columns, count))
+    chart = Chart(directions, zeros, zeros, np.zeros((0, count)))
     motion = Motion(response.driven, count, response.moments, response.course)
     session = free.moved(replace(free.problem, motion=motion))
     lost = np.full((2, count), np.nan)

@@ -65,8 +65,10 @@ inline void apply_actuated_friction(Balance& balance, bool accelerating, int shi
   Rubbing& r = w.rubbing;
   const Pack rates = twist_level(p, w);
   aim_frictions(p, w, accelerating, rates);
+  apply_told(balance);
   find_actuated_gains(balance, shift, tie_value);
   solve_friction(p, r);
+  mark_open(p, r);
   // a singular set has no efforts, whatever friction there is
   const Mask held = *w.actuation.least > Pack(ACTUATORS_AT_REST);
   for (int k = 0; k < p.frictions; ++k) r.state[k] = select(held, r.state[k], Pack((double)FRICTION_DECIDED));
@@ -80,6 +82,7 @@ inline void apply_actuated_friction(Balance& balance, bool accelerating, int shi
     apply_along_coordinate(balance, p.actuator[a].axis, motor[a]);
   }
   for (int k = 0; k < p.frictions; ++k) rub(balance, k, r.force[k]);
+  add_told(p, r);
   distribute(p, w, shift);
   r.self_locking = self_locking(r, p.actuators, motor, Pack(NOTHING_WORKS) * balance.level * rates,
                                 [&](int a) { return actuator_rate(p, w, a); });

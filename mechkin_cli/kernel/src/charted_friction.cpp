@@ -16,6 +16,9 @@ constexpr double ARMED = 10.0;
 constexpr double NO_ROW = 1e-8, DEPENDENT = 1e-12;
 // Forces of what sticks, in parts of the largest wrench, that are rounding.
 constexpr double NO_FORCE = 1e-12;
+// Accelerations of a slip that was just let go, in parts of that by its friction, that are rounding; and how many times
+// more tells that it goes.
+constexpr double NO_START = 1e-9, GOES = 10.0;
 
 Matrix inertia_of(const Packed& inertia, int n, int lanes, int lane) {
   Matrix m(n, n);
@@ -38,7 +41,8 @@ constexpr double LEAST = 1e-300;
 SlipStage ChartedMotion::make_slips() const {
   const auto make = [&](long count) { return Packed((std::size_t)(count * lanes_), 0.0); };
   const long m = ::slip_columns(plan_), n = plan_.frictions;
-  return {make(m), make(m), make(m), make(m * plan_.charts), make(n), make(n), make(n), make(n), make(1)};
+  return {make(m), make(m), make(m), make(m * plan_.charts), make(n), make(n), make(n), make(n), make(1),
+          make(n * TOLD_NUMBERS)};
 }
 
 bool ChartedMotion::rubs(int lane, int k) const {
@@ -55,6 +59,7 @@ void ChartedMotion::begin_slips() {
   s.columns = s.first.back();
   s.sense.assign((std::size_t)n * lanes_, 1.0), s.quiet.assign((std::size_t)n * lanes_, 0.0);
   s.aim.assign((std::size_t)s.columns * lanes_, 0.0), s.armed.assign((std::size_t)n * lanes_, 0);
+  s.started.assign((std::size_t)n * lanes_, NAN);
   s.pushed.assign((std::size_t)n * lanes_, 1);
   s.fastest.assign(lanes_, 0.0), s.ways.resize(lanes_), s.doubtful.resize(lanes_);
   s.rests.assign(lanes_, 0), s.blocked.assign(lanes_, 0), s.measured.assign(lanes_, 0);
@@ -88,11 +93,19 @@ double ChartedMotion::lever(const Stage& found, int lane, int k) const {
   return largest;
 }
 
+// What of a slip's speed is rounding, where friction has just let it go: at that limit a load that barely grows leaves no
+// acceleration that tells the sense.
+double ChartedMotion::unsure(const Stage& found, int lane, int k) const {
+  const double started = slips_.started[(std::size_t)k * lanes_ + lane];
+  if (!(started <= time_[lane])) return 0.0;
+  return NO_START * at(found.slip.limit, k, lane) * at(found.slip.answer, k, lane) * (time_[lane] - started);
+}
+
 // Not negative as long as a joint goes on to slip, or to stick.
 double ChartedMotion::slip_switch(const Stage& found, int lane, int k) const {
   if (!rubs(lane, k)) return 1.0;
   const double sense = slips_.sense[(std::size_t)k * lanes_ + lane];
-  if (sense != 0.0 && slip_columns(k) == 1) return sense * at(found.slip.rate, slips_.first[k], lane);
+  if (sense != 0.0 && slip_columns(k) == 1) return sense * at(found.slip.rate, slips_.first[k], lane) + unsure(found, lane, k);
   if (sense != 0.0) {
     const double end = AT_END * slips_.fastest[lane] * lever(found, lane, k);
     return slip_size(found.slip.rate, lane, k) - (slips_.armed[(std::size_t)k * lanes_ + lane] ? end : 0.0);
@@ -165,6 +178,10 @@ void ChartedMotion::tell_undecided(const Stage& found, int lane) {
 // A slip in several directions ends where it has become small, not where it begins. Its direction is kept for its end.
 void ChartedMotion::arm(const Stage& found, int lane) {
   for (int k = 0; k < plan_.frictions; ++k) {
+    const std::size_t e = (std::size_t)k * lanes_ + lane;
+    if (slip_columns(k) == 1 && slips_.sense[e] * at(found.slip.rate, slips_.first[k], lane) > GOES * unsure(found, lane, k) &&
+        time_[lane] > slips_.started[e])
+      slips_.started[e] = NAN;
     if (slip_columns(k) == 1 || slips_.sense[(std::size_t)k * lanes_ + lane] == 0.0) continue;
     const double size = slip_size(found.slip.rate, lane, k);
     if (!(size > ARMED * AT_END * slips_.fastest[lane] * lever(found, lane, k))) continue;

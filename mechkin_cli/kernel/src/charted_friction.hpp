@@ -8,7 +8,7 @@
 
 // A stage's slips, as StageFound has them.
 struct SlipStage {
-  Packed rate, second, force, row, limit, loose, state, answer, level;
+  Packed rate, second, force, row, limit, loose, state, answer, level, told;
 };
 
 struct SlipMemory {
@@ -17,6 +17,7 @@ struct SlipMemory {
   Packed sense, quiet, aim;          // as StageGiven has them
   std::vector<signed char> pushed;   // frictions x lanes: the sign of a force that was last more than friction holds
   std::vector<unsigned char> armed;  // frictions x lanes: slips in several directions that have begun
+  std::vector<double> started;       // frictions x lanes: s: when a slip of one direction was let go, NaN once it goes
   std::vector<double> fastest;       // lanes: the largest rate of a chart so far
   std::vector<std::vector<Signs>> ways;  // lanes: senses in which what rests with forces that are not unique could go
   std::vector<unsigned char> measured;  // lanes: joints have carried a load by which forces are measured

@@ -117,7 +117,7 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
                           found->inertia.data(), found->watched.data(), found->power.data(), found->turned.data(),
                           found->slip.rate.data(), found->slip.second.data(), found->slip.force.data(),
                           found->slip.row.data(), found->slip.limit.data(), found->slip.loose.data(),
-                          found->slip.state.data(), found->slip.answer.data(), found->slip.level.data(),
+                          found->slip.state.data(), found->slip.answer.data(), found->slip.level.data(), found->slip.told.data(),
                           found->flags.data()};
   unit_.evaluate(wide_.data(), given, out, workspace_.data());
 }
@@ -340,6 +340,7 @@ void ChartedMotion::write_row(int lane, long row, const Stage& at_row, const dou
     }
     put(out.chart_rate, i, first), put(out.chart_second, i, second);
   }
+  for (int k = 0; k < plan_.frictions * TOLD_NUMBERS; ++k) put(out.friction_told, k, at(at_row.slip.told, k, lane));
   for (int k = 0; k < turn_slots_; ++k) put(out.turn, k, at(turn_, k, lane));
   for (int k = 0; k < 2; ++k) put(out.work, k, done ? done[(long)k * lanes_ + lane] : at(done_, k, lane));
   out.flags[row] = at_row.flags[lane];

@@ -63,6 +63,7 @@ struct MotionRows {
   double* chart_rate;     // charts
   double* chart_second;   // charts
   double* turn;           // turn slots
+  double* friction_told;  // frictions x TOLD_NUMBERS
   double* work;           // 2: put in, lost; kg, length units, s
   unsigned char* flags;   // StageFlag
 };
@@ -77,11 +78,11 @@ class ChartedMotion : public Motion {
   int freedoms() const override { return plan_.charts; }
   int quadratures() const override { return works() + (plan_.frictions ? slips_.columns + plan_.frictions : 0); }
   int works() const override { return 2; }
-  double longest_first() const override { return limits_.longest; }
   std::vector<SwitchKind> switches() const override;
   void rates(const Places& places, const Rates& rates) override;
   void accept(const unsigned char* lanes, const double* time, double* y, double* rates, double* longest) override;
   void sizes(const unsigned char* lanes, double* size) override;
+  double longest() const override { return limits_.longest; }
   bool is_driven() const override { return plan_.inputs > 0; }
   void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) override;
   bool event(int lane, int which, bool rising, double time) override;
@@ -138,6 +139,7 @@ class ChartedMotion : public Motion {
   double& quiet(int lane, int k) { return slips_.quiet[(std::size_t)k * lanes_ + lane]; }
   double slip_size(const Packed& of, int lane, int k) const;
   double lever(const Stage& found, int lane, int k) const;
+  double unsure(const Stage& found, int lane, int k) const;
   double slip_switch(const Stage& found, int lane, int k) const;
   void write_held(const Stage& found, int lane, double* rates) const;
   double held_size(int lane, int k) const;

@@ -164,7 +164,9 @@ bool ChartedMotion::settled(int lane, int event, std::vector<double>* v) {
   for (int k : open) {
     sense(lane, k) = 0.0;
     slips_.armed[(std::size_t)k * lanes_ + lane] = 0;
+    slips_.started[(std::size_t)k * lanes_ + lane] = NAN;
   }
+  if (breaks) slips_.started[(std::size_t)event * lanes_ + lane] = origin_time_[lane];
   if (breaks) sense(lane, event) = slip_columns(event) > 1 || push > 0.0 ? 1.0 : -1.0;
   evaluate_here(lane, *v, &trial_);
   if (event == n && !go_first_way(lane, &open, *v)) return false;
@@ -195,5 +197,9 @@ void ChartedMotion::move(int lane, int which, double, double* y) {
     const long e = (long)c * lanes_ + lane;
     origin_first_[e] = end_.first[e] = trial_.first[e];
     origin_second_[e] = end_.second[e] = trial_.second[e];
+  }
+  for (int k = 0; k < plan_.frictions * TOLD_NUMBERS; ++k) {
+    const std::size_t e = (std::size_t)k * lanes_ + lane;
+    end_.slip.told[e] = trial_.slip.told[e];
   }
 }

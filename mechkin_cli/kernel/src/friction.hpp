@@ -124,6 +124,41 @@ inline void rub(Balance& balance, int k, Pack force) {
   balance.apply(j.first, drag);
 }
 
+// Friction that a motion tells acts as a load: of what sticks, or is just starting to slip, no rate tells it.
+inline void apply_told(Balance& balance) {
+  const Workspace& w = balance.w;
+  const Rubbing& r = w.rubbing;
+  if (!r.is_told) return;
+  if (balance.p.inputs) {
+    for (int k = 0; k < balance.p.links; ++k) r.applied[k] = w.carried[k];
+    distribute(balance.p, balance.w, 0);
+    for (int i = 0; i < balance.p.inputs; ++i) r.effort[i] = w.effort[i];
+    for (int k = 0; k < balance.p.links; ++k) w.carried[k] = r.applied[k];
+  }
+  for (int k = 0; k < balance.p.frictions; ++k) {
+    const Pack* const t = r.told + k * TOLD_NUMBERS;
+    const Mask told = ~(t[0] == Pack((double)TOLD_NOTHING));
+    if (!any(told)) continue;
+    const Wrench by = {{t[1], t[2], t[3]}, {t[4], t[5], t[6]}};
+    r.drag[k] = {select(told, by.moment, r.drag[k].moment), select(told, by.force, r.drag[k].force)};
+    r.coefficient[k] = select(told, Pack(0.0), r.coefficient[k]);
+    r.speed[k] = select(told, Pack(0.0), r.speed[k]);
+    r.at_rest[k] = select(told, Pack(0.0), r.at_rest[k]);
+    rub(balance, k, select(told, Pack(1.0), Pack(0.0)));
+  }
+}
+
+inline void mark_open(const Plan& p, const Rubbing& r) {
+  for (int k = 0; k < p.frictions && r.is_told; ++k)
+    r.state[k] = select(r.told[k * TOLD_NUMBERS] == Pack((double)TOLD_OPEN), Pack((double)FRICTION_AT_REST), r.state[k]);
+}
+
+// Beside what was solved for: the drag of what is told is all of its friction.
+inline void add_told(const Plan& p, const Rubbing& r) {
+  for (int k = 0; k < p.frictions && r.is_told; ++k)
+    r.force[k] += select(r.told[k * TOLD_NUMBERS] == Pack((double)TOLD_NOTHING), Pack(0.0), Pack(1.0));
+}
+
 // Reactions without friction and by a unit of each friction force; all loads have been applied.
 inline void find_gains(Balance& balance, int shift) {
   const Plan& p = balance.p;
@@ -132,7 +167,8 @@ inline void find_gains(Balance& balance, int shift) {
   for (int k = 0; k < p.links; ++k) r.applied[k] = w.carried[k];
   distribute(p, w, shift);
   read_contacts(p, w, r.base, 1);
-  for (int i = 0; i < p.inputs; ++i) r.effort[i] = w.effort[i];
+  if (!r.is_told)
+    for (int i = 0; i < p.inputs; ++i) r.effort[i] = w.effort[i];
   balance.level = reaction_level(p, w);
   for (int f = 0; f < p.frictions; ++f) {
     for (int k = 0; k < p.links; ++k) w.carried[k] = zero_wrench();
@@ -148,7 +184,8 @@ inline void judge_friction(const Plan& p, const Rubbing& r, Pack level) {
   Mask lost = all_lanes(false);
   for (int k = 0; k < p.frictions; ++k) {
     const Mask loaded = ~(r.coefficient[k] * r.normal[k] <= Pack(NO_FRICTION) * level);
-    const Mask rests = (r.at_rest[k] > Pack(0.0)) & loaded;
+    const Mask open = r.state[k] == Pack((double)FRICTION_AT_REST);
+    const Mask rests = ((r.at_rest[k] > Pack(0.0)) & loaded) | open;
     r.state[k] = select(rests, Pack((double)FRICTION_AT_REST), r.state[k]);
     lost = lost | rests;
   }
@@ -188,11 +225,14 @@ inline void apply_friction(Balance& balance, bool accelerating, int shift) {
   Rubbing& r = w.rubbing;
   const Pack rates = twist_level(p, w);
   aim_frictions(p, w, accelerating, rates);
+  apply_told(balance);
   find_gains(balance, shift);
   solve_friction(p, r);
+  mark_open(p, r);
   judge_friction(p, r, balance.level);
   for (int k = 0; k < p.links; ++k) w.carried[k] = r.applied[k];
   for (int k = 0; k < p.frictions; ++k) rub(balance, k, r.force[k]);
+  add_told(p, r);
   distribute(p, w, shift);
   r.self_locking = self_locking(r, p.inputs, w.effort, Pack(NOTHING_WORKS) * balance.level * rates,
                                 [&](int i) { return w.rate[p.input_column[i]]; });

@@ -19,6 +19,8 @@ struct Rubbing {
   Vec3* along;         // contacts: directions of their loads
   Vec3* reach;         // contacts: their loads by a unit of one actuator (actuated_balance.hpp)
   Pack* effort;        // inputs, or actuators: of the drives without friction
+  Pack* told;          // frictions x TOLD_NUMBERS, see FrictionTold
+  bool is_told;
   Pack softness;       // of magnitudes of loads, zero but on the way to a start (friction_solver.hpp)
   Pack self_locking;
 };
@@ -41,6 +43,8 @@ inline void lay_out_friction(const Plan& p, Take&& take, Rubbing* r) {
   Vec3** const of_contacts[] = {&r->direction, &r->base, &r->along, &r->reach};
   for (Vec3** each : of_contacts) *each = (Vec3*)take(p.contacts * sizeof(Vec3));
   r->gain = (Vec3*)take(p.contacts * n * sizeof(Vec3));
+  r->told = (Pack*)take(p.charts ? n * TOLD_NUMBERS * pack : 0);
+  r->is_told = false;
   r->effort = (Pack*)take((p.inputs + p.actuators + 1) * pack);
 }
 

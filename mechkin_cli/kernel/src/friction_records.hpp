@@ -45,3 +45,11 @@ enum FrictionState : int {
   FRICTION_NOT_UNIQUE = 2,  // no proof that the loads of the rubbing joints are the only ones
   FRICTION_NOT_SOLVED = 3
 };
+
+// What a motion tells a row of a joint's friction: a number, then moment and force that it takes from the second link.
+enum FrictionTold : int {
+  TOLD_NOTHING = 0,  // it slips: the row's own rates tell
+  TOLD_FORCE = 1,    // it sticks, or is just starting to slip
+  TOLD_OPEN = 2      // it sticks by a force that is not unique
+};
+constexpr int TOLD_NUMBERS = 7;

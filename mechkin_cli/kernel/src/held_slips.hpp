@@ -23,6 +23,7 @@ struct SlipsFound {
   Pack *limit, *loose, *state;  // frictions: what it can hold; 1 where a force that sticks is not unique; FrictionState
   Pack* answer;                 // frictions: slips' derivatives by a unit of their own friction, the largest
   Pack* level;                  // 1: the largest wrench without friction
+  Pack* told;                   // frictions x TOLD_NUMBERS: see FrictionTold
 };
 
 // Where column j sticks and depends on columns before it: whose forces are not unique, and what slips with loads that

@@ -64,13 +64,12 @@ class Motion {
   }
 
   // Whether something moves beside the freedoms: powers are then not rounding where these rest.
+  // The longest first step.
+  virtual double longest() const { return __builtin_inf(); }
   virtual bool is_driven() const { return false; }
 
   // Of the quadratures the first so many are works: their powers are rounding where nothing moves.
   virtual int works() const { return quadratures(); }
-
-  // The longest step that may be tried first; later ones are as `accept` says.
-  virtual double longest_first() const { return __builtin_inf(); }
 
   // Asked where a step was refused that may not be made shorter: whether the same step may be tried again, as more is known
   // of the places ahead.

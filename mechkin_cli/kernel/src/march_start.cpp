@@ -89,7 +89,7 @@ void March::first_steps(const Flags& mask) {
     const double most = ahead[i] ? std::max(first[i], second[i] / part_[i]) : first[i];
     const double told = most > 1e-15 ? eighth_root(0.01 / most) : states_.duration[i];
     control_[i].wanted = std::min({100.0 * part_[i], told, states_.duration[i]});
-    control_[i].longest = states_.motion.longest_first();
+    control_[i].longest = states_.motion.longest();
     states_.fault[i] = 0;
   }
 }

@@ -63,6 +63,7 @@ struct StageFound {
   double* slip_row;      // slips x charts
   double *slip_limit, *slip_loose, *slip_state, *slip_answer;  // frictions
   double* level;         // 1
+  double* told;          // frictions x TOLD_NUMBERS: see FrictionTold
   unsigned char* flags;  // lanes: StageFlag
 };
 

@@ -325,6 +325,7 @@ struct Request {
   const double* chart_place;    // charts x rows; null: zero
   const double* chart_rates;    // charts x rows, may be null without DEMAND_VELOCITY
   const double* chart_accelerations;  // charts x rows, likewise
+  const double* friction_told;  // frictions x TOLD_NUMBERS x rows, see FrictionTold; null: rates tell all
 };
 
 enum RowFlag : unsigned char {

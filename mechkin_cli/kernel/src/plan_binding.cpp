@@ -142,6 +142,7 @@ void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.chart = given.read("chart", p.charts * p.columns);
   r.chart_rates = given.read("chart_rates", p.charts);
   r.chart_accelerations = given.read("chart_accelerations", p.charts);
+  r.friction_told = given.read("friction_told", p.charts ? p.frictions * TOLD_NUMBERS : 0);
   r.full = given.read("full", p.inputs);
   r.time = given.read("time", Arguments::ONE_PER_ROW);
   const OutputList* outputs = nullptr;

@@ -121,6 +121,8 @@ nb::tuple run(const std::vector<nb::object>& held, const Table& state, const Tab
   auto rates = new_array<double>(&all.chart_rate, {count, (std::size_t)p.charts, rows + 1});
   auto seconds = new_array<double>(&all.chart_second, {count, (std::size_t)p.charts, rows + 1});
   auto turns = new_array<double>(&all.turn, {count, (std::size_t)slots, rows + 1});
+  const std::size_t numbers = (std::size_t)p.frictions * TOLD_NUMBERS;
+  auto frictions = new_array<double>(&all.friction_told, {count, numbers, rows + 1});
   auto work = new_array<double>(&all.work, {count, 2, rows + 1});
   auto flags = new_array<unsigned char>(&all.flags, {count, rows + 1});
   for (std::size_t v = 0; v < count; ++v) {
@@ -129,7 +131,8 @@ nb::tuple run(const std::vector<nb::object>& held, const Table& state, const Tab
          given[2] + v * wide});
     task.rows.push_back({(long)rows, all.state + v * p.states * (rows + 1), all.direction + v * wide * (rows + 1),
                          all.chart_rate + v * p.charts * (rows + 1), all.chart_second + v * p.charts * (rows + 1),
-                         all.turn + v * slots * (rows + 1), all.work + v * 2 * (rows + 1), all.flags + v * (rows + 1)});
+                         all.turn + v * slots * (rows + 1),
+                         all.friction_told + v * numbers * (rows + 1), all.work + v * 2 * (rows + 1), all.flags + v * (rows + 1)});
   }
   std::vector<ResponseReport> reports;
   {
@@ -139,7 +142,7 @@ nb::tuple run(const std::vector<nb::object>& held, const Table& state, const Tab
   }
   nb::list told;
   for (const ResponseReport& r : reports) told.append(report_of(r));
-  return nb::make_tuple(told, states, directions, rates, seconds, turns, work, flags);
+  return nb::make_tuple(told, states, directions, rates, seconds, turns, frictions, work, flags);
 }
 
 }  // namespace
@@ -162,7 +165,7 @@ void bind_response(nb::module_& m) {
         return all;
       }, "time"_a);
   // Reports, then arrays (variants, columns, rows): states, chart directions, rates and accelerations of the chart,
-  // turns, work put in and lost; flags (variants, rows). One row more is for the place of a stop. Rows that were not
+  // turns, friction told to rows, work put in and lost; flags (variants, rows). One row more is for the place of a stop. Rows that were not
   // reached hold nan.
   m.def("respond", &run, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "tangent"_a, "begin"_a, "times"_a, "stops"_a, "driven"_a.none(),
         "tolerance"_a, "fixed_step"_a, "most_steps"_a, "dense_rows"_a, "method"_a, "tests"_a, "iterations"_a, "jump"_a, "radius"_a, "straight"_a,

@@ -145,6 +145,31 @@ inline void tell_slips(const Plan& p, const Slips& s, const Rubbing& r, const Sl
   }
 }
 
+// What rows are told: of what sticks all that its rates do not tell.
+inline void tell_rows(const Plan& p, const Workspace& w, const Slips& s, const Rubbing& r, const SlipsFound& found) {
+  const Pack rates = twist_level(p, w);
+  for (int k = 0; k < p.frictions; ++k) {
+    const Friction& f = p.friction[k];
+    const int begin = s.first[k];
+    const Pack lever = (f.slides < 0 ? Pack(0.0) : Pack(1.0)) + (f.turns < 0 ? Pack(0.0) : Pack(f.radius));
+    Wrench sum = zero_wrench();
+    Mask mobile = all_lanes(false);
+    for (int c = begin; c < s.first[k + 1]; ++c) {
+      sum += s.force[c] * s.unit[c];
+      mobile = mobile | s.mobile[c];
+    }
+    const Mask sticks = s.sticks[begin], starts = ~sticks & mobile & (r.speed[k] <= Pack(JOINT_AT_REST) * lever * rates);
+    const Mask loaded = ~(Pack(f.at_rest) * r.normal[k] <= Pack(NO_FRICTION) * *found.level);
+    const Mask open = sticks & loaded & (~mobile | ~(found.loose[k] == Pack(0.0)));
+    Pack* const told = found.told + k * TOLD_NUMBERS;
+    told[0] = select(open, Pack((double)TOLD_OPEN), select(sticks | starts, Pack((double)TOLD_FORCE), Pack((double)TOLD_NOTHING)));
+    const Vec3 part[2] = {sum.moment, sum.force};
+    for (int i = 0; i < 2; ++i) {
+      told[1 + 3 * i] = part[i].x, told[2 + 3 * i] = part[i].y, told[3 + 3 * i] = part[i].z;
+    }
+  }
+}
+
 // u'' with friction in the place of `second`.
 template <class RowValue>
 inline Slid slide(const Plan& p, Workspace& w, const ReducedMotion& m, const Slips& s, const SlipsGiven& given,
@@ -167,6 +192,7 @@ inline Slid slide(const Plan& p, Workspace& w, const ReducedMotion& m, const Sli
   solve_friction(p, r);
   gather_forces(p, s, r, second);
   tell_slips(p, s, r, given, second, found);
+  tell_rows(p, w, s, r, found);
   for (int k = 0; k < p.frictions; ++k) {
     slid.undecided = slid.undecided | ~(r.state[k] == Pack((double)FRICTION_DECIDED));
     slid.power += r.force[k] * r.speed[k];

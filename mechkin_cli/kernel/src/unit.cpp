@@ -77,6 +77,8 @@ void read_chart(const Plan& p, const Request& r, Workspace& w, const Reader& in)
   values(r.chart_place, p.charts, w.place);
   values(r.chart_rates, p.charts, w.place_rate);
   values(r.chart_accelerations, p.charts, w.place_acceleration);
+  w.rubbing.is_told = p.frictions && r.friction_told;
+  if (w.rubbing.is_told) values(r.friction_told, p.frictions * TOLD_NUMBERS, w.rubbing.told);
 }
 
 void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
