@@ -32,6 +32,8 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
+// What friction can hold, in parts of the largest wrench, below which it does not matter how exactly.
+constexpr double LEAST_LIMIT = 1e-6;
 constexpr double LEAST = 1e-300;
 
 }  // namespace
@@ -60,7 +62,7 @@ void ChartedMotion::begin_slips() {
   s.started.assign((std::size_t)n * lanes_, NAN);
   s.pushed.assign((std::size_t)n * lanes_, 1);
   s.fastest.assign(lanes_, 0.0), s.ways.resize(lanes_), s.doubtful.resize(lanes_);
-  s.rests.assign(lanes_, 0), s.blocked.assign(lanes_, 0);
+  s.rests.assign(lanes_, 0), s.blocked.assign(lanes_, 0), s.measured.assign(lanes_, 0);
   const Packed rate = rate_;
   for (int l = 0; l < lanes_; ++l) {
     std::vector<double> v;
@@ -110,8 +112,26 @@ double ChartedMotion::slip_switch(const Stage& found, int lane, int k) const {
   }
   if (at(found.slip.loose, k, lane) != 0.0) return 1.0;
   const double force = slip_size(found.slip.force, lane, k), limit = at(found.slip.limit, k, lane);
-  const double least = NO_FORCE * at(found.slip.level, 0, lane);
-  return (limit - force) * (limit + force) + least * least;
+  // a slip that starts where nothing jumps has no acceleration yet: that of this little more is not lost in rounding
+  const double most = limit + NO_FORCE * at(found.slip.level, 0, lane);
+  return (most - force) * (most + force);
+}
+
+// What rests shows nothing of a load that comes and goes. The forces of what sticks, and what friction can hold, are
+// integrated beside the motion, so that its steps are as short as these want it; from where a load tells what is rounding.
+void ChartedMotion::write_held(const Stage& found, int lane, double* rates) const {
+  const long m = slips_.columns;
+  for (int k = 0; k < plan_.frictions; ++k) {
+    const bool sticks = slips_.sense[(std::size_t)k * lanes_ + lane] == 0.0 && rubs(lane, k) && slips_.measured[lane];
+    for (int c = slips_.first[k]; c < slips_.first[k + 1]; ++c)
+      rates[(long)c * lanes_ + lane] = sticks ? at(found.slip.force, c, lane) : 0.0;
+    rates[(m + k) * lanes_ + lane] = sticks ? at(found.slip.limit, k, lane) : 0.0;
+  }
+}
+
+// Of a joint at the end of a step: the force by which its integrals are measured.
+double ChartedMotion::held_size(int lane, int k) const {
+  return std::max(at(end_.slip.limit, k, lane), LEAST_LIMIT * at(end_.slip.level, 0, lane));
 }
 
 void ChartedMotion::write_slip_switches(const Stage& found, int lane, double* switches) {

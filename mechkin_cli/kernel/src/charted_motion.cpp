@@ -86,7 +86,7 @@ ChartedMotion::Stage ChartedMotion::make_stage() const {
 
 std::vector<double> ChartedMotion::start() const {
   const int n = plan_.charts;
-  std::vector<double> y((std::size_t)((2 * n + 2) * lanes_), 0.0);
+  std::vector<double> y((std::size_t)((2 * n + quadratures()) * lanes_), 0.0);
   for (int l = 0; l < lanes_; ++l)
     for (int i = 0; i < n; ++i)
       for (int c = 0; c < plan_.columns; ++c)
@@ -175,6 +175,7 @@ void ChartedMotion::rates(const Places& places, const Rates& rates) {
     if (!places.active[l]) continue;
     for (int i = 0; i < n; ++i) rates.rates[i * lanes_ + l] = found->chart_second[i * lanes_ + l];
     for (int k = 0; k < 2; ++k) rates.rates[(n + k) * lanes_ + l] = found->power[k * lanes_ + l];
+    if (plan_.frictions) write_held(*found, l, rates.rates + (long)(n + works()) * lanes_);
     rates.fault[l] = found->flags[l];
     if (plan_.frictions && slips_.blocked[l]) rates.fault[l] |= STAGE_FRICTION;
     if (found->flags[l] & STAGE_FRICTION) tell_undecided(*found, l);

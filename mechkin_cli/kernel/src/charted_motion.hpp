@@ -76,7 +76,8 @@ class ChartedMotion : public Motion {
 
   int lanes() const override { return lanes_; }
   int freedoms() const override { return plan_.charts; }
-  int quadratures() const override { return 2; }
+  int quadratures() const override { return works() + (plan_.frictions ? slips_.columns + plan_.frictions : 0); }
+  int works() const override { return 2; }
   std::vector<SwitchKind> switches() const override;
   void rates(const Places& places, const Rates& rates) override;
   void accept(const unsigned char* lanes, const double* time, double* y, double* rates, double* longest) override;
@@ -140,6 +141,8 @@ class ChartedMotion : public Motion {
   double lever(const Stage& found, int lane, int k) const;
   double unsure(const Stage& found, int lane, int k) const;
   double slip_switch(const Stage& found, int lane, int k) const;
+  void write_held(const Stage& found, int lane, double* rates) const;
+  double held_size(int lane, int k) const;
   void write_slip_switches(const Stage& found, int lane, double* switches);
   void look_for_ways(const Places& places, const Rates& rates);
   void tell_undecided(const Stage& found, int lane);

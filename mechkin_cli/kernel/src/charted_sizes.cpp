@@ -7,6 +7,8 @@
 namespace {
 
 constexpr double PART_OF_FORCE = 0.1;
+// Forces of what sticks are told to 1e4 tolerances: they need be seen, their events are met exactly anyway.
+constexpr double HELD = 1e4;
 
 }  // namespace
 
@@ -28,7 +30,16 @@ void ChartedMotion::sizes(const unsigned char* lanes, double* size) {
     }
     energy_[l] = std::max(energy_[l], energy);
     weigh(l);
-    for (int k = 1; k < 3; ++k) size[k * lanes_ + l] = std::max(size[k * lanes_ + l], energy + coming);
+    for (int k = 1; k <= works(); ++k) size[k * lanes_ + l] = std::max(size[k * lanes_ + l], energy + coming);
+    if (plan_.frictions && at(end_.slip.level, 0, l) > 0.0) slips_.measured[l] = 1;
+    const double duration = size[l] > 0.0 ? SLOWEST / size[l] : 0.0;
+    for (int k = 0; k < plan_.frictions; ++k) {
+      const double held = HELD * duration * held_size(l, k);
+      for (int c = slips_.first[k]; c < slips_.first[k + 1]; ++c)
+        size[(1 + works() + c) * lanes_ + l] = std::max(size[(1 + works() + c) * lanes_ + l], held);
+      double& limit = size[(1 + works() + slips_.columns + k) * lanes_ + l];
+      limit = std::max(limit, held);
+    }
   }
 }
 

@@ -68,6 +68,9 @@ class Motion {
   virtual double longest() const { return __builtin_inf(); }
   virtual bool is_driven() const { return false; }
 
+  // Of the quadratures the first so many are works: their powers are rounding where nothing moves.
+  virtual int works() const { return quadratures(); }
+
   // Asked where a step was refused that may not be made shorter: whether the same step may be tried again, as more is known
   // of the places ahead.
   virtual bool finds_more(int lane) {

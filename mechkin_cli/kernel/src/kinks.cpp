@@ -24,8 +24,9 @@ bool March::rests(int lane, const double* y) const {
 bool March::bends_nothing(int lane, const double* y, const double* a, const double* b, double step) const {
   const int n = states_.freedoms, lanes = states_.lanes;
   const double most = std::max(NOTHING, ROUNDINGS / states_.settings.tolerance);
-  const int end = rests(lane, y) ? 2 * n : states_.size;
-  for (int c = n; c < end; ++c) {
+  const int works = rests(lane, y) ? states_.motion.works() : 0;
+  for (int c = n; c < states_.size; ++c) {
+    if (c >= 2 * n && c < 2 * n + works) continue;
     const std::size_t k = (std::size_t)c * lanes + lane;
     // a difference that is lost in the rates' rounding may be as large
     const double jump = step * (std::fabs(a[k] - b[k]) + ROUNDING * std::fabs(a[k]));
