@@ -238,3 +238,33 @@ def test_a_coordinate_that_the_loop_holds_passes_nothing(stop: str, rows: int) -
     found = respond(HELD.format(stop=stop, rows=rows))
     assert found["time"].tolist() == pytest.approx(np.linspace(0, 1.5, rows).tolist())
     assert not any(found["row.event"])
+
+
+@pytest.mark.parametrize("rows", [2, 31])
+def test_a_motion_that_begins_at_a_stop_leaves_it_without_a_word(rows: int) -> None:
+    """Let go at rest at a dead centre of the angle, at its value and at that of its rate: each is
+    met where it comes back to it, after half a swing or a whole one."""
+    text = """format: 1
+name: let go
+units: {{length: m, angle: rad}}
+links:
+  bob: {{mass: 2, center_of_mass: [0, -0.25, 0]}}
+joints:
+  A: {{type: R, links: [ground, bob], point: [0, 0, 0], axis: [0, 0, 1]}}
+loads:
+  - {{type: gravity, g: [0, -9.81, 0]}}
+responses:
+  run:
+    start: {{A.theta: 1.2}}
+    time: {{from: 0, to: 3, count: {rows}}}
+    tolerance: 1e-12
+    stop: [{stop}]
+"""
+    half = 2 * mp.ellipk(mp.sin(mp.mpf("0.6")) ** 2) / mp.sqrt(mp.mpf("9.81") / mp.mpf("0.25"))
+    for stop in (
+        "{dead_centre: A.theta}",
+        "{value: A.theta_dot, at: 0}",
+        "{value: A.theta, at: -1.1999999}",
+    ):
+        found = respond(text.format(stop=stop, rows=rows))
+        assert last_time(found) == pytest.approx(float(half), abs=2e-4 if "-1.19" in stop else 1e-9)

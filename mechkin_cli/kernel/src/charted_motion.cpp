@@ -12,6 +12,9 @@ namespace {
 constexpr double FULL = 2.0 * 3.14159265358979323846;
 // Of rad, sizes and speeds: what closing leaves of a coordinate that cannot move is some ten roundings.
 constexpr double NO_VALUE = 1e-14;
+// What a stage has missed says nothing of one so many times as far from the origin: asked for a rounding beside the origin it
+// missed by rounding, 1e-14, and that goes with the square.
+constexpr double TOO_FAR = 1e4;
 
 std::vector<char, AlignedAllocator<char>> wide_plan(const MotionUnit& unit, const std::vector<MotionStart>& starts) {
   std::vector<const Plan*> plans;
@@ -146,6 +149,7 @@ void ChartedMotion::set_places(const Places& places) {
     const bool active = places.active[l];
     time_[l] = active ? places.time[l] : origin_time_[l];
     elapsed_[l] = time_[l] - chart_time_[l];
+    if (elapsed_[l] > TOO_FAR * miss_elapsed_[l]) miss_elapsed_[l] = 0.0;
     if (active && places.side) {
       for (int k = 0; k < kinks; ++k) side_[k * lanes_ + l] = places.side[k * lanes_ + l];
       cell_[l] = 0;
