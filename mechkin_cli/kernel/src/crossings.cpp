@@ -134,6 +134,8 @@ void March::search(Method& method, const Flags& crossed, const Flags& suspected,
     ignored[k] = is_ignored((int)(k % states_.lanes), (int)(k / states_.lanes));
   const auto is_same = [&](int lane, int which, const double* time, const double* place, const double* slope,
                            const double* values) {
+    // one that is passed at the step's end makes a difference there (`mute`), if another hides it before
+    if (is_crossed_by(lane, which)) return false;
     Flags here(states_.lanes, 0);
     here[lane] = 1;
     compare_sides(which, time, place, slope, values, &here);
