@@ -20,7 +20,7 @@
 #endif
 
 #if MECHKIN_ARITHMETIC == MECHKIN_DOUBLE_DOUBLE
-#include "arithmetic/double_double.hpp"
+#include "arithmetic/double_double_scalar.hpp"
 #elif MECHKIN_ARITHMETIC == MECHKIN_INTERVALS
 #include "arithmetic/interval.hpp"
 #else
