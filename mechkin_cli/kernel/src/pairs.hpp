@@ -4,6 +4,7 @@
 #pragma once
 
 #include "composition.hpp"
+#include "ground_conditions.hpp"
 
 namespace {
 
