@@ -14,5 +14,5 @@ const DoubleDoubleUnit* mechkin_double_double_sse2();
 const DoubleDoubleUnit* mechkin_double_double_avx512();
 }
 
-// The widest that the machine has; `lanes` asks for that width. Null where it is not available.
-const DoubleDoubleUnit* double_double_unit(int lanes = 0);
+// The widest that the machine has, or the widest of at most `lanes`; nothing that it computes depends on it.
+const DoubleDoubleUnit& double_double_unit(int lanes = 0);

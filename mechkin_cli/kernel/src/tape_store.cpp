@@ -63,8 +63,7 @@ nb::tuple replay(const TapeStore& store, Rows<double> inputs, int lanes) {
 // `second` (constants,): low parts of the tape's constants.
 nb::tuple replay_precise(const TapeStore& store, Blocks<double> inputs, std::optional<Row<double>> second, int lanes) {
   const Tape& t = store.view();
-  const DoubleDoubleUnit* const unit = double_double_unit(lanes);
-  if (!unit) throw nb::value_error("this width is not available on this machine; 0 asks for the widest");
+  const DoubleDoubleUnit& unit = double_double_unit(lanes);
   if (inputs.shape(0) != (std::size_t)t.inputs || inputs.shape(1) != 2)
     throw nb::value_error("two rows of numbers, high and low, per input of the tape");
   if (second && second->shape(0) != (std::size_t)t.constants)
@@ -77,8 +76,8 @@ nb::tuple replay_precise(const TapeStore& store, Blocks<double> inputs, std::opt
   {
     nb::gil_scoped_release released;
     FloatingPointState state;
-    std::vector<char> memory(unit->replay_size(t));
-    unit->replay(t, {(long)count, inputs.data(), outputs, verdicts, second ? second->data() : nullptr}, memory.data());
+    std::vector<char> memory(unit.replay_size(t));
+    unit.replay(t, {(long)count, inputs.data(), outputs, verdicts, second ? second->data() : nullptr}, memory.data());
   }
   return nb::make_tuple(out, verdict);
 }

@@ -39,12 +39,11 @@ const KernelUnit* kernel_unit(int lanes) {
   return nullptr;
 }
 
-const DoubleDoubleUnit* double_double_unit(int lanes) {
+const DoubleDoubleUnit& double_double_unit([[maybe_unused]] int lanes) {
 #if MECHKIN_WIDE
-  const bool wide = kernel_unit()->lanes == 8;
-  if (wide && (lanes == 0 || lanes == 8)) return mechkin_double_double_avx512();
+  if ((lanes == 0 || lanes >= 8) && kernel_unit()->lanes == 8) return *mechkin_double_double_avx512();
 #endif
-  return lanes == 0 || lanes == 2 ? mechkin_double_double_sse2() : nullptr;
+  return *mechkin_double_double_sse2();
 }
 
 #if MECHKIN_X86

@@ -7,7 +7,7 @@
 //
 // Valid while nothing overflows or underflows: factors below 2^995 and products above 2^-968, or zero. There the bits are
 // the same whether an exact product is taken by a fused multiply-add or by splitting. An infinity in a sum or product
-// leaves NaN; quotients, roots and the functions give one where doubles do.
+// leaves NaN; quotients, roots and the functions give one where doubles do. The sign of a zero is not kept.
 #pragma once
 
 #include "doubles.hpp"
