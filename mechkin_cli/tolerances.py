@@ -21,7 +21,7 @@ stands beside it with its reason (`kernel/src/`):
   at most;
 * `legs.hpp`: `OPPOSITE_COSINE` again;
 * `closing_equations.hpp`, `tree_joints.hpp`: 1e-150, just above the root of the least normal
-  double; `trigonometric.hpp`, `angle_reduction.hpp`: where one formula takes over from another.
+  double; `arithmetic/`: where one formula takes over from another.
 """
 
 from __future__ import annotations
