@@ -781,7 +781,7 @@ ZERO_BUT_FOR_ROUNDING: Final = 1e-8
 """A column whose numbers in double-double are all below this part of the largest of its cells is
 zero: what doubles leave there is 1e-16 of what cancelled, what double-doubles leave 1e-32."""
 
-# --- bound of the errors of a row (analysis.sweep.error_bound) ------------------------------------------
+# --- bound of the errors of a row (analysis.sweep.error_bound) ----------------------------------
 
 ERROR_PROBE: Final = 1e-13
 """Relative size of the changes with which a row's sensitivity is measured: a thousand roundings, so
