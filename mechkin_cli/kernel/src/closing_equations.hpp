@@ -3,8 +3,9 @@
 //
 // Each condition has its residual, its Jacobian column for a unit twist of B against A, its second and third derivative
 // and what it transmits: a force at a point, or a moment; d = B.o - A.o. The Jacobian of an equation is the product of
-// its wrench with that twist, exact where the joint is closed. `sides` meets what is positive in an assembly and not in a
-// false root. A common point and a common orientation: ground_conditions.hpp.
+// its wrench with that twist. `sides` meets what is positive in an assembly and not in a false root. The conditions here hold
+// of the relative pose, and their columns wherever the frames are; a common point and a common orientation:
+// ground_conditions.hpp, relative_conditions.hpp.
 #pragma once
 
 #include "tree_joints.hpp"

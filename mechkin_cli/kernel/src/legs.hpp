@@ -6,7 +6,11 @@
 #pragma once
 
 #include "pairs.hpp"
+#if MECHKIN_ENCLOSES
+#include "enclosed_turn.hpp"
+#else
 #include "shortest_turn.hpp"
+#endif
 
 namespace {
 

@@ -5,7 +5,7 @@
 
 namespace {
 
-#if MECHKIN_ARITHMETIC == MECHKIN_INTERVALS
+#if MECHKIN_ENCLOSES
 
 // Unknown where the interval reaches zero.
 MECHKIN_INLINE Pack inverse_or_zero(Pack length) { return Pack(1.0) / length; }

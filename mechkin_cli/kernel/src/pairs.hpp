@@ -4,7 +4,12 @@
 #pragma once
 
 #include "composition.hpp"
+
+#if MECHKIN_ENCLOSES
+#include "relative_conditions.hpp"
+#else
 #include "ground_conditions.hpp"
+#endif
 
 namespace {
 

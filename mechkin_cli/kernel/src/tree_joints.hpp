@@ -71,7 +71,12 @@ struct TurnAndSlide {
 struct Orientation {
   static constexpr int freedoms = 3, states = 4, slides = 0;
   static MECHKIN_INLINE void place(Pose& p, const TreeJoint&, const Pack* q) {
-    const Pack w = q[0], x = q[1], y = q[2], z = q[3], two = 2.0, one = 1.0;
+    const Pack w = q[0], x = q[1], y = q[2], z = q[3], one = 1.0;
+#if MECHKIN_ENCLOSES  // over a box of quaternions not all have length one
+    const Pack two = Pack(2.0) / (w * w + x * x + y * y + z * z);
+#else
+    const Pack two = 2.0;
+#endif
     const Vec3 X = p.X, Y = p.Y, Z = p.Z;
     p.X = (one - two * (y * y + z * z)) * X + (two * (x * y + w * z)) * Y + (two * (x * z - w * y)) * Z;
     p.Y = (two * (x * y - w * z)) * X + (one - two * (x * x + z * z)) * Y + (two * (y * z + w * x)) * Z;
