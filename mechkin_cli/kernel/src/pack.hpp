@@ -18,6 +18,8 @@
 #ifndef MECHKIN_ARITHMETIC
 #define MECHKIN_ARITHMETIC MECHKIN_DOUBLES
 #endif
+// Whether numbers are sets of numbers, which are not compared: such units evaluate alone.
+#define MECHKIN_ENCLOSES (MECHKIN_ARITHMETIC >= MECHKIN_INTERVALS)
 
 #if MECHKIN_ARITHMETIC == MECHKIN_DOUBLE_DOUBLE
 #include "arithmetic/double_double.hpp"
