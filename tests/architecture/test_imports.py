@@ -94,6 +94,7 @@ WITHIN_ANALYSIS = {
     "assembly": set(),
     "balances": {"derived", "sweep"},
     "dense": {"derived", "sweep"},
+    "errors": {"derived", "sweep"},
     "derived": set(),
     "mobility": {"assembly"},
     "modes": {"assembly"},

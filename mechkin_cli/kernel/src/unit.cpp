@@ -18,7 +18,11 @@ struct Reader {
   long rows, row;
   int count;
   MECHKIN_INLINE Pack get(const double* base, long slot) const {
-    const double* at = base + slot * rows + row;
+    Real part[PARTS];
+    for (int k = 0; k < PARTS; ++k) part[k] = get_part(base + (PARTS * slot + k) * rows + row);
+    return from_parts(part);
+  }
+  MECHKIN_INLINE Real get_part(const double* at) const {
     if (count == LANES) return load(at);
     double buffer[LANES];
     for (int i = 0; i < LANES; ++i) buffer[i] = at[i < count ? i : count - 1];
