@@ -8,8 +8,6 @@
 
 namespace {
 
-#define MECHKIN_APART inline __attribute__((noinline))
-
 MECHKIN_INLINE DoubleDouble operator-(const DoubleDouble& a) { return {-a.high, -a.low}; }
 
 MECHKIN_INLINE DoubleDouble accurate_sum(const DoubleDouble& a, const DoubleDouble& b) {
