@@ -30,6 +30,6 @@ struct Lanes {
 };
 
 // Writes the wide plan of some plans (LANES), as widen_by.
-inline long widen(const LanePlan* const* plans, char* memory) { return widen_by(*plans[0], Lanes{plans}, memory); }
+MECHKIN_RARE long widen(const LanePlan* const* plans, char* memory) { return widen_by(*plans[0], Lanes{plans}, memory); }
 
 }  // namespace
