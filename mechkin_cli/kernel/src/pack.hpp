@@ -29,6 +29,11 @@
 #include "arithmetic/doubles.hpp"
 #endif
 
+#if MECHKIN_ENCLOSES  // each operation is a dozen of doubles': what is made of them is inlined where the compiler likes it
+#undef MECHKIN_INLINE
+#define MECHKIN_INLINE inline
+#endif
+
 namespace {
 
 #if MECHKIN_ARITHMETIC == MECHKIN_DOUBLE_DOUBLE
