@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.plan import plan_records
-from mechkin_cli.solver.precise_inputs import PreciseInputs, precise_inputs
+from mechkin_cli.solver.precise_inputs import PreciseInputs, enclosed_inputs, precise_inputs
 from mechkin_cli.solver.records import flatten
 from mechkin_cli.solver.same_structure import graph_of
 from mechkin_cli.tape.decimal_replay import double_doubles, enclosures
@@ -50,6 +50,7 @@ class Precise:
         self.motion = motion
         self.base = base
         self._layouts: dict[int, tuple[Session, Layout]] = {}
+        self._inputs: dict[int, tuple[Problem, PreciseInputs]] = {}
 
     def constants(self, session: Session) -> Floats:
         """The constants of the session's plan in double-double (constants, 2), in the order in
@@ -82,7 +83,14 @@ class Precise:
         Rows that a call asked for in place of the file's are the doubles that it gave, in the
         file's units.
         """
-        return session.once("precise inputs", lambda: precise_inputs(self, session))
+        problem = session.problem
+        if id(problem) not in self._inputs:
+            self._inputs[id(problem)] = (problem, precise_inputs(self, session))
+        return self._inputs[id(problem)][1]
+
+    def enclosed_inputs(self, session: Session) -> PreciseInputs:
+        """The same enclosed: midpoints and radii in place of high and low parts."""
+        return enclosed_inputs(self, session)
 
     @cached_property
     def parameters(self) -> Mapping[str, Floats]:

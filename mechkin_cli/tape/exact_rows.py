@@ -8,6 +8,7 @@ recorded numbers. Unlike constants, rows are chosen by the double-doubles themse
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from math import nan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -35,18 +36,38 @@ class Picked(NamedTuple):
     which: NDArray[np.intp]
 
 
+class _Given(NamedTuple):
+    """An input over the rows: doubles (rows,), or which of some numbers each row has."""
+
+    rows: NDArray[Any]
+    near: list[Near] | None
+
+    @property
+    def parts(self) -> Floats:
+        """In double-double (2, rows)."""
+        if self.near is None:
+            return np.stack([self.rows, np.zeros(self.rows.size)])
+        pairs: Floats = np.array([parts(one)[:2] for one in self.near])
+        return pairs[self.rows].T
+
+    def at(self, row: int) -> Near:
+        """The number of a row, not rounded."""
+        place = self.rows[row]
+        return of_fraction(Fraction(float(place))) if self.near is None else self.near[place]
+
+
 class RowsTape(NamedTuple):
     """A tape over rows.
 
     Attributes:
         tape: from the rows' inputs; `constants` are high parts.
         constants: the constants, not rounded.
-        given: of every input the number of each row, not rounded.
+        given: every input.
     """
 
     tape: Tape
     constants: list[Near]
-    given: list[tuple[list[Near], NDArray[np.intp]]]
+    given: list[_Given]
 
 
 class ExactRows(RowRecorder):
@@ -60,13 +81,10 @@ class ExactRows(RowRecorder):
     def __init__(self, recorder: ExactRecorder, rows: int) -> None:
         super().__init__(0)
         self.recorder, self.rows = recorder, rows
-        self._given: dict[int, Picked] = {}
+        self._given: dict[int, Floats | Picked] = {}
 
     def given(self, values: Floats | Picked) -> RowNumber:
         """A number of each row: doubles (rows,) that are exact, or picked recorded numbers."""
-        if not isinstance(values, Picked):
-            different, which = np.unique(values, return_inverse=True)
-            values = Picked(different.tolist(), which)
         number = self._register(nan)
         self._given[number] = values
         return self.number(number)
@@ -75,8 +93,10 @@ class ExactRows(RowRecorder):
         """Some numbers in double-double (numbers, 2, rows), high and low."""
         made = self._tape(numbers)
         constants = np.array([parts(one)[:2] for one in made.constants]).reshape(-1, 2)
-        given = [np.array([parts(n)[:2] for n in near])[which].T for near, which in made.given]
-        second, rows = np.ascontiguousarray(constants[:, 1]), np.stack(given)
+        second, rows = (
+            np.ascontiguousarray(constants[:, 1]),
+            np.stack([g.parts for g in made.given]),
+        )
         found = replay_precise(compiled(made.tape), rows, second, lanes)[0]
         return np.ascontiguousarray(found.transpose(1, 2, 0))
 
@@ -97,8 +117,7 @@ class ExactRows(RowRecorder):
     ) -> Floats:
         made = self._tape(numbers)
         rows = (
-            [*(near[which[row]] for near, which in made.given), *made.constants]
-            for row in range(self.rows)
+            [*(given.at(row) for given in made.given), *made.constants] for row in range(self.rows)
         )
         found = [[take(*parts(near)) for near in row] for row in run(made.tape, rows)]
         return np.ascontiguousarray(np.array(found).transpose(1, 2, 0))
@@ -113,10 +132,7 @@ class ExactRows(RowRecorder):
         constants = [r for r in needed if r in self.constants]
         computed = [r for r in needed if r in self._written]
         number = {r: k for k, r in enumerate((*given, *constants, *computed))}
-        picked = [self._given[r] for r in given]
-        own = [self.constants[r] for r in constants]
-        exact = iter(self._near([*own, *(n for one in picked for n in one.numbers)]))
-        near = [next(exact) for _ in own]
+        near = self._near([self.constants[r] for r in constants])
         written = [self._written[r] for r in computed]
         operands = [renumbered(instruction, number) for instruction in written]
         tape = Tape(
@@ -129,8 +145,12 @@ class ExactRows(RowRecorder):
             np.zeros(0, dtype=np.bool_),
             np.zeros(0, dtype=np.bool_),
         )
-        rows = [([next(exact) for _ in one.numbers], one.which) for one in picked]
-        return RowsTape(tape, near, rows)
+        return RowsTape(tape, near, [self._over_rows(self._given[r]) for r in given])
+
+    def _over_rows(self, given: Floats | Picked) -> _Given:
+        if isinstance(given, Picked):
+            return _Given(given.which, self._near(given.numbers))
+        return _Given(given, None)
 
     def _near(self, numbers: Sequence[Any]) -> list[Near]:
         """Floats, and numbers of the recording, to all their digits."""

@@ -7,10 +7,12 @@ Sums, products (Leibniz), quotients and functions (Faa di Bruno) are exact, as i
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from mechkin_cli.tape.scalars import Recorded, Undecided, of_one, of_two
+from mechkin_cli.tape.traced import TraceLost
 
 _LARGEST_POWER = 64
 """Whole exponents up to this one are products."""
@@ -23,6 +25,9 @@ class JetCondition(Undecided):
 
     def __init__(self, condition: Any) -> None:
         self.condition = condition
+
+    def __bool__(self) -> bool:
+        raise TraceLost("what is computed depends on a number that differs from row to row")
 
     def choose(self, chosen: Any, other: Any) -> JetNumber:
         """`chosen` where the condition holds, else `other`, with its derivatives."""
@@ -287,6 +292,10 @@ _ONE: dict[str, Callable[[JetNumber], JetNumber]] = {
     "WHOLE": _whole,
 }
 _TWO: dict[str, Callable[[JetNumber, JetNumber], JetNumber]] = {
+    "ADD": operator.add,
+    "SUBTRACT": operator.sub,
+    "MULTIPLY": operator.mul,
+    "DIVIDE": operator.truediv,
     "ATAN2": _angle,
     "POWER": _power,
     "LARGER": lambda a, b: (b > a).choose(b, a),
