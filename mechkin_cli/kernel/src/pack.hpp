@@ -22,7 +22,7 @@
 #define MECHKIN_ENCLOSES (MECHKIN_ARITHMETIC >= MECHKIN_INTERVALS)
 
 #if MECHKIN_ARITHMETIC == MECHKIN_DOUBLE_DOUBLE
-#include "arithmetic/double_double.hpp"
+#include "arithmetic/double_double_scalar.hpp"
 #elif MECHKIN_ARITHMETIC == MECHKIN_INTERVALS
 #include "arithmetic/interval.hpp"
 #else
