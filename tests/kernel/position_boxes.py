@@ -58,12 +58,13 @@ def residual(letter: str, m: Matrix) -> list[Any]:
 
 @dataclass
 class Box:
-    """A plan with a box about a random place: states (2 * states, 1), radius (columns, 1)."""
+    """A plan with a box about a random place: states (states, 1), radius (columns, 1), which of
+    driven columns is that of their inputs."""
 
     letter: str
     chain: Chain
-    frames: tuple[Matrix, Matrix, Matrix, Matrix]
-    unknown: list[int]
+    frames: list[Matrix]
+    driven: list[int]
     states: np.ndarray
     radius: np.ndarray
 
@@ -72,17 +73,18 @@ class Box:
         count = len(residual(self.letter, mp.eye(4))) + 6
         columns = self.chain.plan.columns
         equations, derivatives = np.empty((2 * count, 1)), np.empty((2 * count * columns, 1))
-        given = {"states": self.states, "radius": self.radius}
+        radius, inputs = self.radius.copy(), np.empty((2 * len(self.driven), 1))
+        for number, column in enumerate(self.driven):
+            inputs[2 * number] = self.states[self.state_of(column)]
+            inputs[2 * number + 1] = radius[column]
+            radius[column] = 0.0
+        given = {"states": self.states, "inputs": inputs, "radius": radius}
         _kernel.enclose(self.chain.plan, **given, equations=equations, derivatives=derivatives)
         return equations.reshape(count, 2), derivatives.reshape(count, columns, 2)
 
     def place(self, parts: np.ndarray) -> list[Any]:
         """Increments of the columns at a point of the box, `parts` of its radii."""
-        radii = self.radius[:, 0].copy()
-        for column in range(len(radii)):
-            if column not in self.unknown:
-                radii[column] = self.states[2 * self.state_of(column) + 1, 0]
-        return [exactly(r) * exactly(t) for r, t in zip(radii, parts, strict=True)]
+        return [exactly(r) * exactly(t) for r, t in zip(self.radius[:, 0], parts, strict=True)]
 
     def state_of(self, column: int) -> int:
         for number in range(len(self.chain.joints)):
@@ -93,7 +95,7 @@ class Box:
 
     def equations(self, increments: list[Any]) -> list[Any]:
         """Closing equations with the states moved from the middle by increments of the columns."""
-        states = [exactly(x) for x in self.states[::2, 0]]
+        states = [exactly(x) for x in self.states[:, 0]]
         for number, joint in enumerate(self.chain.joints):
             own, at = self.chain.columns_of(number), self.chain.states_of(number)
             x = [increments[c] for c in own]
@@ -127,7 +129,7 @@ def random_box(letter: str, trees: tuple[str, str], generator: np.random.Generat
     joints = [TreeJoint(trees[0], -1, random_pose(generator))]
     joints += [TreeJoint(trees[1], 0, random_pose(generator))]
     chain = Chain.of([*joints, TreeJoint("R", -1, random_pose(generator))])
-    frames = tuple(random_pose(generator) for _ in range(4))
+    frames = [random_pose(generator) for _ in range(4)]
     loop = [(0, 1.0), (1, 1.0), (2, -1.0)]
     for code, parameter, k in (
         (TABLE[letter]["code"], PAIRS[letter].parameter, 0),
@@ -137,21 +139,18 @@ def random_box(letter: str, trees: tuple[str, str], generator: np.random.Generat
         chain.builder.add_closing_joint(code, 2, 1, *ends, parameter, loop)
     balls = [c for n in range(3) if chain.joints[n].letter == "S" for c in chain.columns_of(n)]
     columns = [c for n in range(3) for c in chain.columns_of(n)]
-    driven = [c for c in columns if c not in balls and generator.uniform() < 0.4][: len(columns) - 1]
+    driven = [c for c in columns if c not in balls and generator.uniform() < 0.4][
+        : len(columns) - 1
+    ]
     unknown = [c for c in columns if c not in driven]
     chain.builder.add_block(2, [0, 1, 2], unknown)
     for column in driven:
         chain.drive(column)
     chain.finish()
-    states = np.zeros((2 * chain.plan.states, 1))
-    states[::2, 0] = generator.uniform(-1.5, 1.5, chain.plan.states)
+    states = generator.uniform(-1.5, 1.5, (chain.plan.states, 1))
     width = 10.0 ** generator.uniform(-12, -0.5)
     radius = width * generator.uniform(0, 1, (chain.plan.columns, 1))
-    box = Box(letter, chain, frames, unknown, states, radius)  # type: ignore[arg-type]
-    for column in driven:
-        radius[column] = 0.0
-        states[2 * box.state_of(column) + 1] = width * generator.uniform()
-    return box
+    return Box(letter, chain, frames, driven, states, radius)
 
 
 def outside(box: Box, generator: np.random.Generator) -> int:

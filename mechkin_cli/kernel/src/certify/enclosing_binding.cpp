@@ -57,7 +57,8 @@ void enclose(const FrozenPlan& plan, const nb::kwargs& keywords) {
   for (int b = 0; b < p.blocks; ++b) equations += p.block[b].rows;
   Arguments given(keywords);
   EnclosingRequest r = {};
-  r.states = given.read_required("states", 2L * p.states);
+  r.states = given.read_required("states", p.states);
+  r.inputs = given.read_required("inputs", 2L * p.inputs);
   r.radius = given.read("radius", p.columns);
   r.rates = given.read("rates", 2L * p.inputs);
   r.accelerations = given.read("accelerations", 2L * p.inputs);

@@ -66,11 +66,8 @@ struct RowValues {
 // The states of the box, inputs with their radius, unknowns with that of their columns.
 void read_box(const Plan& p, const EnclosingRequest& r, Memory& m, const Lookup& in) {
   Workspace& w = m.w;
-  for (int s = 0; s < p.states; ++s) w.q[s] = Pack(in.real(r.states, 2 * s));
-  for (int i = 0; i < p.inputs; ++i) {
-    const int s = p.column_state[p.input_column[i]];
-    w.q[s] = in.get(r.states, s);
-  }
+  for (int s = 0; s < p.states; ++s) w.q[s] = Pack(in.real(r.states, s));
+  for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
   for (int c = 0; c < p.columns; ++c) {
     const Pack radius = {Real(0.0), r.radius ? in.real(r.radius, c) : Real(0.0)};
     m.box.turn[c] = p.column_state[c] < 0 ? radius : Pack(0.0);

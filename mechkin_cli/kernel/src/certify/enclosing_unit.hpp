@@ -8,7 +8,8 @@ struct OutputsView;
 // Numbers are midpoint and radius, [(2 * k + part) * rows + row]; a radius that is not finite says that nothing is known.
 struct EnclosingRequest {
   long rows;
-  const double* states;         // states x 2 x rows: the box's middle; a radius counts where a column is an input's
+  const double* states;         // states x rows: the box's middle; an orientation needs no unit length
+  const double* inputs;         // inputs x 2 x rows, instead of their states
   const double* radius;         // columns x rows, may be null: of the box about it (ProvingRequest::radius)
   const double* rates;          // inputs x 2 x rows, may be null: no velocities
   const double* accelerations;  // inputs x 2 x rows, may be null: no accelerations
