@@ -32,6 +32,7 @@ class _Request:
     json: bool
     quiet: bool
     strict: bool
+    errors: bool
 
 
 def analyze_files(
@@ -47,6 +48,7 @@ def analyze_files(
     json: bool = False,
     quiet: bool = False,
     strict: bool = False,
+    errors: bool = False,
 ) -> ExitCode:
     """Runs the sweep and the responses of each file and writes their tables.
 
@@ -60,7 +62,16 @@ def analyze_files(
     force_width(lanes)
     force_threads(threads)
     request = _Request(
-        parameters(set_), mode, table, _formats(format), threads, explain, json, quiet, strict
+        parameters(set_),
+        mode,
+        table,
+        _formats(format),
+        threads,
+        explain,
+        json,
+        quiet,
+        strict,
+        errors,
     )
     code = ExitCode.OK
     records: list[Record] = []
@@ -140,7 +151,10 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
 def _results(analysis: Analysis, request: _Request) -> Results:
     name, result = analysis.model.name, analysis.result
     tables = (*analysis.tables, *analysis.coefficients, *analysis.balance_tables)
-    return Results(name, tables, result, analysis.diagnostics, request.threads, analysis.run)
+    errors = analysis.errors.columns if request.errors else None
+    return Results(
+        name, tables, result, analysis.diagnostics, request.threads, analysis.run, errors
+    )
 
 
 def _report(
@@ -159,6 +173,6 @@ def _report(
     if request.quiet:
         return
     for analysis in analyses:
-        for line in summary(path, analysis):
+        for line in summary(path, analysis, errors=request.errors):
             say(line)
     say(files_line(folder, written))

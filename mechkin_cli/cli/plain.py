@@ -30,6 +30,7 @@ OPTIONS = {
     "--lanes": Option("lanes", int),
     "--threads": Option("threads", int),
     "--strict": Option("strict", None),
+    "--errors": Option("errors", None),
     "--explain": Option("explain", None),
     "--json": Option("json", None),
     "--quiet": Option("quiet", None),

@@ -133,6 +133,7 @@ class Model:
         closed_at: Sequence[str] | None = None,
         lanes: int = 0,
         threads: int = 0,
+        errors: bool = False,
     ) -> Analysis:
         """Runs the sweep.
 
@@ -143,6 +144,7 @@ class Model:
             closed_at: closing joints to use (the answers do not depend on them).
             lanes: width of the kernel's packs, 0 for the widest (nor on this).
             threads: how many split the rows, 0 for all cores where that pays (nor on this).
+            errors: measure the true error of every cell now (else when `errors` is first read).
 
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
@@ -150,7 +152,10 @@ class Model:
         """
         from mechkin_cli.interface.sweeps import run_sweep
 
-        return run_sweep(self, quantities, tables, mode, closed_at, lanes, threads)
+        found = run_sweep(self, quantities, tables, mode, closed_at, lanes, threads)
+        if errors:
+            _ = found.errors
+        return found
 
     def respond(
         self,
