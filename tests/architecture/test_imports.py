@@ -10,6 +10,7 @@ from architecture.package import FILES, NAMES, ROOT, imports, room
 BASE = {
     "arrays",
     "diagnostics",
+    "exact",
     "legible",
     "nearest",
     "regular_file",

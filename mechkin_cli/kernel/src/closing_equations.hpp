@@ -35,7 +35,7 @@ MECHKIN_INLINE Vec3 first_of_d(const Closure& k, const Motion& a, const Motion& 
 MECHKIN_INLINE Vec3 second_of_d(const Closure& k, const Motion& a, const Motion& b) {
   return b.point_acceleration(k.B.o) - a.point_acceleration(k.A.o);
 }
-MECHKIN_INLINE Vec3 third_of_d(const Closure& k, const MotionToJerk& a, const MotionToJerk& b) {
+MECHKIN_APART Vec3 third_of_d(const Closure& k, const MotionToJerk& a, const MotionToJerk& b) {
   return b.point_jerk(k.B.o) - a.point_jerk(k.A.o);
 }
 // Second derivative of axis.d for an axis carried by a link with motion m.
@@ -43,13 +43,13 @@ MECHKIN_INLINE Pack second_along(Vec3 axis, const Motion& m, const Closure& k, c
   return dot(axis, second_of_d(k, a, b)) + Pack(2.0) * dot(m.rate(axis), first_of_d(k, a, b)) +
          dot(m.second_rate(axis), k.d);
 }
-MECHKIN_INLINE Pack third_along(Vec3 axis, const MotionToJerk& m, const Closure& k, const MotionToJerk& a,
-                               const MotionToJerk& b) {
+MECHKIN_APART Pack third_along(Vec3 axis, const MotionToJerk& m, const Closure& k, const MotionToJerk& a,
+                              const MotionToJerk& b) {
   return dot(axis, third_of_d(k, a, b)) + Pack(3.0) * dot(m.rate(axis), second_of_d(k, a, b)) +
          Pack(3.0) * dot(m.second_rate(axis), first_of_d(k, a, b)) + dot(m.third_rate(axis), k.d);
 }
 // Third derivative of x.z for vectors carried by links with motions a and b.
-MECHKIN_INLINE Pack third_of_product(Vec3 x, const MotionToJerk& a, Vec3 z, const MotionToJerk& b) {
+MECHKIN_APART Pack third_of_product(Vec3 x, const MotionToJerk& a, Vec3 z, const MotionToJerk& b) {
   return dot(a.third_rate(x), z) + Pack(3.0) * dot(a.second_rate(x), b.rate(z)) +
          Pack(3.0) * dot(a.rate(x), b.second_rate(z)) + dot(x, b.third_rate(z));
 }

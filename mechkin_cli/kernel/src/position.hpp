@@ -133,37 +133,41 @@ inline void advance_block(const Plan& p, Workspace& w, int index, const Pack* st
 // matters to threads and slides that have gone far and is taken where reach alone does not do; lanes are told apart by
 // their own values. w.right, w.closure and the poses are those of the place; screws are made here, for those in the
 // workspace may be of a place before.
-inline Pack residual_with_rounding(const Plan& p, const Workspace& w, const Block& b, double accept) {
+MECHKIN_RARE Pack residual_with_rounding(const Plan& p, const Workspace& w, const Block& b, double accept) {
   const Pack half_place = 0x1p-53;
   const Pack lengths = Pack(p.row_weight), reach = max(Pack(1.0), lengths * block_reach(p, w, b));
   Pack worst = 0.0;
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
+    int equations = 0, length_equations = 0;
+    with_closing_joint(j.type, [&](auto entry) { equations = entry.equations, length_equations = entry.lengths; });
     Pack moved[MAX_CLOSING_ROWS];
     for (Pack& m : moved) m = 0.0;
-    with_closing_joint(j.type, [&](auto entry) {
-      for (int l = j.loop_begin; l < j.loop_end; ++l) {
-        const TreeJoint& t = p.joints[p.loop[l].joint];
-        with_tree_joint(t.type, [&](auto tree) {
-          Twist screw[MAX_CLOSING_ROWS];
-          tree.screws(w.pose[p.loop[l].joint], t, pose_of(w, t.parent), screw);
-          for (int f = 0; f < tree.freedoms; ++f) {
-            Pack column[MAX_CLOSING_ROWS];
-            entry.column(w.closure[c], screw[f], column);
-            // an orientation's quaternion has unit length
-            const Pack x = tree.states == tree.freedoms ? abs(w.q[t.state + f]) : Pack(1.0);
-            for (int i = 0; i < entry.equations; ++i) moved[i] += half_place * x * abs(column[i]);
-          }
+    for (int l = j.loop_begin; l < j.loop_end; ++l) {
+      const TreeJoint& t = p.joints[p.loop[l].joint];
+      int freedoms = 0, states = 0;
+      Twist screw[MAX_CLOSING_ROWS];
+      with_tree_joint(t.type, [&](auto tree) __attribute__((always_inline)) {
+        freedoms = tree.freedoms, states = tree.states;
+        tree.screws(w.pose[p.loop[l].joint], t, pose_of(w, t.parent), screw);
+      });
+      for (int f = 0; f < freedoms; ++f) {
+        Pack column[MAX_CLOSING_ROWS];
+        with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+          entry.column(w.closure[c], screw[f], column);
         });
+        // an orientation's quaternion has unit length
+        const Pack x = states == freedoms ? abs(w.q[t.state + f]) : Pack(1.0);
+        for (int i = 0; i < equations; ++i) moved[i] += half_place * x * abs(column[i]);
       }
-      for (int i = 0; i < entry.equations; ++i) {
-        const bool length = i < entry.lengths;
-        const Pack weight = length ? lengths : Pack(1.0);
-        const Pack scale = (length ? reach : Pack(1.0)) + weight * moved[i] / Pack(accept);
-        const Pack part = weight * abs(w.right[j.row + i]) / scale;
-        worst = select(part <= worst, worst, part);  // a NaN wins
-      }
-    });
+    }
+    for (int i = 0; i < equations; ++i) {
+      const bool length = i < length_equations;
+      const Pack weight = length ? lengths : Pack(1.0);
+      const Pack scale = (length ? reach : Pack(1.0)) + weight * moved[i] / Pack(accept);
+      const Pack part = weight * abs(w.right[j.row + i]) / scale;
+      worst = select(part <= worst, worst, part);  // a NaN wins
+    }
   }
   return worst;
 }

@@ -9,7 +9,10 @@
 #include "held.hpp"
 #include "quantity_program.hpp"
 #include "search.hpp"
+#include "tape_replay.hpp"
+#if MECHKIN_LANES == 2  // one set of inputs at a time: the narrowest unit does for all
 #include "tape_jets.hpp"
+#endif
 
 namespace {
 
@@ -267,6 +270,11 @@ template <class... All>
 struct PairTypes<Entries<All...>> {
   static constexpr PairType table[] = {{All::letter, All::equations, All::lengths, All::coordinates(), All::turns()}...};
 };
+
+#if MECHKIN_LANES != 2
+constexpr long (*jets_size)(const Tape&) = nullptr;
+constexpr void (*replay_jets)(const Tape&, const double*, const double*, double*, char*) = nullptr;
+#endif
 
 const KernelUnit unit = {LANES, tree_types, PairTypes<Pairs>::table, Pairs::count, workspace_size, run, run_rows, search_rows,
                          elementwise, replay_size, replay, jets_size, replay_jets};

@@ -17,6 +17,10 @@
 #error "the kernel needs the vector extensions of GCC >= 11 or Clang >= 16"
 #endif
 #define MECHKIN_INLINE inline __attribute__((always_inline))
+// Compiled once: what is called from many entries of a table, where copies in line would cost room and gain nothing.
+#define MECHKIN_APART inline __attribute__((noinline))
+// The same for what rare rows need: small rather than fast.
+#define MECHKIN_RARE inline __attribute__((noinline, cold))
 
 namespace {
 
