@@ -164,10 +164,7 @@ class Model:
         """
         from mechkin_cli.interface.sweeps import run_sweep
 
-        found = run_sweep(self, quantities, tables, mode, closed_at, lanes, threads)
-        if errors:
-            _ = found.errors
-        return found
+        return run_sweep(self, quantities, tables, mode, closed_at, lanes, threads, errors)
 
     def respond(
         self,

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli.exact import Exact
 from mechkin_cli.tape.error_free import (
     fast_two_sum,
     product_of,
@@ -173,7 +174,10 @@ class DoubleDoubles(Recorded):
 
 
 def exactly(value: Any) -> DoubleDoubles:
-    """A number, an array of doubles or of double-doubles as double-doubles."""
+    """A number, an array of doubles or of double-doubles as double-doubles; a double that knows
+    what it was rounded from as that."""
+    if isinstance(value, Exact):
+        return DoubleDoubles.of_fraction(value.fraction)
     return value if isinstance(value, DoubleDoubles) else DoubleDoubles(value)
 
 
@@ -242,6 +246,16 @@ def _each(function: Callable[..., Any]) -> Callable[..., DoubleDoubles]:
     return apply
 
 
+def _largest(a: DoubleDoubles, axis: int, initial: float) -> DoubleDoubles:
+    """The largest along the first axis, at least `initial`."""
+    if axis:
+        raise TypeError("max of double-double numbers along an axis that is not the first")
+    found = exactly(np.full(a.shape[1:], initial))
+    for part in a:
+        found = _where(_less(found, part), part, found)
+    return found
+
+
 def _sign(a: DoubleDoubles) -> DoubleDoubles:
     return DoubleDoubles(np.where(a.high > 0.0, 1.0, np.where(a.high < 0.0, -1.0, a.high)))
 
@@ -287,6 +301,7 @@ _UFUNCS: dict[Any, Callable[..., Any]] = {
 
 _FUNCTIONS: dict[Any, Callable[..., Any]] = {
     np.where: _where,
+    np.max: _largest,
     np.stack: _each(np.stack),
     np.concatenate: _each(np.concatenate),
     np.full_like: lambda like, value: _where(True, value, 0.0 * exactly(like).high),

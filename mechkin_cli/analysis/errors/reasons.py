@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mechkin_cli.mechanism.derived_quantities import LEDGER_KINDS, TRANSMISSION_KINDS
+from mechkin_cli.mechanism.derived_quantities import FINITE_KINDS, LEDGER_KINDS
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 
@@ -16,7 +16,7 @@ VERDICT = "a verdict"
 WORDS = "words"
 INTEGRAL = "an integral over the rows"
 FRICTION = "friction"
-UNIT_LOAD = "a balance of its own"
+DRAWING = "measured from the drawing in doubles"
 RESPONSE = "a response"
 OTHER_TABLE = "no table of rows"
 
@@ -30,6 +30,6 @@ def reason_of(problem: Problem, quantity: Wanted) -> str:
     if problem.mechanism.frictions and demand_of(problem.mechanism, [quantity]) & Demand.FORCES:
         # whether a joint sticks or slips is decided by doubles
         return FRICTION
-    if quantity.kind in TRANSMISSION_KINDS:
-        return UNIT_LOAD
+    if quantity.kind in FINITE_KINDS - {"finite_angle"}:
+        return DRAWING
     return ""

@@ -182,7 +182,7 @@ class Repeated:
         """Quantities on the rows, as `Result.evaluated`; of the balance of least norm alone."""
         session = session or self.session
         demand |= demand_of(session.problem.mechanism, wanted)
-        found = self.wide.run(wanted, session, inputs or self.wide.inputs, demand)
+        found = self.wide.run(wanted, session, self._exact(inputs), demand)
         rows = self.row_states
         unclear = rows.status == Status.rank_unclear
         for quantity in wanted:
@@ -191,6 +191,17 @@ class Repeated:
             if unclear.any() and demand_of(self.problem.mechanism, [quantity]):
                 own[:, unclear] = np.nan
         return found
+
+    def _exact(self, inputs: KernelInputs | None) -> KernelInputs:
+        """The rows' inputs, with those rates of `inputs` that are not the rows' own: of whole
+        numbers, as those of a unit motion."""
+        own, exact = self.session.inputs, self.wide.inputs
+        if inputs is None or inputs is exact:
+            return exact
+        moving = ("rates", "accelerations", "jerks")
+        others = {name: getattr(inputs, name) for name in moving}
+        known = {id(getattr(one, name)) for one in (own, exact) for name in moving}
+        return exact._replace(**{k: v for k, v in others.items() if id(v) not in known})
 
     def _turned(self, wanted: Sequence[Wanted], found: Wide) -> Wide:
         """Gives angles the whole turns that they have in the run, in place; returns what they are
