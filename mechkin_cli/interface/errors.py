@@ -95,7 +95,11 @@ class Errors:
     def states(self) -> NDArray[np.float64]:
         """The largest error of any state in every row (rows,), in rad or in parts of the length
         unit of the mechanism's size: what `row.error_bound` bounds."""
-        raise NotImplementedError
+        wide = self._repeated.wide
+        known = wide.states
+        with np.errstate(invalid="ignore"):
+            off = np.abs((known - self._analysis.result.row_states.states).high)
+        return np.max(off, axis=0, initial=0.0)
 
     def __getitem__(self, name: str | tuple[str, str]) -> NDArray[Any]:
         """The errors of a column, or of an expression.

@@ -121,3 +121,34 @@ def test_differences_of_equal_numbers_keep_their_digits() -> None:
 def test_whole_numbers() -> None:
     a = DoubleDoubles([2.5, 2.5, 3.0, -0.5, 4.2], [1e-17, -1e-17, 0.0, 1e-18, 0.0])
     assert a.apply("WHOLE").high.tolist() == [3.0, 2.0, 3.0, 0.0, 4.0]
+
+
+FUNCTIONS = {
+    "SIN": mp.sin,
+    "COS": mp.cos,
+    "TAN": mp.tan,
+    "ATAN": mp.atan,
+    "ASIN": mp.asin,
+    "ACOS": mp.acos,
+    "EXP": mp.exp,
+    "LOG": mp.log,
+}
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_functions_are_those_of_the_kernel(name: str) -> None:
+    rng = np.random.default_rng(11)
+    a = DoubleDoubles(rng.uniform(0.05, 0.95, COUNT), rng.uniform(-1, 1, COUNT) * 1e-18)
+    for found, x in zip(numbers(a.apply(name)), numbers(a), strict=True):
+        exact = FUNCTIONS[name](mp.mpf(x.numerator) / x.denominator)
+        assert abs(mp.mpf(found.numerator) / found.denominator - exact) <= 1e-29 * abs(exact)
+
+
+def test_angles_of_points() -> None:
+    y, x = some(12), some(13)
+    found = np.where(y > 0.0, y, -y).apply("ATAN2", x)
+    for angle, b, a in zip(numbers(found), numbers(y), numbers(x), strict=True):
+        exact = mp.atan2(
+            abs(mp.mpf(b.numerator) / b.denominator), mp.mpf(a.numerator) / a.denominator
+        )
+        assert abs(mp.mpf(angle.numerator) / angle.denominator - exact) <= 1e-29 * exact

@@ -56,6 +56,11 @@ class WideRun(Protocol):
         units."""
         ...
 
+    @property
+    def states(self) -> DoubleDoubles:
+        """The states of the plan (states, rows); nan in rows that did not close."""
+        ...
+
     def run(
         self,
         wanted: Sequence[Wanted],
