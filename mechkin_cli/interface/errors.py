@@ -36,6 +36,10 @@ if TYPE_CHECKING:
     from mechkin_cli.tables.layout import ColumnLayout
 
 
+ALL_COLUMNS = "all columns"
+"""Stands for the labels of a table of which no column is repeated."""
+
+
 class Errors:
     """True errors of the cells of an analysis, in the file's units.
 
@@ -54,9 +58,8 @@ class Errors:
             for layout, table in zip(analysis.layouts, analysis.tables, strict=True)
             for found in self._of_table(layout.columns, table)
         ) + tuple(
-            not_repeated(table.name, column.label, column.unit, _values(column), OTHER_TABLE)
+            not_repeated(table.name, ALL_COLUMNS, "", 0, OTHER_TABLE)
             for table in (*analysis.coefficients, *analysis.balance_tables)
-            for column in table.columns
         )
 
     @cached_property
