@@ -48,7 +48,8 @@ class _Given(NamedTuple):
         if self.near is None:
             return np.stack([self.rows, np.zeros(self.rows.size)])
         pairs: Floats = np.array([parts(one)[:2] for one in self.near])
-        return pairs[self.rows].T
+        over_rows: Floats = pairs[self.rows].T
+        return over_rows
 
     def at(self, row: int) -> Near:
         """The number of a row, not rounded."""
@@ -93,11 +94,8 @@ class ExactRows(RowRecorder):
         """Some numbers in double-double (numbers, 2, rows), high and low."""
         made = self._tape(numbers)
         constants = np.array([parts(one)[:2] for one in made.constants]).reshape(-1, 2)
-        second, rows = (
-            np.ascontiguousarray(constants[:, 1]),
-            np.stack([g.parts for g in made.given]),
-        )
-        found = replay_precise(compiled(made.tape), rows, second, lanes)[0]
+        rows = np.stack([given.parts for given in made.given])
+        found = replay_precise(compiled(made.tape), rows, constants[:, 1], lanes)[0]
         return np.ascontiguousarray(found.transpose(1, 2, 0))
 
     def enclosures(self, numbers: Sequence[Any]) -> Floats:
