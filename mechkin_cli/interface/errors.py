@@ -63,7 +63,8 @@ class Errors:
         )
 
     @cached_property
-    def _repeated(self) -> Repeated:
+    def repeated(self) -> Repeated:
+        """The rows in double-double."""
         from mechkin_cli.analysis.errors import wide
 
         result = self._analysis.result
@@ -98,7 +99,7 @@ class Errors:
     def states(self) -> NDArray[np.float64]:
         """The largest error of any state in every row (rows,), in rad or in parts of the length
         unit of the mechanism's size: what `row.error_bound` bounds."""
-        wide = self._repeated.wide
+        wide = self.repeated.wide
         known = wide.states
         with np.errstate(invalid="ignore"):
             off = np.abs((known - self._analysis.result.row_states.states).high)
@@ -135,7 +136,7 @@ class Errors:
     def _of_expression(self, text: str) -> NDArray[Any]:
         values = self._analysis[text]
         parts = values.T if values.ndim > 1 else values[None]
-        true = true_values(parse(text), self._repeated)
+        true = true_values(parse(text), self.repeated)
         found = [
             column_errors("", text, "", cells, exact).error
             for cells, exact in zip(parts, true, strict=True)
@@ -154,7 +155,7 @@ class Errors:
         if why or isinstance(values, Words):
             return not_repeated(table, column.label, column.unit, _values(column), why or WORDS)
         try:
-            (true,) = true_values(expression, self._repeated)
+            (true,) = true_values(expression, self.repeated)
         except NotRepeated as reason:
             return not_repeated(table, column.label, column.unit, values, str(reason))
         return column_errors(table, column.label, column.unit, values, true)

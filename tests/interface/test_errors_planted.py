@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-from types import SimpleNamespace
-
-import mechkin_cli as mk
 import numpy as np
 import pytest
+
+import mechkin_cli as mk
 from mechkin_cli.analysis.errors import wide
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.tape.double_doubles import DoubleDoubles, exactly

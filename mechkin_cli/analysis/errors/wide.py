@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.precise import Precise
-    from mechkin_cli.solver.session import Readout, Session
+    from mechkin_cli.solver.session import Session
 
 
 def wide_run(result: Result) -> KernelRows:
@@ -53,7 +53,7 @@ class KernelRows:
         self.result = result
         self.precise = precise
         self.given = precise.inputs(result.session)
-        self._known: dict[int, tuple[Session, Session, Floats]] = {}
+        self._known: dict[int, tuple[Session, Floats]] = {}
 
     @cached_property
     def inputs(self) -> KernelInputs:
@@ -98,29 +98,27 @@ class KernelRows:
     def _run(
         self, wanted: Sequence[Wanted], session: Session, inputs: KernelInputs, demand: Demand
     ) -> tuple[DoubleDoubles, DoubleDoubles | None]:
-        rows, given, times = self.result.row_states, self.given, demand & Demand.FORCES
+        rows, given, forces = self.result.row_states, self.given, demand & Demand.FORCES
         at = np.where(rows.reached, np.arange(rows.reached.size), rows.reached.argmax())
 
         def parts(numbers: Any) -> Floats:
             return _parts(numbers)[..., at]
 
-        _, known, low = self._with_constants(session)
-        readout, low_outputs = self._readout(session, tuple(wanted)) if wanted else (None, None)
-        batch = known.run_precise(
+        batch = session.run_precise(
             parts(inputs.reduced),
             np.ascontiguousarray(rows.states[:, at]),
-            readout=readout,
+            readout=session.readout(wanted) if wanted else None,
+            constants=self._constants(session),
+            output_constants=self.precise.outputs(session, wanted) if wanted else None,
             demand=demand & ~Demand.CONDITION,
             rates=parts(inputs.rates) if demand & Demand.VELOCITY else None,
             accelerations=parts(inputs.accelerations) if demand & Demand.ACCELERATION else None,
             jerks=parts(inputs.jerks) if demand & Demand.JERK else None,
-            ties=None if given.tie_rates is None or not times else given.tie_rates[..., at],
+            ties=None if given.tie_rates is None or not forces else given.tie_rates[..., at],
             turned=np.ascontiguousarray(rows.turns[:, at]),
             whole=np.ascontiguousarray(given.whole[:, at]),
             full=parts(inputs.values),
             time=None if given.time is None else np.ascontiguousarray(given.time[:, at]),
-            low=low,
-            low_outputs=low_outputs,
         )
         # equations that the text does not satisfy exactly are solved by least squares, as in doubles
         closed = batch.good | session.is_redundant
@@ -132,24 +130,11 @@ class KernelRows:
         values[:, ~closed] = np.nan
         return states, values
 
-    def _with_constants(self, session: Session) -> tuple[Session, Session, Floats]:
-        """A session, the same with constants as the text says them, and their low parts; kept."""
+    def _constants(self, session: Session) -> Floats:
+        """The constants of a session's plan as the text says them (constants, 2); kept."""
         if id(session) not in self._known:
-            numbers = self.precise.constants(session)
-            other = session.packed(session.packing)
-            changed = object.__new__(type(other))
-            changed.__dict__.update(other.__dict__)
-            high, low = (np.ascontiguousarray(part) for part in numbers.T)
-            changed.__dict__["plan"] = session.plan.with_constants(high)
-            self._known[id(session)] = (session, changed, low)
-        return self._known[id(session)]
-
-    def _readout(self, session: Session, wanted: tuple[Wanted, ...]) -> tuple[Readout, Floats]:
-        """What reads some quantities with constants as the text says them, and their low parts."""
-        numbers = self.precise.outputs(session, wanted)
-        readout = session.readout(wanted)
-        outputs = readout.outputs.with_constants(np.ascontiguousarray(numbers[:, 0]))
-        return readout._replace(outputs=outputs), np.ascontiguousarray(numbers[:, 1])
+            self._known[id(session)] = (session, self.precise.constants(session))
+        return self._known[id(session)][1]
 
 
 def _number(parts: Floats) -> DoubleDoubles:
