@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from mechkin_cli.analysis.errors.reasons import WORDS
 from mechkin_cli.legible import legible
-from mechkin_cli.tables.cell_errors import ZERO
+from mechkin_cli.tables.cell_errors import ALL_COLUMNS, ZERO
 
 if TYPE_CHECKING:
     from mechkin_cli.interface import Analysis
@@ -56,8 +56,12 @@ def _left_out(columns: list[ColumnErrors]) -> list[str]:
     ]
 
 
+def _label(column: ColumnErrors) -> str:
+    return column.table if column.label == ALL_COLUMNS else column.label
+
+
 def _named(columns: list[ColumnErrors]) -> str:
     """The labels of some columns, the first of them one by one."""
-    labels = list(dict.fromkeys(legible(column.label) for column in columns))
+    labels = list(dict.fromkeys(legible(_label(column)) for column in columns))
     more = len(labels) - COLUMNS_SHOWN
     return ", ".join(labels[:COLUMNS_SHOWN]) + (f" and {more} more" if more > 0 else "")

@@ -16,6 +16,7 @@ from mechkin_cli.expressions import parse
 from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.tables.cell_errors import (
+    ALL_COLUMNS,
     ColumnErrors,
     column_errors,
     least_digits,
@@ -34,10 +35,6 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.tables.columns import Column, Columns
     from mechkin_cli.tables.layout import ColumnLayout
-
-
-ALL_COLUMNS = "all columns"
-"""Stands for the labels of a table of which no column is repeated."""
 
 
 class Errors:
@@ -103,7 +100,8 @@ class Errors:
         known = wide.states
         with np.errstate(invalid="ignore"):
             off = np.abs((known - self._analysis.result.row_states.states).high)
-        return np.max(off, axis=0, initial=0.0)
+        found: NDArray[np.float64] = np.max(off, axis=0, initial=0.0)
+        return found
 
     def __getitem__(self, name: str | tuple[str, str]) -> NDArray[Any]:
         """The errors of a column, or of an expression.

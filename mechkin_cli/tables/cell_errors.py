@@ -31,6 +31,9 @@ LOST = "no value in double-double"
 ZERO = "zero but for rounding"
 """Said of a column whose true numbers are none beside its rounding."""
 
+ALL_COLUMNS = "all columns"
+"""Stands for the labels of a table of which no column is repeated."""
+
 NO_DIGITS = -1
 """Stands for the right digits of a cell of which nothing is known."""
 

@@ -62,7 +62,7 @@ def analysis_record(
 ) -> Plain:
     """One run as plain data and `Cells`; values are in file units, each column names its own;
     `errors` of all columns, where they were asked for."""
-    measured = {} if errors is None else {"errors": _errors_record(errors, threads)}
+    measured = {} if errors is None else {"errors": _errors_record(errors)}
     return {
         "name": name,
         "row_count": source.rows,
@@ -122,7 +122,7 @@ def _column_records(columns: Columns, threads: int) -> list[Plain]:
     ]
 
 
-def _errors_record(errors: Sequence[ColumnErrors], threads: int) -> Plain:
+def _errors_record(errors: Sequence[ColumnErrors]) -> Plain:
     """The digits that every cell has, and of each column its errors; null where none is known."""
     return {
         "digits": least_digits(errors),
@@ -132,8 +132,8 @@ def _errors_record(errors: Sequence[ColumnErrors], threads: int) -> Plain:
                 "label": column.label,
                 "unit": column.unit,
                 "why": column.why,
-                "error": Cells(column.error, threads),
-                "relative": Cells(column.relative, threads),
+                "error": Cells(column.error),
+                "relative": Cells(column.relative),
             }
             for column in errors
         ],

@@ -25,7 +25,11 @@ points: {tip: {link: rod, at: [40, 60, 0]}}
 motion: {inputs: {A.theta: {from: 0, to: 720, step: 30, rate: 1 rad/s}}}
 tables:
   - name: one
-    columns: [A.theta, D.theta, {label: x, value: tip.position.x}, {label: y, value: tip.position.y}]
+    columns:
+      - A.theta
+      - D.theta
+      - {label: x, value: tip.position.x}
+      - {label: y, value: tip.position.y}
   - name: two
     columns:
       - row.status

@@ -59,9 +59,9 @@ class KernelRows:
     def inputs(self) -> KernelInputs:
         """Of the rows, double-double."""
         given = self.given
-        orders = (given.values, given.rates, given.accelerations, given.jerks, given.reduced)
-        numbers: list[Any] = [_number(parts) for parts in orders]
-        return KernelInputs(*numbers, given.whole)
+        names = ("values", "rates", "accelerations", "jerks", "reduced")
+        numbers: dict[str, Any] = {name: _number(getattr(given, name)) for name in names}
+        return KernelInputs(**numbers, whole=given.whole)
 
     @cached_property
     def parameters(self) -> Mapping[str, Quantity]:
@@ -120,7 +120,7 @@ class KernelRows:
             full=parts(inputs.values),
             time=None if given.time is None else np.ascontiguousarray(given.time[:, at]),
         )
-        # equations that the text does not satisfy exactly are solved by least squares, as in doubles
+        # what the text does not close exactly is solved by least squares, as in doubles
         closed = batch.good | session.is_redundant
         states = _number(batch.states)
         states[:, ~(closed & rows.reached)] = np.nan
