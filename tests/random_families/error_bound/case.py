@@ -28,8 +28,8 @@ def text_of(number: int) -> str:
     if family < 3:
         return drawn(number // len(FAMILIES), family + 1).text
     loop = random_loop(random.Random(number)).text()
-    step = "0.02 m" if "J0.s" in loop else "2 deg"
-    return loop.replace("{at: 0}", f"{{from: 0, count: 20, step: {step}}}")
+    last = "0.4 m" if "J0.s" in loop else "40 deg"
+    return loop.replace("{at: 0}", f"{{from: 0, to: {last}, count: 20}}")
 
 
 def rows_of(number: int) -> Rows:
