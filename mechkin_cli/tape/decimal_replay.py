@@ -7,8 +7,9 @@ Algorithms, 3.3): far tighter than intervals of doubles, and enough to round a c
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterable, Sequence
-from decimal import ROUND_HALF_EVEN, Decimal, localcontext
+from decimal import ROUND_HALF_EVEN, Decimal, Inexact, getcontext, localcontext
 from fractions import Fraction
 from math import inf, nextafter, sqrt
 from typing import TYPE_CHECKING, NamedTuple
@@ -131,14 +132,16 @@ def _size(near: Near) -> float:
     return abs(float(near.value))
 
 
-def _exact(a: Near, b: Near, value: Decimal) -> bool:
-    """Whether nothing was rounded: few digits."""
-    return not a.off and not b.off and len(value.as_tuple().digits) < DIGITS
+def _rounding(off: float, function: Callable[..., Decimal], *arguments: Decimal) -> Near:
+    """The result of one operation of IEEE 854, which tells whether it was rounded."""
+    context = getcontext()
+    context.clear_flags()
+    value = function(*arguments)
+    return Near(value, off) if not off and not context.flags[Inexact] else _near(value, off)
 
 
 def _sum(a: Near, b: Near) -> Near:
-    value = a.value + b.value
-    return Near(value, 0.0) if _exact(a, b, value) else _near(value, a.off + b.off)
+    return _rounding(a.off + b.off, operator.add, a.value, b.value)
 
 
 def _difference(a: Near, b: Near) -> Near:
@@ -150,20 +153,16 @@ def _negative(a: Near) -> Near:
 
 
 def _product(a: Near, b: Near) -> Near:
-    value = a.value * b.value
-    if _exact(a, b, value):
-        return Near(value, 0.0)
-    return _near(value, _size(a) * b.off + _size(b) * a.off + a.off * b.off)
+    off = _size(a) * b.off + _size(b) * a.off + a.off * b.off
+    return _rounding(off, operator.mul, a.value, b.value)
 
 
 def _quotient(a: Near, b: Near) -> Near:
     least = _size(b) - b.off
     if not least > 0.0:
         raise NotEnclosed("a quotient by what may be zero")
-    value = a.value / b.value
-    if _exact(a, b, value):
-        return Near(value, 0.0)
-    return _near(value, (a.off + abs(float(value)) * b.off) / least)
+    off = (a.off + _size(a) / _size(b) * b.off) / least
+    return _rounding(off * _MARGIN, operator.truediv, a.value, b.value)
 
 
 def _root(a: Near) -> Near:
@@ -171,10 +170,8 @@ def _root(a: Near) -> Near:
         if abs(float(a.value)) > a.off:
             raise NotEnclosed("the root of a negative number")
         return Near(Decimal(0), sqrt(2.0 * a.off) * _MARGIN)
-    value = a.value.sqrt()
-    if not a.off and value * value == a.value:
-        return Near(value, 0.0)
-    return _near(value, min(a.off / float(value), sqrt(a.off)))
+    size = _size(a)
+    return _rounding(min(a.off / sqrt(size) * _MARGIN, sqrt(a.off)), Decimal.sqrt, a.value)
 
 
 def _smooth(
