@@ -69,7 +69,7 @@ def test_the_line_of_errors_is_that_of_the_command(
 ) -> None:
     analyze_files([RCSR], tmp_path, ["csv"], errors=True)
     (line,) = [x for x in capsys.readouterr().err.splitlines() if x.startswith("  errors")]
-    assert blocks("text") == [line + "\n"]
+    assert line + "\n" in blocks("text")
 
 
 def test_exit_codes() -> None:

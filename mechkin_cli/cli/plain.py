@@ -29,6 +29,7 @@ OPTIONS = {
     "--table": Option("table", str, True),
     "--lanes": Option("lanes", int),
     "--threads": Option("threads", int),
+    "--certify": Option("certify", None),
     "--strict": Option("strict", None),
     "--errors": Option("errors", None),
     "--explain": Option("explain", None),
