@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.analysis.sweep import Result
-    from mechkin_cli.interface.errors import Errors
     from mechkin_cli.interface.certificate import Certificate
+    from mechkin_cli.interface.errors import Errors
     from mechkin_cli.interface.model import Model
     from mechkin_cli.mechanism.balance import AnyBalance
 

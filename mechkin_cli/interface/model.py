@@ -155,8 +155,7 @@ class Model(Certified):
             tables: names of the tables wanted; None: all, [] none.
             mode: assembly mode at the first row instead of the file's choice.
             closed_at: closing joints to use (the answers do not depend on them).
-            lanes: width of the kernel's packs, 0 for the widest (nor on this).
-            threads: how many split the rows, 0 for all cores where that pays (nor on this).
+            lanes, threads: width of packs and how many split the rows, 0 for the most (nor on these).
             errors: measure the true error of every cell now (else when `errors` is first read).
 
         Raises:
