@@ -1,0 +1,107 @@
+"""Vectors of three numbers, and the closed forms that place one link after another."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from mechkin_cli.benchmark.stress.numbers.series import Number
+
+Vector = tuple[Number, Number, Number]
+
+
+def plus(a: Vector, b: Vector) -> Vector:
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def minus(a: Vector, b: Vector) -> Vector:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def times(factor: Number, a: Vector) -> Vector:
+    return factor * a[0], factor * a[1], factor * a[2]
+
+
+def dot(a: Vector, b: Vector) -> Number:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def unit(a: Vector) -> Vector:
+    length = dot(a, a).sqrt()
+    return a[0] / length, a[1] / length, a[2] / length
+
+
+class Turn(NamedTuple):
+    """About a unit axis through the origin, by sine and cosine."""
+
+    axis: Vector
+    sine: Number
+    cosine: Number
+
+    def __call__(self, a: Vector) -> Vector:
+        """Rodrigues' formula by the part across the axis, so that small arms keep their digits."""
+        along = times(dot(self.axis, a), self.axis)
+        across = minus(a, along)
+        turned = plus(times(self.cosine, across), times(self.sine, cross(self.axis, a)))
+        return plus(along, turned)
+
+    @property
+    def back(self) -> Turn:
+        return Turn(self.axis, -self.sine, self.cosine)
+
+
+def turn(axis: Vector, angle: Number) -> Turn:
+    """The turn by rad about a unit axis."""
+    return Turn(axis, *angle.sin_cos())
+
+
+def angle_about(axis: Vector, start: Vector, end: Vector) -> Number:
+    """The angle about a unit axis from one direction to another, in (-pi, pi]."""
+    first = minus(start, times(dot(axis, start), axis))
+    last = minus(end, times(dot(axis, end), axis))
+    return dot(axis, cross(first, last)).arctan2(dot(first, last))
+
+
+class Swing(NamedTuple):
+    """Where a point on a circle is at a given distance from a target.
+
+    With p the target from the circle's centre and the point at along + c cos(t) + s sin(t), these
+    are the roots of a cos(t) + b sin(t) = d, one for either sign of the root of the discriminant
+    a^2 + b^2 - d^2; `radius` is a^2 + b^2 and `terms` the size of what d is the difference of.
+    """
+
+    a: Number
+    b: Number
+    d: Number
+    radius: Number
+    discriminant: Number
+    terms: Number
+
+    def sine_cosine(self, sign: Number) -> tuple[Number, Number]:
+        """Of the root whose discriminant's root has the sign."""
+        root = self.discriminant.sqrt() * sign
+        sine = (self.b * self.d + self.a * root) / self.radius
+        return sine, (self.a * self.d - self.b * root) / self.radius
+
+
+def swing(axis: Vector, arm: Vector, target: Vector, square: Number) -> Swing:
+    """For an arm about an axis through the origin; `square` is that of the distance."""
+    along = times(dot(axis, arm), axis)
+    a = dot(target, minus(arm, along))
+    b = dot(target, cross(axis, arm))
+    lengths = dot(arm, arm) + dot(target, target)
+    d = (lengths - square) * 0.5 - dot(target, along)
+    radius = a * a + b * b
+    # factors keep the digits that squares lose next to a dead centre
+    length = radius.sqrt()
+    return Swing(a, b, d, radius, (length - d) * (length + d), lengths + square)
+
+
+def slide(direction: Vector, start: Vector, target: Vector, square: Number) -> tuple[Number, Number]:
+    """Middle s and discriminant of |start + s direction - target|^2 = square, |direction| = 1."""
+    gap = minus(target, start)
+    middle = dot(gap, direction)
+    return middle, square - dot(gap, gap) + middle * middle
