@@ -21,7 +21,7 @@ stands beside it with its reason (`kernel/src/`):
   at most;
 * `legs.hpp`: `OPPOSITE_COSINE` again;
 * `closing_equations.hpp`, `tree_joints.hpp`: 1e-150, just above the root of the least normal
-  double; `trigonometric.hpp`, `angle_reduction.hpp`: where one formula takes over from another.
+  double; `arithmetic/`: where one formula takes over from another.
 """
 
 from __future__ import annotations
@@ -774,3 +774,27 @@ it."""
 SAME_MOMENT: Final = 1e-15
 """A stop so near to the last row, in parts of its moment, ends the response at that row: a few
 roundings of the time, which would print as two rows of one moment."""
+
+# --- true errors -----------------------------------------------------------------------------
+
+ZERO_BUT_FOR_ROUNDING: Final = 1e-8
+"""A column whose numbers in double-double are all below this part of the largest of its cells is
+zero: what doubles leave there is 1e-16 of what cancelled, what double-doubles leave 1e-32."""
+
+# --- bound of the errors of a row (analysis.sweep.error_bound) ----------------------------------
+
+ERROR_PROBE: Final = 1e-13
+"""Relative size of the changes with which a row's sensitivity is measured: a thousand roundings, so
+that rounding is a thousandth of what is seen, and small enough that up to a condition of 1e6 a row
+moves by less than a tenth of its distance to a dead centre."""
+
+ERROR_PROBES: Final = 3
+"""Samples of the sensitivity: the largest of three is a tenth of the true one once in a thousand
+times, of two once in a hundred."""
+
+ERROR_FACTOR: Final = 16.0
+"""Roundings of a row's constants that count for all the roundings of closing it."""
+
+ERROR_MOVE: Final = 1e-3
+"""A row that such changes move farther (rad, length units) has no bound: it is nearer to a dead
+centre than the sensitivity at its place tells."""

@@ -27,6 +27,7 @@ from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.mechanism.balance import AnyBalance
 from mechkin_cli.mechanism.model import Attached, Link, Mechanism
+from mechkin_cli.mechanism.motion import Motion
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import TIME_OF_ROW, Wanted
 from mechkin_cli.reading.parser import in_order
@@ -118,14 +119,18 @@ def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fie
     return fields
 
 
-def build_problem(fields: Fields, file: MechanismFile, *, responses: bool = True) -> Problem:
-    """The mechanism with its loads, its motion and assembly, and the file's `responses`."""
+def build_problem(
+    fields: Fields, file: MechanismFile, *, responses: bool = True, motion: Motion | None = None
+) -> Problem:
+    """The mechanism with its loads, its motion and assembly, and the file's `responses`; a `motion`
+    that is given is not built anew."""
     links, joints = build_linkage(fields, file)
     points, directions = _points(fields, file, links), _directions(fields, file, links)
     guides = point_guides(fields, file.motion, points)
     links, joints = links | guides.links, joints | guides.joints
     limit = row_limit(file, joints)
-    motion = build_motion(fields, file.motion, joints, limit)
+    if motion is None:
+        motion = build_motion(fields, file.motion, joints, limit)
     assembly = build_assembly(fields, file.assembly, joints)
     name = file.name or fields.document.file
     drives = build_drives(fields, file.actuators, file.motion, joints, motion)

@@ -14,11 +14,12 @@ import numpy as np
 from mechkin_cli.building.fields import Fields, is_tiny_length
 from mechkin_cli.building.fields import Path as KeyPath
 from mechkin_cli.diagnostics import Diagnostic, Place
-from mechkin_cli.expressions import literal
+from mechkin_cli.expressions import literal, number_of
 from mechkin_cli.expressions.limits import MAX_QUOTED
 from mechkin_cli.mechanism.curve import Curve, smooth_curve
 from mechkin_cli.reading.limits import MOST_BYTES
 from mechkin_cli.regular_file import NotRegular, read_regular
+from mechkin_cli.tape.scalars import is_finite, plain
 from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
 from mechkin_cli.units import Dimension
 
@@ -56,8 +57,8 @@ def read_curve(
     if rows is None:
         return None
     to_si = fields.units.to_si
-    x = [float(to_si(value, x_dimension)) for value in rows.x]
-    return smooth(fields, path, x, [float(to_si(value, y_dimension)) for value in rows.y])
+    x = [plain(to_si(value, x_dimension)) for value in rows.x]
+    return smooth(fields, path, x, [plain(to_si(value, y_dimension)) for value in rows.y])
 
 
 def smooth(fields: Fields, path: KeyPath, x: list[float], y: list[float]) -> Curve | None:
@@ -67,7 +68,7 @@ def smooth(fields: Fields, path: KeyPath, x: list[float], y: list[float]) -> Cur
             curve = smooth_curve(x, y)
     except ZeroDivisionError:  # two x that are one number in SI
         curve = None
-    if curve is not None and np.isfinite(curve.coefficients).all():
+    if curve is not None and all(map(is_finite, curve.coefficients.flat)):
         return curve
     text = "the curve through this table is too steep to compute"
     fields.error(CODE, path, text, "leave out rows that lie too close together")
@@ -153,7 +154,7 @@ def _row(line: int, row: str) -> tuple[float, float]:
         raise _BadTable(line, 1, text, hint)
     values = []
     for cell, column in zip(cells, (1, len(cells[0]) + 2), strict=True):
-        value = literal(cell)
+        value = number_of(cell)
         if value is None:
             shown = repr(cell.strip()[:MAX_QUOTED])
             hint = "write a finite number without its unit: the mechanism file's units hold"

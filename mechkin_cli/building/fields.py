@@ -14,6 +14,7 @@ from mechkin_cli.expressions import (
     evaluate_parameters,
     literal,
     lookup,
+    number_of,
     parse,
 )
 from mechkin_cli.expressions import Vector as Components
@@ -194,7 +195,7 @@ class Fields:
     def _component(self, path: Path, text: str) -> tuple[float, Dimension]:
         from mechkin_cli.units import DIMENSIONLESS
 
-        bare = literal(text)
+        bare = number_of(text)
         if bare is not None:
             return bare, DIMENSIONLESS
         try:

@@ -14,9 +14,9 @@ from mechkin_cli.expressions import literal
 from mechkin_cli.mechanism.vectors import Vector, scale
 from mechkin_cli.schema.loads import Gravity
 from mechkin_cli.tolerances import GRAVITY_ON_EARTH, LARGEST_NUMBER
-from mechkin_cli.units import ACCELERATION, parse_unit
+from mechkin_cli.units import ACCELERATION, UNITS, conversion, parse_unit
 
-STANDARD = 9.80665
+STANDARD = conversion(UNITS["g0"].factor).multiplier
 """m/s^2, by the third General Conference on Weights and Measures."""
 
 DOWN: Vector = (0.0, 0.0, -1.0)

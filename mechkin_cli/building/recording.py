@@ -7,18 +7,28 @@ warning in question) raises `TraceLost`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from decimal import Decimal
+from fractions import Fraction
+from math import pi
+from types import MappingProxyType
 from typing import NamedTuple
 
 from mechkin_cli.building.build import Built, build_problem, check_spins, read_fields
 from mechkin_cli.building.idle import settled
+from mechkin_cli.exact import PI
 from mechkin_cli.expressions import Quantity
+from mechkin_cli.expressions.written import numbers_read_by
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.runs import SWEEP
+from mechkin_cli.solver.precise import Precise
+from mechkin_cli.tape.exact_recorder import ExactRecorder
 from mechkin_cli.tape.recorder import Recorder
 from mechkin_cli.tape.scalars import Recorded
 from mechkin_cli.tape.traced import Traced, TraceLost
+
+_NOTHING: Mapping[str, Quantity] = MappingProxyType({})
 
 
 class Recording(NamedTuple):
@@ -26,6 +36,70 @@ class Recording(NamedTuple):
 
     recorder: Recorder
     problem: Problem
+
+
+class ExactRecording(NamedTuple):
+    """A problem whose every number is `Traced`, down to the decimals of the text."""
+
+    recorder: ExactRecorder
+    problem: Problem
+
+
+def record_exactly(built: Built, given: Mapping[str, Quantity] = _NOTHING) -> ExactRecording:
+    """The problem of a file with its mechanism, loads and assembly as they follow from the exact
+    numbers of its text; its motion is the doubles' (`building.exact_rows` has the exact rows).
+
+    Args:
+        built: the file, which has no errors.
+        given: the values of parameters that were set in place of their texts when it was built.
+
+    Raises:
+        TraceLost: a number depends on the text in a way that no tape holds.
+    """
+    base = built.problem
+    recorder = ExactRecorder()
+
+    def read(digits: str) -> Traced:
+        if digits == "pi":
+            return recorder.written(pi, PI)
+        return recorder.written(float(digits), Fraction(Decimal(digits)))
+
+    set_anew = {
+        name: Quantity(recorder.written(float(one.value), Fraction(one.value)), one.dimension)  # type: ignore[arg-type]
+        for name, one in given.items()
+    }
+    with numbers_read_by(read):
+        fields = read_fields(built.read, set_anew)
+        problem = build_problem(fields, built.read.file, responses=False, motion=base.motion)
+    if fields.error_count:
+        raise TraceLost("the recording came to an error that the file does not have")
+    problem = replace(
+        problem,
+        hold_idle=base.hold_idle,
+        held=base.held,
+        follow=base.follow,
+        diagnostics=base.diagnostics,
+    )
+    _refuse_made_pairs(problem)
+    return ExactRecording(recorder, settled(problem))
+
+
+def precise(built: Built, problem: Problem, given: Mapping[str, Quantity] = _NOTHING) -> Precise:
+    """The numbers of a file as its text says them, for the sessions of its `problem` in doubles;
+    the other arguments and errors as those of `record_exactly`."""
+    recording = record_exactly(built, given)
+    return Precise(recording.recorder, recording.problem, problem)
+
+
+def _refuse_made_pairs(problem: Problem) -> None:
+    """Pairs that were put in to hold idle freedoms, or told anew for it, stand in no text.
+
+    Raises:
+        TraceLost: there is one.
+    """
+    for held in problem.held:
+        if held.told is not None or held.stop is not None:
+            raise TraceLost(f"{held.words}: what holds it is known in doubles alone")
 
 
 def record(built: Built, names: Sequence[str]) -> Recording:

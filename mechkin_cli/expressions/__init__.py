@@ -2,7 +2,7 @@
 
 from mechkin_cli.expressions.errors import ExpressionError, UnknownName
 from mechkin_cli.expressions.expression import Expression, parse
-from mechkin_cli.expressions.fields import constant, constant_in_file_units, literal
+from mechkin_cli.expressions.fields import constant, constant_in_file_units, literal, number_of
 from mechkin_cli.expressions.functions import FUNCTIONS
 from mechkin_cli.expressions.operand import Resolve
 from mechkin_cli.expressions.parameters import evaluate_parameters, lookup
@@ -24,5 +24,6 @@ __all__ = [
     "evaluate_parameters",
     "literal",
     "lookup",
+    "number_of",
     "parse",
 ]

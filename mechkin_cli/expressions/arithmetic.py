@@ -13,7 +13,7 @@ from mechkin_cli.expressions.nodes import Number
 from mechkin_cli.expressions.operand import Operand, Site
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Value, Vector
 from mechkin_cli.expressions.scalar_functions import power
-from mechkin_cli.tape.scalars import is_number
+from mechkin_cli.tape.scalars import as_recorded, is_number
 from mechkin_cli.units import Dimension
 
 _SUM_WORDS = {
@@ -98,15 +98,16 @@ def raise_to_power(site: Site, base: Operand, exponent: Operand) -> Quantity:
 
 def _whole_number(site: Site, base: Operand, exponent: Operand) -> int:
     number: Number | None = exponent.number
-    if number is None or number.value % 1.0 != 0.0:
+    written = 0.5 if number is None else as_recorded(number.value)
+    if number is None or written % 1.0 != 0.0:
         raise site.error(
             f"{base.phrase} can only be raised to a whole number that is written as such",
             "write a root as sqrt(...)",
             exponent,
         )
-    if abs(number.value) > MAX_EXPONENT:
+    if abs(written) > MAX_EXPONENT:
         raise site.error(f"the exponent is {number.text} (limit {MAX_EXPONENT})", None, exponent)
-    return int(number.value)
+    return int(written)
 
 
 def component(site: Site, operand: Operand) -> Quantity:

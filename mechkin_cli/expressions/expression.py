@@ -9,7 +9,6 @@ Example:
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Collection
 from dataclasses import replace
 from typing import NamedTuple
@@ -174,7 +173,7 @@ def _literal(number: Number) -> Quantity:
         value = conversion(number.unit.factor).apply(number.value)
     except UnitError as error:
         raise ExpressionError(error.message, number.offset, error.hint) from None
-    if not math.isfinite(value):
+    if not is_finite(value):
         text = f"{number.text[:MAX_QUOTED]} {number.unit}"
         raise ExpressionError(f"{text} is too large", number.offset)
     if value == 0.0 and number.value != 0.0:

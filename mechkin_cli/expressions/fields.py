@@ -14,7 +14,8 @@ from mechkin_cli.expressions.nodes import Number
 from mechkin_cli.expressions.operand import Operand, Resolve, Site
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Vector
 from mechkin_cli.expressions.tokens import VANISHES, WRITE_ZERO, vanishes
-from mechkin_cli.tape.scalars import is_number
+from mechkin_cli.expressions.written import read
+from mechkin_cli.tape.scalars import is_finite, is_number
 from mechkin_cli.units import Dimension, UnitError, UnitSystem, conversion
 
 _LITERAL = re.compile(
@@ -42,6 +43,12 @@ def literal(text: str) -> float | None:
     return value if math.isfinite(value) and not vanishes(match[2], value) else None
 
 
+def number_of(text: str) -> float | None:
+    """As `literal`, for a number to compute with: it may be a recorded one (`written`)."""
+    value = literal(text)
+    return value if value is None else read(value, "".join(text.split()))
+
+
 def constant(
     text: str, dimension: Dimension, units: UnitSystem, resolve: Resolve = no_names
 ) -> float:
@@ -51,11 +58,11 @@ def constant(
         ExpressionError: the text is no expression, or its value is not one finite number of the
             field's dimension.
     """
-    bare = literal(text)
+    bare = number_of(text)
     if bare is None:
         return _evaluated(parse(text), dimension, units, resolve)
     value = units.to_si(bare, dimension)
-    if not math.isfinite(value):
+    if not is_finite(value):
         raise ExpressionError(f"{text.strip()} {units.label(dimension)} is too large", 0)
     if value == 0.0 and bare != 0.0:
         raise ExpressionError(f"{text.strip()} {units.label(dimension)} {VANISHES}", 0, WRITE_ZERO)
@@ -73,7 +80,7 @@ def constant_in_file_units(
     Raises:
         ExpressionError: as `constant`.
     """
-    bare = literal(text)
+    bare = number_of(text)
     if bare is not None:
         return bare
     expression = parse(text)

@@ -14,6 +14,7 @@ from mechkin_cli.expressions.limits import MAX_DEPTH, MAX_NODES, MAX_QUOTED
 from mechkin_cli.expressions.nodes import Name, Node, Number, Operation
 from mechkin_cli.expressions.number_unit import UnitReader
 from mechkin_cli.expressions.tokens import Token, tokenize, vanishes
+from mechkin_cli.expressions.written import read
 from mechkin_cli.nearest import nearest_hint
 
 _BINDING = {"+": 10, "-": 10, "*": 20, "/": 20, "^": 40, "**": 40}
@@ -110,6 +111,7 @@ class _Parser:
                 token.start,
                 "it would be read as zero; the smallest is about 1e-308",
             )
+        value = read(value, token.text)
         if self.token.kind == "name":
             reader = UnitReader(self.tokens, self.position)
             unit = reader.read()
@@ -122,7 +124,7 @@ class _Parser:
         if self.token.text == "(":
             self.call(token)
         elif token.text == "pi":
-            self.emit(Number(math.pi, None, "pi", token.start))
+            self.emit(Number(read(math.pi, "pi"), None, "pi", token.start))
         elif token.text in FUNCTIONS:
             raise ExpressionError(
                 f"{token.text} is a function", token.start, f"write {token.text}(...)"

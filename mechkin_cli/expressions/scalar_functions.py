@@ -7,11 +7,13 @@ zero and nan rules of numpy's own minimum and maximum depend on the processor.
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mechkin_cli.exact import PI, TURN, Exact
 from mechkin_cli.expressions.quantity import Scalar
 from mechkin_cli.tape import scalars
 from mechkin_cli.tape.scalars import Recorded
@@ -21,7 +23,7 @@ Condition = NDArray[np.bool_] | np.bool_
 # 2 pi in two parts. The first has 22 significant bits, so its product with a whole number of turns
 # below 2^31 is exact; the second is what is left, to 4e-23.
 _TURN_HIGH = 6.283184051513672
-_TURN_LOW = 1.2556659146019252e-06
+_TURN_LOW = Exact(1.2556659146019252e-06, 2 * PI - Fraction(_TURN_HIGH))
 
 
 def square_root(value: Scalar) -> Scalar:
@@ -90,10 +92,10 @@ def wrap(angle: Scalar) -> Scalar:
 
 def _wrapped(angle: Any) -> Any:
     """As `wrap`, for a recorded number."""
-    turns = scalars.whole(angle / math.tau)
+    turns = scalars.whole(angle / TURN)
     turned = (angle - turns * _TURN_HIGH) - turns * _TURN_LOW
-    turned = (turned > math.pi).choose(turned - math.tau, turned)
-    turned = (turned <= -math.pi).choose(turned + math.tau, turned)
+    turned = (turned > math.pi).choose(turned - TURN, turned)
+    turned = (turned <= -math.pi).choose(turned + TURN, turned)
     return (angle > -math.pi).choose((angle <= math.pi).choose(angle, turned), turned)
 
 

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from mechkin_cli.interface.variants import Reduce, Variants
     from mechkin_cli.interface.varied import Base
     from mechkin_cli.mechanism.response import Response
+    from mechkin_cli.solver.precise import Precise
 
 
 class Model:
@@ -102,7 +103,18 @@ class Model:
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
         """
-        return Session(self.problem, self.graph)
+        return Session(self.problem, self.graph).reading(lambda: self.precise)
+
+    @cached_property
+    def precise(self) -> Precise:
+        """The numbers of this model's sessions as the file's text says them, in double-double.
+
+        Raises:
+            TraceLost: a number depends on the text in a way that no tape holds.
+        """
+        from mechkin_cli.building.recording import precise
+
+        return precise(self.built, self.problem)
 
     @property
     def tables(self) -> tuple[TableLayout, ...]:

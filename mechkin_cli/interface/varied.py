@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from mechkin_cli.interface.analysis import Analysis
     from mechkin_cli.interface.variants import Reduce, Variants
     from mechkin_cli.mechanism.response import Response
+    from mechkin_cli.solver.precise import Precise
 
 
 class Base:
@@ -137,7 +138,9 @@ class VariedModel(Model):
     def session(self) -> Session:
         """The mechanism in the kernel."""
         if self._variation is None:
-            return AnewSession(self.problem, self.graph, self._base.model.session, self._between)
+            base = self._base.model.session
+            anew = AnewSession(self.problem, self.graph, base, self._between)
+            return anew.reading(lambda: self.precise)
         varied = VariedSession(self._variation, self._row, self.problem, self._base.start)
         if varied.continued is not None and varied.continued.state is None:
             # the branch ends on the way: the same structure, or another problem?
@@ -146,7 +149,16 @@ class VariedModel(Model):
                 raise InvalidFile([*fresh.problem.diagnostics, fresh.graph])
             if structure_of(fresh.graph) != structure_of(varied.graph):
                 return Session(fresh.problem, fresh.graph)
-        return varied
+        return varied.reading(lambda: self.precise)
+
+    @cached_property
+    def precise(self) -> Precise:
+        """As `Model.precise`; values that were set are the doubles that they are."""
+        from mechkin_cli.building.recording import precise
+
+        known = self._base.model.problem.parameters
+        given = {name: Quantity(v, known[name].dimension) for name, v in self._values.items()}
+        return precise(self.built, self.problem, given)
 
     def _between(self, place: float) -> Session:
         """The session between the file's own parameters (0) and these (1), built anew."""

@@ -15,6 +15,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from mechkin_cli.tape.rows import of_numbers
+from mechkin_cli.tape.scalars import plain
+
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
 
@@ -31,12 +34,14 @@ class Curve(NamedTuple):
     @property
     def first(self) -> float:
         """The smallest x of the table."""
-        return float(self.x[0])
+        first: float = plain(self.x[0])
+        return first
 
     @property
     def last(self) -> float:
         """The largest x of the table."""
-        return float(self.x[-1])
+        last: float = plain(self.x[-1])
+        return last
 
     def evaluate(self, x: Floats) -> Floats:
         """Value and first three derivatives at x (rows,), shape (4, rows).
@@ -73,7 +78,7 @@ def smooth_curve(x: Sequence[float], y: Sequence[float]) -> Curve:
     ]
     end = slopes[-1] + h[-1] * (m[-2] + 2.0 * m[-1]) / 6.0
     pieces.append((y[-1], end, m[-1] / 2.0, pieces[-1][3]))
-    return Curve(np.array(x, dtype=np.float64), np.array(pieces, dtype=np.float64).T.copy())
+    return Curve(of_numbers(map(plain, x)), np.array(pieces).T.copy())
 
 
 def _third(m: list[float], h: list[float], i: int) -> float:

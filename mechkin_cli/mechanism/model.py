@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import pi
 from typing import Literal, NamedTuple
 
+from mechkin_cli.exact import TURN
 from mechkin_cli.mechanism.drives import Drives
 from mechkin_cli.mechanism.elementary import Part, Screw
 from mechkin_cli.mechanism.frames import Frame
@@ -104,7 +104,7 @@ class Joint(NamedTuple):
     @property
     def pitch(self) -> float:
         """Slide per radian of a joint with a lead, in m; 0 without one."""
-        return self.lead / (2.0 * pi)
+        return self.lead / TURN
 
     def unit_of(self, coordinate: str, length: float) -> float:
         """A coordinate (rad, m) per unit of its freedom, whose slides are told in `length` (m)."""

@@ -104,8 +104,13 @@ class Problem:
         if self.response is not None:
             efforts = self.response.efforts_of
             found = catalogue(mechanism, efforts, timed=True, held=self.held)
-            # the rates of forces, and with them jerks, are not known
-            found = {name: known for name, known in found.items() if known.order < 3}
+            # the rates of forces, and with them jerks, are not known; nor is what steps leave of
+            # errors
+            found = {
+                name: known
+                for name, known in found.items()
+                if known.order < 3 and known.kind != "error_bound"
+            }
             # efforts are given here, and linear in nothing
             linear = {name: known for name, known in found.items() if known.kind != "effort"}
             moving = [*self.response.independent, *self.response.driven_at]

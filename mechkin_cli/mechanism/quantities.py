@@ -55,6 +55,7 @@ Kind = Literal[
     "residual",
     "condition",
     "power_error",
+    "error_bound",
     "work",
     "dissipated",
     "energy_error",
@@ -129,7 +130,7 @@ _GROUND: dict[str, tuple[Kind, Dimension]] = {
     "inertia_moment": ("inertia_moment", MOMENT),
 }
 _ENERGIES: tuple[Kind, ...] = ("kinetic_energy", "potential_energy")
-_ROW: tuple[Kind, ...] = ("residual", "condition", "power_error")
+_ROW: tuple[Kind, ...] = ("residual", "condition", "power_error", "error_bound")
 _OF_RESPONSES: dict[Kind, Dimension] = {
     "work": ENERGY,
     "dissipated": ENERGY,

@@ -3,7 +3,7 @@ everywhere."""
 
 from __future__ import annotations
 
-from mechkin_cli.tape.scalars import either, largest, nonzero, square_root
+from mechkin_cli.tape.scalars import by_rounding, either, largest, nonzero, square_root
 from mechkin_cli.tolerances import UNIT_SQUARE
 
 Vector = tuple[float, float, float]
@@ -50,7 +50,8 @@ def unit(a: Vector) -> Vector:
         ZeroDivisionError: a is zero.
     """
     square = dot(a, a)
-    return either(abs(square - 1.0) <= UNIT_SQUARE, lambda: a, lambda: _shortened(a))
+    as_given = by_rounding(abs(square - 1.0) <= UNIT_SQUARE)
+    return either(as_given, lambda: a, lambda: _shortened(a))
 
 
 def _shortened(a: Vector) -> Vector:

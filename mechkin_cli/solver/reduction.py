@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from mechkin_cli.exact import part
 from mechkin_cli.mechanism.elementary import Part
 from mechkin_cli.mechanism.frames import GROUND, frame_about, upright
 from mechkin_cli.mechanism.joint_table import FREE
@@ -111,7 +112,7 @@ def _free_pair(body: str, points: list[Vector]) -> Joint:
     total = ZERO
     for point in points:
         total = add(total, point)
-    middle = scale(1.0 / len(points), total)
+    middle = scale(part(len(points)), total)
     still = upright(middle)
     axes = ((GROUND.x, GROUND.y), (GROUND.y, GROUND.z), (GROUND.z, GROUND.x))
     slides = [frame_about(axis, x, middle) for axis, x in axes]

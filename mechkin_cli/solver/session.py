@@ -26,6 +26,8 @@ from mechkin_cli.solver.inputs import KernelInputs, input_unit, kernel_inputs
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
+    from typing import Self
+
     from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Outputs, Plan
     from mechkin_cli.mechanism.model import Attached
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.demand import Slot
+    from mechkin_cli.solver.precise import Precise
     from mechkin_cli.solver.route import Route, Way
     from mechkin_cli.solver.search import Found, Within
     from mechkin_cli.solver.tie import Tie
@@ -78,6 +81,8 @@ class Session:
         closed_at: closing joints to use instead of the best ones.
         packing: how rows are packed.
 
+    `text` gives the numbers as the file says them, where the problem is that of a file.
+
     Raises:
         UnsolvableGraph: the mechanism cannot be solved as it is driven.
     """
@@ -97,6 +102,7 @@ class Session:
         self.packing = packing
         self.size: float | None = None
         self.continued: Continued | None = None
+        self.text: Callable[[], Precise] | None = None
         self.graph = graph or build_graph(problem.solved_mechanism, self.driven, closed_at)
         self._readouts: dict[object, Readout] = {}
         self._kept: dict[object, object] = {}
@@ -154,9 +160,29 @@ class Session:
         """Whether some loop has more closing equations than unknowns."""
         return is_redundant(self.graph)
 
+    def reading(self, text: Callable[[], Precise]) -> Self:
+        """This session, which now knows where its numbers are written."""
+        self.text = text
+        return self
+
+    @property
+    def precise(self) -> Precise:
+        """What gives this session's constants and inputs in double-double, as the file's text says
+        them: `session.precise.constants(session)`.
+
+        Raises:
+            LookupError: the session is of no file.
+            TraceLost: a number depends on the text in a way that no tape holds.
+        """
+        if self.text is None:
+            raise LookupError("this session is of no file")
+        return self.text()
+
     def of(self, problem: Problem, graph: SolverGraph | None = None) -> Session:
         """A session of another problem with the same choices."""
-        return Session(problem, graph, closed_at=self.closed_at, packing=self.packing)
+        other = Session(problem, graph, closed_at=self.closed_at, packing=self.packing)
+        other.text = self.text
+        return other
 
     def loaded(self, problem: Problem) -> Session:
         """A session of a problem that differs in masses and loads alone: the same states serve."""

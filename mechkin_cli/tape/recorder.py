@@ -17,6 +17,7 @@ from mechkin_cli.tape.operations import ARITY, Operation
 from mechkin_cli.tape.tape import Tape
 
 if TYPE_CHECKING:
+    from mechkin_cli.tape.scalars import Undecided
     from mechkin_cli.tape.traced import Traced
 
 Instruction = tuple[Operation, int, int, int]
@@ -74,6 +75,10 @@ class Recorder:
             found = meaning(condition)(self.values[a], self.values[b]) != 0.0
             self._guards[instruction] = found
         return self._guards[instruction]
+
+    def by_rounding(self, condition: Undecided) -> Undecided:
+        """A condition of this recording on whose ways numbers are the same but for rounding."""
+        return condition
 
     def tape(self, outputs: Iterable[int], *, guarded: bool = True) -> Tape:
         """The tape of some registers, with all guards so far or with none."""

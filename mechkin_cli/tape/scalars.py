@@ -20,6 +20,11 @@ class Recorded:
     __slots__ = ()
     is_row = False
 
+    @property
+    def recorded(self) -> float:
+        """The value when it was recorded."""
+        raise NotImplementedError
+
     def apply(self, operation: str, *others: Any) -> Any:
         """The operation of a name on this number first, then on others."""
         raise NotImplementedError
@@ -42,6 +47,10 @@ class Undecided:
         """The truth value, where no more than a warning hangs on it."""
         raise NotImplementedError
 
+    def by_rounding(self) -> Undecided:
+        """The condition where nothing but rounding lies between its two ways."""
+        return self
+
 
 Result = TypeVar("Result", bound=tuple[Any, ...])
 
@@ -59,6 +68,11 @@ def is_row(value: object) -> bool:
 def plain(value: Any) -> Any:
     """The value as a float, or as the recorded number it is."""
     return value if isinstance(value, Recorded) else float(value)
+
+
+def as_recorded(value: float) -> float:
+    """The number as a float, a recorded one as it was then: for what is no part of a result."""
+    return value.recorded if isinstance(value, Recorded) else value
 
 
 def is_finite(value: float) -> bool:
@@ -124,6 +138,14 @@ def either(
         pairs = zip(chosen(), other(), strict=True)
         return tuple(condition.choose(one, two) for one, two in pairs)
     return chosen() if condition else other()
+
+
+def by_rounding(condition: bool) -> bool:
+    """A condition on whose ways numbers are the same but for rounding: exact ones take the way that
+    does not hold, on which nothing is taken for what it almost is."""
+    if isinstance(condition, Undecided):
+        return condition.by_rounding()
+    return condition
 
 
 def advice(condition: bool) -> bool:

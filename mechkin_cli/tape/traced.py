@@ -42,6 +42,10 @@ class Condition(Undecided):
         found = self.recorder.guard(self.operation, self.left, self.right, advice=True)
         return found is not self.negated
 
+    def by_rounding(self) -> Undecided:
+        """As `Undecided.by_rounding`."""
+        return self.recorder.by_rounding(self)
+
     def choose(self, chosen: float | Traced, other: float | Traced) -> Traced:
         """`chosen` where the condition holds, else `other`."""
         if self.negated:
@@ -186,5 +190,6 @@ def register(recorder: Recorder, value: object) -> int:
             return recorder.constant(value)  # type: ignore[arg-type]
         raise TraceLost("numbers of two recordings meet")
     if isinstance(value, float | int):
-        return recorder.constant(float(value))
+        # an `Exact` keeps what it knows
+        return recorder.constant(value if isinstance(value, float) else float(value))
     raise TraceLost(f"a varied number meets {type(value).__name__}")

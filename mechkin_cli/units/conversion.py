@@ -2,7 +2,7 @@
 
 A factor is a `Fraction`. If it is a double (12 in a foot) values are multiplied by it; if its
 inverse is one (1000 mm in a metre) they are divided by that; a factor of one leaves values
-untouched. Only in the other cases is the factor itself rounded.
+untouched. Only in the other cases is the factor itself rounded; it knows then from what.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from mechkin_cli.exact import Exact
 from mechkin_cli.tolerances import LARGEST_CONVERSION
 from mechkin_cli.units.errors import UnitError
 
@@ -49,6 +50,7 @@ def conversion(factor: Fraction) -> Conversion:
         divisor = _double(1 / factor)
         if factor * Fraction(divisor) == 1:
             return Conversion(1.0, divisor)
+        multiplier = Exact(multiplier, factor)
     return Conversion(multiplier, 1.0)
 
 

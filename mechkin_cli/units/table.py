@@ -11,6 +11,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple
 
+from mechkin_cli.exact import PI as PI
 from mechkin_cli.units.dimension import (
     ACCELERATION,
     ANGLE,
@@ -24,8 +25,6 @@ from mechkin_cli.units.dimension import (
     TIME,
     Dimension,
 )
-
-PI = Fraction(3141592653589793238462643383279502884197169399375105820974945, 10**60)
 
 
 class Unit(NamedTuple):

@@ -10,6 +10,7 @@ from architecture.package import FILES, NAMES, ROOT, imports, room
 BASE = {
     "arrays",
     "diagnostics",
+    "exact",
     "legible",
     "nearest",
     "regular_file",
@@ -93,6 +94,7 @@ WITHIN_ANALYSIS = {
     "assembly": set(),
     "balances": {"derived", "sweep"},
     "dense": {"derived", "sweep"},
+    "errors": {"derived", "sweep"},
     "derived": set(),
     "mobility": {"assembly"},
     "modes": {"assembly"},

@@ -20,7 +20,7 @@ from kernel.test_new_pair import KEPT, python
 import mechkin_cli as mk
 
 ROOT = Path(__file__).parents[2]
-SOURCE = "mechkin_cli/kernel/src/reactions.hpp"
+SOURCE = "mechkin_cli/kernel/src/wrenches.hpp"
 FAULT = (
     "balance.apply_outside(k, force_at(w.pose[k].point(m.centre), Pack(m.mass) * g));",
     "balance.apply_outside(k, force_at(w.pose[k].point(m.centre), Pack(0.5 * m.mass) * g));",

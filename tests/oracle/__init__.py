@@ -1,11 +1,11 @@
-"""An independent oracle for the tests: spatial mechanisms at 40 digits.
+"""An independent oracle for the tests: spatial mechanisms at 60 digits.
 
 It shares nothing with the package: its own reader, the closure as written with poses by matrices,
 rates by truncated Taylor series in time, forces by free-body equations of every link. Nothing here
 uses twists, screws or virtual power.
 
 All values are in the base units of `Mechanism.units` (coherent; see `oracle.units`), angles in
-radians, vectors in ground axes. `mp.dps` (40) sets the digits of everything computed afterwards.
+radians, vectors in ground axes. `mp.dps` (60) sets the digits of everything computed afterwards.
 
 `solve` closes loops of R, P, C, H and S along a tree of joint coordinates; `assemble` takes all
 joints and structures, with six unknowns per link. The two share only vectors and series.

@@ -1,7 +1,7 @@
-"""Positions and rates of mechanisms of any structure at 40 digits.
+"""Positions and rates of mechanisms of any structure at 60 digits.
 
 Newton's method on all constraints with the pseudo-inverse of their matrix in double precision:
-residuals have 40 digits, so each step wins the digits that the matrix has, whatever their number.
+residuals have 60 digits, so each step wins the digits that the matrix has, whatever their number.
 The same matrix solves every order of the Taylor series in time. Redundant equations that agree and
 idle spins (`oracle.idle`) are no obstacle; a motion that is not determined is.
 """

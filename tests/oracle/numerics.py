@@ -1,4 +1,4 @@
-"""Numbers of 40 digits in a context of their own, and linear equations by elimination.
+"""Numbers of 60 digits in a context of their own, and linear equations by elimination.
 
 The context is private, so neither the default precision of mpmath nor another test changes a digit.
 """
@@ -11,7 +11,7 @@ from typing import Any
 from mpmath import MPContext
 
 mp = MPContext()
-mp.dps = 40
+mp.dps = 60
 
 Number = Any  # an mpf of `mp`
 
@@ -23,7 +23,7 @@ class UnsolvableError(ArithmeticError):
 def linear_solve(matrix: Sequence[Sequence[Number]], right: Sequence[Number]) -> list[Number]:
     """Solve `matrix` x = `right`; with more equations than unknowns in the sense of least squares.
 
-    Least squares go through the normal equations: half of the 40 digits remain, and consistent
+    Least squares go through the normal equations: half of the 60 digits remain, and consistent
     equations are solved exactly by the Newton steps around them.
     """
     unknowns = len(matrix[0]) if matrix else 0

@@ -8,7 +8,7 @@ import numpy as np
 
 from mechkin_cli.analysis.response.reasons import reason
 from mechkin_cli.analysis.response.weakest import weakest_coordinates
-from mechkin_cli.analysis.sweep.branch_end import MOST_SHOWN
+from mechkin_cli.analysis.sweep.branch_end import passed_straight_on
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.solver.free_motion import MotionEnd
 from mechkin_cli.solver.inputs import input_numbers, input_text
@@ -70,17 +70,7 @@ def place_numbers(session: Session, state: Floats) -> tuple[Number, ...]:
 def _passed(session: Session, response: Response, report: MotionReport) -> Diagnostic:
     """The branch points that a motion passed straight on."""
     places = [place_numbers(session, np.array(state)) for _, state in report.crossings]
-    shown = [", ".join(map(input_text, numbers)) for numbers in places[:MOST_SHOWN]]
-    more = len(places) - len(shown)
-    return Diagnostic(
-        "branch-point-passed",
-        "note",
-        f"the motion passes {'a branch point' if len(places) == 1 else 'branch points'} along its "
-        "smooth continuation, as assembly: {at_branch_points: straight} asks",
-        response.place,
-        measured="; ".join(shown) + (f" and {more} more" if more else ""),
-        numbers=tuple(number for numbers in places[:MOST_SHOWN] for number in numbers),
-    )
+    return passed_straight_on("motion", places, response.place)
 
 
 def _without_inertia(names: list[str]) -> str:

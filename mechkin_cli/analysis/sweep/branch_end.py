@@ -10,7 +10,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.start import MAY_BE_RIGID
 from mechkin_cli.analysis.sweep.rows import Rows
-from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.diagnostics import Diagnostic, Number, Place
 from mechkin_cli.kernel._kernel import MOST_PATH_STEPS
 from mechkin_cli.solver.branch_limit import BranchPoint, DeadCentre, find_limit
 from mechkin_cli.solver.circuit import Passage, Walker
@@ -65,13 +65,27 @@ def crossing_note(session: Session, followed: Followed) -> Diagnostic:
         input_numbers(session.problem, session.layout, crossing.inputs)
         for crossing in followed.crossings
     ]
+    return passed_straight_on("branch", places)
+
+
+def passed_straight_on(
+    subject: str, places: Sequence[Sequence[Number]], place: Place | None = None
+) -> Diagnostic:
+    """The note that a branch or a motion went straight on through branch points.
+
+    Args:
+        subject: what passed them.
+        places: numbers that tell each branch point.
+        place: of what asked for the motion.
+    """
     shown = [", ".join(map(input_text, numbers)) for numbers in places[:MOST_SHOWN]]
     more = len(places) - len(shown)
     return Diagnostic(
         "branch-point-passed",
         "note",
-        f"the branch passes {'a branch point' if len(places) == 1 else 'branch points'} along its "
-        "smooth continuation, as assembly: {at_branch_points: straight} asks",
+        f"the {subject} passes {'a branch point' if len(places) == 1 else 'branch points'} along "
+        "its smooth continuation, as assembly: {at_branch_points: straight} asks",
+        place,
         measured="; ".join(shown) + (f" and {more} more" if more else ""),
         numbers=tuple(number for numbers in places[:MOST_SHOWN] for number in numbers),
     )

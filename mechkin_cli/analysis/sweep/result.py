@@ -21,6 +21,7 @@ from mechkin_cli.analysis.sweep.admissible import (
     told_anew,
 )
 from mechkin_cli.analysis.sweep.closing_angles import make_continuous
+from mechkin_cli.analysis.sweep.error_bound import error_bound
 from mechkin_cli.analysis.sweep.friction_rows import FrictionRows
 from mechkin_cli.analysis.sweep.read_off import read_off
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
@@ -49,7 +50,7 @@ if TYPE_CHECKING:
 Columns = dict[str, "Floats"]
 """Quantities by name: (1, rows), vectors (3, rows); SI, nan where a row has none."""
 
-ROW_NUMBERS = {f"row.{name}": name for name in ("residual", "condition", "power_error")}
+ROW_NUMBERS = {f"row.{n}": n for n in ("residual", "condition", "power_error", "error_bound")}
 """Verdicts that are numbers, by the names of their quantities."""
 
 
@@ -199,7 +200,7 @@ class Result:
         if name == "power_error" and self._power_error is None:
             demand = forces_demand(self.problem.mechanism) | Demand.VELOCITY | Demand.POWER
             self._store_verdicts(self._evaluated(demand))
-        found: Floats = getattr(self, name)
+        found: Floats = error_bound(self) if name == "error_bound" else getattr(self, name)
         return found
 
     @property
@@ -325,13 +326,7 @@ class Result:
         """Quantities on the stored states, not kept: with other `inputs` (rates), of a session that
         differs in masses and loads alone, or with the reactions of a `shift`."""
         demand |= demand_of((session or self.session).problem.mechanism, wanted)
-        batch = self.run(
-            wanted,
-            demand,
-            session=session,
-            inputs=inputs,
-            shift=shift,
-        )
+        batch = self.run(wanted, demand, session=session, inputs=inputs, shift=shift)
         return self._split(wanted, batch, session or self.session)
 
     def run(

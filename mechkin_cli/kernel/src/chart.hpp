@@ -37,9 +37,8 @@ MECHKIN_INLINE void each_state(const Plan& p, const Block& b, Scalar&& scalar, T
   }
 }
 
-// u(q) - u into r (charts); the largest of them.
-inline Pack chart_residual(const Plan& p, const Block& b, const Chart& chart, const Pack* q, Pack* r) {
-  Pack worst = 0.0;
+// u(q) - u into r (charts).
+inline void chart_equations(const Plan& p, const Block& b, const Chart& chart, const Pack* q, Pack* r) {
   for (int i = 0; i < b.charts; ++i) {
     const Pack* const along = chart.direction + i * p.columns;
     Pack sum = -chart.place[i];
@@ -50,9 +49,7 @@ inline Pack chart_residual(const Plan& p, const Block& b, const Chart& chart, co
           sum += Pack(2.0) * dot(Vec3{along[c], along[c + 1], along[c + 2]}, Vec3{turn.x, turn.y, turn.z});
         });
     r[i] = sum;
-    worst = select(abs(sum) <= worst, worst, abs(sum));  // a NaN wins
   }
-  return worst;
 }
 
 // du/dt = sum of direction_c q'_c; of an orientation d' = vec(omega r) with the turn r from the origin, so that the row's

@@ -3,7 +3,9 @@
 //
 // Each condition has its residual, its Jacobian column for a unit twist of B against A, its second and third derivative
 // and what it transmits: a force at a point, or a moment; d = B.o - A.o. The Jacobian of an equation is the product of
-// its wrench with that twist, exact where the joint is closed. `side` tells an assembly from a false root.
+// its wrench with that twist. `sides` meets what is positive in an assembly and not in a false root. The conditions here hold
+// of the relative pose, and their columns wherever the frames are; a common point and a common orientation:
+// ground_conditions.hpp, relative_conditions.hpp.
 #pragma once
 
 #include "tree_joints.hpp"
@@ -33,7 +35,7 @@ MECHKIN_INLINE Vec3 first_of_d(const Closure& k, const Motion& a, const Motion& 
 MECHKIN_INLINE Vec3 second_of_d(const Closure& k, const Motion& a, const Motion& b) {
   return b.point_acceleration(k.B.o) - a.point_acceleration(k.A.o);
 }
-MECHKIN_INLINE Vec3 third_of_d(const Closure& k, const MotionToJerk& a, const MotionToJerk& b) {
+MECHKIN_APART Vec3 third_of_d(const Closure& k, const MotionToJerk& a, const MotionToJerk& b) {
   return b.point_jerk(k.B.o) - a.point_jerk(k.A.o);
 }
 // Second derivative of axis.d for an axis carried by a link with motion m.
@@ -41,13 +43,13 @@ MECHKIN_INLINE Pack second_along(Vec3 axis, const Motion& m, const Closure& k, c
   return dot(axis, second_of_d(k, a, b)) + Pack(2.0) * dot(m.rate(axis), first_of_d(k, a, b)) +
          dot(m.second_rate(axis), k.d);
 }
-MECHKIN_INLINE Pack third_along(Vec3 axis, const MotionToJerk& m, const Closure& k, const MotionToJerk& a,
-                               const MotionToJerk& b) {
+MECHKIN_APART Pack third_along(Vec3 axis, const MotionToJerk& m, const Closure& k, const MotionToJerk& a,
+                              const MotionToJerk& b) {
   return dot(axis, third_of_d(k, a, b)) + Pack(3.0) * dot(m.rate(axis), second_of_d(k, a, b)) +
          Pack(3.0) * dot(m.second_rate(axis), first_of_d(k, a, b)) + dot(m.third_rate(axis), k.d);
 }
 // Third derivative of x.z for vectors carried by links with motions a and b.
-MECHKIN_INLINE Pack third_of_product(Vec3 x, const MotionToJerk& a, Vec3 z, const MotionToJerk& b) {
+MECHKIN_APART Pack third_of_product(Vec3 x, const MotionToJerk& a, Vec3 z, const MotionToJerk& b) {
   return dot(a.third_rate(x), z) + Pack(3.0) * dot(a.second_rate(x), b.rate(z)) +
          Pack(3.0) * dot(a.rate(x), b.second_rate(z)) + dot(x, b.third_rate(z));
 }
@@ -88,31 +90,14 @@ struct Square { static MECHKIN_INLINE Pack value(const Closure&) { return Pack(0
 template <int COUNT>
 struct LengthCondition {
   static constexpr int equations = COUNT, lengths = COUNT;
-  static MECHKIN_INLINE Mask side(const Closure&) { return all_lanes(true); }
+  template <class Meet>
+  static MECHKIN_INLINE void sides(const Closure&, Meet&&) {}
 };
 template <int COUNT>
 struct DirectionCondition {
   static constexpr int equations = COUNT, lengths = 0;
-  static MECHKIN_INLINE Mask side(const Closure&) { return all_lanes(true); }
-};
-
-// d = 0: a common point, in ground axes.
-struct CommonPoint : LengthCondition<3> {
-  static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = k.d.x, r[1] = k.d.y, r[2] = k.d.z; }
-  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) {
-    const Vec3 v = s.at(k.B.o);
-    r[0] = v.x, r[1] = v.y, r[2] = v.z;
-  }
-  static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
-    const Vec3 d2 = second_of_d(k, a, b);
-    r[0] = d2.x, r[1] = d2.y, r[2] = d2.z;
-  }
-  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
-    const Vec3 d3 = third_of_d(k, a, b);
-    r[0] = d3.x, r[1] = d3.y, r[2] = d3.z;
-  }
-  static MECHKIN_INLINE Vec3 force(const Closure&, const Pack* l) { return {l[0], l[1], l[2]}; }
-  static MECHKIN_INLINE Vec3 point(const Closure& k) { return k.B.o; }
+  template <class Meet>
+  static MECHKIN_INLINE void sides(const Closure&, Meet&&) {}
 };
 
 // u.d = 0: the other link's origin in the plane square to u through the origin of the link that carries u.
@@ -152,35 +137,10 @@ struct ParallelAxes : DirectionCondition<2> {
   static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
     r[0] = third_of_product(k.A.X, a, k.B.Z, b), r[1] = third_of_product(k.A.Y, a, k.B.Z, b);
   }
-  static MECHKIN_INLINE Mask side(const Closure& k) { return dot(k.A.Z, k.B.Z) > Pack(0.0); }
-};
-
-// Equal orientation: the rotation that carries A onto B, as a rotation vector in ground axes. Its skew part alone
-// would vanish at half a turn as well and give false assemblies.
-struct SameOrientation : DirectionCondition<3> {
-  static MECHKIN_INLINE void residual(const Closure& k, Pack* r) {
-    const Vec3 skew = Pack(0.5) * (cross(k.A.X, k.B.X) + cross(k.A.Y, k.B.Y) + cross(k.A.Z, k.B.Z));
-    const Pack c = Pack(0.5) * (dot(k.A.X, k.B.X) + dot(k.A.Y, k.B.Y) + dot(k.A.Z, k.B.Z) - Pack(1.0));
-    const Pack s = sqrt(dot(skew, skew));
-    const Pack angle = atan2(s, c);
-    // at exactly half a turn the axis is lost; any axis keeps the residual at pi
-    const Mask tiny = s < Pack(1e-150);  // just above the root of the least normal double
-    const Vec3 lost = {select(c < Pack(0.0), angle, Pack(0.0)), Pack(0.0), Pack(0.0)};
-    const Vec3 e = select(tiny, lost, (angle / select(tiny, Pack(1.0), s)) * skew);
-    r[0] = e.x, r[1] = e.y, r[2] = e.z;
+  template <class Meet>
+  static MECHKIN_INLINE void sides(const Closure& k, Meet&& meet) {
+    meet(dot(k.A.Z, k.B.Z));
   }
-  static MECHKIN_INLINE void column(const Closure&, Twist s, Pack* r) {
-    r[0] = s.angular.x, r[1] = s.angular.y, r[2] = s.angular.z;
-  }
-  static MECHKIN_INLINE void second(const Closure&, const Motion& a, const Motion& b, Pack* r) {
-    const Vec3 e = b.acceleration.angular - a.acceleration.angular;
-    r[0] = e.x, r[1] = e.y, r[2] = e.z;
-  }
-  static MECHKIN_INLINE void third(const Closure&, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
-    const Vec3 e = b.jerk.angular - a.jerk.angular;
-    r[0] = e.x, r[1] = e.y, r[2] = e.z;
-  }
-  static MECHKIN_INLINE Vec3 moment(const Closure&, const Pack* l) { return {l[0], l[1], l[2]}; }
 };
 
 // z_A.z_B keeps its cosine.

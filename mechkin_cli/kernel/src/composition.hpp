@@ -18,7 +18,8 @@ struct Conditions<> {
   static MECHKIN_INLINE void column(const Closure&, Twist, Pack*) {}
   static MECHKIN_INLINE void second(const Closure&, const Motion&, const Motion&, Pack*) {}
   static MECHKIN_INLINE void third(const Closure&, const MotionToJerk&, const MotionToJerk&, Pack*) {}
-  static MECHKIN_INLINE Mask side(const Closure&) { return all_lanes(true); }
+  template <class Meet>
+  static MECHKIN_INLINE void sides(const Closure&, Meet&&) {}
   static MECHKIN_INLINE void add_force(const Closure&, const Pack*, Vec3&) {}
   static MECHKIN_INLINE void add_moment(const Closure&, const Pack*, Wrench&) {}
 };
@@ -46,7 +47,11 @@ struct Conditions<One, Rest...> {
     One::third(k, a, b, r);
     Others::third(k, a, b, r + count);
   }
-  static MECHKIN_INLINE Mask side(const Closure& k) { return One::side(k) & Others::side(k); }
+  template <class Meet>
+  static MECHKIN_INLINE void sides(const Closure& k, Meet&& meet) {
+    One::sides(k, meet);
+    Others::sides(k, meet);
+  }
   static MECHKIN_INLINE Wrench wrench(const Closure& k, const Pack* l) {
     static_assert(One::lengths > 0, "a pair holds some length, the first condition says at which point");
     Vec3 force = One::force(k, l);

@@ -2,6 +2,14 @@
 // exp, log, pow. They stand in for the C library's, whose bits change with the machine.
 #pragma once
 
-#include "exponential.hpp"
-#include "inverse_trigonometric.hpp"
-#include "trigonometric.hpp"
+#include "pack.hpp"
+
+#if MECHKIN_ARITHMETIC == MECHKIN_DOUBLE_DOUBLE
+#include "arithmetic/double_double_functions.hpp"
+#elif MECHKIN_ARITHMETIC == MECHKIN_INTERVALS
+#include "arithmetic/interval_functions.hpp"
+#else
+#include "arithmetic/exponential.hpp"
+#include "arithmetic/inverse_trigonometric.hpp"
+#include "arithmetic/trigonometric.hpp"
+#endif

@@ -1,7 +1,7 @@
 // The elementary functions over arrays.
 #pragma once
 
-#include "elementary.hpp"
+#include "elementary_apart.hpp"
 #include "operations.hpp"
 
 namespace {
@@ -25,16 +25,16 @@ void apply(const Function& function, const double* x, const double* y, double* o
 // x, y, out: n numbers each; functions of one argument don't look at y. An unknown operation leaves NaN.
 void elementwise(int operation, const double* x, const double* y, double* out, long n) {
   switch (operation) {
-    case OPERATION_SIN: return apply([](Pack a, Pack) { return sin(a); }, x, y, out, n);
-    case OPERATION_COS: return apply([](Pack a, Pack) { return cos(a); }, x, y, out, n);
-    case OPERATION_TAN: return apply([](Pack a, Pack) { return tan(a); }, x, y, out, n);
-    case OPERATION_ASIN: return apply([](Pack a, Pack) { return asin(a); }, x, y, out, n);
-    case OPERATION_ACOS: return apply([](Pack a, Pack) { return acos(a); }, x, y, out, n);
-    case OPERATION_ATAN: return apply([](Pack a, Pack) { return atan(a); }, x, y, out, n);
-    case OPERATION_ATAN2: return apply([](Pack a, Pack b) { return atan2(a, b); }, x, y, out, n);
-    case OPERATION_EXP: return apply([](Pack a, Pack) { return exp(a); }, x, y, out, n);
-    case OPERATION_LOG: return apply([](Pack a, Pack) { return log(a); }, x, y, out, n);
-    case OPERATION_POWER: return apply([](Pack a, Pack b) { return pow(a, b); }, x, y, out, n);
+    case OPERATION_SIN: return apply([](Pack a, Pack) { return apart::sin(a); }, x, y, out, n);
+    case OPERATION_COS: return apply([](Pack a, Pack) { return apart::cos(a); }, x, y, out, n);
+    case OPERATION_TAN: return apply([](Pack a, Pack) { return apart::tan(a); }, x, y, out, n);
+    case OPERATION_ASIN: return apply([](Pack a, Pack) { return apart::asin(a); }, x, y, out, n);
+    case OPERATION_ACOS: return apply([](Pack a, Pack) { return apart::acos(a); }, x, y, out, n);
+    case OPERATION_ATAN: return apply([](Pack a, Pack) { return apart::atan(a); }, x, y, out, n);
+    case OPERATION_ATAN2: return apply([](Pack a, Pack b) { return apart::atan2(a, b); }, x, y, out, n);
+    case OPERATION_EXP: return apply([](Pack a, Pack) { return apart::exp(a); }, x, y, out, n);
+    case OPERATION_LOG: return apply([](Pack a, Pack) { return apart::log(a); }, x, y, out, n);
+    case OPERATION_POWER: return apply([](Pack a, Pack b) { return apart::pow(a, b); }, x, y, out, n);
   }
   for (long i = 0; i < n; ++i) out[i] = __builtin_nan("");
 }

@@ -5,7 +5,7 @@
 // is solved without them and for a unit of each, then the small system of the forces (friction_solver.hpp).
 #pragma once
 
-#include "exponential.hpp"
+#include "elementary.hpp"
 #include "friction_solver.hpp"
 #include "reactions.hpp"
 

@@ -5,62 +5,10 @@
 // With input rates 1 and accelerations 0 the results are the first and second influence coefficients.
 #pragma once
 
+#include "moving.hpp"
 #include "position.hpp"
 
 namespace {
-
-MECHKIN_INLINE Motion motion_of(const Workspace& w, int link) {
-  if (link < 0) return {zero_twist(), zero_twist()};
-  return w.motion[link];
-}
-
-// Twist and spatial acceleration of the link of tree joint k from its parent's:
-// V = V_p + S q', V' = V_p' + S q'' + [V_p, S q'].
-inline void move_link(const Plan& p, Workspace& w, int k, bool second) {
-  const TreeJoint& j = p.joints[k];
-  const Motion parent = motion_of(w, j.parent);
-  if (j.type == TREE_L) {
-    const Leg& leg = p.leg[j.leg];
-    const Vec3 A = w.pose[k].o, B = carried_point(w, leg.second, leg.point);
-    w.motion[k] = leg_motion(A, B, parent, motion_of(w, leg.second), second);
-    return;
-  }
-  Twist relative = zero_twist(), relative_second = zero_twist();
-  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-    for (int i = 0; i < entry.freedoms; ++i) {
-      relative += w.rate[j.column + i] * w.screw[j.column + i];
-      if (second) relative_second += w.acceleration[j.column + i] * w.screw[j.column + i];
-    }
-  });
-  w.motion[k].velocity = parent.velocity + relative;
-  if (second)
-    w.motion[k].acceleration = parent.acceleration + relative_second + bracket(parent.velocity, relative);
-}
-
-// Right-hand side -J q' over the loop's columns that are already known.
-inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* right) {
-  const Block& b = p.block[index];
-  for (int c = b.closing_begin; c < b.closing_end; ++c) {
-    const ClosingJoint& j = p.closing[c];
-    const Closure& k = w.closure[c];
-    Twist a = zero_twist();
-    for (int l = j.loop_begin; l < j.loop_end; ++l) {
-      const TreeJoint& t = p.joints[p.loop[l].joint];
-      const Pack sign = p.loop[l].sign;
-      with_tree_joint(t.type, [&](auto entry) __attribute__((always_inline)) {
-        for (int i = 0; i < entry.freedoms; ++i)
-          if (unknown_index(p, index, t.column + i) < 0)
-            a += (sign * w.rate[t.column + i]) * w.screw[t.column + i];
-      });
-    }
-    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-      Pack r[MAX_CLOSING_ROWS];
-      entry.column(k, a, r);
-      for (int i = 0; i < entry.equations; ++i) right[j.row + i] = -r[i];
-    });
-  }
-  for (int i = 0; i < b.charts; ++i) right[b.rows - b.charts + i] = w.place_rate[i];
-}
 
 inline void block_velocities(const Plan& p, Workspace& w, int index) {
   const Block& b = p.block[index];
@@ -69,20 +17,6 @@ inline void block_velocities(const Plan& p, Workspace& w, int index) {
   at.solve_equations(w.right);
   for (int u = 0; u < b.size; ++u) w.rate[p.unknown[b.column_begin + u]] = w.right[u];
   for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], false);
-}
-
-// Second derivatives of a block's closing equations, negative, into w.right: as the links move.
-inline void second_of_equations(const Plan& p, Workspace& w, const Block& b) {
-  for (int c = b.closing_begin; c < b.closing_end; ++c) {
-    const ClosingJoint& j = p.closing[c];
-    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-      Pack r[MAX_CLOSING_ROWS];
-      entry.second(w.closure[c], motion_of(w, j.first), motion_of(w, j.second), r);
-      for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];
-    });
-    if (j.slide >= 0) w.right[j.row] += Pack(j.slide_sign) * w.acceleration[p.joints[j.slide].column];
-  }
-  if (b.charts) chart_second(p, b, w.chart(), w.q, w.rate, w.right + b.rows - b.charts);
 }
 
 // First with the block's unknown second derivatives at zero, which leaves the convective part of the
@@ -96,35 +30,6 @@ inline void block_accelerations(const Plan& p, Workspace& w, int index) {
   at.solve_equations(w.right);
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = w.right[u];
   for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
-}
-
-// A link's motion with its jerk.
-MECHKIN_INLINE MotionToJerk motion_to_jerk(const Workspace& w, int link) {
-  if (link < 0) return {{zero_twist(), zero_twist()}, zero_twist()};
-  return {w.motion[link], w.link_jerk[link]};
-}
-
-// V'' = V_p'' + S q''' + 2 [V_p, S q''] + [V_p', S q'] + [V_p, [V_p, S q']], since S' = [V_p, S].
-inline void jerk_link(const Plan& p, Workspace& w, int k) {
-  const TreeJoint& j = p.joints[k];
-  const MotionToJerk parent = motion_to_jerk(w, j.parent);
-  if (j.type == TREE_L) {
-    const Leg& leg = p.leg[j.leg];
-    const Vec3 A = w.pose[k].o, B = carried_point(w, leg.second, leg.point);
-    w.link_jerk[k] = leg_jerk(A, B, w.motion[k], parent, motion_to_jerk(w, leg.second));
-    return;
-  }
-  Twist first = zero_twist(), second = zero_twist(), third = zero_twist();
-  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-    for (int i = 0; i < entry.freedoms; ++i) {
-      const Twist s = w.screw[j.column + i];
-      first += w.rate[j.column + i] * s;
-      second += w.acceleration[j.column + i] * s;
-      third += w.jerk[j.column + i] * s;
-    }
-  });
-  w.link_jerk[k] = parent.jerk + third + Pack(2.0) * bracket(parent.velocity, second) +
-                   bracket(parent.acceleration, first) + bracket(parent.velocity, bracket(parent.velocity, first));
 }
 
 // As block_accelerations, one order higher.

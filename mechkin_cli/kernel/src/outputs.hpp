@@ -12,7 +12,9 @@ struct Writer {
   int count;
   MECHKIN_INLINE Writer to(double* other) const { return {other, rows, row, count}; }
   MECHKIN_INLINE void put(long slot, Pack x) const {
-    double* at = base + slot * rows + row;
+    for (int k = 0; k < PARTS; ++k) put_part(base + (PARTS * slot + k) * rows + row, part_of(x, k));
+  }
+  MECHKIN_INLINE void put_part(double* at, Real x) const {
     if (count == LANES) return store(at, x);
     for (int i = 0; i < count; ++i) at[i] = lane(x, i);
   }

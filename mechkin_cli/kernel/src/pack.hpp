@@ -1,115 +1,51 @@
-// A pack: W doubles that march together (rows of a sweep, starts of a search, variants of a study).
+// The scalar of a compiled unit: `Pack`, one number of each lane in the arithmetic that the build names.
 //
-// Everything numeric in the kernel is written once for `Pack` and `Mask` and compiled once per
-// instruction set, inside an anonymous namespace, so that no symbol of a wide unit can be linked
-// into a narrow one. Only IEEE + - * / sqrt, comparisons and bit operations occur, each lane on its
-// own: a lane's bits depend neither on its neighbours nor on the width.
+// Everything numeric in the kernel is written once for `Pack` and `Mask`, inside an anonymous namespace, so that no symbol
+// of one unit can be linked into another. Without MECHKIN_ARITHMETIC a unit computes in doubles (`Real`), and what is
+// inherently of doubles (bits, error-free transformations) says `Real` in every unit.
 //
-// MECHKIN_LANES (2, 4, 8) is set by the build. A pack is a compiler vector of GCC or Clang.
+//   MECHKIN_DOUBLES        Real: + - * / sqrt of IEEE (arithmetic/doubles.hpp)
+//   MECHKIN_DOUBLE_DOUBLE  DoubleDouble: high and low (arithmetic/double_double.hpp)
+//   MECHKIN_INTERVALS      Interval: midpoint and radius (arithmetic/interval.hpp)
+//
+// A number of PARTS parts takes PARTS consecutive rows of an array: part i of number k of a row stands at
+// [(PARTS * k + i) * rows + row].
 #pragma once
 
-#include <cstdint>
-#include <cstring>
-
-#ifndef MECHKIN_LANES
-#error "MECHKIN_LANES must be defined by the build (2, 4 or 8)"
+#define MECHKIN_DOUBLES 0
+#define MECHKIN_DOUBLE_DOUBLE 1
+#define MECHKIN_INTERVALS 2
+#ifndef MECHKIN_ARITHMETIC
+#define MECHKIN_ARITHMETIC MECHKIN_DOUBLES
 #endif
+// Whether numbers are sets of numbers, which are not compared: such units evaluate alone.
+#define MECHKIN_ENCLOSES (MECHKIN_ARITHMETIC >= MECHKIN_INTERVALS)
 
-#if !defined(__GNUC__)
-#error "the kernel needs the vector extensions of GCC >= 11 or Clang >= 16"
+#if MECHKIN_ARITHMETIC == MECHKIN_DOUBLE_DOUBLE
+#include "arithmetic/double_double.hpp"
+#elif MECHKIN_ARITHMETIC == MECHKIN_INTERVALS
+#include "arithmetic/interval.hpp"
+#else
+#include "arithmetic/doubles.hpp"
 #endif
-#define MECHKIN_INLINE inline __attribute__((always_inline))
 
 namespace {
 
-constexpr int LANES = MECHKIN_LANES;
-
-typedef double Doubles __attribute__((vector_size(8 * LANES)));
-typedef std::int64_t Words __attribute__((vector_size(8 * LANES)));
-typedef std::uint64_t Naturals __attribute__((vector_size(8 * LANES)));
-
-// All bits set in a lane: true.
-struct Mask {
-  Words w;
-  friend MECHKIN_INLINE Mask operator&(Mask a, Mask b) { return {a.w & b.w}; }
-  friend MECHKIN_INLINE Mask operator|(Mask a, Mask b) { return {a.w | b.w}; }
-  friend MECHKIN_INLINE Mask operator~(Mask a) { return {~a.w}; }
-};
-
-struct Pack {
-  Doubles v;
-  Pack() = default;
-  MECHKIN_INLINE Pack(Doubles x) : v(x) {}
-  MECHKIN_INLINE Pack(double x) : v(x - Doubles{}) {}
-
-  friend MECHKIN_INLINE Pack operator+(Pack a, Pack b) { return a.v + b.v; }
-  friend MECHKIN_INLINE Pack operator-(Pack a, Pack b) { return a.v - b.v; }
-  friend MECHKIN_INLINE Pack operator*(Pack a, Pack b) { return a.v * b.v; }
-  friend MECHKIN_INLINE Pack operator/(Pack a, Pack b) { return a.v / b.v; }
-  friend MECHKIN_INLINE Pack operator-(Pack a) { return -a.v; }
-  MECHKIN_INLINE Pack& operator+=(Pack b) { v += b.v; return *this; }
-  MECHKIN_INLINE Pack& operator-=(Pack b) { v -= b.v; return *this; }
-  MECHKIN_INLINE Pack& operator*=(Pack b) { v *= b.v; return *this; }
-
-  friend MECHKIN_INLINE Mask operator<(Pack a, Pack b) { return {(Words)(a.v < b.v)}; }
-  friend MECHKIN_INLINE Mask operator<=(Pack a, Pack b) { return {(Words)(a.v <= b.v)}; }
-  friend MECHKIN_INLINE Mask operator>(Pack a, Pack b) { return {(Words)(a.v > b.v)}; }
-  friend MECHKIN_INLINE Mask operator>=(Pack a, Pack b) { return {(Words)(a.v >= b.v)}; }
-  friend MECHKIN_INLINE Mask operator==(Pack a, Pack b) { return {(Words)(a.v == b.v)}; }
-};
-
-MECHKIN_INLINE Pack load(const double* p) {
-  Doubles v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
-}
-MECHKIN_INLINE void store(double* p, Pack x) { std::memcpy(p, &x.v, sizeof x.v); }
-MECHKIN_INLINE double lane(Pack x, int i) { return x.v[i]; }
-MECHKIN_INLINE bool lane(Mask m, int i) { return m.w[i] != 0; }
-
-// c ? a : b, lane by lane.
-MECHKIN_INLINE Pack select(Mask c, Pack a, Pack b) {
-  return (Doubles)(((Words)a.v & c.w) | ((Words)b.v & ~c.w));
-}
-MECHKIN_INLINE Pack abs(Pack a) { return (Doubles)((Words)a.v & (Words{} + INT64_MAX)); }
-MECHKIN_INLINE Pack max(Pack a, Pack b) { return select(a > b, a, b); }
-MECHKIN_INLINE Pack min(Pack a, Pack b) { return select(a < b, a, b); }
-// The bits of each lane as an integer, and back.
-MECHKIN_INLINE Words bits(Pack a) { return (Words)a.v; }
-MECHKIN_INLINE Pack from_bits(Words w) { return (Doubles)w; }
-// Sum and difference of the bits' integers, which wrap.
-MECHKIN_INLINE Words plus(Words a, Words b) { return (Words)((Naturals)a + (Naturals)b); }
-MECHKIN_INLINE Words minus(Words a, Words b) { return (Words)((Naturals)a - (Naturals)b); }
-MECHKIN_INLINE Words shift_left(Words w, int count) { return (Words)((Naturals)w << count); }
-// Logical shift: the only right shift of 64-bit lanes that every instruction set has.
-MECHKIN_INLINE Words shift_right(Words w, int count) {
-  return (Words)((Naturals)w >> count);
-}
-// 1.5 * 2^52: adding it rounds to the nearest integer and leaves that integer in the lowest bits.
-constexpr double ROUNDER = 0x1.8p52;
-// For |a| < 2^51, ties to even.
-MECHKIN_INLINE Pack nearest_integer(Pack a) { return (a + Pack(ROUNDER)) - Pack(ROUNDER); }
-// |a| with the sign of b.
-MECHKIN_INLINE Pack copysign(Pack a, Pack b) {
-  const Words sign = Words{} + INT64_MIN;
-  return (Doubles)(((Words)a.v & ~sign) | ((Words)b.v & sign));
-}
-// Correctly rounded; the loop becomes one vector instruction.
-MECHKIN_INLINE Pack sqrt(Pack a) {
-  Doubles r;
-  for (int i = 0; i < LANES; ++i) r[i] = __builtin_sqrt(a.v[i]);
-  return r;
-}
-MECHKIN_INLINE Mask all_lanes(bool value) { return {Words{} - (std::int64_t)value}; }
-MECHKIN_INLINE bool any(Mask m) {
-  std::int64_t r = 0;
-  for (int i = 0; i < LANES; ++i) r |= m.w[i];
-  return r != 0;
-}
-MECHKIN_INLINE bool all(Mask m) {
-  std::int64_t r = -1;
-  for (int i = 0; i < LANES; ++i) r &= m.w[i];
-  return r != 0;
-}
+#if MECHKIN_ARITHMETIC == MECHKIN_DOUBLE_DOUBLE
+using Pack = DoubleDouble;
+constexpr int PARTS = 2;
+MECHKIN_INLINE Pack from_parts(const Real* part) { return {part[0], part[1]}; }
+MECHKIN_INLINE Real part_of(Pack a, int i) { return i ? a.low : a.high; }
+#elif MECHKIN_ARITHMETIC == MECHKIN_INTERVALS
+using Pack = Interval;
+constexpr int PARTS = 2;
+MECHKIN_INLINE Pack from_parts(const Real* part) { return {part[0], part[1]}; }
+MECHKIN_INLINE Real part_of(Pack a, int i) { return i ? a.radius : a.midpoint; }
+#else
+using Pack = Real;
+constexpr int PARTS = 1;
+MECHKIN_INLINE Pack from_parts(const Real* part) { return part[0]; }
+MECHKIN_INLINE Real part_of(Pack a, int) { return a; }
+#endif
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace {
 
 // axis.d and its derivatives, for an axis carried by a link with motion m.
-MECHKIN_INLINE void along(Vec3 axis, const MotionToJerk& m, const Closure& k, const PairMotion& p, Pack* out) {
+MECHKIN_APART void along(Vec3 axis, const MotionToJerk& m, const Closure& k, const PairMotion& p, Pack* out) {
   out[0] = dot(axis, k.d);
   if (p.order < 1) return;
   out[1] = dot(axis, first_of_d(k, p.a, p.b)) + dot(m.rate(axis), k.d);
@@ -16,7 +16,7 @@ MECHKIN_INLINE void along(Vec3 axis, const MotionToJerk& m, const Closure& k, co
   out[3] = third_along(axis, m, k, p.a, p.b);
 }
 // Angle of B.X against A.X about the common axis, and its derivatives.
-MECHKIN_INLINE void about(const Closure& k, const PairMotion& p, Pack* out) {
+MECHKIN_APART void about(const Closure& k, const PairMotion& p, Pack* out) {
   out[0] = atan2(dot(k.A.Y, k.B.X), dot(k.A.X, k.B.X));
   if (p.order < 1) return;
   out[1] = dot(k.A.Z, p.relative_omega());
@@ -29,7 +29,7 @@ MECHKIN_INLINE void about(const Closure& k, const PairMotion& p, Pack* out) {
 
 // Turns about z_A, fixed in the first link, and then about z_B, fixed in the second; x_A = x_B square to both at home:
 // B = Rz(theta1) Rx(angle of the axes) Rz(theta2). Rates from the dual basis of the two axes.
-MECHKIN_INLINE void of_two_turns(const Closure& k, Pack c, const PairMotion& p, int turn, Pack* out) {
+MECHKIN_APART void of_two_turns(const Closure& k, Pack c, const PairMotion& p, int turn, Pack* out) {
   const Pack scale = Pack(1.0) / (Pack(1.0) - c * c);
   const Pose &A = k.A, &B = k.B;
   out[0] = turn == 0 ? atan2(dot(A.X, B.Z), -dot(A.Y, B.Z)) : atan2(dot(B.X, A.Z), dot(B.Y, A.Z));

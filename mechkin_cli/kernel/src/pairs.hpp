@@ -5,6 +5,12 @@
 
 #include "composition.hpp"
 
+#if MECHKIN_ENCLOSES
+#include "relative_conditions.hpp"
+#else
+#include "ground_conditions.hpp"
+#endif
+
 namespace {
 
 struct Revolute : Pair<Conditions<CommonPoint, ParallelAxes>, Coordinates<About>> {

@@ -1,55 +1,15 @@
-// Poses of the links and the closure of the loops, block by block, by Newton's method.
+// The closure of the loops, block by block, by Newton's method.
 //
 // A lane runs until its residual is at rounding level (`tight`) or its last step was so short that what it left is
 // below rounding (`coarse`, quadratic convergence). A finished lane is
 // frozen, so its bits do not depend on its neighbours.
 #pragma once
 
-#include "workspace.hpp"
+#include "advance.hpp"
+#include "factors.hpp"
+#include "placing.hpp"
 
 namespace {
-
-MECHKIN_INLINE const Pose* pose_of(const Workspace& w, int link) { return link < 0 ? nullptr : &w.pose[link]; }
-
-template <class Number>
-MECHKIN_INLINE Vec3 carried_point(const Workspace& w, int link, const Number* at) {
-  return link < 0 ? constant(at) : w.pose[link].point(at);
-}
-template <class Number>
-MECHKIN_INLINE Vec3 carried_vector(const Workspace& w, int link, const Number* a) {
-  return link < 0 ? constant(a) : w.pose[link].vector(a);
-}
-
-inline void place_joint(const Plan& p, Workspace& w, int k) {
-  const TreeJoint& j = p.joints[k];
-  Pose pose = placed(j.at, pose_of(w, j.parent));
-  if (j.type == TREE_L) {
-    const Leg& leg = p.leg[j.leg];
-    aim(pose, leg, carried_point(w, leg.second, leg.point));
-    w.pose[k] = pose;
-    return;
-  }
-  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) { entry.place(pose, j, w.q + j.state); });
-  w.pose[k] = pose;
-}
-
-inline void find_screws(const Plan& p, Workspace& w, int k) {
-  const TreeJoint& j = p.joints[k];
-  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-    entry.screws(w.pose[k], j, pose_of(w, j.parent), w.screw + j.column);
-  });
-}
-
-MECHKIN_INLINE Closure closure_of(const Plan& p, const Workspace& w, int c) {
-  const ClosingJoint& j = p.closing[c];
-  Closure k;
-  k.A = placed(j.on_first, pose_of(w, j.first));
-  k.B = placed(j.on_second, pose_of(w, j.second));
-  k.d = k.B.o - k.A.o;
-  k.parameter = j.parameter;
-  if (j.slide >= 0) k.parameter += Pack(j.slide_sign) * w.q[p.joints[j.slide].state];
-  return k;
-}
 
 // The largest closing equation, lengths in parts of the size; `test` the same with the lengths of a loop that reaches
 // farther than the size in parts of its reach, since coordinates round by their own size. That one is held against the
@@ -72,23 +32,17 @@ inline Pack block_reach(const Plan& p, const Workspace& w, const Block& b) {
 inline Residual block_residual(const Plan& p, Workspace& w, const Block& b) {
   Residual worst = {Pack(0.0), Pack(0.0)};
   const Pack per_reach = Pack(1.0) / max(Pack(1.0), Pack(p.row_weight) * block_reach(p, w, b));
-  for (int c = b.closing_begin; c < b.closing_end; ++c) {
-    const ClosingJoint& j = p.closing[c];
-    w.closure[c] = closure_of(p, w, c);
-    Pack* r = w.right + j.row;
-    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-      entry.residual(w.closure[c], r);
-      for (int i = 0; i < entry.equations; ++i) {
-        const bool length = i < entry.lengths;
-        const Pack size = length ? Pack(p.row_weight) * abs(r[i]) : abs(r[i]);
-        const Pack test = length ? per_reach * size : size;
-        worst.size = select(size <= worst.size, worst.size, size);  // a NaN wins
-        worst.test = select(test <= worst.test, worst.test, test);
-      }
-    });
-  }
-  if (b.charts) {
-    const Pack off = chart_residual(p, b, w.chart(), w.q, w.right + b.rows - b.charts);
+  closing_equations(p, w, b, [&](auto entry, const Pack* r) __attribute__((always_inline)) {
+    for (int i = 0; i < entry.equations; ++i) {
+      const bool length = i < entry.lengths;
+      const Pack size = length ? Pack(p.row_weight) * abs(r[i]) : abs(r[i]);
+      const Pack test = length ? per_reach * size : size;
+      worst.size = select(size <= worst.size, worst.size, size);  // a NaN wins
+      worst.test = select(test <= worst.test, worst.test, test);
+    }
+  });
+  for (int i = b.rows - b.charts; i < b.rows; ++i) {
+    const Pack off = abs(w.right[i]);
     worst.test = select(off <= worst.test, worst.test, off);
   }
   return worst;
@@ -98,24 +52,9 @@ inline Mask block_side_conditions(const Plan& p, const Workspace& w, const Block
   Mask good = all_lanes(true);
   for (int c = b.closing_begin; c < b.closing_end; ++c)
     with_closing_joint(p.closing[c].type, [&](auto entry) __attribute__((always_inline)) {
-      good = good & entry.side(w.closure[c]);
+      entry.sides(w.closure[c], [&](Pack side) { good = good & (side > Pack(0.0)); });
     });
   return good;
-}
-
-// Entries of the columns of tree joint k in the equations of closing joint c.
-MECHKIN_INLINE void closing_columns(const Plan& p, const Workspace& w, int c, const LoopEntry& e, Pack* out) {
-  const TreeJoint& t = p.joints[e.joint];
-  const Closure& k = w.closure[c];
-  const Pack sign = e.sign;
-  with_tree_joint(t.type, [&](auto tree) __attribute__((always_inline)) {
-    for (int i = 0; i < tree.freedoms; ++i) {
-      const Twist s = sign * w.screw[t.column + i];
-      with_closing_joint(p.closing[c].type, [&](auto entry) __attribute__((always_inline)) {
-        entry.column(k, s, out + i * MAX_CLOSING_ROWS);
-      });
-    }
-  });
 }
 
 // A block's matrices and their factors.
@@ -144,49 +83,6 @@ inline BlockMatrices matrices_of(const Plan& p, const Workspace& w, int block) {
   return r;
 }
 
-// Position of a column among the unknowns of a block, or -1.
-MECHKIN_INLINE int unknown_index(const Plan& p, int block, int column) {
-  return p.column_block[column] == block ? p.column_place[column] : -1;
-}
-
-// Jacobian of a block's equations with respect to its unknowns (rows x size, row-major).
-inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
-  const Block& b = p.block[index];
-  const int n = b.size;
-  for (int c = b.closing_begin; c < b.closing_end; ++c) {
-    const ClosingJoint& j = p.closing[c];
-    int equations = 0;
-    with_closing_joint(j.type, [&](auto entry) { equations = entry.equations; });
-    for (int u = 0; u < n; ++u)
-      for (int i = 0; i < equations; ++i) a[(j.row + i) * n + u] = 0.0;
-    for (int l = j.loop_begin; l < j.loop_end; ++l) {
-      const TreeJoint& t = p.joints[p.loop[l].joint];
-      int freedoms = 0;
-      with_tree_joint(t.type, [&](auto tree) { freedoms = tree.freedoms; });
-      bool needed = false;
-      for (int f = 0; f < freedoms; ++f) needed = needed || unknown_index(p, index, t.column + f) >= 0;
-      if (!needed) continue;
-      Pack entry[3 * MAX_CLOSING_ROWS];
-      closing_columns(p, w, c, p.loop[l], entry);
-      for (int f = 0; f < freedoms; ++f) {
-        const int u = unknown_index(p, index, t.column + f);
-        if (u < 0) continue;
-        for (int i = 0; i < equations; ++i) a[(j.row + i) * n + u] = entry[f * MAX_CLOSING_ROWS + i];
-      }
-    }
-  }
-  if (!b.charts) return;
-  Pack* const rows = a + (b.rows - b.charts) * n;
-  for (int e = 0; e < b.charts * n; ++e) rows[e] = 0.0;
-  chart_rows(p, b, w.chart(), w.q, [&](int i, int column, Pack x) {
-    const int u = unknown_index(p, index, column);
-    if (u >= 0) rows[i * n + u] = x;
-  });
-}
-
-inline void place_block(const Plan& p, Workspace& w, const Block& b) {
-  for (int o = b.joint_begin; o < b.joint_end; ++o) place_joint(p, w, p.order[o]);
-}
 // The joints that Newton moves, which are placed anew in each of its steps; inputs and what they carry stand still.
 inline void find_moving(const Plan& p, Workspace& w) {
   for (int k = 0; k < p.links; ++k) w.moves[k] = false;
@@ -210,10 +106,6 @@ inline void moving_screws(const Plan& p, Workspace& w, const Block& b) {
   for (int o = b.joint_begin; o < b.joint_end; ++o)
     if (w.moves[p.order[o]]) find_screws(p, w, p.order[o]);
 }
-inline void block_screws(const Plan& p, Workspace& w, const Block& b) {
-  for (int o = b.joint_begin; o < b.joint_end; ++o) find_screws(p, w, p.order[o]);
-}
-
 // Moves the states of a block by the increments of its unknowns.
 inline void advance_block(const Plan& p, Workspace& w, int index, const Pack* step, Mask moving) {
   const Block& b = p.block[index];
@@ -241,37 +133,41 @@ inline void advance_block(const Plan& p, Workspace& w, int index, const Pack* st
 // matters to threads and slides that have gone far and is taken where reach alone does not do; lanes are told apart by
 // their own values. w.right, w.closure and the poses are those of the place; screws are made here, for those in the
 // workspace may be of a place before.
-inline Pack residual_with_rounding(const Plan& p, const Workspace& w, const Block& b, double accept) {
+MECHKIN_RARE Pack residual_with_rounding(const Plan& p, const Workspace& w, const Block& b, double accept) {
   const Pack half_place = 0x1p-53;
   const Pack lengths = Pack(p.row_weight), reach = max(Pack(1.0), lengths * block_reach(p, w, b));
   Pack worst = 0.0;
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
+    int equations = 0, length_equations = 0;
+    with_closing_joint(j.type, [&](auto entry) { equations = entry.equations, length_equations = entry.lengths; });
     Pack moved[MAX_CLOSING_ROWS];
     for (Pack& m : moved) m = 0.0;
-    with_closing_joint(j.type, [&](auto entry) {
-      for (int l = j.loop_begin; l < j.loop_end; ++l) {
-        const TreeJoint& t = p.joints[p.loop[l].joint];
-        with_tree_joint(t.type, [&](auto tree) {
-          Twist screw[MAX_CLOSING_ROWS];
-          tree.screws(w.pose[p.loop[l].joint], t, pose_of(w, t.parent), screw);
-          for (int f = 0; f < tree.freedoms; ++f) {
-            Pack column[MAX_CLOSING_ROWS];
-            entry.column(w.closure[c], screw[f], column);
-            // an orientation's quaternion has unit length
-            const Pack x = tree.states == tree.freedoms ? abs(w.q[t.state + f]) : Pack(1.0);
-            for (int i = 0; i < entry.equations; ++i) moved[i] += half_place * x * abs(column[i]);
-          }
+    for (int l = j.loop_begin; l < j.loop_end; ++l) {
+      const TreeJoint& t = p.joints[p.loop[l].joint];
+      int freedoms = 0, states = 0;
+      Twist screw[MAX_CLOSING_ROWS];
+      with_tree_joint(t.type, [&](auto tree) __attribute__((always_inline)) {
+        freedoms = tree.freedoms, states = tree.states;
+        tree.screws(w.pose[p.loop[l].joint], t, pose_of(w, t.parent), screw);
+      });
+      for (int f = 0; f < freedoms; ++f) {
+        Pack column[MAX_CLOSING_ROWS];
+        with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+          entry.column(w.closure[c], screw[f], column);
         });
+        // an orientation's quaternion has unit length
+        const Pack x = states == freedoms ? abs(w.q[t.state + f]) : Pack(1.0);
+        for (int i = 0; i < equations; ++i) moved[i] += half_place * x * abs(column[i]);
       }
-      for (int i = 0; i < entry.equations; ++i) {
-        const bool length = i < entry.lengths;
-        const Pack weight = length ? lengths : Pack(1.0);
-        const Pack scale = (length ? reach : Pack(1.0)) + weight * moved[i] / Pack(accept);
-        const Pack part = weight * abs(w.right[j.row + i]) / scale;
-        worst = select(part <= worst, worst, part);  // a NaN wins
-      }
-    });
+    }
+    for (int i = 0; i < equations; ++i) {
+      const bool length = i < length_equations;
+      const Pack weight = length ? lengths : Pack(1.0);
+      const Pack scale = (length ? reach : Pack(1.0)) + weight * moved[i] / Pack(accept);
+      const Pack part = weight * abs(w.right[j.row + i]) / scale;
+      worst = select(part <= worst, worst, part);  // a NaN wins
+    }
   }
   return worst;
 }

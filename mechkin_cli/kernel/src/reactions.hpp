@@ -7,84 +7,10 @@
 #pragma once
 
 #include "motion.hpp"
+#include "vector_choice.hpp"
+#include "wrenches.hpp"
 
 namespace {
-
-// Forces on links as they are met: on the link's balance and, where they come from outside, on the sum that tells the
-// shaking wrench.
-struct Balance {
-  const Plan& p;
-  Workspace& w;
-  Wrench inertia, outside;
-  bool moving;
-  Pack level;  // of the joints' wrenches
-
-  MECHKIN_INLINE void apply(int link, Wrench load) {
-    if (link < 0) return;
-    w.carried[link] -= load;
-  }
-  MECHKIN_INLINE void apply_outside(int link, Wrench load) {
-    apply(link, load);
-    if (link >= 0) outside += load;
-  }
-};
-
-// Wrench that accelerates link k: about the kernel's origin, gravity not included.
-inline Wrench inertia_wrench(const LinkInertia& m, const Pose& pose, const Motion& motion) {
-  const Vec3 centre = pose.point(m.centre);
-  const Vec3 force = Pack(m.mass) * motion.point_acceleration(centre);
-  const Vec3 omega = pose.components(motion.velocity.angular);
-  const Vec3 alpha = pose.components(motion.acceleration.angular);
-  const auto* t = m.tensor;
-  const auto tensor = [&](Vec3 a) -> Vec3 {
-    return {Pack(t[0]) * a.x + Pack(t[3]) * a.y + Pack(t[4]) * a.z,
-            Pack(t[3]) * a.x + Pack(t[1]) * a.y + Pack(t[5]) * a.z,
-            Pack(t[4]) * a.x + Pack(t[5]) * a.y + Pack(t[2]) * a.z};
-  };
-  const Vec3 couple = tensor(alpha) + cross(omega, tensor(omega));
-  Wrench r = force_at(centre, force);
-  r.moment += couple.x * pose.X + couple.y * pose.Y + couple.z * pose.Z;
-  return r;
-}
-
-inline void apply_inertia(Balance& balance, bool accelerating) {
-  const Plan& p = balance.p;
-  Workspace& w = balance.w;
-  const Vec3 g = constant(p.gravity);
-  for (int k = 0; k < p.links; ++k) {
-    w.carried[k] = zero_wrench();
-    const LinkInertia& m = p.inertia[k];
-    if (!m.present) continue;
-    balance.apply_outside(k, force_at(w.pose[k].point(m.centre), Pack(m.mass) * g));
-    if (!accelerating) continue;
-    const Wrench needed = inertia_wrench(m, w.pose[k], w.motion[k]);
-    w.carried[k] += needed;
-    balance.inertia += needed;
-  }
-}
-
-// The wrench `value` along a coordinate, on the joint's second link.
-inline Wrench along_coordinate(const Plan& p, const Workspace& w, int axis, Pack value) {
-  const CoordinateAxis& c = p.axis[axis];
-  const Vec3 direction = carried_vector(w, c.link[0], c.vector[0]) + carried_vector(w, c.link[1], c.vector[1]);
-  if (!c.slide) return {value * direction, zero3()};
-  const JointPlace& j = p.place[c.place];
-  return force_at(carried_point(w, j.point_on, j.point), value * direction);
-}
-
-// A coordinate of a closing joint and its derivatives up to `order`.
-inline void closing_coordinate(const Plan& p, const Workspace& w, int c, int freedom, int order, Pack* out) {
-  const ClosingJoint& j = p.closing[c];
-  PairMotion motion = {};
-  motion.order = order;
-  if (order > 2)
-    motion.a = motion_to_jerk(w, j.first), motion.b = motion_to_jerk(w, j.second);
-  else if (order > 0)
-    motion.a = {motion_of(w, j.first), zero_twist()}, motion.b = {motion_of(w, j.second), zero_twist()};
-  with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-    entry.coordinate(w.closure[c], motion, freedom, out);
-  });
-}
 
 // The value of a closing joint's angle or orientation (ClosingTurn) and its derivatives up to `order`, 0 or 2.
 inline void closing_turn(const Plan& p, const Workspace& w, const ClosingTurn& turn, int order, Pack (*out)[4]) {
@@ -105,124 +31,6 @@ inline void closing_turn(const Plan& p, const Workspace& w, const ClosingTurn& t
   const Vec3 first = A.components(omega), second = A.components(alpha);
   out[1][0] = first.x, out[1][1] = first.y, out[1][2] = first.z, out[1][3] = 0.0;
   out[2][0] = second.x, out[2][1] = second.y, out[2][2] = second.z, out[2][3] = 0.0;
-}
-
-// Value and rate of the coordinate along an axis, a freedom of the joint that `reference` tells as JointPlace does.
-inline void joint_coordinate(const Plan& p, const Workspace& w, int axis, int reference, int freedom, bool moving,
-                             Pack* value, Pack* rate) {
-  *rate = 0.0;
-  if (reference < 0) {
-    Pack k[4];
-    closing_coordinate(p, w, -1 - reference, freedom, moving ? 1 : 0, k);
-    *value = k[0];
-    if (moving) *rate = k[1];
-    return;
-  }
-  const TreeJoint& j = p.joints[reference];
-  const Pack scale = j.type == TREE_H && p.axis[axis].slide ? Pack(j.pitch) : Pack(1.0);
-  *value = scale * w.q[j.state + freedom];
-  if (moving) *rate = scale * w.rate[j.column + freedom];
-}
-
-// Of the coordinate that a spring or damper works on.
-inline void joint_coordinate(const Plan& p, const Workspace& w, const Load& l, bool moving, Pack* value, Pack* rate) {
-  joint_coordinate(p, w, l.link, l.other, l.freedom, moving, value, rate);
-}
-
-inline void apply_along_coordinate(Balance& balance, int axis, Pack value) {
-  const Plan& p = balance.p;
-  const JointPlace& j = p.place[p.axis[axis].place];
-  const Wrench load = along_coordinate(p, balance.w, axis, value);
-  balance.apply(j.second, load);
-  balance.apply(j.first, Pack(-1.0) * load);
-}
-
-// Tension of a spring or damper between two points acts on both along their line.
-inline void apply_between_points(Balance& balance, const Load& l) {
-  const Workspace& w = balance.w;
-  const Vec3 p = carried_point(w, l.link, l.point), q = carried_point(w, l.other, l.other_point), d = q - p;
-  const Pack length = sqrt(dot(d, d));
-  // where the ends meet the line is lost: no force if there is no tension, else no number
-  const Mask apart = length > Pack(0.0);
-  const Vec3 along = select(apart, Pack(1.0) / select(apart, length, Pack(1.0)), Pack(0.0)) * d;
-  Pack tension;
-  if (l.type == LOAD_SPRING) {
-    tension = Pack(l.vector[0]) * (length - Pack(l.vector[1])) + Pack(l.vector[2]);
-  } else {
-    if (!balance.moving) return;
-    const Vec3 rate = motion_of(w, l.other).velocity.at(q) - motion_of(w, l.link).velocity.at(p);
-    tension = Pack(l.vector[0]) * dot(along, rate);
-  }
-  const Vec3 pull = select(apart | (tension == Pack(0.0)), tension, Pack(__builtin_nan(""))) * along;
-  balance.apply(l.link, force_at(p, pull));
-  balance.apply(l.other, Pack(-1.0) * force_at(p, pull));
-}
-
-MECHKIN_INLINE Vec3 load_vector(const Workspace& w, const Load& l) {
-  if (l.varying < 0) return constant(l.vector);
-  return {w.load[l.varying], w.load[l.varying + 1], w.load[l.varying + 2]};
-}
-
-// `row_value` gives angles with their whole turns.
-template <class RowValue>
-inline void apply_load(Balance& balance, const Load& l, const RowValue& row_value) {
-  const Plan& p = balance.p;
-  const Workspace& w = balance.w;
-  Pack value, rate;
-  switch (l.type) {
-    case LOAD_FORCE_GROUND:
-    case LOAD_FORCE_LINK: {
-      const Pose& pose = w.pose[l.link];
-      const Vec3 given = load_vector(w, l);
-      const Vec3 force = l.type == LOAD_FORCE_LINK ? pose.vector(given) : given;
-      return balance.apply_outside(l.link, force_at(pose.point(l.point), force));
-    }
-    case LOAD_TORQUE_GROUND: return balance.apply_outside(l.link, {load_vector(w, l), zero3()});
-    case LOAD_TORQUE_LINK:
-      return balance.apply_outside(l.link, {w.pose[l.link].vector(load_vector(w, l)), zero3()});
-    case LOAD_COORDINATE:
-      return apply_along_coordinate(balance, l.link, l.varying < 0 ? Pack(l.vector[0]) : w.load[l.varying]);
-    case LOAD_SPRING:
-    case LOAD_DAMPER: return apply_between_points(balance, l);
-    case LOAD_COORDINATE_SPRING:
-      joint_coordinate(p, w, l, balance.moving, &value, &rate);
-      value = row_value.turned(l.turn, l.other < 0, value);
-      return apply_along_coordinate(balance, l.link,
-                                    -(Pack(l.vector[0]) * (value - Pack(l.vector[1])) + Pack(l.vector[2])));
-    case LOAD_COORDINATE_DAMPER:
-      if (!balance.moving) return;
-      joint_coordinate(p, w, l, true, &value, &rate);
-      return apply_along_coordinate(balance, l.link, -(Pack(l.vector[0]) * rate));
-  }
-}
-
-// What a leg needs as a whole comes from its ends: across its line from the balance of moments about them, along its
-// line all from the start, but for the tension that the closing equation's multiplier adds to both. A moment about the
-// line is no end's to give: it is what would hold the leg from spinning.
-inline void hang_on_ends(const Plan& p, Workspace& w, int body) {
-  const TreeJoint& j = p.joints[body];
-  const Leg& leg = p.leg[j.leg];
-  const Wrench needed = w.carried[body];
-  const Vec3 A = w.pose[body].o, B = carried_point(w, leg.second, leg.point), d = B - A;
-  const Pack square = dot(d, d);
-  const Vec3 moment = needed.moment - cross(A, needed.force);
-  const Vec3 across = (Pack(1.0) / square) * cross(moment, d);
-  w.across[j.leg] = across;
-  w.holding[j.leg] = dot(moment, d) / sqrt(square);
-  const Wrench at_start = force_at(A, needed.force - across), at_end = force_at(B, across);
-  w.carried[body] = at_start;
-  if (leg.rod >= 0) w.carried[leg.rod] -= at_end;
-  if (leg.first >= 0) w.carried[leg.first] += at_start;
-  if (leg.second >= 0) w.carried[leg.second] += at_end;
-}
-
-// The tension into the wrenches of the leg's two spheres; the rod has it from the loop.
-inline void stretch_legs(const Plan& p, Workspace& w) {
-  for (int l = 0; l < p.legs; ++l) {
-    const Leg& leg = p.leg[l];
-    w.carried[leg.body] += w.reaction[leg.closing];
-    w.reaction[leg.closing] -= force_at(carried_point(w, leg.second, leg.point), w.across[l]);
-  }
 }
 
 // The largest component of some wrenches: what their rounding is measured by, in whatever joint it is met.
@@ -279,35 +87,6 @@ inline void distribute(const Plan& p, Workspace& w, int shift) {
     const int column = p.input_column[i];
     w.effort[i] = power(w.screw[column], w.carried[p.column_joint[column]]);
   }
-}
-
-// Constraint wrench that a joint's first link exerts on the second, without drives and joint loads.
-inline Wrench joint_wrench(const Plan& p, const Workspace& w, const JointPlace& j) {
-  Wrench r = Pack(j.sign) * (j.reference < 0 ? w.reaction[-1 - j.reference] : w.carried[j.reference]);
-  for (int d = j.drive_begin; d < j.drive_end; ++d) {
-    const Drive& drive = p.drive[d];
-    r -= along_coordinate(p, w, drive.axis, Pack(drive.scale) * w.effort[drive.input]);
-  }
-  return r;
-}
-
-// What a force, or a moment about its point, of a joint keeps where it leaves motions free: what is zero by the kind of
-// joint is zero, and no rounding. Of two directions the second is taken square to the first.
-inline Vec3 without_free(const Plan& p, const Workspace& w, const JointPlace& j, bool slide, Vec3 a) {
-  Vec3 before = zero3();
-  for (int f = j.free_begin; f < j.free_end; ++f) {
-    const FreeMotion& free = p.free[f];
-    if ((free.slide != 0) != slide) continue;
-    if (free.code == FREE_ALL) return zero3();
-    Vec3 u = carried_vector(w, free.link, free.vector);
-    if (free.code == FREE_SQUARE) return dot(u, a) * u;
-    u = u - dot(before, u) * before;
-    const Pack square = dot(u, u);
-    const Mask none = square <= Pack(0.0);
-    a = a - (dot(u, a) * select(none, Pack(0.0), Pack(1.0) / select(none, Pack(1.0), square))) * u;
-    before = u;
-  }
-  return a;
 }
 
 // The largest component of the links' twists.

@@ -50,19 +50,19 @@ MECHKIN_INLINE Jet angle_of(Jet y, Jet x) {
   const Pack rate = turning / square;
   const Pack more = x.value * y.second - y.value * x.second;
   const Pack growing = Pack(2.0) * (x.value * x.first + y.value * y.first);
-  return {atan2(y.value, x.value), rate, (more - rate * growing) / square};
+  return {apart::atan2(y.value, x.value), rate, (more - rate * growing) / square};
 }
 
 MECHKIN_INLINE Jet power_of(Jet x, Jet n) {
-  const Pack value = pow(x.value, n.value), one = 1.0;
+  const Pack value = apart::pow(x.value, n.value), one = 1.0;
   const Mask fixed = (n.first == Pack(0.0)) & (n.second == Pack(0.0));
   // a factor that is zero leaves nothing, whatever the base
   const Pack zero = 0.0, lower = n.value * (n.value - one);
-  const Pack slope = select(n.value == zero, zero, n.value * pow(x.value, n.value - one));
-  const Pack bend = select(lower == zero, zero, lower * pow(x.value, n.value - Pack(2.0)));
+  const Pack slope = select(n.value == zero, zero, n.value * apart::pow(x.value, n.value - one));
+  const Pack bend = select(lower == zero, zero, lower * apart::pow(x.value, n.value - Pack(2.0)));
   const Jet constant = through(x, value, slope, bend);
   const Pack inverse = one / x.value;
-  const Jet exponent = n * through(x, log(x.value), inverse, -(inverse * inverse));
+  const Jet exponent = n * through(x, apart::log(x.value), inverse, -(inverse * inverse));
   const Jet moving = through(exponent, value, value, value);
   return {value, select(fixed, constant.first, moving.first), select(fixed, constant.second, moving.second)};
 }
@@ -95,21 +95,21 @@ MECHKIN_INLINE Jet smooth(int operation, Jet a, Jet b, Jet c) {
       const Mask other = a.value == Pack(0.0);
       return {select(other, c.value, b.value), select(other, c.first, b.first), select(other, c.second, b.second)};
     }
-    case TAPE_SIN: { const Pack s = sin(a.value); return through(a, s, cos(a.value), -s); }
-    case TAPE_COS: { const Pack k = cos(a.value); return through(a, k, -sin(a.value), -k); }
+    case TAPE_SIN: { const Pack s = apart::sin(a.value); return through(a, s, apart::cos(a.value), -s); }
+    case TAPE_COS: { const Pack k = apart::cos(a.value); return through(a, k, -apart::sin(a.value), -k); }
     case TAPE_TAN: {
-      const Pack t = tan(a.value), slope = one + t * t;
+      const Pack t = apart::tan(a.value), slope = one + t * t;
       return through(a, t, slope, Pack(2.0) * t * slope);
     }
-    case TAPE_ASIN: return arc_sine(a, asin(a.value), 1.0);
-    case TAPE_ACOS: return arc_sine(a, acos(a.value), -1.0);
+    case TAPE_ASIN: return arc_sine(a, apart::asin(a.value), 1.0);
+    case TAPE_ACOS: return arc_sine(a, apart::acos(a.value), -1.0);
     case TAPE_ATAN: {
       const Pack slope = one / (one + a.value * a.value);
-      return through(a, atan(a.value), slope, Pack(-2.0) * a.value * (slope * slope));
+      return through(a, apart::atan(a.value), slope, Pack(-2.0) * a.value * (slope * slope));
     }
     case TAPE_ATAN2: return angle_of(a, b);
-    case TAPE_EXP: { const Pack e = exp(a.value); return through(a, e, e, e); }
-    case TAPE_LOG: { const Pack slope = one / a.value; return through(a, log(a.value), slope, -(slope * slope)); }
+    case TAPE_EXP: { const Pack e = apart::exp(a.value); return through(a, e, e, e); }
+    case TAPE_LOG: { const Pack slope = one / a.value; return through(a, apart::log(a.value), slope, -(slope * slope)); }
     case TAPE_POWER: return power_of(a, b);
     default: return {Pack(__builtin_nan("")), Pack(0.0), Pack(0.0)};
   }

@@ -1,7 +1,7 @@
 // The replay of a tape in lanes: one set of inputs per lane, every operation the IEEE one or the kernel's own.
 #pragma once
 
-#include "elementary.hpp"
+#include "elementary_apart.hpp"
 #include "tape.hpp"
 
 namespace {
@@ -46,16 +46,16 @@ void replay_pack(const Tape& t, Pack* r) {
       case TAPE_EQUAL: result[i] = as_number(a == b); break;
       case TAPE_POWER_OF_TWO: result[i] = next_power_of_two(a); break;
       case TAPE_WHOLE: result[i] = nearest_integer(a); break;
-      case TAPE_SIN: result[i] = sin(a); break;
-      case TAPE_COS: result[i] = cos(a); break;
-      case TAPE_TAN: result[i] = tan(a); break;
-      case TAPE_ASIN: result[i] = asin(a); break;
-      case TAPE_ACOS: result[i] = acos(a); break;
-      case TAPE_ATAN: result[i] = atan(a); break;
-      case TAPE_ATAN2: result[i] = atan2(a, b); break;
-      case TAPE_EXP: result[i] = exp(a); break;
-      case TAPE_LOG: result[i] = log(a); break;
-      case TAPE_POWER: result[i] = pow(a, b); break;
+      case TAPE_SIN: result[i] = apart::sin(a); break;
+      case TAPE_COS: result[i] = apart::cos(a); break;
+      case TAPE_TAN: result[i] = apart::tan(a); break;
+      case TAPE_ASIN: result[i] = apart::asin(a); break;
+      case TAPE_ACOS: result[i] = apart::acos(a); break;
+      case TAPE_ATAN: result[i] = apart::atan(a); break;
+      case TAPE_ATAN2: result[i] = apart::atan2(a, b); break;
+      case TAPE_EXP: result[i] = apart::exp(a); break;
+      case TAPE_LOG: result[i] = apart::log(a); break;
+      case TAPE_POWER: result[i] = apart::pow(a, b); break;
       case TAPE_SIGN: result[i] = select(a > Pack(0.0), Pack(1.0), select(a < Pack(0.0), Pack(-1.0), a)); break;
       default: result[i] = Pack(__builtin_nan("")); break;
     }

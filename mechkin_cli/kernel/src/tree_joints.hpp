@@ -1,8 +1,8 @@
 // Displacements that carry links in the tree: R, P, H, C, S, W. Every other pair is a chain of these; L is no
 // displacement, two points place the body of a leg (legs.hpp).
 //
-// An entry gives the displacement of its frame (z: the axis), its freedom screws, which are fixed in the
-// parent link, and how its state moves by increments of its columns.
+// An entry gives the displacement of its frame (z: the axis) and its freedom screws, which are fixed in the parent link;
+// how its state moves by increments of its columns: advance.hpp.
 #pragma once
 
 #include "elementary.hpp"
@@ -71,7 +71,12 @@ struct TurnAndSlide {
 struct Orientation {
   static constexpr int freedoms = 3, states = 4, slides = 0;
   static MECHKIN_INLINE void place(Pose& p, const TreeJoint&, const Pack* q) {
-    const Pack w = q[0], x = q[1], y = q[2], z = q[3], two = 2.0, one = 1.0;
+    const Pack w = q[0], x = q[1], y = q[2], z = q[3], one = 1.0;
+#if MECHKIN_ENCLOSES  // over a box of quaternions not all have length one
+    const Pack two = Pack(2.0) / (w * w + x * x + y * y + z * z);
+#else
+    const Pack two = 2.0;
+#endif
     const Vec3 X = p.X, Y = p.Y, Z = p.Z;
     p.X = (one - two * (y * y + z * z)) * X + (two * (x * y + w * z)) * Y + (two * (x * z - w * y)) * Z;
     p.Y = (two * (x * y - w * z)) * X + (one - two * (x * x + z * z)) * Y + (two * (y * z + w * x)) * Z;
@@ -103,25 +108,6 @@ MECHKIN_INLINE void with_tree_joint(int type, F&& f) {
     case TREE_W:
     case TREE_L: return f(Fixed{});
   }
-}
-
-// Moves a joint's state by increments of its columns.
-template <class Joint>
-MECHKIN_INLINE void advance(Joint, Pack* q, const Pack* delta, Mask moving) {
-  for (int i = 0; i < Joint::freedoms; ++i) q[i] = select(moving, q[i] + delta[i], q[i]);
-}
-MECHKIN_INLINE void advance(Orientation, Pack* q, const Pack* delta, Mask moving) {
-  const Vec3 half = Pack(0.5) * Vec3{delta[0], delta[1], delta[2]};
-  const Pack angle = sqrt(dot(half, half));
-  Pack s, c;
-  sincos(angle, s, c);
-  const Mask tiny = angle < Pack(1e-150);  // just above the root of the least normal double; sin x = x long before
-  const Pack f = select(tiny, Pack(1.0), s / select(tiny, Pack(1.0), angle));
-  const Quaternion turned = normalised(product({c, f * half.x, f * half.y, f * half.z}, {q[0], q[1], q[2], q[3]}));
-  q[0] = select(moving, turned.w, q[0]);
-  q[1] = select(moving, turned.x, q[1]);
-  q[2] = select(moving, turned.y, q[2]);
-  q[3] = select(moving, turned.z, q[3]);
 }
 
 }  // namespace

@@ -9,7 +9,10 @@
 #include "held.hpp"
 #include "quantity_program.hpp"
 #include "search.hpp"
+#include "tape_replay.hpp"
+#if MECHKIN_LANES == 2  // one set of inputs at a time: the narrowest unit does for all
 #include "tape_jets.hpp"
+#endif
 
 namespace {
 
@@ -18,7 +21,11 @@ struct Reader {
   long rows, row;
   int count;
   MECHKIN_INLINE Pack get(const double* base, long slot) const {
-    const double* at = base + slot * rows + row;
+    Real part[PARTS];
+    for (int k = 0; k < PARTS; ++k) part[k] = get_part(base + (PARTS * slot + k) * rows + row);
+    return from_parts(part);
+  }
+  MECHKIN_INLINE Real get_part(const double* at) const {
     if (count == LANES) return load(at);
     double buffer[LANES];
     for (int i = 0; i < LANES; ++i) buffer[i] = at[i < count ? i : count - 1];
@@ -263,6 +270,11 @@ template <class... All>
 struct PairTypes<Entries<All...>> {
   static constexpr PairType table[] = {{All::letter, All::equations, All::lengths, All::coordinates(), All::turns()}...};
 };
+
+#if MECHKIN_LANES != 2
+constexpr long (*jets_size)(const Tape&) = nullptr;
+constexpr void (*replay_jets)(const Tape&, const double*, const double*, double*, char*) = nullptr;
+#endif
 
 const KernelUnit unit = {LANES, tree_types, PairTypes<Pairs>::table, Pairs::count, workspace_size, run, run_rows, search_rows,
                          elementwise, replay_size, replay, jets_size, replay_jets};

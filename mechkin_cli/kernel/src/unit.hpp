@@ -28,7 +28,8 @@ struct KernelUnit {
   void (*elementwise)(int operation, const double* x, const double* y, double* out, long n);
   long (*replay_size)(const Tape&);
   void (*replay)(const Tape&, const TapeRequest&, char* workspace);
-  // Of one set of inputs, with first and second derivatives by the first of them (tape_jets.hpp).
+  // Of one set of inputs, with first and second derivatives by the first of them (tape_jets.hpp): of the narrowest unit,
+  // null in the others.
   long (*jets_size)(const Tape&);
   void (*replay_jets)(const Tape&, const double* given, const double* way, double* out, char* workspace);
 };

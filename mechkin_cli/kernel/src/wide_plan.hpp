@@ -185,7 +185,7 @@ inline void widen_frictions(const LanePlan& first, const Lanes& lanes, Plan* w, 
 }
 
 // Writes the wide plan of some plans (LANES) into a room; the bytes it takes. Without memory they are only counted.
-inline long widen(const LanePlan* const* plans, char* memory) {
+MECHKIN_RARE long widen(const LanePlan* const* plans, char* memory) {
   const LanePlan& first = *plans[0];
   const Lanes lanes = {plans};
   Room room = {memory};

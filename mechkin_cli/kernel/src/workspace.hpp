@@ -3,7 +3,6 @@
 
 #include "actuation_memory.hpp"
 #include "chart.hpp"
-#include "factors.hpp"
 #include "friction_memory.hpp"
 #include "legs.hpp"
 #include "pairs.hpp"

@@ -86,7 +86,7 @@ def _start(scope: Scope, start: dict[str, str]) -> tuple[dict[str, float], dict[
 
 
 def _placed(motion: Motion, mechanism: Mechanism, scope: Scope, places: Any, near: Any) -> Array:
-    """The assembly near named coordinates, found at 40 digits by the solver of positions."""
+    """The assembly near named coordinates, found at 60 digits by the solver of positions."""
     inputs = {n: (v,) for n, v in places.items()}
     guess = {n: scope.scalar(text, kind_of(n)) for n, text in near.items()}
     found = solve(mechanism, inputs, guess)

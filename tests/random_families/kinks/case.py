@@ -32,6 +32,14 @@ class Outcome:
     """How far the reference may be wrong."""
     fault: str = ""
 
+    @property
+    def figures(self) -> dict[str, float]:
+        return {"motion": self.error, "the reference": self.doubt}
+
+    @property
+    def remark(self) -> str:
+        return "held at a jump" if "held" in self.rows else ""
+
 
 def run_one(seed: int) -> Outcome:
     """The verdict on the mechanism of a seed."""

@@ -5,36 +5,13 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
-import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from random_families.nested_kinks.case import run_one
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--seeds", default="0:1000", help="first:last, the last is left out")
-    options = parser.parse_args()
-    first, last = map(int, options.seeds.split(":"))
-    start, faults, ended, worst = time.monotonic(), 0, 0, 0.0
-    for seed in range(first, last):
-        found = run_one(seed)
-        ended += not found.is_whole
-        if found.fault:
-            faults += 1
-            print(f"{found.fault}\n{found.text}", flush=True)
-        else:
-            worst = max(worst, found.error)
-    print(
-        f"{last - first} loads, {ended} end early, {faults} at fault; the others within"
-        f" {worst:.1e}; {time.monotonic() - start:.0f} s"
-    )
-    return 1 if faults else 0
-
+from random_families.seeds import judge_seeds
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(judge_seeds("nested_kinks", __doc__, run_one, "0:1000"))

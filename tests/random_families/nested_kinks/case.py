@@ -37,6 +37,14 @@ class Found:
     is_whole: bool
     text: str
 
+    @property
+    def figures(self) -> dict[str, float]:
+        return {"motion": self.error}
+
+    @property
+    def remark(self) -> str:
+        return "" if self.is_whole else "end early"
+
 
 def sign(x: float) -> float:
     return float(x > 0) - float(x < 0)

@@ -34,6 +34,16 @@ class Outcome:
     doubt: float
     """How far the reference may be wrong."""
     fault: str = ""
+    remark: str = ""
+
+    @property
+    def figures(self) -> dict[str, float]:
+        return {
+            "motion": self.error,
+            "acceleration": self.acceleration,
+            "energy": self.energy,
+            "the reference": self.doubt,
+        }
 
 
 def run_one(seed: int, tolerance: str = "1e-13") -> Outcome:

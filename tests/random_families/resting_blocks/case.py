@@ -46,6 +46,11 @@ class Found:
     fault: str
     error: float
     text: str
+    remark: str = ""
+
+    @property
+    def figures(self) -> dict[str, float]:
+        return {"motion": self.error}
 
 
 def short(x: float) -> float:

@@ -5,36 +5,36 @@
 // products need factors below 2^995.
 #pragma once
 
-#include "pack.hpp"
+#include "doubles.hpp"
 
 namespace {
 
 struct DoubleDouble {
-  Pack high, low;
+  Real high, low;
 };
 
 // a + b exactly, for |a| >= |b| or a = 0.
-MECHKIN_INLINE DoubleDouble fast_two_sum(Pack a, Pack b) {
-  const Pack sum = a + b;
+MECHKIN_INLINE DoubleDouble fast_two_sum(Real a, Real b) {
+  const Real sum = a + b;
   return {sum, b - (sum - a)};
 }
 
 // a + b exactly.
-MECHKIN_INLINE DoubleDouble two_sum(Pack a, Pack b) {
-  const Pack sum = a + b, part = sum - a;
+MECHKIN_INLINE DoubleDouble two_sum(Real a, Real b) {
+  const Real sum = a + b, part = sum - a;
   return {sum, (a - (sum - part)) + (b - part)};
 }
 
 // a cut into two halves of 26 bits, the second signed (G. W. Veltkamp; Dekker, section 5).
-MECHKIN_INLINE DoubleDouble split(Pack a) {
-  const Pack scaled = a * Pack(134217729.0);  // 2^27 + 1
-  const Pack high = scaled - (scaled - a);
+MECHKIN_INLINE DoubleDouble split(Real a) {
+  const Real scaled = a * Real(134217729.0);  // 2^27 + 1
+  const Real high = scaled - (scaled - a);
   return {high, a - high};
 }
 
 // a * b exactly.
-MECHKIN_INLINE DoubleDouble two_product(Pack a, Pack b) {
-  const Pack product = a * b;
+MECHKIN_INLINE DoubleDouble two_product(Real a, Real b) {
+  const Real product = a * b;
   const DoubleDouble p = split(a), q = split(b);
   return {product, (((p.high * q.high - product) + p.high * q.low) + p.low * q.high) + p.low * q.low};
 }
@@ -53,9 +53,9 @@ MECHKIN_INLINE DoubleDouble operator*(DoubleDouble a, DoubleDouble b) {
 
 // Relative error below 2^-99.
 MECHKIN_INLINE DoubleDouble operator/(DoubleDouble a, DoubleDouble b) {
-  const Pack quotient = a.high / b.high;
+  const Real quotient = a.high / b.high;
   const DoubleDouble back = two_product(quotient, b.high);
-  const Pack remainder = ((a.high - back.high) - back.low) + (a.low - quotient * b.low);
+  const Real remainder = ((a.high - back.high) - back.low) + (a.low - quotient * b.low);
   return fast_two_sum(quotient, remainder / b.high);
 }
 

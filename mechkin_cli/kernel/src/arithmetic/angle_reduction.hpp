@@ -5,12 +5,12 @@
 // 1983), lane by lane in integers. Which of the two a lane gets depends on its own value only.
 #pragma once
 
-#include "pack.hpp"
+#include "doubles.hpp"
 
 namespace {
 
 struct ReducedAngle {
-  Pack r, tail;
+  Real r, tail;
   Words quadrant;  // counted modulo 4 in the lowest two bits; the others are arbitrary
 };
 
@@ -85,7 +85,7 @@ inline void reduce_huge(double x, double& r, double& tail, std::int64_t& quadran
 }
 
 // Puts the lanes of x above the limit right; an infinite lane becomes NaN.
-__attribute__((noinline, cold)) inline void reduce_large_lanes(const Pack* x, ReducedAngle* angle) {
+__attribute__((noinline, cold)) inline void reduce_large_lanes(const Real* x, ReducedAngle* angle) {
   for (int i = 0; i < LANES; ++i) {
     const double value = lane(*x, i), magnitude = value < 0 ? -value : value;
     if (!(magnitude > REDUCTION_LIMIT)) continue;
@@ -98,22 +98,22 @@ __attribute__((noinline, cold)) inline void reduce_large_lanes(const Pack* x, Re
   }
 }
 
-MECHKIN_INLINE ReducedAngle reduce_angle(Pack x) {
+MECHKIN_INLINE ReducedAngle reduce_angle(Real x) {
   // pi/2 in three parts. The first two have 35 bits, so that with at most 2^17 quadrants their
   // products are exact, and so are the first difference and, by fast two-sum, the error of the
   // second. The third leaves less than 2^-128 rad per quadrant, while no double comes within 2^-61
   // of a multiple of pi/2, nor within 2^-53 of one from 2^12 to 2^17 quadrants.
-  const Pack part1 = 0x1.921fb54440000p+0, part2 = 0x1.68c234c4c0000p-39,
+  const Real part1 = 0x1.921fb54440000p+0, part2 = 0x1.68c234c4c0000p-39,
              part3 = 0x1.98a2e03707345p-77, two_over_pi = 0x1.45f306dc9c883p-1;
-  const Pack shifted = x * two_over_pi + ROUNDER;
-  const Pack k = shifted - ROUNDER;
-  const Pack first = x - k * part1;
-  const Pack product = k * part2;
-  const Pack r = first - product;
-  const Pack lost = (first - r) - product;
+  const Real shifted = x * two_over_pi + ROUNDER;
+  const Real k = shifted - ROUNDER;
+  const Real first = x - k * part1;
+  const Real product = k * part2;
+  const Real r = first - product;
+  const Real lost = (first - r) - product;
   // `tail`, not its negative: +0 for x = -0, which keeps sin(-0) = -0.
   ReducedAngle angle{r, k * part3 - lost, bits(shifted)};
-  if (__builtin_expect(any(abs(x) > Pack(REDUCTION_LIMIT)), 0)) {
+  if (__builtin_expect(any(abs(x) > Real(REDUCTION_LIMIT)), 0)) {
     ReducedAngle corrected = angle;
     reduce_large_lanes(&x, &corrected);
     angle = corrected;

@@ -1,0 +1,57 @@
+// A common point and a common orientation of the two frames of a pair, in ground axes: no axes of the pair's enter, and
+// the columns are those of rigid motion. These are the derivatives of the residual where the joint is closed.
+#pragma once
+
+#include "closing_equations.hpp"
+#include "vector_choice.hpp"
+
+namespace {
+
+// d = 0: a common point, in ground axes.
+struct CommonPoint : LengthCondition<3> {
+  static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = k.d.x, r[1] = k.d.y, r[2] = k.d.z; }
+  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) {
+    const Vec3 v = s.at(k.B.o);
+    r[0] = v.x, r[1] = v.y, r[2] = v.z;
+  }
+  static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
+    const Vec3 d2 = second_of_d(k, a, b);
+    r[0] = d2.x, r[1] = d2.y, r[2] = d2.z;
+  }
+  static MECHKIN_INLINE void third(const Closure& k, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    const Vec3 d3 = third_of_d(k, a, b);
+    r[0] = d3.x, r[1] = d3.y, r[2] = d3.z;
+  }
+  static MECHKIN_INLINE Vec3 force(const Closure&, const Pack* l) { return {l[0], l[1], l[2]}; }
+  static MECHKIN_INLINE Vec3 point(const Closure& k) { return k.B.o; }
+};
+
+// Equal orientation: the rotation that carries A onto B, as a rotation vector in ground axes. Its skew part alone
+// would vanish at half a turn as well and give false assemblies.
+struct SameOrientation : DirectionCondition<3> {
+  static MECHKIN_INLINE void residual(const Closure& k, Pack* r) {
+    const Vec3 skew = Pack(0.5) * (cross(k.A.X, k.B.X) + cross(k.A.Y, k.B.Y) + cross(k.A.Z, k.B.Z));
+    const Pack c = Pack(0.5) * (dot(k.A.X, k.B.X) + dot(k.A.Y, k.B.Y) + dot(k.A.Z, k.B.Z) - Pack(1.0));
+    const Pack s = sqrt(dot(skew, skew));
+    const Pack angle = atan2(s, c);
+    // at exactly half a turn the axis is lost; any axis keeps the residual at pi
+    const Mask tiny = s < Pack(1e-150);  // just above the root of the least normal double
+    const Vec3 lost = {select(c < Pack(0.0), angle, Pack(0.0)), Pack(0.0), Pack(0.0)};
+    const Vec3 e = select(tiny, lost, (angle / select(tiny, Pack(1.0), s)) * skew);
+    r[0] = e.x, r[1] = e.y, r[2] = e.z;
+  }
+  static MECHKIN_INLINE void column(const Closure&, Twist s, Pack* r) {
+    r[0] = s.angular.x, r[1] = s.angular.y, r[2] = s.angular.z;
+  }
+  static MECHKIN_INLINE void second(const Closure&, const Motion& a, const Motion& b, Pack* r) {
+    const Vec3 e = b.acceleration.angular - a.acceleration.angular;
+    r[0] = e.x, r[1] = e.y, r[2] = e.z;
+  }
+  static MECHKIN_INLINE void third(const Closure&, const MotionToJerk& a, const MotionToJerk& b, Pack* r) {
+    const Vec3 e = b.jerk.angular - a.jerk.angular;
+    r[0] = e.x, r[1] = e.y, r[2] = e.z;
+  }
+  static MECHKIN_INLINE Vec3 moment(const Closure&, const Pack* l) { return {l[0], l[1], l[2]}; }
+};
+
+}  // namespace

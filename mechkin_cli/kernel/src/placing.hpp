@@ -1,0 +1,127 @@
+// Poses of the links, the closing equations of the loops and their Jacobian at the states as they are.
+#pragma once
+
+#include "workspace.hpp"
+
+namespace {
+
+MECHKIN_INLINE const Pose* pose_of(const Workspace& w, int link) { return link < 0 ? nullptr : &w.pose[link]; }
+
+template <class Number>
+MECHKIN_INLINE Vec3 carried_point(const Workspace& w, int link, const Number* at) {
+  return link < 0 ? constant(at) : w.pose[link].point(at);
+}
+template <class Number>
+MECHKIN_INLINE Vec3 carried_vector(const Workspace& w, int link, const Number* a) {
+  return link < 0 ? constant(a) : w.pose[link].vector(a);
+}
+
+inline void place_joint(const Plan& p, Workspace& w, int k) {
+  const TreeJoint& j = p.joints[k];
+  Pose pose = placed(j.at, pose_of(w, j.parent));
+  if (j.type == TREE_L) {
+    const Leg& leg = p.leg[j.leg];
+    aim(pose, leg, carried_point(w, leg.second, leg.point));
+    w.pose[k] = pose;
+    return;
+  }
+  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) { entry.place(pose, j, w.q + j.state); });
+  w.pose[k] = pose;
+}
+
+inline void find_screws(const Plan& p, Workspace& w, int k) {
+  const TreeJoint& j = p.joints[k];
+  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+    entry.screws(w.pose[k], j, pose_of(w, j.parent), w.screw + j.column);
+  });
+}
+
+MECHKIN_INLINE Closure closure_of(const Plan& p, const Workspace& w, int c) {
+  const ClosingJoint& j = p.closing[c];
+  Closure k;
+  k.A = placed(j.on_first, pose_of(w, j.first));
+  k.B = placed(j.on_second, pose_of(w, j.second));
+  k.d = k.B.o - k.A.o;
+  k.parameter = j.parameter;
+  if (j.slide >= 0) k.parameter += Pack(j.slide_sign) * w.q[p.joints[j.slide].state];
+  return k;
+}
+
+inline void place_block(const Plan& p, Workspace& w, const Block& b) {
+  for (int o = b.joint_begin; o < b.joint_end; ++o) place_joint(p, w, p.order[o]);
+}
+inline void block_screws(const Plan& p, Workspace& w, const Block& b) {
+  for (int o = b.joint_begin; o < b.joint_end; ++o) find_screws(p, w, p.order[o]);
+}
+
+// Closing equations of a block into w.right, its charts' after the pairs'; `meet` gets each pair's entry with its own.
+template <class Meet>
+MECHKIN_INLINE void closing_equations(const Plan& p, Workspace& w, const Block& b, Meet&& meet) {
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    w.closure[c] = closure_of(p, w, c);
+    Pack* r = w.right + j.row;
+    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      entry.residual(w.closure[c], r);
+      meet(entry, r);
+    });
+  }
+  if (b.charts) chart_equations(p, b, w.chart(), w.q, w.right + b.rows - b.charts);
+}
+
+// Entries of the columns of tree joint k in the equations of closing joint c.
+MECHKIN_INLINE void closing_columns(const Plan& p, const Workspace& w, int c, const LoopEntry& e, Pack* out) {
+  const TreeJoint& t = p.joints[e.joint];
+  const Closure& k = w.closure[c];
+  const Pack sign = e.sign;
+  with_tree_joint(t.type, [&](auto tree) __attribute__((always_inline)) {
+    for (int i = 0; i < tree.freedoms; ++i) {
+      const Twist s = sign * w.screw[t.column + i];
+      with_closing_joint(p.closing[c].type, [&](auto entry) __attribute__((always_inline)) {
+        entry.column(k, s, out + i * MAX_CLOSING_ROWS);
+      });
+    }
+  });
+}
+
+// Position of a column among the unknowns of a block, or -1.
+MECHKIN_INLINE int unknown_index(const Plan& p, int block, int column) {
+  return p.column_block[column] == block ? p.column_place[column] : -1;
+}
+
+// Jacobian of a block's equations with respect to its unknowns (rows x size, row-major).
+inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
+  const Block& b = p.block[index];
+  const int n = b.size;
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    int equations = 0;
+    with_closing_joint(j.type, [&](auto entry) { equations = entry.equations; });
+    for (int u = 0; u < n; ++u)
+      for (int i = 0; i < equations; ++i) a[(j.row + i) * n + u] = 0.0;
+    for (int l = j.loop_begin; l < j.loop_end; ++l) {
+      const TreeJoint& t = p.joints[p.loop[l].joint];
+      int freedoms = 0;
+      with_tree_joint(t.type, [&](auto tree) { freedoms = tree.freedoms; });
+      bool needed = false;
+      for (int f = 0; f < freedoms; ++f) needed = needed || unknown_index(p, index, t.column + f) >= 0;
+      if (!needed) continue;
+      Pack entry[3 * MAX_CLOSING_ROWS];
+      closing_columns(p, w, c, p.loop[l], entry);
+      for (int f = 0; f < freedoms; ++f) {
+        const int u = unknown_index(p, index, t.column + f);
+        if (u < 0) continue;
+        for (int i = 0; i < equations; ++i) a[(j.row + i) * n + u] = entry[f * MAX_CLOSING_ROWS + i];
+      }
+    }
+  }
+  if (!b.charts) return;
+  Pack* const rows = a + (b.rows - b.charts) * n;
+  for (int e = 0; e < b.charts * n; ++e) rows[e] = 0.0;
+  chart_rows(p, b, w.chart(), w.q, [&](int i, int column, Pack x) {
+    const int u = unknown_index(p, index, column);
+    if (u >= 0) rows[i * n + u] = x;
+  });
+}
+
+}  // namespace
