@@ -9,10 +9,10 @@ import numpy as np
 from mechkin_cli.benchmark.stress.draws import generator
 from mechkin_cli.benchmark.stress.families.table import FAMILIES
 from mechkin_cli.benchmark.stress.family import Block, Family
-from mechkin_cli.benchmark.stress.judge import Found, Judged, Verdict, judge
+from mechkin_cli.benchmark.stress.judge import FAULTS, Found, Judged, Verdict, judge
 from mechkin_cli.benchmark.stress.quantity import Truth
 from mechkin_cli.benchmark.stress.solve import solve
-from mechkin_cli.benchmark.stress.tally import FAULTS, REFUSED, Fault, Tally
+from mechkin_cli.benchmark.stress.tally import REFUSED, Fault, Tally
 from mechkin_cli.status import Status
 
 CHUNK = 50_000
@@ -58,7 +58,7 @@ def run_block(name: str, seed: int, numbers: Sequence[int]) -> Tally:
 def _rows(found: Found, rows: slice) -> Found:
     values = {name: value[:, rows] for name, value in found.values.items()}
     parts = (item[:, rows] for item in (found.codes, found.condition, found.bound))
-    return Found(*parts, values)  # type: ignore[arg-type]
+    return Found(*parts, values, found.held)  # type: ignore[arg-type]
 
 
 def _faults(

@@ -13,7 +13,9 @@ from mechkin_cli.diagnostics import MechkinError
 from mechkin_cli.interface import Analysis, loads
 from mechkin_cli.status import Status
 
-BOUND = "row.error_bound"
+CONDITION, BOUND = "row.condition", "row.error_bound"
+HELD = ("conventional", "hold-ends")
+"""Notes of a run that keeps a freedom at rest which nothing moves."""
 
 
 def solve(
@@ -28,6 +30,7 @@ def solve(
     codes = np.full(shape, Status.not_assembled, np.int8)
     condition, bound = np.full(shape, np.nan), np.full(shape, np.nan)
     values = {name: np.full(shape, np.nan) for name in names}
+    held = np.zeros((len(texts), 1), bool)
     refused = {}
     for k, text in enumerate(texts):
         try:
@@ -36,17 +39,17 @@ def solve(
             refused[k] = str(error)
             continue
         codes[k] = analysis.result.status
-        condition[k] = analysis["row.condition"]
-        if BOUND in analysis.model.quantities:
+        condition[k] = analysis[CONDITION]
+        if not response:
             bound[k] = analysis[BOUND]
         for name in names:
             values[name][k] = analysis[name]
-    return Found(codes, condition, bound, values), refused
+        held[k] = any(note.code in HELD for note in analysis.diagnostics)
+    return Found(codes, condition, bound, values, held), refused
 
 
 def _run(text: str, names: Sequence[str], *, response: bool) -> Analysis:
     model = loads(text)
-    more = [name for name in ("row.condition", BOUND) if name in model.quantities]
     if response:
-        return model.respond(quantities=[*names, *more], tables=[], threads=1)
-    return model.analyze([*names, *more], tables=[], threads=1)
+        return model.respond(quantities=[*names, CONDITION], tables=[], threads=1)
+    return model.analyze([*names, CONDITION, BOUND], tables=[], threads=1)

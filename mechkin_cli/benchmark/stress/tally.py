@@ -15,7 +15,6 @@ from mechkin_cli.benchmark.stress.quantity import Rows
 
 SHOWN = 5
 """Faults of each kind that a family keeps."""
-FAULTS = (Verdict.false_ok, Verdict.wrong_warned, Verdict.false_alarm)
 LEVELS = ("position", "rate", "acceleration")
 REFUSED = "refused"
 
@@ -58,7 +57,7 @@ class Tally:
         right = (judged.verdict == Verdict.right) | (judged.verdict == Verdict.right_warned)
         blank = np.where(right, 0.0, np.nan)
         self._add_errors(judged, blank, response=response)
-        self._add_bounds(judged.bound + blank, judged.position + blank)
+        self._add_bounds(judged.bound + blank, judged.miss + blank)
 
     def _add_errors(self, judged: Judged, blank: Rows, *, response: bool) -> None:
         condition = judged.condition
@@ -83,9 +82,14 @@ class Tally:
         self.bounds.add(bound[positive] / error[positive])
 
     def tell(self, fault: Fault) -> None:
-        """Keeps a fault, unless there are enough of its kind."""
-        if sum(known.kind == fault.kind for known in self.faults) < SHOWN:
-            self.faults.append(fault)
+        """Keeps those of each kind with the least numbers, whatever the order of blocks."""
+        same = sorted([f for f in self.faults if f.kind == fault.kind] + [fault], key=_order)
+        self.faults = [f for f in self.faults if f.kind != fault.kind] + same[:SHOWN]
+
+    def in_order(self) -> Tally:
+        """The same with its faults in the order of kinds and numbers."""
+        self.faults.sort(key=lambda fault: (fault.kind, *_order(fault)))
+        return self
 
     def merge(self, other: Tally) -> None:
         """What another part of the family's mechanisms gave."""
@@ -116,6 +120,10 @@ class Tally:
             "bounds": _plain(self.bounds),
             "faults": [asdict(fault) for fault in self.faults],
         }
+
+
+def _order(fault: Fault) -> tuple[int, int]:
+    return fault.number, fault.row
 
 
 def of_record(record: Mapping[str, Any]) -> Tally:

@@ -18,6 +18,8 @@ ROWS = 40
 POWERS = (-6, 6)
 FARTHEST = 1.5
 """Of the nut, in m."""
+TURNS = 2000.0
+"""Of the spindle at most: turns of a thread are followed one by one."""
 PLACES = 65
 CLEAR = 0.05
 """Square of the sine of the angle at a dead centre that all rows stay away by."""
@@ -34,7 +36,7 @@ def _make(generators: Sequence[random.Random]) -> Block:
     way, rocker = transposed(axes)
     screw = Screw((b, c, d), (way, rocker), array(leads))
     senses = np.array([[rng.choice((-1.0, 1.0))] for rng in generators])
-    last = senses * _clear(screw, senses)
+    last = senses * np.minimum(_clear(screw, senses), TURNS * np.abs(screw.leads))
     degrees = -last / screw.leads * 360.0 * (np.arange(ROWS) / (ROWS - 1))
     texts = [screw.text(k, "leads", row) for k, row in enumerate(degrees)]
 
@@ -50,7 +52,7 @@ def _clear(screw: Screw, senses: Rows) -> Rows:
     polynomial of degree four, far from zero at all of many places."""
     steps = np.arange(PLACES) / (PLACES - 1) * FARTHEST
     found = screw.swing(DoubleDouble(senses * steps))
-    clear = found.discriminant.high > CLEAR * found.radius.high
+    clear = found.discriminant.high > CLEAR * (found.radius * found.radius).high
     good = np.minimum.accumulate(clear, axis=1).sum(axis=1, keepdims=True)
     farthest: Rows = steps[np.maximum(good - 1, 0)]
     return farthest
@@ -58,7 +60,7 @@ def _clear(screw: Screw, senses: Rows) -> Rows:
 
 FAMILY = Family(
     "leads",
-    "spindles of leads from 1e-6 to 1e6 m, up to millions of turns, that drive a rocker",
+    "spindles of leads from 1e-6 to 1e6 m that drive a rocker by nut and rod",
     ROWS,
     (_make,),
 )

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from mechkin_cli.benchmark.stress.linkages.moving import Field, vector
-from mechkin_cli.benchmark.stress.linkages.rssr import ROUNDINGS
 from mechkin_cli.benchmark.stress.linkages.writing import document, joint, swept
 from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
 from mechkin_cli.benchmark.stress.numbers.series import Number
@@ -56,15 +55,9 @@ class Rccc:
 
     def margin(self, angle: Number) -> Margin:
         found = self.swing(angle)
-        length = np.sqrt(found.radius.number.high)
-        return Margin(found.discriminant, ROUNDINGS * length * self._apart())
-
-    def _apart(self) -> Rows:
-        """What rounding of the written axes changes squares of their differences by, in roundings:
-        the largest difference."""
-        axes = np.stack([u / np.sqrt((u * u).sum(axis=1, keepdims=True)) for u in self.axes])
-        spans = np.ptp(axes, axis=0)
-        return np.sqrt((spans * spans).sum(axis=1, keepdims=True))
+        # rounding of directions is that of unit vectors, however near they are to each other
+        ones = self.field(np.ones_like(found.far.number.high))
+        return Margin(found.discriminant, found._replace(far=ones).blur())
 
     def sign(self) -> Rows:
         """Of the drawing's assembly, (mechanisms, 1)."""

@@ -17,10 +17,6 @@ from mechkin_cli.benchmark.stress.numbers.vectors import Swing, dot, minus, plus
 from mechkin_cli.benchmark.stress.quantity import Quantity, Rows
 from mechkin_cli.benchmark.stress.reach import Margin
 
-ROUNDINGS = 64.0 * 2.0**-53
-"""What may be lost of the terms that a discriminant is the difference of."""
-
-
 @dataclass(frozen=True)
 class Rssr:
     """Points A, B, C, D and axes of A and D as drawn, (mechanisms, 3) each."""
@@ -41,8 +37,7 @@ class Rssr:
 
     def margin(self, angle: Number) -> Margin:
         found = self.swing(angle)
-        length = np.sqrt(found.radius.number.high)
-        return Margin(found.discriminant, ROUNDINGS * length * found.terms.number.high)
+        return Margin(found.discriminant, found.blur())
 
     def sign(self) -> Rows:
         """Of the discriminant's root, (mechanisms, 1)."""

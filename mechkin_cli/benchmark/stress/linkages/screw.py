@@ -7,13 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from mechkin_cli.benchmark.stress.linkages.moving import Field, vector
-from mechkin_cli.benchmark.stress.linkages.rssr import ROUNDINGS
 from mechkin_cli.benchmark.stress.linkages.writing import document, joint, number, swept
 from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
 from mechkin_cli.benchmark.stress.numbers.series import Number
 from mechkin_cli.benchmark.stress.numbers.vectors import Swing, dot, minus, plus, swing, times, unit
 from mechkin_cli.benchmark.stress.quantity import Quantity, Rows
-from mechkin_cli.benchmark.stress.reach import TURN, Margin
+from mechkin_cli.benchmark.stress.reach import TURN
 
 
 @dataclass(frozen=True)
@@ -37,11 +36,6 @@ class Screw:
         rod = minus(c, b)
         target = minus(plus(b, times(advance, way)), d)
         return swing(rocker, minus(c, d), target, dot(rod, rod))
-
-    def margin(self, advance: Number) -> Margin:
-        found = self.swing(advance)
-        length = np.sqrt(found.radius.number.high)
-        return Margin(found.discriminant, ROUNDINGS * length * found.terms.number.high)
 
     def sign(self) -> Rows:
         """Of the drawing's assembly, (mechanisms, 1)."""

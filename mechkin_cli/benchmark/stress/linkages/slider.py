@@ -7,11 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from mechkin_cli.benchmark.stress.linkages.moving import Field, vector
-from mechkin_cli.benchmark.stress.linkages.rssr import ROUNDINGS
 from mechkin_cli.benchmark.stress.linkages.writing import document, joint, swept
 from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
 from mechkin_cli.benchmark.stress.numbers.series import Number
-from mechkin_cli.benchmark.stress.numbers.vectors import dot, minus, plus, slide, turn, unit
+from mechkin_cli.benchmark.stress.numbers.vectors import (
+    ROUNDINGS,
+    dot,
+    minus,
+    plus,
+    slide,
+    turn,
+    unit,
+)
 from mechkin_cli.benchmark.stress.quantity import Quantity, Rows
 from mechkin_cli.benchmark.stress.reach import Margin
 
@@ -35,8 +42,10 @@ class Slider:
 
     def margin(self, angle: Number) -> Margin:
         middle, discriminant, square = self._slide(angle)
-        middle = middle.number.high
-        return Margin(discriminant, ROUNDINGS * (square.high + middle * middle))
+        rod = np.sqrt(square.high)
+        across = np.sqrt(np.maximum(square.high - discriminant.number.high, 0.0))
+        far = rod + across + np.abs(middle.number.high)
+        return Margin(discriminant, ROUNDINGS * far * (rod + across))
 
     def sign(self) -> Rows:
         """Of the drawing's assembly, (mechanisms, 1)."""

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from mechkin_cli.benchmark.stress.linkages.moving import Field
-from mechkin_cli.benchmark.stress.linkages.rssr import ROUNDINGS
 from mechkin_cli.benchmark.stress.linkages.writing import document, joint, swept
 from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
 from mechkin_cli.benchmark.stress.numbers.series import Number
@@ -43,17 +42,14 @@ class FourBar:
         rod, rocker, target = _minus(c, b), _minus(c, d), _minus(end, d)
         along = target[0] * rocker[0] + target[1] * rocker[1]
         across = target[1] * rocker[0] - target[0] * rocker[1]
-        lengths = _square(rocker) + _square(target)
-        d_term = (lengths - _square(rod)) * 0.5
-        radius = along * along + across * across
-        length = radius.sqrt()
-        gap = (length - d_term) * (length + d_term)
-        return Swing(along, across, d_term, radius, gap, lengths + _square(rod))
+        d_term = (_square(rocker) + _square(target) - _square(rod)) * 0.5
+        far = _square(rocker).sqrt() + _square(target).sqrt()
+        radius = (along * along + across * across).sqrt()
+        return Swing(along, across, d_term, radius, _square(rod), far)
 
     def margin(self, angle: Number) -> Margin:
         found = self.swing(*angle.sin_cos())
-        length = np.sqrt(found.radius.number.high)
-        return Margin(found.discriminant, ROUNDINGS * length * found.terms.number.high)
+        return Margin(found.discriminant, found.blur())
 
     def sign(self) -> Rows:
         """Of the drawing's assembly, (mechanisms, 1)."""
@@ -73,8 +69,7 @@ class FourBar:
         margins = []
         for way in (1.0, -1.0):
             found = self.swing(sine * way, cosine * way)
-            blur = ROUNDINGS * np.sqrt(found.radius.high) * found.terms.high
-            margins.append(Margin(found.discriminant, blur))
+            margins.append(Margin(found.discriminant, found.blur()))
         return margins
 
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from mechkin_cli.benchmark.stress.numbers.series import Number
+from mechkin_cli.benchmark.stress.quantity import Rows
 
 Vector = tuple[Number, Number, Number]
 
@@ -65,26 +68,56 @@ def angle_about(axis: Vector, start: Vector, end: Vector) -> Number:
     return dot(axis, cross(first, last)).arctan2(dot(first, last))
 
 
+ROUNDINGS = 64.0 * 2.0**-53
+"""Of coordinates, in parts of the largest: what rounding leaves of a linkage's numbers."""
+
+
 class Swing(NamedTuple):
     """Where a point on a circle is at a given distance from a target.
 
     With p the target from the circle's centre and the point at along + c cos(t) + s sin(t), these
     are the roots of a cos(t) + b sin(t) = d, one for either sign of the root of the discriminant
-    a^2 + b^2 - d^2; `radius` is a^2 + b^2 and `terms` the size of what d is the difference of.
+    (radius - d)(radius + d), radius^2 = a^2 + b^2; `square` is that of the distance, `far` the size
+    of the vectors that the equation is made of.
     """
 
     a: Number
     b: Number
     d: Number
     radius: Number
-    discriminant: Number
-    terms: Number
+    square: Number
+    far: Number
+
+    @property
+    def discriminant(self) -> Number:
+        """By factors, which keep the digits that squares lose next to a dead centre."""
+        return (self.radius - self.d) * (self.radius + self.d)
 
     def sine_cosine(self, sign: Number) -> tuple[Number, Number]:
         """Of the root whose discriminant's root has the sign."""
         root = self.discriminant.sqrt() * sign
-        sine = (self.b * self.d + self.a * root) / self.radius
-        return sine, (self.a * self.d - self.b * root) / self.radius
+        scale = self.radius * self.radius
+        sine = (self.b * self.d + self.a * root) / scale
+        return sine, (self.a * self.d - self.b * root) / scale
+
+    def blur(self) -> Rows:
+        """What rounding of coordinates may change the discriminant by.
+
+        radius - d is half the rod's square less that of the least distance, radius + d half that
+        of the largest distance less the rod's; a coordinate's rounding changes a square by the
+        length times it.
+        """
+        radius, d, square, far = (
+            np.abs(item.number.high) for item in (self.radius, self.d, self.square, self.far)
+        )
+        near_gap = (self.radius - self.d).number.high
+        far_gap = (self.radius + self.d).number.high
+        rod = np.sqrt(square)
+        least = np.sqrt(np.maximum(square - 2.0 * near_gap, 0.0))
+        largest = np.sqrt(np.maximum(square + 2.0 * far_gap, 0.0))
+        miss = ROUNDINGS * far
+        changed = (rod + least) * np.abs(far_gap) + (rod + largest) * np.abs(near_gap)
+        return np.asarray(miss * (changed + miss * (radius + d)))
 
 
 def swing(axis: Vector, arm: Vector, target: Vector, square: Number) -> Swing:
@@ -92,16 +125,14 @@ def swing(axis: Vector, arm: Vector, target: Vector, square: Number) -> Swing:
     along = times(dot(axis, arm), axis)
     a = dot(target, minus(arm, along))
     b = dot(target, cross(axis, arm))
-    lengths = dot(arm, arm) + dot(target, target)
-    d = (lengths - square) * 0.5 - dot(target, along)
-    radius = a * a + b * b
-    # factors keep the digits that squares lose next to a dead centre
-    length = radius.sqrt()
-    return Swing(a, b, d, radius, (length - d) * (length + d), lengths + square)
+    d = (dot(arm, arm) + dot(target, target) - square) * 0.5 - dot(target, along)
+    far = dot(arm, arm).sqrt() + dot(target, target).sqrt()
+    return Swing(a, b, d, (a * a + b * b).sqrt(), square, far)
 
 
 def slide(direction: Vector, start: Vector, target: Vector, square: Number) -> tuple[Number, Number]:
     """Middle s and discriminant of |start + s direction - target|^2 = square, |direction| = 1."""
     gap = minus(target, start)
     middle = dot(gap, direction)
-    return middle, square - dot(gap, gap) + middle * middle
+    across = minus(gap, times(middle, direction))
+    return middle, square - dot(across, across)
