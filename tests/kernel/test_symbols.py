@@ -23,6 +23,10 @@ UNITS = {
     "avx2": (4, ["-mavx2"]),
     "avx512": (8, ["-mavx512f", "-mavx512dq", "-mavx512vl", "-mprefer-vector-width=512"]),
 }
+DOUBLE_DOUBLE = {
+    "sse2": (2, 0, []),
+    "avx512": (8, 1, ["-mavx512f", "-mavx512dq", "-mavx512vl", "-mprefer-vector-width=512"]),
+}
 FUSED = re.compile(r"\bv?fn?m(add|sub)[a-z0-9]*\b")
 
 pytestmark = pytest.mark.skipif(
@@ -34,14 +38,30 @@ needs_compiler = pytest.mark.skipif(
 needs_objdump = pytest.mark.skipif(shutil.which("objdump") is None, reason="no objdump here")
 
 
-@pytest.fixture(scope="module", params=UNITS)
+PLAIN = ["-O3", "-c", "-fno-exceptions", "-fno-rtti"]
+OF_DOUBLES = [f"unit_{name}" for name in UNITS]
+OF_DOUBLE_DOUBLE = [f"double_double_{name}" for name in DOUBLE_DOUBLE]
+
+
+def compile_unit(name: str, target: Path) -> Path:
+    """As the build does."""
+    kind, _, instructions = name.rpartition("_")
+    if kind == "unit":
+        lanes, options = UNITS[instructions]
+        arithmetic = []
+    else:
+        lanes, fused, options = DOUBLE_DOUBLE[instructions]
+        arithmetic = ["-DMECHKIN_ARITHMETIC=1", f"-DMECHKIN_FUSED={fused}"]
+    defined = [f"-DMECHKIN_LANES={lanes}", f"-DMECHKIN_UNIT=mechkin_{name}", *arithmetic]
+    source = SOURCES / ("unit.cpp" if kind == "unit" else f"{kind}_unit.cpp")
+    return compile_with(source, target, *PLAIN, *defined, *options)
+
+
+@pytest.fixture(scope="module", params=OF_DOUBLES + OF_DOUBLE_DOUBLE)
 def unit(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """One unit, compiled as the build does."""
-    lanes, options = UNITS[request.param]
-    defined = [f"-DMECHKIN_LANES={lanes}", f"-DMECHKIN_UNIT=mechkin_unit_{request.param}"]
-    target = tmp_path_factory.mktemp("units") / f"{request.param}.o"
-    plain = ["-O3", "-c", "-fno-exceptions", "-fno-rtti"]
-    return compile_with(SOURCES / "unit.cpp", target, *plain, *defined, *options)
+    name: str = request.param
+    return compile_unit(name, tmp_path_factory.mktemp("units") / f"{name}.o")
 
 
 def symbols(file: Path, *options: str) -> list[tuple[str, str]]:
@@ -59,7 +79,7 @@ def instructions(file: Path) -> str:
 @needs_compiler
 def test_a_unit_exports_its_entry_only(unit: Path) -> None:
     shared = [name for kind, name in symbols(unit) if kind in "TWVuBDGRC"]
-    assert shared == [f"mechkin_unit_{unit.stem}"]
+    assert shared == [f"mechkin_{unit.stem}"]
 
 
 @needs_compiler
@@ -70,17 +90,27 @@ def test_a_unit_calls_nothing_but_memory_functions(unit: Path) -> None:
 
 @needs_compiler
 @needs_objdump
-def test_a_unit_fuses_no_multiplications_and_additions(unit: Path) -> None:
+@pytest.mark.parametrize("unit", OF_DOUBLES, indirect=True)
+def test_a_unit_of_doubles_fuses_no_multiplications_and_additions(unit: Path) -> None:
     text = instructions(unit)
     assert "mul" in text
     assert FUSED.search(text) is None
 
 
+@needs_compiler
 @needs_objdump
-def test_the_built_module_fuses_no_multiplications_and_additions() -> None:
+@pytest.mark.parametrize("unit", OF_DOUBLE_DOUBLE, indirect=True)
+def test_double_double_fuses_products_with_their_rounded_value_alone(unit: Path) -> None:
+    found = set(FUSED.findall(instructions(unit)))
+    assert found == ({"sub"} if "avx512" in unit.stem else set())
+
+
+@needs_objdump
+def test_the_built_module_fuses_nothing_else() -> None:
     text = instructions(Path(_kernel.__file__))
     assert "mul" in text
-    assert FUSED.search(text) is None
+    fused = [line for line in text.splitlines() if FUSED.search(line)]
+    assert all("vfmsub" in line and "zmm" in line for line in fused)
 
 
 def test_the_build_compiles_the_same_units() -> None:
@@ -89,3 +119,7 @@ def test_the_build_compiles_the_same_units() -> None:
     assert "-ffp-contract=off" in build
     units = re.findall(r"^ *mechkin_unit\((\w+) (\d)([^)]*)\)", build, re.MULTILINE)
     assert {name: (int(lanes), flags.split()) for name, lanes, flags in units} == UNITS
+    units = re.findall(r"^ *mechkin_double_double\((\w+) (\d) (\d)([^)]*)\)", build, re.MULTILINE)
+    assert {
+        name: (int(lanes), int(fused), flags.split()) for name, lanes, fused, flags in units
+    } == DOUBLE_DOUBLE

@@ -1,7 +1,8 @@
 // The quantities that were asked for, from the workspace into the output columns.
 #pragma once
 
-#include "actuation.hpp"
+#include "drives.hpp"
+#include "powers.hpp"
 
 namespace {
 

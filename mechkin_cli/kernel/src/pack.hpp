@@ -22,11 +22,16 @@
 #define MECHKIN_ENCLOSES (MECHKIN_ARITHMETIC >= MECHKIN_INTERVALS)
 
 #if MECHKIN_ARITHMETIC == MECHKIN_DOUBLE_DOUBLE
-#include "arithmetic/double_double.hpp"
+#include "arithmetic/double_double_scalar.hpp"
 #elif MECHKIN_ARITHMETIC == MECHKIN_INTERVALS
 #include "arithmetic/interval.hpp"
 #else
 #include "arithmetic/doubles.hpp"
+#endif
+
+#if MECHKIN_ENCLOSES  // each operation is a dozen of doubles': what is made of them is inlined where the compiler likes it
+#undef MECHKIN_INLINE
+#define MECHKIN_INLINE inline
 #endif
 
 namespace {

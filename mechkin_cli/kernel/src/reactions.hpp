@@ -55,38 +55,20 @@ inline Pack reaction_level(const Plan& p, const Workspace& w) {
 // `level` is that of the wrenches, see reaction_level.
 inline void closing_wrenches(const Plan& p, Workspace& w, int shift, Pack level) {
   for (int index = p.blocks - 1; index >= 0; --index) {
-    const Block& b = p.block[index];
     const BlockMatrices at = matrices_of(p, w, index);
-    for (int u = 0; u < b.size; ++u) {
-      const int column = p.unknown[b.column_begin + u];
-      at.multiplier[u] = power(w.screw[column], w.carried[p.column_joint[column]]);
-    }
+    unknown_efforts(p, w, index, at.multiplier);
     at.solve_multipliers(at.multiplier, shift, level);
-    for (int c = b.closing_begin; c < b.closing_end; ++c) {
-      const ClosingJoint& j = p.closing[c];
-      with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-        w.reaction[c] = entry.wrench(w.closure[c], at.multiplier + j.row);
-      });
-      for (int l = j.loop_begin; l < j.loop_end; ++l)
-        w.carried[p.loop[l].joint] -= Pack(p.loop[l].sign) * w.reaction[c];
-    }
+    take_closing_wrenches(p, w, index, at.multiplier);
   }
 }
 
 // From what each link needs of its joints (w.carried) to what the joints transmit: sums over the tree, closing wrenches,
 // efforts.
 inline void distribute(const Plan& p, Workspace& w, int shift) {
-  for (int k = p.links - 1; k >= 0; --k)
-    if (p.joints[k].type == TREE_L)
-      hang_on_ends(p, w, k);
-    else if (p.joints[k].parent >= 0)
-      w.carried[p.joints[k].parent] += w.carried[k];
+  sum_over_tree(p, w);
   closing_wrenches(p, w, shift, shift ? tree_level(p, w) : Pack(0.0));
   stretch_legs(p, w);
-  for (int i = 0; i < p.inputs; ++i) {
-    const int column = p.input_column[i];
-    w.effort[i] = power(w.screw[column], w.carried[p.column_joint[column]]);
-  }
+  input_efforts(p, w);
 }
 
 // The largest component of the links' twists.

@@ -50,10 +50,11 @@ struct Tape {
 // What the guards say of one set of inputs: as recorded, but for a warning, or another way of computing.
 enum TapeVerdict : std::uint8_t { TAPE_SAME = 0, TAPE_OTHER_ADVICE = 1, TAPE_OTHER_WAY = 2 };
 
-// Replays over many sets of inputs.
+// Replays over many sets of inputs; numbers of the unit's arithmetic, of PARTS parts (pack.hpp).
 struct TapeRequest {
   long count;            // sets of inputs
-  const double* inputs;  // inputs x count
-  double* outputs;       // count x outputs
+  const double* inputs;  // inputs x PARTS x count
+  double* outputs;       // count x outputs x PARTS
   std::uint8_t* verdict;  // count
+  const double* second = nullptr;  // constants: their second parts, where numbers have two; null: zero
 };

@@ -9,16 +9,16 @@ namespace {
 MECHKIN_INLINE Pack as_number(Mask m) { return select(m, Pack(1.0), Pack(0.0)); }
 
 // 2^n with a / 2^n in (0.7, 1.4]; nan where a is not a positive number.
-MECHKIN_INLINE Pack next_power_of_two(Pack a) {
+MECHKIN_INLINE Real next_power_of_two(Real a) {
   // numbers below the normal range are scaled into it first
-  const Mask tiny = a < Pack(0x1p-1000);
-  const Pack x = select(tiny, a * Pack(0x1p600), a);
+  const Mask tiny = a < Real(0x1p-1000);
+  const Real x = select(tiny, a * Real(0x1p600), a);
   const Words exponent = bits(x) & (Words{} + 0x7ff0000000000000);
-  const Pack below = from_bits(exponent);  // 2^(e-1) for x = m 2^e
-  const Pack mantissa = from_bits((bits(x) & (Words{} + 0x000fffffffffffff)) | (Words{} + 0x3fe0000000000000));
-  const Pack power = select(mantissa > Pack(0.7), below + below, below);
-  const Mask proper = (a > Pack(0.0)) & (a < Pack(__builtin_inf()));
-  return select(proper, select(tiny, power * Pack(0x1p-600), power), Pack(__builtin_nan("")));
+  const Real below = from_bits(exponent);  // 2^(e-1) for x = m 2^e
+  const Real mantissa = from_bits((bits(x) & (Words{} + 0x000fffffffffffff)) | (Words{} + 0x3fe0000000000000));
+  const Real power = select(mantissa > Real(0.7), below + below, below);
+  const Mask proper = (a > Real(0.0)) & (a < Real(__builtin_inf()));
+  return select(proper, select(tiny, power * Real(0x1p-600), power), Real(__builtin_nan("")));
 }
 
 MECHKIN_INLINE Mask tape_condition(int operation, Pack a, Pack b) {
@@ -44,7 +44,7 @@ void replay_pack(const Tape& t, Pack* r) {
       case TAPE_LESS: result[i] = as_number(a < b); break;
       case TAPE_NOT_MORE: result[i] = as_number(a <= b); break;
       case TAPE_EQUAL: result[i] = as_number(a == b); break;
-      case TAPE_POWER_OF_TWO: result[i] = next_power_of_two(a); break;
+      case TAPE_POWER_OF_TWO: result[i] = next_power_of_two(part_of(a, 0)); break;
       case TAPE_WHOLE: result[i] = nearest_integer(a); break;
       case TAPE_SIN: result[i] = apart::sin(a); break;
       case TAPE_COS: result[i] = apart::cos(a); break;
@@ -67,13 +67,21 @@ inline long replay_size(const Tape& t) { return (long)sizeof(Pack) * t.registers
 // Lanes beyond the last set of inputs repeat it.
 inline void replay(const Tape& t, const TapeRequest& request, char* memory) {
   Pack* const r = (Pack*)(memory + (64 - (std::uintptr_t)memory % 64) % 64);
-  for (int c = 0; c < t.constants; ++c) r[t.inputs + c] = t.constant[c];
+  for (int c = 0; c < t.constants; ++c) {
+    const Real part[2] = {t.constant[c], request.second ? request.second[c] : 0.0};
+    r[t.inputs + c] = from_parts(part);
+  }
   for (long first = 0; first < request.count; first += LANES) {
     const int count = request.count - first < LANES ? (int)(request.count - first) : LANES;
     for (int k = 0; k < t.inputs; ++k) {
-      double values[LANES];
-      for (int i = 0; i < LANES; ++i) values[i] = request.inputs[k * request.count + first + (i < count ? i : count - 1)];
-      r[k] = load(values);
+      Real part[PARTS];
+      for (int n = 0; n < PARTS; ++n) {
+        const double* const from = request.inputs + (PARTS * k + n) * request.count + first;
+        double values[LANES];
+        for (int i = 0; i < LANES; ++i) values[i] = from[i < count ? i : count - 1];
+        part[n] = load(values);
+      }
+      r[k] = from_parts(part);
     }
     replay_pack(t, r);
     Mask same = all_lanes(true), advised = all_lanes(true);
@@ -84,8 +92,9 @@ inline void replay(const Tape& t, const TapeRequest& request, char* memory) {
       holds = holds & (t.expected[g] ? found : ~found);
     }
     for (int i = 0; i < count; ++i) {
-      double* const out = request.outputs + (first + i) * t.outputs;
-      for (int k = 0; k < t.outputs; ++k) out[k] = ((const double*)(r + t.output[k]))[i];
+      double* const out = request.outputs + (first + i) * t.outputs * PARTS;
+      for (int k = 0; k < t.outputs; ++k)
+        for (int n = 0; n < PARTS; ++n) out[PARTS * k + n] = ((const double*)(r + t.output[k]))[n * LANES + i];
       request.verdict[first + i] = !lane(same, i) ? TAPE_OTHER_WAY : lane(advised, i) ? TAPE_SAME : TAPE_OTHER_ADVICE;
     }
   }

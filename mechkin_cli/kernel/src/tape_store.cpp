@@ -2,9 +2,11 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -23,6 +25,9 @@ template <class Number>
 using Row = nb::ndarray<const Number, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 template <class Number>
 using Rows = nb::ndarray<const Number, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+template <class Number>
+using Blocks = nb::ndarray<const Number, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
 template <class Number>
 std::vector<Number> copy_of(const Row<Number>& a) {
@@ -50,6 +55,29 @@ nb::tuple replay(const TapeStore& store, Rows<double> inputs, int lanes) {
     FloatingPointState state;
     std::vector<char> memory(unit->replay_size(t));
     unit->replay(t, {(long)count, inputs.data(), outputs, verdicts}, memory.data());
+  }
+  return nb::make_tuple(out, verdict);
+}
+
+// The same in double-double: inputs x 2 x count, high and low, to (outputs (count, outputs, 2), verdicts (count,)).
+// `second` (constants,): low parts of the tape's constants.
+nb::tuple replay_precise(const TapeStore& store, Blocks<double> inputs, std::optional<Row<double>> second, int lanes) {
+  const Tape& t = store.view();
+  const DoubleDoubleUnit& unit = double_double_unit(lanes);
+  if (inputs.shape(0) != (std::size_t)t.inputs || inputs.shape(1) != 2)
+    throw nb::value_error("two rows of numbers, high and low, per input of the tape");
+  if (second && second->shape(0) != (std::size_t)t.constants)
+    throw nb::value_error("one low part for each constant of the tape");
+  const std::size_t count = inputs.shape(2);
+  double* outputs;
+  std::uint8_t* verdicts;
+  auto out = new_array<double>(&outputs, {count, (std::size_t)t.outputs, 2});
+  auto verdict = new_array<std::uint8_t>(&verdicts, {count});
+  {
+    nb::gil_scoped_release released;
+    FloatingPointState state;
+    std::vector<char> memory(unit.replay_size(t));
+    unit.replay(t, {(long)count, inputs.data(), outputs, verdicts, second ? second->data() : nullptr}, memory.data());
   }
   return nb::make_tuple(out, verdict);
 }
@@ -130,5 +158,6 @@ void bind_tape(nb::module_& m) {
            },
            "inputs"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "guards"_a, "expected"_a, "advice"_a)
       .def("replay", &replay, "inputs"_a, "lanes"_a = 0)
+      .def("replay_precise", &replay_precise, "inputs"_a, "second"_a = nb::none(), "lanes"_a = 0)
       .def("jets", &jets, "inputs"_a, "ways"_a);
 }

@@ -198,6 +198,45 @@ inline void stretch_legs(const Plan& p, Workspace& w) {
   }
 }
 
+// What each link needs of its joints (w.carried), summed over what the tree hangs on it.
+inline void sum_over_tree(const Plan& p, Workspace& w) {
+  for (int k = p.links - 1; k >= 0; --k)
+    if (p.joints[k].type == TREE_L)
+      hang_on_ends(p, w, k);
+    else if (p.joints[k].parent >= 0)
+      w.carried[p.joints[k].parent] += w.carried[k];
+}
+
+// The generalised efforts that the closing wrenches of a block balance, one for each of its unknowns.
+inline void unknown_efforts(const Plan& p, const Workspace& w, int index, Pack* effort) {
+  const Block& b = p.block[index];
+  for (int u = 0; u < b.size; ++u) {
+    const int column = p.unknown[b.column_begin + u];
+    effort[u] = power(w.screw[column], w.carried[p.column_joint[column]]);
+  }
+}
+
+// The wrenches of a block's closing joints from the multipliers of its equations, and into the sums.
+inline void take_closing_wrenches(const Plan& p, Workspace& w, int index, const Pack* multiplier) {
+  const Block& b = p.block[index];
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      w.reaction[c] = entry.wrench(w.closure[c], multiplier + j.row);
+    });
+    for (int l = j.loop_begin; l < j.loop_end; ++l)
+      w.carried[p.loop[l].joint] -= Pack(p.loop[l].sign) * w.reaction[c];
+  }
+}
+
+// Efforts of the inputs, once the tree's joints carry what they transmit.
+inline void input_efforts(const Plan& p, Workspace& w) {
+  for (int i = 0; i < p.inputs; ++i) {
+    const int column = p.input_column[i];
+    w.effort[i] = power(w.screw[column], w.carried[p.column_joint[column]]);
+  }
+}
+
 // Constraint wrench that a joint's first link exerts on the second, without drives and joint loads.
 inline Wrench joint_wrench(const Plan& p, const Workspace& w, const JointPlace& j) {
   Wrench r = Pack(j.sign) * (j.reference < 0 ? w.reaction[-1 - j.reference] : w.carried[j.reference]);

@@ -49,8 +49,8 @@ MECHKIN_INLINE DoubleDouble log_parts(Real x) {
   const Real k = (from_bits(biased | bits(Real(0x1p52))) - Real(0x1p52 + 1023)) -
                  select(subnormal, Real(54.0), Real(0.0));
 
-  const DoubleDouble s = DoubleDouble{m - Real(1.0), Real(0.0)} / two_sum(m, Real(1.0));
-  const DoubleDouble z = s * s;
+  const DoubleDouble s = quotient({m - Real(1.0), Real(0.0)}, two_sum(m, Real(1.0)));
+  const DoubleDouble z = product(s, s);
   // artanh s = s (1 + z/3 + z^2/5 + ...); from z^4/9 on, below 2^-23, plain doubles are enough
   Real p = Real(1.0 / 27);
   p = p * z.high + Real(1.0 / 25);
@@ -62,17 +62,17 @@ MECHKIN_INLINE DoubleDouble log_parts(Real x) {
   p = p * z.high + Real(1.0 / 13);
   p = p * z.high + Real(1.0 / 11);
   p = p * z.high + Real(1.0 / 9);
-  DoubleDouble series = z * DoubleDouble{p, Real(0.0)};
-  series = DoubleDouble{Real(0x1.2492492492492p-3), Real(0x1.2492492492492p-57)} + series;  // 1/7
-  series = DoubleDouble{Real(0x1.999999999999ap-3), Real(-0x1.999999999999ap-57)} + series * z;  // 1/5
-  series = DoubleDouble{Real(0x1.5555555555555p-2), Real(0x1.5555555555555p-56)} + series * z;  // 1/3
+  DoubleDouble series = product(z, {p, Real(0.0)});
+  series = agreeing_sum({Real(0x1.2492492492492p-3), Real(0x1.2492492492492p-57)}, series);  // 1/7
+  series = agreeing_sum({Real(0x1.999999999999ap-3), Real(-0x1.999999999999ap-57)}, product(series, z));  // 1/5
+  series = agreeing_sum({Real(0x1.5555555555555p-2), Real(0x1.5555555555555p-56)}, product(series, z));  // 1/3
   const DoubleDouble twice = {s.high + s.high, s.low + s.low};
-  const DoubleDouble log_m = twice + twice * (series * z);
+  const DoubleDouble log_m = agreeing_sum(twice, product(twice, product(series, z)));
 
   // ln 2 in two parts; the first has 42 bits, so that its product with k is exact
   const DoubleDouble log_power =
       fast_two_sum(k * Real(0x1.62e42fefa3800p-1), k * Real(0x1.ef35793c76730p-45));
-  return log_power + log_m;
+  return agreeing_sum(log_power, log_m);
 }
 
 // -infinity at 0, NaN below.
