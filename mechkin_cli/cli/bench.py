@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mechkin_cli.cli import stress_options as options
 from mechkin_cli.cli.messages import put_json
 from mechkin_cli.cli.options import Json
 
@@ -22,8 +23,27 @@ def bench(
         bool, typer.Option("--quick", help="Few rounds: seconds, and rougher.")
     ] = False,
     json: Json = False,
+    stress: options.Stress = False,
+    rows: options.Rows = 2_000,
+    seed: options.Seed = 1,
+    family: options.Family = None,
+    only: options.Only = None,
+    page: options.Page = None,
+    check: options.Check = False,
+    processes: options.Processes = 0,
 ) -> None:
-    """Measure run times on the RCSR mechanism and a general 7R."""
+    """Measure run times on the RCSR mechanism and a general 7R.
+
+    With --stress: hard mechanisms by the thousand, every row decided by a closed form.
+    """
+    if stress:
+        from mechkin_cli.cli.bench_stress import Stress, stress_command
+
+        asked = Stress(round(rows), seed, family, only, page, check, processes, json)
+        code = stress_command(asked, lambda found: _print(iter(found)))
+        if code:
+            raise typer.Exit(code)
+        return
     from mechkin_cli.benchmark.machine import machine
     from mechkin_cli.benchmark.runs import timing_tables
 

@@ -57,8 +57,8 @@ def run_block(name: str, seed: int, numbers: Sequence[int]) -> Tally:
 
 def _rows(found: Found, rows: slice) -> Found:
     values = {name: value[:, rows] for name, value in found.values.items()}
-    parts = (item[:, rows] for item in (found.codes, found.condition, found.bound))
-    return Found(*parts, values, found.held)  # type: ignore[arg-type]
+    condition, bound = found.condition[:, rows], found.bound[:, rows]
+    return Found(found.codes[:, rows], condition, bound, values, found.noted)
 
 
 def _faults(
@@ -67,9 +67,9 @@ def _faults(
     """The first row of each kind of fault of each mechanism."""
     faults = []
     for verdict in FAULTS:
-        for k in np.flatnonzero((judged.verdict == verdict).any(axis=1)):
+        for k in np.flatnonzero((judged.verdict == verdict).any(axis=1)).tolist():
             row = int(np.argmax(judged.verdict[k] == verdict))
-            words = _words(found, truth, int(k), row)
+            words = _words(found, truth, k, row)
             faults.append(Fault(Verdict(verdict).name, numbers[k], first + row, words))
     return faults
 
@@ -80,8 +80,7 @@ def _words(found: Found, truth: Truth, k: int, row: int) -> str:
     if not truth.exists[k, row]:
         return ", ".join([*said, "where the branch has ended"])
     for quantity in truth.quantities:
-        value = getattr(quantity.value, "number", quantity.value).high
-        right = np.broadcast_to(value, found.codes.shape)[k, row]
+        right = np.broadcast_to(quantity.value.number.high, found.codes.shape)[k, row]
         unit = " rad" if quantity.kind != "length" else " m"
         given = found.values[quantity.name][k, row]
         shown = "none" if np.isnan(given) else f"{given:.17g}{' deg' if unit == ' rad' else ' m'}"

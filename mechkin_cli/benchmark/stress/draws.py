@@ -19,6 +19,7 @@ def generator(seed: int, family: str, number: int) -> random.Random:
 
 
 def uniform(rng: random.Random, low: float, high: float) -> float:
+    """A decimal between two."""
     return round(rng.uniform(low, high), DIGITS)
 
 
@@ -33,6 +34,7 @@ def scaled(value: float, power: int) -> float:
 
 
 def point(rng: random.Random, size: float = 1.0) -> list[float]:
+    """Components within a size."""
     return [uniform(rng, -size, size) for _ in range(3)]
 
 
@@ -45,6 +47,7 @@ def direction(rng: random.Random) -> list[float]:
 
 
 def array(rows: Sequence[Sequence[float]]) -> Rows:
+    """Rows of numbers as an array."""
     return np.array(rows, float)
 
 

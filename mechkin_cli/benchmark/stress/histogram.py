@@ -32,10 +32,12 @@ class Histogram:
             self.counts[int(key)] += int(count)
 
     def merge(self, other: Histogram) -> None:
+        """Counts of another one are added."""
         self.counts.update(other.counts)
 
     @property
     def total(self) -> int:
+        """Of all that was counted."""
         return sum(self.counts.values())
 
     def quantile(self, part: float) -> float | None:

@@ -16,8 +16,8 @@ from mechkin_cli.status import Status, has_solution
 ROUNDING = 2.0**-53
 WRONG = 100.0
 """Errors above this many roundings times the condition (of rates its square) are no rounding but
-another place, unless nine digits are right, which is what `ok` promises (`CONDITION_NEAR_SINGULAR`).
-"""
+another place, unless nine digits are right, which is what `ok` promises
+(`CONDITION_NEAR_SINGULAR`)."""
 NINE_DIGITS = 1e-9
 WRONG_TOLERANCES = 1000.0
 """The same of responses, in their tolerances: errors of steps add up."""
@@ -44,12 +44,15 @@ class Verdict(IntEnum):
     """Wrong, `near-singular` or `rank-unclear`."""
     false_ok = 6
     """Wrong, or there is none, and the row says ok."""
-    held = 7
-    """One of these three where the run notes that a freedom is held that is idle but for
-    `COMMON_MOTION`: a documented limit."""
+    rates_lost = 7
+    """The place is right and says ok, rates or accelerations are not right to nine digits: a
+    documented limit of rods that are short beside the mechanism."""
+    taken_as_drawn = 8
+    """One of these faults where the run itself says that the mechanism is taken for one whose axes
+    or points coincide (`COMMON_MOTION`, `LOOP_RANK`): a documented limit."""
 
 
-FAULTS = (Verdict.false_ok, Verdict.wrong_warned, Verdict.false_alarm)
+FAULTS = (Verdict.false_ok, Verdict.wrong_warned, Verdict.false_alarm, Verdict.rates_lost)
 
 
 @dataclass(frozen=True)
@@ -57,23 +60,24 @@ class Found:
     """What the solver gave, in radians' degrees and SI as files of this room are written.
 
     `codes`, `condition` and `bound` (nan where rows have none) are (mechanisms, rows), as are the
-    values by name, angles in degrees and rates in rad/s; `held` (mechanisms, 1) says of which runs
-    note a freedom that is held.
+    values by name, angles in degrees and rates in rad/s; `noted` (mechanisms, 1) says of which runs
+    say that they take the mechanism for one whose axes or points coincide.
     """
 
     codes: NDArray[np.int8]
     condition: Rows
     bound: Rows
     values: dict[str, Rows]
-    held: Mask
+    noted: Mask
 
 
 @dataclass(frozen=True)
 class Judged:
     """(mechanisms, rows) each; errors and bounds are nan where there is nothing to compare.
 
-    Positions in rad and parts of the size, or of the value where that is larger; `miss` the same
-    without these parts, nan where a value is so large that its cell rounds by more than a state. Rates and accelerations in parts of the row's largest.
+    Positions in rad and parts of the size, or of the value where that is larger; `miss` without
+    these parts, nan where a value is so large that its cell rounds by more than a state. Rates and
+    accelerations in parts of the row's largest.
     """
 
     verdict: NDArray[np.int8]
@@ -92,18 +96,18 @@ def judge(found: Found, truth: Truth, *, response: bool = False) -> Judged:
         position, miss, elsewhere = _positions(found, truth)
         rate, acceleration = _rates(found, truth)
         condition = np.fmax(found.condition, 1.0)
-        wrong = elsewhere < position
+        wrong, well = elsewhere < position, np.ones(position.shape, bool)
         if response:
             wrong |= ~(position <= WRONG_TOLERANCES * TOLERANCE)
         else:
             rounding = WRONG * ROUNDING * condition
             wrong |= ~(position <= np.maximum(rounding, NINE_DIGITS))
-            for error in (rate, acceleration):
-                wrong |= error > np.maximum(rounding * condition, NINE_DIGITS)
+            rates = np.fmax(rate, acceleration)
+            well = ~(rates > np.maximum(rounding * condition, NINE_DIGITS))
     # what a held freedom keeps is a convention, and no error
-    blank = np.where(solved & truth.decided & ~found.held, 0.0, np.nan)
+    blank = np.where(solved & truth.decided & ~found.noted, 0.0, np.nan)
     return Judged(
-        _verdicts(found, truth, wrong),
+        _verdicts(found, truth, wrong, well),
         condition,
         found.bound + blank,
         position + blank,
@@ -113,15 +117,17 @@ def judge(found: Found, truth: Truth, *, response: bool = False) -> Judged:
     )
 
 
-def _verdicts(found: Found, truth: Truth, wrong: Mask) -> NDArray[np.int8]:
+def _verdicts(found: Found, truth: Truth, wrong: Mask, well: Mask) -> NDArray[np.int8]:
+    """`well`: whose rates are right, too."""
     solved = has_solution(found.codes)
     certain = found.codes == Status.ok
     good = solved & truth.exists & ~wrong
     verdict = np.where(solved, np.where(certain, Verdict.false_ok, Verdict.wrong_warned), 0)
-    verdict = np.where(good, np.where(certain, Verdict.right, Verdict.right_warned), verdict)
+    right = np.where(well, Verdict.right, Verdict.rates_lost)
+    verdict = np.where(good, np.where(certain, right, Verdict.right_warned), verdict)
     none = np.where(truth.exists, Verdict.false_alarm, Verdict.rightly_none)
     verdict = np.where(solved, verdict, none)
-    verdict = np.where(found.held & np.isin(verdict, FAULTS), Verdict.held, verdict)
+    verdict = np.where(found.noted & np.isin(verdict, FAULTS), Verdict.taken_as_drawn, verdict)
     return np.where(truth.decided, verdict, Verdict.undecided).astype(np.int8)
 
 

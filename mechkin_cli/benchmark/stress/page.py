@@ -18,22 +18,30 @@ SECTION = re.compile(
 HEAD = """\
 # Hard mechanisms
 
-Written by `mechkin bench --stress --rows {rows} --seed {seed} --page docs/stress.md`; `--check` computes the small set
-again and compares the page. Families of random mechanisms, each hard in one way, every row decided by a closed form in
-double-double arithmetic (about 31 digits) of which no line is the solver's. `mechkin bench --stress --family NAME --only K`
-writes mechanism K of a family as a file. Numbers depend on rows and seed alone, not on the machine.
+Written by `mechkin bench --stress --rows {rows} --seed {seed} --page docs/stress.md`; `--check`
+computes the small set again and compares the page. Families of random mechanisms, each hard in one
+way. Every row is decided by a closed form in double-double arithmetic (about 31 digits) of which no
+line is the solver's. `mechkin bench --stress --family NAME --only K` writes mechanism K of a family
+as a file. Numbers depend on rows and seed alone, not on the machine.
 
 {families}
 
-- *Right*: within {wrong} u k of the true place, u = 2^-53 and k the row's own condition (responses: {tolerances} tolerances), and
-  nearer to it than to the other assembly; *warned*: the row says `near-singular` or `rank-unclear`.
+- *Right*: within {wrong} u k of the true place, u = 2^-53 and k the row's own condition, or to nine
+  digits (responses: within {tolerances} tolerances), and nearer to it than to the other assembly;
+  *warned*: the row says `near-singular` or `rank-unclear`.
 - *Rightly none*: the branch has ended before, and the row is empty and says so.
-- *Undecided*: rounding of the file's numbers, 64 units in the last place, decides whether there is a row.
-- *Held*: the run notes (`conventional`) that a freedom which is idle but for 1e-7 is held as drawn (`COMMON_MOTION`: axes within
-  1e-7 rad are parallel, as numbers of nine digits leave them). The row is that of such a mechanism, not of the one written; a
+- *Undecided*: rounding of the file's numbers, 64 units in the last place, decides whether there is
+  a row.
+- *As drawn*: a fault of the next kinds in a run whose notes say (`conventional`,
+  `undriven-freedom`, `input-locked`) that axes or points which differ by less than 1e-7, or loops
+  that are dependent but for 1e-6, are taken for coinciding (`COMMON_MOTION`, `LOOP_RANK`): numbers
+  of nine digits leave that much. The row is one of such a mechanism. A documented limit.
+- *Rates lost*: the place is right and says ok, a rate or an acceleration is off by more than
+  {wrong} u k^2 and 1e-9 of the row's largest. A rod that is short beside the mechanism has its
+  direction to u over its length only, which `row.condition`, a measure of places, does not see. A
   documented limit.
-- *Wrong, warned*: another place, with a warning. *False alarm*: there is a row, and it stays empty. *False ok*: a wrong row, or
-  one that cannot be, that says ok.
+- *Wrong, warned*: another place, with a warning. *False alarm*: there is a row, and it stays empty.
+  *False ok*: a wrong place, or one that cannot be, that says ok.
 """
 
 
@@ -105,8 +113,13 @@ def _sections(tallies: Sequence[Tally]) -> str:
 
 
 def _markdown(table: Table) -> str:
-    labels = [column.label.replace("-\n", "").replace("\n", " ").strip() for column in table.columns]
-    rules = ["---" if column.kind == "text" and k < 2 else "---:" for k, column in enumerate(table.columns)]
+    labels = [
+        column.label.replace("-\n", "").replace("\n", " ").strip() for column in table.columns
+    ]
+    rules = [
+        "---" if column.kind == "text" and k < 2 else "---:"
+        for k, column in enumerate(table.columns)
+    ]
     lines = [f"### {table.title}", "", _line(labels), "|" + "|".join(rules) + "|"]
     lines += [_line(cells) for cells in table.texts()]
     notes = [f"- {note}" for note in table.notes]

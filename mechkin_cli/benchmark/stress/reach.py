@@ -19,9 +19,9 @@ from mechkin_cli.benchmark.stress.quantity import Mask, Rows
 TURN = DoubleDouble.of(2 * PI)
 DEGREE = 2
 LEAST_LEADING = 1e-17
-"""Of the leading coefficient, in parts of the others: a lower degree has its other roots far off."""
+"""Of the leading coefficient, in parts of the others: of a lower degree the others are far off."""
 ON_CIRCLE = 0.1
-"""How far from the unit circle a root in double precision is still tried; Newton's method decides."""
+"""How far from the unit circle a root in double precision is still tried by Newton's method."""
 NEWTON_STEPS = 8
 BISECTIONS = 30
 """Before Newton's method."""
@@ -44,7 +44,7 @@ MarginOf = Callable[[Number], Margin]
 
 @dataclass(frozen=True)
 class Reach:
-    """Extremes (mechanisms, 4) within [0, 2 pi), nan where there are fewer, and the margins there."""
+    """Extremes (mechanisms, 4) in [0, 2 pi), nan where there are fewer, and the margins there."""
 
     margin_of: MarginOf
     extremes: DoubleDouble
@@ -88,7 +88,8 @@ class Reach:
         ones = np.ones_like(place.high)
         moving = Series(place, DoubleDouble(ones), DoubleDouble(0.0 * ones))
         found = self.margin_of(moving).value
-        return place - found.value / found.rate
+        step: DoubleDouble = found.value / found.rate
+        return place - step
 
     def _bracket(self, sense: Rows) -> tuple[DoubleDouble, DoubleDouble]:
         """The last extreme on the way that still exists (or the start), and the first that does

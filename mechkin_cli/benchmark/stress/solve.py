@@ -14,8 +14,9 @@ from mechkin_cli.interface import Analysis, loads
 from mechkin_cli.status import Status
 
 CONDITION, BOUND = "row.condition", "row.error_bound"
-HELD = ("conventional", "hold-ends")
-"""Notes of a run that keeps a freedom at rest which nothing moves."""
+TAKEN = ("conventional", "hold-ends", "undriven-freedom", "input-locked", "input-dependent")
+"""Notes of a run that takes axes or points for coinciding: a freedom is held that nothing moves, or
+is not driven, or an input does not move anything."""
 
 
 def solve(
@@ -30,7 +31,7 @@ def solve(
     codes = np.full(shape, Status.not_assembled, np.int8)
     condition, bound = np.full(shape, np.nan), np.full(shape, np.nan)
     values = {name: np.full(shape, np.nan) for name in names}
-    held = np.zeros((len(texts), 1), bool)
+    noted = np.zeros((len(texts), 1), bool)
     refused = {}
     for k, text in enumerate(texts):
         try:
@@ -44,8 +45,8 @@ def solve(
             bound[k] = analysis[BOUND]
         for name in names:
             values[name][k] = analysis[name]
-        held[k] = any(note.code in HELD for note in analysis.diagnostics)
-    return Found(codes, condition, bound, values, held), refused
+        noted[k] = any(note.code in TAKEN for note in analysis.diagnostics)
+    return Found(codes, condition, bound, values, noted), refused
 
 
 def _run(text: str, names: Sequence[str], *, response: bool) -> Analysis:

@@ -26,13 +26,21 @@ FULL = 400.0
 class Linkage(Protocol):
     """One with a single discriminant, driven at A.theta."""
 
-    def margin(self, angle: Number) -> Margin: ...
+    def margin(self, angle: Number) -> Margin:
+        """The discriminant at the crank's angle in rad."""
+        ...
 
-    def quantities(self, angle: Number) -> tuple[Quantity, ...]: ...
+    def quantities(self, angle: Number) -> tuple[Quantity, ...]:
+        """The coordinates there."""
+        ...
 
-    def size(self) -> Rows: ...
+    def size(self) -> Rows:
+        """What lengths are taken by, in m."""
+        ...
 
-    def text(self, k: int, name: str, degrees: Rows) -> str: ...
+    def text(self, k: int, name: str, degrees: Rows) -> str:
+        """Mechanism k as a file."""
+        ...
 
 
 def block(linkage: Linkage, name: str, found: Reach, degrees: Rows) -> Block:
@@ -46,10 +54,8 @@ def block(linkage: Linkage, name: str, found: Reach, degrees: Rows) -> Block:
     return Block(texts, degrees, truth)
 
 
-def through(
-    linkage: Linkage, name: str, generators: Sequence[random.Random], count: int
-) -> Block:
-    """Rows from the drawing towards an end of the branch, some beyond it, or through a full turn."""
+def through(linkage: Linkage, name: str, generators: Sequence[random.Random], count: int) -> Block:
+    """Rows from the drawing towards an end of the branch, some beyond it, or a full turn."""
     found = reach(linkage.margin, len(generators))
     sense, ends = towards(found, generators)
     last = []

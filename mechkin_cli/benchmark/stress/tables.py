@@ -19,7 +19,8 @@ _COUNTS = (
     ("warned", Verdict.right_warned, "right,\nwarned"),
     ("none", Verdict.rightly_none, "rightly\nnone"),
     ("undecided", Verdict.undecided, "un-\ndecided"),
-    ("held", Verdict.held, "\nheld"),
+    ("taken", Verdict.taken_as_drawn, "as\ndrawn"),
+    ("rates_lost", Verdict.rates_lost, "rates\nlost"),
     ("wrong_warned", Verdict.wrong_warned, "wrong,\nwarned"),
     ("false_alarm", Verdict.false_alarm, "false\nalarms"),
     ("false_ok", Verdict.false_ok, "false\nok"),
@@ -45,7 +46,7 @@ def _verdicts(tallies: Sequence[Tally]) -> Table:
             total.merge(tally)
         rows.append(_counted(total))
     faults = [
-        f'{tally.family} {fault.number}, row {fault.row + 1}: {fault.kind.replace("_", " ")}: '
+        f"{tally.family} {fault.number}, row {fault.row + 1}: {fault.kind.replace('_', ' ')}: "
         f"{fault.words}"
         for tally in tallies
         for fault in tally.faults
@@ -77,7 +78,7 @@ def _errors(tallies: Sequence[Tally]) -> Table:
     rows = [_measured(tally) for tally in tallies]
     notes = (
         "u k: 2^-53 times the condition, at least 1; of rates and accelerations u k^2.",
-        "median and 99.9 %, to an eighth; positions in rad and sizes, or in parts of larger values.",
+        "median and 99.9 %; positions in rad and sizes, or in parts of larger values.",
     )
     return Table("errors", "Errors of the rows that are right", columns, rows, notes)
 

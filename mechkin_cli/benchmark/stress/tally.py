@@ -15,6 +15,8 @@ from mechkin_cli.benchmark.stress.quantity import Rows
 
 SHOWN = 5
 """Faults of each kind that a family keeps."""
+NOTHING = ROUNDING / 1024.0
+"""Errors below this are luck, and say nothing of a bound."""
 LEVELS = ("position", "rate", "acceleration")
 REFUSED = "refused"
 
@@ -78,7 +80,7 @@ class Tally:
         there = ~np.isnan(bound) & ~np.isnan(error)
         self.bounded += int(there.sum())
         self.bounds_kept += int((error[there] <= bound[there]).sum())
-        positive = there & (error > 0.0)
+        positive = there & (error > NOTHING)
         self.bounds.add(bound[positive] / error[positive])
 
     def tell(self, fault: Fault) -> None:

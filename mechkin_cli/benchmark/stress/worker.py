@@ -11,6 +11,7 @@ from mechkin_cli.benchmark.stress.block import run_block
 
 
 def main() -> None:
+    """Answers until its input ends."""
     # the process that started this one is asked; its end ends the input
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for line in sys.stdin:

@@ -24,8 +24,8 @@ def _planar(generators: Sequence[random.Random]) -> Block:
         frame = [scaled(x, power) for x in direction(rng)[:2]]
         rod = [scaled(uniform(rng, 1.0, 3.0) * x, power) for x in direction(rng)[:2]]
         corners.append([frame, direction(rng)[:2], rod])
-    frame, crank, rod = transposed(corners)
-    bar = FourBar((np.zeros_like(crank), crank, crank + rod, frame))
+    feet, crank, rods = transposed(corners)
+    bar = FourBar((np.zeros_like(crank), crank, crank + rods, feet))
     return through(Train((bar,)), "coincident points", generators, ROWS)
 
 
@@ -39,9 +39,9 @@ def _spatial(generators: Sequence[random.Random]) -> Block:
         slant = [u + scaled(x, power) for u, x in zip(axis, direction(rng), strict=True)]
         places.append([frame, direction(rng), rod])
         axes.append([axis, slant])
-    frame, crank, rod = transposed(places)
+    feet, crank, rods = transposed(places)
     one, two = transposed(axes)
-    linkage = Rssr((np.zeros_like(crank), crank, crank + rod, frame), (one, two))
+    linkage = Rssr((np.zeros_like(crank), crank, crank + rods, feet), (one, two))
     return through(linkage, "coincident points", generators, ROWS)
 
 

@@ -42,9 +42,7 @@ def _make(generators: Sequence[random.Random]) -> Block:
     (start,) = linkage.quantities(turning(degrees[:, :1]))
     near = (start.value.value / DEGREE).high[:, 0]
     texts = [
-        linkage.text(
-            k, "double modes", row, f"assembly: {{near: {{D.theta: {number(near[k])}}}}}"
-        )
+        linkage.text(k, "double modes", row, f"assembly: {{near: {{D.theta: {number(near[k])}}}}}")
         for k, row in enumerate(degrees)
     ]
 

@@ -14,7 +14,7 @@ from mechkin_cli.benchmark.stress.family import Block, Family
 from mechkin_cli.benchmark.stress.sweeps import full_turns
 
 ROWS = 40
-DEGREES = 3.6e6
+DEGREES = 360.0 * 10_000
 GAPS = (0.05, 0.15)
 
 

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from mechkin_cli.benchmark.stress.draws import (
-    array,
     direction,
     point,
     scaled,
@@ -19,6 +18,7 @@ from mechkin_cli.benchmark.stress.linkages.rccc import Rccc
 from mechkin_cli.benchmark.stress.linkages.rssr import Rssr
 from mechkin_cli.benchmark.stress.linkages.slider import Slider
 from mechkin_cli.benchmark.stress.linkages.train import FourBar, Train
+from mechkin_cli.benchmark.stress.quantity import Rows
 
 Generators = Sequence[random.Random]
 Powers = Sequence[int]
@@ -34,7 +34,11 @@ def rssr(generators: Generators, powers: Powers) -> Rssr:
     drawn, axes = [], []
     for rng, power in zip(generators, powers, strict=True):
         far = [uniform(rng, 1.0, 2.0), *point(rng)[:2]]
-        places = [point(rng, 0.2), point(rng), [f + x for f, x in zip(far, point(rng), strict=True)]]
+        places = [
+            point(rng, 0.2),
+            point(rng),
+            [f + x for f, x in zip(far, point(rng), strict=True)],
+        ]
         drawn.append(_sized([*places, far], power))
         axes.append([direction(rng), direction(rng)])
     a, b, c, d = transposed(drawn)
@@ -70,33 +74,34 @@ def four_bar(generators: Generators, powers: Powers) -> Train:
     drawn = []
     for rng, power in zip(generators, powers, strict=True):
         far = [uniform(rng, 0.7, 1.5), 0.0]
-        places = [[0.0, 0.0], point(rng)[:2], [f + x for f, x in zip(far, point(rng), strict=False)]]
+        places = [
+            [0.0, 0.0],
+            point(rng)[:2],
+            [f + x for f, x in zip(far, point(rng)[:2], strict=True)],
+        ]
         drawn.append(_sized([*places, far], power))
     a, b, c, d = transposed(drawn)
     return Train((FourBar((a, b, c, d)),))
 
 
-def drag_links(
-    generators: Generators, count: int, gaps: Sequence[Sequence[float]]
-) -> Train:
+def drag_links(generators: Generators, count: int, gaps: Sequence[Sequence[float]]) -> Train:
     """Four-bars in a row whose frames are the shortest links, so that all of them turn fully.
 
     `gaps` (mechanisms, count): how much each is away from a change point, in parts of its crank; it
     lies where the crank points along the frame, one way or the other.
     """
-    chains = [
-        _chain(rng, own) for rng, own in zip(generators, gaps, strict=True)
-    ]
+    chains = [_chain(rng, own) for rng, own in zip(generators, gaps, strict=True)]
     bars = []
     for k in range(count):
-        a, b, c, d = (array([chain[k][i] for chain in chains]) for i in range(4))
+        a, b, c, d = (np.array([chain[k][i] for chain in chains]) for i in range(4))
         bars.append(FourBar((a, b, c, d)))
     return Train(tuple(bars), whole_turns=True)
 
 
-def _chain(rng: random.Random, gaps: Sequence[float]) -> list[tuple[np.ndarray, ...]]:
+def _chain(rng: random.Random, gaps: Sequence[float]) -> list[tuple[Rows, ...]]:
     """Corners of one row of four-bars as drawn; each starts from the rocker of the one before."""
-    foot, end, chain = np.zeros(2), np.array([0.6, 0.8]), []
+    foot, end = np.zeros(2), np.array([0.6, 0.8])
+    chain: list[tuple[Rows, ...]] = []
     for gap in gaps:
         arm = end - foot
         crank = float(np.sqrt(arm[0] * arm[0] + arm[1] * arm[1]))
@@ -112,7 +117,7 @@ def _chain(rng: random.Random, gaps: Sequence[float]) -> list[tuple[np.ndarray, 
     return chain
 
 
-def _slant(rng: random.Random) -> np.ndarray:
+def _slant(rng: random.Random) -> Rows:
     x, y = rng.choice(((0.6, 0.8), (0.8, 0.6), (0.28, 0.96), (0.96, 0.28), (1.0, 0.0)))
     return np.array([x * rng.choice((-1.0, 1.0)), y * rng.choice((-1.0, 1.0))])
 
@@ -128,12 +133,12 @@ def _lengths(rng: random.Random, crank: float, frame: float, gap: float) -> tupl
     return (long, short) if rng.random() < 0.5 else (short, long)
 
 
-def _corner(
-    end: np.ndarray, foot: np.ndarray, rod: float, rocker: float, side: float
-) -> np.ndarray:
+def _corner(end: Rows, foot: Rows, rod: float, rocker: float, side: float) -> Rows:
     """Where rod and rocker meet."""
     gap = end - foot
     square = gap[0] * gap[0] + gap[1] * gap[1]
     along = (square + rocker * rocker - rod * rod) / (2.0 * square)
     across = np.sqrt(max(rocker * rocker / square - along * along, 0.0)) * side
-    return foot + np.array([along * gap[0] - across * gap[1], along * gap[1] + across * gap[0]])
+    turned = np.array([along * gap[0] - across * gap[1], along * gap[1] + across * gap[0]])
+    corner: Rows = foot + turned
+    return corner

@@ -32,9 +32,7 @@ class Oscillator:
     def quantities(self, time: Number) -> tuple[Quantity, ...]:
         """At moments (mechanisms, rows)."""
         count = self.mass.shape[1]
-        return tuple(
-            Quantity(f"P{k + 1}.s", "length", self._motion(k, time)) for k in range(count)
-        )
+        return tuple(Quantity(f"P{k + 1}.s", "length", self._motion(k, time)) for k in range(count))
 
     def _motion(self, k: int, time: Number) -> Number:
         mass, stiffness, damping, start = (
@@ -58,7 +56,8 @@ class Oscillator:
 
     def size(self) -> Rows:
         """The largest start, (mechanisms, 1), in m."""
-        return np.abs(self.start).max(axis=1, keepdims=True)
+        largest: Rows = np.abs(self.start).max(axis=1, keepdims=True)
+        return largest
 
     def text(self, k: int, name: str, moments: Rows) -> str:
         """Mechanism k as a file."""

@@ -54,6 +54,7 @@ class Rccc:
         return swing(four, minus(three, four), target, dot(coupler, coupler))
 
     def margin(self, angle: Number) -> Margin:
+        """The discriminant at the crank's angle in rad."""
         found = self.swing(angle)
         # rounding of directions is that of unit vectors, however near they are to each other
         ones = self.field(np.ones_like(found.far.number.high))
@@ -65,6 +66,7 @@ class Rccc:
         return np.where(home.b.high > 0.0, -1.0, 1.0)
 
     def quantities(self, angle: Number) -> tuple[Quantity, ...]:
+        """The coordinates at angles of the input in rad."""
         one, two, three, four = self._directions()
         found, sign = self.swing(angle), self.sign()
         crank = turn(one, angle)
@@ -101,7 +103,8 @@ class Rccc:
     def size(self) -> Rows:
         """The diagonal of the box of the drawn points, (mechanisms, 1)."""
         spans = np.ptp(np.stack(self.points), axis=0)
-        return np.sqrt((spans * spans).sum(axis=1, keepdims=True))
+        size: Rows = np.sqrt((spans * spans).sum(axis=1, keepdims=True))
+        return size
 
     def text(self, k: int, name: str, degrees: Rows) -> str:
         """Mechanism k as a file, swept through the degrees."""

@@ -17,6 +17,7 @@ from mechkin_cli.benchmark.stress.numbers.vectors import Swing, dot, minus, plus
 from mechkin_cli.benchmark.stress.quantity import Quantity, Rows
 from mechkin_cli.benchmark.stress.reach import Margin
 
+
 @dataclass(frozen=True)
 class Rssr:
     """Points A, B, C, D and axes of A and D as drawn, (mechanisms, 3) each."""
@@ -36,6 +37,7 @@ class Rssr:
         return swing(rocker, minus(c, d), minus(end, d), dot(rod, rod))
 
     def margin(self, angle: Number) -> Margin:
+        """The discriminant at the crank's angle in rad."""
         found = self.swing(angle)
         return Margin(found.discriminant, found.blur())
 
@@ -45,6 +47,7 @@ class Rssr:
         return np.where(home.b.high > 0.0, -1.0, 1.0) * self.assembly
 
     def quantities(self, angle: Number) -> tuple[Quantity, ...]:
+        """The coordinates at angles of the input in rad."""
         found, sign = self.swing(angle), self.sign()
         sine, cosine = found.sine_cosine(sign)
         away_sine, away_cosine = found.sine_cosine(-sign)
@@ -54,7 +57,8 @@ class Rssr:
     def size(self) -> Rows:
         """The diagonal of the box of the drawn points, (mechanisms, 1)."""
         spans = np.ptp(np.stack(self.points), axis=0)
-        return np.sqrt((spans * spans).sum(axis=1, keepdims=True))
+        size: Rows = np.sqrt((spans * spans).sum(axis=1, keepdims=True))
+        return size
 
     def text(self, k: int, name: str, degrees: Rows, *sections: str) -> str:
         """Mechanism k as a file, swept through the degrees; `sections` follow."""

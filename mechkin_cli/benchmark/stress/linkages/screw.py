@@ -43,6 +43,7 @@ class Screw:
         return np.where(home.b.high > 0.0, -1.0, 1.0)
 
     def quantities(self, angle: Number) -> tuple[Quantity, ...]:
+        """The coordinates at angles of the input in rad."""
         advance, sign = self.advance(angle), self.sign()
         found = self.swing(advance)
         sine, cosine = found.sine_cosine(sign)
@@ -57,7 +58,8 @@ class Screw:
     def size(self) -> Rows:
         """The diagonal of the box of the drawn points, (mechanisms, 1)."""
         spans = np.ptp(np.stack(self.points), axis=0)
-        return np.sqrt((spans * spans).sum(axis=1, keepdims=True))
+        size: Rows = np.sqrt((spans * spans).sum(axis=1, keepdims=True))
+        return size
 
     def text(self, k: int, name: str, degrees: Rows) -> str:
         """Mechanism k as a file, swept through the degrees."""

@@ -41,6 +41,7 @@ class Slider:
         return *slide(way, c, end, square), square
 
     def margin(self, angle: Number) -> Margin:
+        """The discriminant at the crank's angle in rad."""
         middle, discriminant, square = self._slide(angle)
         rod = np.sqrt(square.high)
         across = np.sqrt(np.maximum(square.high - discriminant.number.high, 0.0))
@@ -53,6 +54,7 @@ class Slider:
         return np.where(middle.high > 0.0, -1.0, 1.0)
 
     def quantities(self, angle: Number) -> tuple[Quantity, ...]:
+        """The coordinates at angles of the input in rad."""
         middle, discriminant, _ = self._slide(angle)
         root = discriminant.sqrt() * self.sign()
         other = middle.number - root.number
@@ -61,7 +63,8 @@ class Slider:
     def size(self) -> Rows:
         """The diagonal of the box of the drawn points, (mechanisms, 1)."""
         spans = np.ptp(np.stack(self.points), axis=0)
-        return np.sqrt((spans * spans).sum(axis=1, keepdims=True))
+        size: Rows = np.sqrt((spans * spans).sum(axis=1, keepdims=True))
+        return size
 
     def text(self, k: int, name: str, degrees: Rows) -> str:
         """Mechanism k as a file, swept through the degrees."""

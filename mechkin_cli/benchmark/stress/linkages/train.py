@@ -48,6 +48,7 @@ class FourBar:
         return Swing(along, across, d_term, radius, _square(rod), far)
 
     def margin(self, angle: Number) -> Margin:
+        """The discriminant at the crank's angle in rad."""
         found = self.swing(*angle.sin_cos())
         return Margin(found.discriminant, found.blur())
 
@@ -82,6 +83,7 @@ class Train:
     """Whether every rocker turns fully with its crank, so that its whole turns are known."""
 
     def quantities(self, angle: Number) -> tuple[Quantity, ...]:
+        """The coordinates at angles of the input in rad."""
         sine, cosine = angle.sin_cos()
         turns = None
         found: list[Quantity] = []
@@ -114,7 +116,8 @@ class Train:
     def size(self) -> Rows:
         """The diagonal of the box of the drawn points, (mechanisms, 1)."""
         spans = np.ptp(np.concatenate([np.stack(bar.points) for bar in self.bars]), axis=0)
-        return np.sqrt((spans * spans).sum(axis=1, keepdims=True))
+        size: Rows = np.sqrt((spans * spans).sum(axis=1, keepdims=True))
+        return size
 
     def margin(self, angle: Number) -> Margin:
         """That of the first four-bar, which is all where there is but one."""

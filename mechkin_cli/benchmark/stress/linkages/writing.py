@@ -17,6 +17,7 @@ def number(value: float) -> str:
 
 
 def place(values: Iterable[float]) -> str:
+    """A vector in flow style."""
     return "[" + ", ".join(number(v) for v in values) + "]"
 
 

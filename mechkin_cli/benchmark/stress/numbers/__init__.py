@@ -1,1 +1,1 @@
-"""Numbers that closed forms are written over: double-double rows, and their Taylor series in time."""
+"""What closed forms are written over: double-double rows, and their Taylor series in time."""

@@ -7,7 +7,7 @@ cancel. Functions err by some 1e-30 of their largest value.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,7 +52,7 @@ def two_product(a: Rows, b: Rows) -> tuple[Rows, Rows]:
 
 
 class DoubleDouble:
-    """high + low, arrays of one shape; operations with floats and float64 arrays take these exactly."""
+    """high + low, arrays of one shape; other operands are floats or float64 arrays, exactly."""
 
     __slots__ = ("high", "low")
     __array_ufunc__ = None
@@ -110,11 +110,12 @@ class DoubleDouble:
     def __rtruediv__(self, other: Operand) -> DoubleDouble:
         return DoubleDouble(_array(other)) / self
 
-    def __getitem__(self, key: object) -> DoubleDouble:
-        return DoubleDouble(self.high[key], self.low[key])  # type: ignore[index]
+    def __getitem__(self, key: Any) -> DoubleDouble:
+        return DoubleDouble(self.high[key], self.low[key])
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """Of its rows."""
         return self.high.shape
 
     @property
@@ -164,7 +165,7 @@ class DoubleDouble:
         for n in range(2, EXPONENT_TERMS):
             term = term * rest / float(n)
             total = total + term
-        for _ in range(EXPONENT_HALVINGS):  # e^2x - 1 of e^x - 1, which keeps the small part's digits
+        for _ in range(EXPONENT_HALVINGS):  # e^2x - 1 of e^x - 1
             total = total * 2.0 + total * total
         total = total + 1.0
         scale = np.ldexp(1.0, np.clip(twos, -1000, 1000).astype(int))
@@ -230,5 +231,5 @@ DEGREE = DoubleDouble.of(PI / 180)
 
 
 def radians(degrees: Rows) -> DoubleDouble:
-    """Angles in degrees, which are exact doubles, in rad; whole turns go first, without rounding."""
+    """Angles in degrees, which are exact doubles, in rad."""
     return DoubleDouble(degrees) * DEGREE

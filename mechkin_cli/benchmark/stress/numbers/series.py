@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 Number = Any
-"""What a closed form is written over: `DoubleDouble`, `Series`, or a test's numbers of 40 digits."""
+"""`DoubleDouble`, `Series`, or a test's numbers of 40 digits."""
 
 
 class Series:
@@ -42,10 +42,10 @@ class Series:
         return Series(-self.value, -self.rate, -self.acceleration)
 
     def __sub__(self, other: Number) -> Series:
-        return self + (-other)
+        return self.__add__(-other)
 
     def __rsub__(self, other: Number) -> Series:
-        return (-self) + other
+        return self.__neg__().__add__(other)
 
     def __mul__(self, other: Number) -> Series:
         if not isinstance(other, Series):
@@ -71,17 +71,20 @@ class Series:
         return Series(self.value * 0.0 + other, self.value * 0.0, self.value * 0.0) / self
 
     def sqrt(self) -> Series:
+        """The root of a positive number."""
         root = self.value.sqrt()
         rate = self.rate / root * 0.5
         return Series(root, rate, (self.acceleration * 0.5 - rate * rate) / root)
 
     def sin_cos(self) -> tuple[Series, Series]:
+        """Sine and cosine of rad."""
         s, c = self.value.sin_cos()
         square = self.rate * self.rate
         sine = Series(s, c * self.rate, c * self.acceleration - s * square)
         return sine, Series(c, -(s * self.rate), -(s * self.acceleration) - c * square)
 
     def arctan2(self, x: Series) -> Series:
+        """The angle of (x, self) in (-pi, pi]."""
         length = self.value * self.value + x.value * x.value
         rate = (x.value * self.rate - self.value * x.rate) / length
         bend = x.value * self.acceleration - self.value * x.acceleration

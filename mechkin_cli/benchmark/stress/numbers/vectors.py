@@ -13,26 +13,32 @@ Vector = tuple[Number, Number, Number]
 
 
 def plus(a: Vector, b: Vector) -> Vector:
+    """a + b."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
 def minus(a: Vector, b: Vector) -> Vector:
+    """a - b."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
 def times(factor: Number, a: Vector) -> Vector:
+    """factor a."""
     return factor * a[0], factor * a[1], factor * a[2]
 
 
 def dot(a: Vector, b: Vector) -> Number:
+    """The scalar product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def cross(a: Vector, b: Vector) -> Vector:
+    """The vector product."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def unit(a: Vector) -> Vector:
+    """a over its length."""
     length = dot(a, a).sqrt()
     return a[0] / length, a[1] / length, a[2] / length
 
@@ -53,6 +59,7 @@ class Turn(NamedTuple):
 
     @property
     def back(self) -> Turn:
+        """The opposite one."""
         return Turn(self.axis, -self.sine, self.cosine)
 
 
@@ -130,7 +137,9 @@ def swing(axis: Vector, arm: Vector, target: Vector, square: Number) -> Swing:
     return Swing(a, b, d, (a * a + b * b).sqrt(), square, far)
 
 
-def slide(direction: Vector, start: Vector, target: Vector, square: Number) -> tuple[Number, Number]:
+def slide(
+    direction: Vector, start: Vector, target: Vector, square: Number
+) -> tuple[Number, Number]:
     """Middle s and discriminant of |start + s direction - target|^2 = square, |direction| = 1."""
     gap = minus(target, start)
     middle = dot(gap, direction)
