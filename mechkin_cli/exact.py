@@ -49,6 +49,11 @@ def part(count: int) -> Exact:
     return Exact(1.0 / count, Fraction(1, count))
 
 
+def nearest(number: Fraction) -> Exact:
+    """The double nearest to a number, which it knows."""
+    return Exact(float(number), number)
+
+
 def fraction_of(value: float) -> Fraction:
     """The number that a double stands for."""
     return value.fraction if isinstance(value, Exact) else Fraction(value)

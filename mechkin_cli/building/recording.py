@@ -16,10 +16,12 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from mechkin_cli.building.build import Built, build_problem, check_spins, read_fields
+from mechkin_cli.building.exact_motion import exact_motion
 from mechkin_cli.building.idle import settled
 from mechkin_cli.exact import PI
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.expressions.written import numbers_read_by
+from mechkin_cli.mechanism.exact_motion import ExactMotion
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.precise import Precise
@@ -39,15 +41,16 @@ class Recording(NamedTuple):
 
 
 class ExactRecording(NamedTuple):
-    """A problem whose every number is `Traced`, down to the decimals of the text."""
+    """A problem whose every number is `Traced`, down to the decimals of the text; its motion over
+    the rows stands beside it."""
 
     recorder: ExactRecorder
     problem: Problem
+    motion: ExactMotion
 
 
 def record_exactly(built: Built, given: Mapping[str, Quantity] = _NOTHING) -> ExactRecording:
-    """The problem of a file with its mechanism, loads and assembly as they follow from the exact
-    numbers of its text; its motion is the doubles' (`building.exact_rows` has the exact rows).
+    """The problem of a file as it follows from the exact numbers of its text.
 
     Args:
         built: the file, which has no errors.
@@ -70,7 +73,9 @@ def record_exactly(built: Built, given: Mapping[str, Quantity] = _NOTHING) -> Ex
     }
     with numbers_read_by(read):
         fields = read_fields(built.read, set_anew)
-        problem = build_problem(fields, built.read.file, responses=False, motion=base.motion)
+        file = built.read.file
+        problem = build_problem(fields, file, responses=False, motion=base.motion)
+        motion = exact_motion(fields, file.motion, base.motion, recorder)
     if fields.error_count:
         raise TraceLost("the recording came to an error that the file does not have")
     problem = replace(
@@ -81,14 +86,14 @@ def record_exactly(built: Built, given: Mapping[str, Quantity] = _NOTHING) -> Ex
         diagnostics=base.diagnostics,
     )
     _refuse_made_pairs(problem)
-    return ExactRecording(recorder, settled(problem))
+    return ExactRecording(recorder, settled(problem), motion)
 
 
 def precise(built: Built, problem: Problem, given: Mapping[str, Quantity] = _NOTHING) -> Precise:
     """The numbers of a file as its text says them, for the sessions of its `problem` in doubles;
     the other arguments and errors as those of `record_exactly`."""
     recording = record_exactly(built, given)
-    return Precise(recording.recorder, recording.problem, problem)
+    return Precise(*recording, problem)
 
 
 def _refuse_made_pairs(problem: Problem) -> None:

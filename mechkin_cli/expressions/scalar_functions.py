@@ -73,7 +73,9 @@ def larger(left: Scalar, right: Scalar) -> Scalar:
 
 def _unless_nan(right: Any, chosen: Any) -> Scalar:
     """What was chosen of two recorded rows, or the second where that one is nan."""
-    found: Scalar = chosen if isinstance(right, float) else (right == right).choose(chosen, right)
+    if not scalars.is_row(right):
+        return chosen  # type: ignore[no-any-return]
+    found: Scalar = (right == right).choose(chosen, right)
     return found
 
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.plan import plan_records
+from mechkin_cli.solver.precise_inputs import PreciseInputs, enclosed_inputs, precise_inputs
 from mechkin_cli.solver.records import flatten
 from mechkin_cli.solver.same_structure import graph_of
 from mechkin_cli.tape.decimal_replay import double_doubles, enclosures
@@ -23,6 +24,7 @@ from mechkin_cli.tape.traced import register
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
+    from mechkin_cli.mechanism.exact_motion import ExactMotion
     from mechkin_cli.mechanism.model import Attached
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
@@ -36,14 +38,19 @@ class Precise:
     Args:
         recorder: that holds the exact numbers.
         problem: the file's problem on that recorder.
+        motion: the file's motion over its rows.
         base: the same problem in doubles, of which the sessions are.
     """
 
-    def __init__(self, recorder: ExactRecorder, problem: Problem, base: Problem) -> None:
+    def __init__(
+        self, recorder: ExactRecorder, problem: Problem, motion: ExactMotion, base: Problem
+    ) -> None:
         self.recorder = recorder
         self.problem = problem
+        self.motion = motion
         self.base = base
         self._layouts: dict[int, tuple[Session, Layout]] = {}
+        self._inputs: dict[int, tuple[Problem, PreciseInputs]] = {}
 
     def constants(self, session: Session) -> Floats:
         """The constants of the session's plan in double-double (constants, 2), in the order in
@@ -70,6 +77,21 @@ class Precise:
         """The same enclosed (constants, 2): midpoints and radii."""
         return enclosures(self.tape(self._outputs(session, wanted, points)))
 
+    def inputs(self, session: Session) -> PreciseInputs:
+        """The inputs of all rows in double-double, as `session.inputs` has them in doubles; kept.
+
+        Rows that a call asked for in place of the file's are the doubles that it gave, in the
+        file's units.
+        """
+        problem = session.problem
+        if id(problem) not in self._inputs:
+            self._inputs[id(problem)] = (problem, precise_inputs(self, session))
+        return self._inputs[id(problem)][1]
+
+    def enclosed_inputs(self, session: Session) -> PreciseInputs:
+        """The same enclosed: midpoints and radii in place of high and low parts."""
+        return enclosed_inputs(self, session)
+
     @cached_property
     def parameters(self) -> Mapping[str, Floats]:
         """The file's parameters in SI and double-double (2,), by name."""
@@ -84,7 +106,7 @@ class Precise:
     def layout(self, session: Session) -> Layout:
         """The session's layout over the recording; kept."""
         if id(session) not in self._layouts:
-            problem = self._problem_of(session)
+            problem = self.problem_of(session)
             own = session.layout
             graph = graph_of(problem.solved_mechanism, session.graph)
             layout = Layout(problem.laid_mechanism, graph, own.length, problem.laws)
@@ -107,7 +129,7 @@ class Precise:
             plan.add_point(at, 0)
         return flatten(plan.records)
 
-    def _problem_of(self, session: Session) -> Problem:
+    def problem_of(self, session: Session) -> Problem:
         """The recorded problem of what the session's problem is made of."""
         own = session.problem
         mechanism = own.mechanism

@@ -7,8 +7,9 @@ Algorithms, 3.3): far tighter than intervals of doubles, and enough to round a c
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from decimal import Decimal, localcontext
+import operator
+from collections.abc import Callable, Iterable, Sequence
+from decimal import ROUND_HALF_EVEN, Decimal, Inexact, getcontext, localcontext
 from fractions import Fraction
 from math import inf, nextafter, sqrt
 from typing import TYPE_CHECKING, NamedTuple
@@ -21,6 +22,7 @@ from mechkin_cli.tape.operations import ARITY, Operation
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.tape.exact_recorder import ExactTape
+    from mechkin_cli.tape.tape import Tape
 
 DIGITS = 60
 """Of every operation; pi has as many decimals."""
@@ -50,7 +52,7 @@ def double_doubles(tape: ExactTape) -> Floats:
     Raises:
         NotEnclosed: an output is not defined.
     """
-    return np.array([_parts(one)[:2] for one in replay(tape)], dtype=np.float64).reshape(-1, 2)
+    return np.array([parts(one)[:2] for one in replay(tape)], dtype=np.float64).reshape(-1, 2)
 
 
 def enclosures(tape: ExactTape) -> Floats:
@@ -60,7 +62,7 @@ def enclosures(tape: ExactTape) -> Floats:
     Raises:
         NotEnclosed: an output is not defined.
     """
-    found = [(high, radius) for high, _, radius in map(_parts, replay(tape))]
+    found = [(high, radius) for high, _, radius in map(parts, replay(tape))]
     return np.array(found, dtype=np.float64).reshape(-1, 2)
 
 
@@ -70,27 +72,46 @@ def replay(tape: ExactTape) -> list[Near]:
     Raises:
         NotEnclosed: an output is not defined.
     """
+    numbers = [of_fraction(number) for number in tape.numbers]
+    numbers += [of_fraction(Fraction(value)) for value in tape.tape.constants.tolist()]
+    return run(tape.tape, [numbers])[0]
+
+
+def run(tape: Tape, rows: Iterable[Sequence[Near]]) -> list[list[Near]]:
+    """The outputs of a tape for each of some rows of its inputs and constants.
+
+    Raises:
+        NotEnclosed: an output is not defined.
+    """
+    codes = list(map(Operation, tape.operations.tolist()))
+    operands = [o[: ARITY[code]] for code, o in zip(codes, tape.operands.tolist(), strict=True)]
+    lines = [(code, _RULES[code], o) for code, o in zip(codes, operands, strict=True)]
+    outputs = tape.outputs.tolist()
+    found = []
     with localcontext() as context:
         context.prec = DIGITS
-        registers = [_of_fraction(number) for number in tape.numbers]
-        registers += [Near(Decimal(value), 0.0) for value in tape.tape.constants.tolist()]
-        lines = zip(tape.tape.operations.tolist(), tape.tape.operands.tolist(), strict=True)
-        for code, operands in lines:
-            operation = Operation(code)
-            arguments = [registers[r] for r in operands[: ARITY[operation]]]
-            found = _RULES[operation](*arguments)
-            if not found.off < inf or not found.value.is_finite():
-                raise NotEnclosed(f"{operation.name.lower()} of {', '.join(map(str, arguments))}")
-            registers.append(found)
-        return [registers[r] for r in tape.tape.outputs.tolist()]
+        for row in rows:
+            registers = list(row)
+            for code, rule, places in lines:
+                arguments = [registers[place] for place in places]
+                result = rule(*arguments)
+                if not result.off < inf or not result.value.is_finite():
+                    raise NotEnclosed(f"{code.name.lower()} of {', '.join(map(str, arguments))}")
+                registers.append(result)
+            found.append([registers[place] for place in outputs])
+    return found
 
 
-def _of_fraction(number: Fraction) -> Near:
-    value = Decimal(number.numerator) / Decimal(number.denominator)
-    return Near(value, abs(float(value)) * _UNIT)
+def of_fraction(number: Fraction) -> Near:
+    """A number, exact where it has few digits."""
+    with localcontext() as context:
+        context.prec = DIGITS
+        value = Decimal(number.numerator) / Decimal(number.denominator)
+    exact = Fraction(value) == number
+    return Near(value, 0.0 if exact else abs(float(value)) * _UNIT)
 
 
-def _parts(near: Near) -> tuple[float, float, float]:
+def parts(near: Near) -> tuple[float, float, float]:
     """High, low and the radius about high."""
     with localcontext() as context:
         context.prec = DIGITS
@@ -111,14 +132,16 @@ def _size(near: Near) -> float:
     return abs(float(near.value))
 
 
-def _exact(a: Near, b: Near, value: Decimal) -> bool:
-    """Whether nothing was rounded: few digits."""
-    return not a.off and not b.off and len(value.as_tuple().digits) < DIGITS
+def _rounding(off: float, function: Callable[..., Decimal], *arguments: Decimal) -> Near:
+    """The result of one operation of IEEE 854, which tells whether it was rounded."""
+    context = getcontext()
+    context.clear_flags()
+    value = function(*arguments)
+    return Near(value, off) if not off and not context.flags[Inexact] else _near(value, off)
 
 
 def _sum(a: Near, b: Near) -> Near:
-    value = a.value + b.value
-    return Near(value, 0.0) if _exact(a, b, value) else _near(value, a.off + b.off)
+    return _rounding(a.off + b.off, operator.add, a.value, b.value)
 
 
 def _difference(a: Near, b: Near) -> Near:
@@ -130,20 +153,16 @@ def _negative(a: Near) -> Near:
 
 
 def _product(a: Near, b: Near) -> Near:
-    value = a.value * b.value
-    if _exact(a, b, value):
-        return Near(value, 0.0)
-    return _near(value, _size(a) * b.off + _size(b) * a.off + a.off * b.off)
+    off = _size(a) * b.off + _size(b) * a.off + a.off * b.off
+    return _rounding(off, operator.mul, a.value, b.value)
 
 
 def _quotient(a: Near, b: Near) -> Near:
     least = _size(b) - b.off
     if not least > 0.0:
         raise NotEnclosed("a quotient by what may be zero")
-    value = a.value / b.value
-    if _exact(a, b, value):
-        return Near(value, 0.0)
-    return _near(value, (a.off + abs(float(value)) * b.off) / least)
+    off = (a.off + _size(a) / _size(b) * b.off) / least
+    return _rounding(off * _MARGIN, operator.truediv, a.value, b.value)
 
 
 def _root(a: Near) -> Near:
@@ -151,10 +170,8 @@ def _root(a: Near) -> Near:
         if abs(float(a.value)) > a.off:
             raise NotEnclosed("the root of a negative number")
         return Near(Decimal(0), sqrt(2.0 * a.off) * _MARGIN)
-    value = a.value.sqrt()
-    if not a.off and value * value == a.value:
-        return Near(value, 0.0)
-    return _near(value, min(a.off / float(value), sqrt(a.off)))
+    size = _size(a)
+    return _rounding(min(a.off / sqrt(size) * _MARGIN, sqrt(a.off)), Decimal.sqrt, a.value)
 
 
 def _smooth(
@@ -209,6 +226,10 @@ def _logarithm(a: Near) -> Near:
     return _near(a.value.ln(), a.off / least + _UNIT)
 
 
+def _truth(holds: bool) -> Near:
+    return Near(Decimal(int(holds)), 0.0)
+
+
 def _power(a: Near, b: Near) -> Near:
     return _exponential(_product(b, _logarithm(a)))
 
@@ -231,5 +252,14 @@ _RULES: dict[Operation, Callable[..., Near]] = {
     Operation.EXP: _exponential,
     Operation.LOG: _logarithm,
     Operation.POWER: _power,
+    Operation.LESS: lambda a, b: _truth(a.value < b.value),
+    Operation.NOT_MORE: lambda a, b: _truth(a.value <= b.value),
+    Operation.EQUAL: lambda a, b: _truth(a.value == b.value),
+    Operation.CHOOSE: lambda a, b, c: b if a.value else c,
+    Operation.LARGER: lambda a, b: b if b.value > a.value else a,
+    Operation.SMALLER: lambda a, b: b if b.value < a.value else a,
+    Operation.SIGN: lambda a: Near(Decimal((a.value > 0) - (a.value < 0)), 0.0),
+    Operation.WHOLE: lambda a: Near(a.value.to_integral_value(ROUND_HALF_EVEN), 0.0),
 }
-"""What a tape of exact numbers may hold."""
+"""What a tape of exact numbers may hold. Over rows it chooses, too: by the values, whose bounds say
+nothing of the other way."""

@@ -6,7 +6,7 @@ value, an array of floats) raises `TraceLost`, so that nothing passes for a cons
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from mechkin_cli.tape.operations import Operation
 from mechkin_cli.tape.scalars import Recorded, Undecided
@@ -92,7 +92,7 @@ class Traced(Recorded):
     def __truediv__(self, other: float | Traced) -> Traced:
         if isinstance(other, Traced):
             other._refuse_zero()
-        elif other == 0.0:
+        elif not isinstance(other, Recorded) and other == 0.0:
             raise ZeroDivisionError("float division by zero")
         return self._with(Operation.DIVIDE, other)
 
@@ -133,6 +133,9 @@ class Traced(Recorded):
         return self._after(Operation[operation], first)
 
     def _with(self, operation: Operation, *others: float | Traced) -> Traced:
+        if others and _is_made_of_others(others[0]):
+            made: Any = others[0]
+            return made.apply_after(operation.name, self)  # type: ignore[no-any-return]
         return _computed(operation, self, *others)
 
     def _after(self, operation: Operation, other: float) -> Traced:
@@ -141,6 +144,8 @@ class Traced(Recorded):
     def _compared(
         self, operation: Operation, other: object, *, turned: bool = False, negated: bool = False
     ) -> Condition:
+        if _is_made_of_others(other):
+            return NotImplemented  # type: ignore[no-any-return]
         recorder = _innermost(self, other)
         left, right = register(recorder, self), register(recorder, other)
         if turned:
@@ -163,6 +168,11 @@ class Traced(Recorded):
 
     def __repr__(self) -> str:
         return f"Traced({self.recorded!r})"
+
+
+def _is_made_of_others(number: object) -> bool:
+    """Whether a recorded number is no register but consists of several, and knows what to do."""
+    return isinstance(number, Recorded) and not isinstance(number, Traced)
 
 
 def _innermost(*numbers: object) -> Recorder:

@@ -71,6 +71,7 @@ ACCEPTED = {
     ("analysis/response/driven_rows.py", "TIME ** order"): FRACTIONS,
     ("analysis/response/moments.py", "TIME ** order"): FRACTIONS,
     ("building/coordinates.py", "TIME ** order"): FRACTIONS,
+    ("solver/precise_inputs.py", "TIME ** order"): FRACTIONS,
     ("building/laws.py", "TIME ** (have - want)"): FRACTIONS,
     ("building/laws.py", "units.unit(TIME) ** (-k)"): FRACTIONS,
     ("building/unit_system.py", "units.time ** (-2)"): FRACTIONS,

@@ -91,4 +91,5 @@ NB_MODULE(_kernel, m) {
   bind_positions(m);
   bind_integrator(m);
   bind_response(m);
+  bind_enclosing(m);
 }

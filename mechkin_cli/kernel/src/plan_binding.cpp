@@ -329,6 +329,11 @@ void bind_plan(nb::module_& m) {
       .def_prop_ro("load_values", [](const FrozenPlan& p) { return p.view().load_values; })
       .def_prop_ro("ties", [](const FrozenPlan& p) { return p.view().ties; })
       .def_prop_ro("blocks", [](const FrozenPlan& p) { return p.view().blocks; })
+      .def_prop_ro("equations", [](const FrozenPlan& p) {
+        int count = 0;
+        for (int b = 0; b < p.view().blocks; ++b) count += p.view().block[b].rows;
+        return count;
+      })
       .def_prop_ro("size", [](const FrozenPlan& p) { return p.view().size; })
       .def_prop_ro("constants", &constants_of<FrozenPlan>, nb::rv_policy::automatic)
       .def("with_constants", &with_constants<FrozenPlan>, "constants"_a)

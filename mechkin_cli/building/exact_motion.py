@@ -1,0 +1,319 @@
+"""The motion of a file over its rows as its text says it, on a recording of exact numbers.
+
+The formulas are those of `building.spacing`, `building.laws` and `building.following`. Which rows
+there are, on which side of a rise and in which piece of a table they lie, is what the doubles
+found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import pi, prod
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.building.coordinates import dimension_of
+from mechkin_cli.building.curves import read_rows
+from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.building.laws import (
+    Clock,
+    _of_constant_acceleration,
+    _of_constant_rate,
+    _of_polynomial,
+    _over_time,
+    _span,
+)
+from mechkin_cli.exact import PI, TURN, Exact
+from mechkin_cli.expressions import Expression, Quantity, literal, parse
+from mechkin_cli.expressions.fields import scalar
+from mechkin_cli.mechanism.curve import smooth_curve
+from mechkin_cli.mechanism.exact_motion import ExactMotion
+from mechkin_cli.schema.laws import (
+    ConstantAcceleration,
+    ConstantRate,
+    Cycloidal,
+    Harmonic,
+    Law,
+    Polynomial,
+    TableLaw,
+)
+from mechkin_cli.schema.motion import (
+    FollowingInput,
+    HeldInput,
+    ListedInput,
+    MotionSection,
+    SweptInput,
+    TimeSection,
+    WithRates,
+)
+from mechkin_cli.tape.exact_rows import ExactRows, Picked
+from mechkin_cli.tape.jet_numbers import JetNumber, orders_of
+from mechkin_cli.tape.scalars import as_recorded, cos, sin
+from mechkin_cli.units import TIME
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.mechanism.motion import Motion
+    from mechkin_cli.tape.exact_recorder import ExactRecorder
+    from mechkin_cli.units import Dimension
+
+Orders = tuple[Any, Any, Any, Any]
+"""Value, rate, acceleration, jerk; each a number of the rows or one for all of them."""
+
+_HALF_TURN = Exact(pi, PI)
+
+
+def exact_motion(
+    fields: Fields, section: MotionSection | None, motion: Motion, recorder: ExactRecorder
+) -> ExactMotion:
+    """A motion without errors over its rows.
+
+    Args:
+        fields: units and parameters, recorded; numbers are read as recorded ones.
+        section: the motion as written.
+        motion: the same in doubles.
+        recorder: holds the recorded numbers.
+
+    Raises:
+        TraceLost: an input depends on the text in a way that no tape holds.
+    """
+    rows = ExactRows(recorder, motion.rows)
+    if section is None:
+        return ExactMotion(rows, {}, {})
+    reading = _Reading(fields, section, motion, rows)
+    if section.time is not None:
+        reading.read_time(section.time)
+    for name, item in section.inputs.items():
+        if not isinstance(item, FollowingInput):
+            reading.add(name, item)
+    reading.follow({n: i for n, i in section.inputs.items() if isinstance(i, FollowingInput)})
+    written, in_si = dict(reading.written), dict(reading.in_si)
+    if section.time is not None:
+        written["time"] = reading.moment
+        in_si["time"] = fields.units.to_si(reading.moment, TIME)
+    return ExactMotion(rows, in_si, written, reading.tie_rates(motion))
+
+
+@dataclass
+class _Reading:
+    """Inputs by name: orders in the file's units and in SI."""
+
+    fields: Fields
+    section: MotionSection
+    motion: Motion
+    rows: ExactRows
+    written: dict[str, Any] = field(default_factory=dict)
+    in_si: dict[str, Any] = field(default_factory=dict)
+    expressions: dict[str, Expression] = field(default_factory=dict)
+    moment: Any = None
+    clock: Clock | None = None
+
+    def read_time(self, section: TimeSection) -> None:
+        """The moments of the rows in the file's unit."""
+        path: Path = ("motion", "time")
+        self.moment = self._spaced(path, section, TIME)
+        first = self.fields.written((*path, "from"), section.first, TIME)
+        last = self.fields.written((*path, "to"), section.last, TIME)
+        assert self.motion.time is not None
+        self.clock = Clock(self.motion.time.written, first, last)
+
+    def add(self, name: str, item: WithRates | Law) -> None:
+        """An input that follows none."""
+        path: Path = ("motion", "inputs", name)
+        coordinate = name.rpartition(".")[2]
+        dimension = dimension_of(coordinate)
+        if isinstance(item, (SweptInput, ListedInput, HeldInput)):
+            value: Any
+            if isinstance(item, HeldInput):
+                value = self.fields.written((*path, "at"), item.at, dimension)
+            elif isinstance(item, ListedInput):
+                places = ((*path, "values", i) for i in range(len(item.values)))
+                pairs = zip(places, item.values, strict=True)
+                listed = [self.fields.written(place, text, dimension) for place, text in pairs]
+                which = np.arange(self.rows.rows) if len(listed) > 1 else np.zeros(1, dtype=np.intp)
+                value = self.rows.given(Picked(listed, np.resize(which, self.rows.rows)))
+            else:
+                value = self._spaced(path, item, dimension)
+            texts = (item.rate, item.acceleration, item.jerk)
+            rates = [
+                self.fields.written((*path, key), text, dimension_of(coordinate, k))
+                for k, (key, text) in enumerate(
+                    zip(("rate", "acceleration", "jerk"), texts, strict=True), start=1
+                )
+            ]
+            self._put(name, (value, *rates))
+        elif isinstance(item, Harmonic | Cycloidal):
+            self._put(name, self._rise(path, item, coordinate))
+        elif isinstance(item, TableLaw):
+            self._put(name, self._table(path, item, coordinate))
+        elif isinstance(item, ConstantRate | ConstantAcceleration | Polynomial):
+            self._put(name, self._power_series(path, item, coordinate))
+
+    def follow(self, sections: Mapping[str, FollowingInput]) -> None:
+        """The inputs that follow others, each after those that it follows."""
+        coordinates = set(self.section.inputs)
+        waiting: dict[str, Expression] = {}
+        for name, item in sections.items():
+            path: Path = ("motion", "inputs", name, "with")
+            dimension = dimension_of(name.rpartition(".")[2])
+            if literal(item.value) is None:
+                waiting[name] = parse(item.value).taking_whole(coordinates)
+            else:
+                self._put(name, (self.fields.written(path, item.value, dimension), 0.0, 0.0, 0.0))
+        while waiting:
+            name = next(n for n in waiting if not waiting[n].names & waiting.keys())
+            self.expressions[name] = expression = waiting.pop(name)
+            coordinate = name.rpartition(".")[2]
+            orders = self._followed(expression, coordinate, self._quantity)
+            self.in_si[name] = orders
+            self.written[name] = tuple(
+                self.fields.units.from_si(order, dimension_of(coordinate, k))
+                for k, order in enumerate(orders)
+            )
+
+    def tie_rates(self, motion: Motion) -> tuple[Any, ...]:
+        """The rates of tied inputs by those of their leaders, in the motion's order."""
+        names = [item.name for item in motion.inputs]
+        found = []
+        for tied, leader in motion.tied:
+            seeds: dict[str, Any] = {
+                name: (self.in_si[name][0], float(name == names[leader]), 0.0, 0.0)
+                for name in self.in_si
+            }
+            for name, expression in self.expressions.items():
+                if name == names[leader]:
+                    continue
+                known = dict(seeds)
+                seeds[name] = self._followed(
+                    expression,
+                    name.rpartition(".")[2],
+                    lambda used, known=known: self._quantity(used, known),
+                )
+            found.append(seeds[names[tied]][1])
+        return tuple(found)
+
+    def _followed(self, expression: Expression, coordinate: str, resolve: Any) -> Orders:
+        value = scalar(expression, dimension_of(coordinate), self.fields.units, resolve)
+        return orders_of(value)
+
+    def _quantity(self, name: str, seeds: Mapping[str, Any] | None = None) -> Quantity:
+        known = self.in_si if seeds is None else seeds
+        moving: Any
+        if name in known:
+            moving = JetNumber(known[name])
+            return Quantity(moving, dimension_of(name.rpartition(".")[2]))
+        if name == "time" and self.moment is not None:
+            rate = 1.0 if seeds is None else 0.0
+            moving = JetNumber([self.fields.units.to_si(self.moment, TIME), rate, 0.0, 0.0])
+            return Quantity(moving, TIME)
+        return self.fields.resolve(name)
+
+    def _put(self, name: str, orders: Orders) -> None:
+        coordinate, to_si = name.rpartition(".")[2], self.fields.units.to_si
+        self.written[name] = orders
+        self.in_si[name] = tuple(
+            to_si(order, dimension_of(coordinate, k)) for k, order in enumerate(orders)
+        )
+
+    def _spaced(self, path: Path, section: SweptInput | TimeSection, dimension: Dimension) -> Any:
+        """first + i step, or first + i (last - first)/(count - 1)."""
+        first: Any = self.fields.written((*path, "from"), section.first, dimension)
+        last: Any = self.fields.written((*path, "to"), section.last, dimension)
+        rows = self.rows.rows
+        if rows == 1:
+            return first
+        number: Any = self.rows.given(np.arange(rows, dtype=np.float64))
+        if section.count is not None:
+            return first + number * (last - first) / float(section.count - 1)
+        assert section.step is not None
+        step: Any = abs(self.fields.written((*path, "step"), section.step, dimension))
+        return first + number * (step if last >= first else -step)
+
+    def _power_series(
+        self, path: Path, law: ConstantRate | ConstantAcceleration | Polynomial, coordinate: str
+    ) -> Orders:
+        if isinstance(law, ConstantRate):
+            coefficients = _of_constant_rate(self.fields, path, law, coordinate)
+        elif isinstance(law, ConstantAcceleration):
+            coefficients = _of_constant_acceleration(self.fields, path, law, coordinate)
+        else:
+            coefficients = _of_polynomial(self.fields, path, law, coordinate)
+        assert self.clock is not None
+        t = self.moment - self.clock.first
+        orders: list[Any] = []
+        for order in range(4):
+            total: Any = 0.0
+            for k in range(len(coefficients) - 1, order - 1, -1):
+                factor = float(prod(range(k - order + 1, k + 1)))
+                conversion = _over_time(self.fields.units, coordinate, k, order)
+                term = conversion.apply(coefficients[k] * factor)
+                total = term if k == len(coefficients) - 1 else total * t + term
+            orders.append(total)
+        return orders[0], orders[1], orders[2], orders[3]
+
+    def _rise(self, path: Path, law: Harmonic | Cycloidal, coordinate: str) -> Orders:
+        dimension, clock = dimension_of(coordinate), self.clock
+        assert clock is not None
+        first: Any = self.fields.written((*path, "from"), law.first, dimension)
+        last: Any = self.fields.written((*path, "to"), law.last, dimension)
+        start, duration = _span(self.fields, path, law, clock)
+        at = (clock.moments - as_recorded(start)) / as_recorded(duration)
+        rising = self._where((at >= 0.0) & (at <= 1.0))
+        risen = self._where(at >= 1.0)
+        u = (self.moment - start) / duration
+        rise: Any = last - first
+        shape = _harmonic(u) if isinstance(law, Harmonic) else _cycloidal(u)
+        orders: list[Any] = [rising.choose(first + rise * shape[0], risen.choose(last, first))]
+        for order in (1, 2, 3):
+            rise = rise / duration
+            conversion = _over_time(self.fields.units, coordinate, 0, order)
+            orders.append(rising.choose(conversion.apply(rise * shape[order]), 0.0))
+        return orders[0], orders[1], orders[2], orders[3]
+
+    def _table(self, path: Path, law: TableLaw, coordinate: str) -> Orders:
+        table = read_rows(self.fields, (*path, "file"), law.file, TIME, dimension_of(coordinate))
+        assert table is not None
+        assert self.clock is not None
+        curve = smooth_curve(table.x, table.y)
+        knots = np.array([as_recorded(x) for x in table.x])
+        piece = np.searchsorted(knots, self.clock.moments, side="right") - 1
+        piece = np.clip(piece, 0, knots.size - 1)
+
+        def picked(numbers: Any) -> Any:
+            return self.rows.given(Picked(list(numbers), piece))
+
+        y, b, c, d = (picked(row) for row in curve.coefficients)
+        u = self.moment - picked(table.x)
+        found = (
+            y + u * (b + u * (c + u * d)),
+            b + u * (2.0 * c + u * (3.0 * d)),
+            2.0 * c + u * (6.0 * d),
+            6.0 * d,
+        )
+        conversions = (_over_time(self.fields.units, coordinate, 0, k) for k in range(4))
+        one, two, three, four = (c.apply(f) for c, f in zip(conversions, found, strict=True))
+        return one, two, three, four
+
+    def _where(self, rows: Any) -> Any:
+        """A condition that holds in some rows, as doubles found."""
+        chosen: Floats = rows.astype(np.float64)
+        return self.rows.given(chosen) == 1.0
+
+
+def _harmonic(u: Any) -> Orders:
+    """(1 - cos(pi u))/2 and its derivatives."""
+    sine, cosine = sin(u * _HALF_TURN), cos(u * _HALF_TURN)
+    return (
+        (1.0 - cosine) / 2.0,
+        sine * _HALF_TURN / 2.0,
+        cosine * _HALF_TURN * _HALF_TURN / 2.0,
+        -(sine * _HALF_TURN * _HALF_TURN * _HALF_TURN / 2.0),
+    )
+
+
+def _cycloidal(u: Any) -> Orders:
+    """u - sin(2 pi u)/(2 pi) and its derivatives."""
+    sine, cosine = sin(u * TURN), cos(u * TURN)
+    return (u - sine / TURN, 1.0 - cosine, sine * TURN, cosine * TURN * TURN)
