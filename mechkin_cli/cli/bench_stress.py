@@ -31,8 +31,8 @@ class Stress(NamedTuple):
     json: bool
 
 
-def stress_command(asked: Stress, show: Callable[[Sequence[Table]], None]) -> int:
-    """Runs what is asked for; `show` prints tables for a person.
+def stress_command(asked: Stress, show: Callable[[Table], None]) -> int:
+    """Runs what is asked for; `show` prints a table for a person.
 
     Returns:
         The exit code: 1 where a row is wrong and says ok, or where the page is not current.
@@ -61,7 +61,8 @@ def stress_command(asked: Stress, show: Callable[[Sequence[Table]], None]) -> in
     else:
         from mechkin_cli.benchmark.stress.tables import tables
 
-        show(tables(tallies))
+        for table in tables(tallies):
+            show(table)
     wrong = any(tally.verdicts["false_ok"] for tally in tallies)
     return ExitCode.DIFFERENCES if wrong else ExitCode.OK
 
