@@ -155,7 +155,7 @@ class Model(Certified):
             tables: names of the tables wanted; None: all, [] none.
             mode: assembly mode at the first row instead of the file's choice.
             closed_at: closing joints to use (the answers do not depend on them).
-            lanes, threads: width of packs and how many split the rows, 0 for the most (nor on these).
+            lanes, threads: width of packs, how many split the rows; 0: the most (nor on these).
             errors: measure the true error of every cell now (else when `errors` is first read).
 
         Raises:
