@@ -131,7 +131,7 @@ class Precise:
 
     def problem_of(self, session: Session) -> Problem:
         """The recorded problem of what the session's problem is made of."""
-        own = session.problem
+        own, near = session.problem, self.problem.assembly.near
         mechanism = own.mechanism
         parts: dict[str, Any] = {
             name: {key: self._recorded(part) for key, part in getattr(mechanism, name).items()}
@@ -143,7 +143,7 @@ class Precise:
         return replace(
             own,
             mechanism=replace(mechanism, **parts),
-            assembly=self._recorded(own.assembly),
+            assembly=replace(own.assembly, near={name: near[name] for name in own.assembly.near}),
             parameters=self.problem.parameters,
             load_laws=tuple(map(self._recorded, own.load_laws)),
         )
@@ -164,7 +164,6 @@ class Precise:
         own, recorded = self.base, self.problem
         pairs: list[tuple[Any, Any]] = [
             (own.mechanism.gravity, recorded.mechanism.gravity),
-            (own.assembly, recorded.assembly),
             *zip(own.mechanism.loads, recorded.mechanism.loads, strict=True),
             *zip(own.mechanism.frictions, recorded.mechanism.frictions, strict=True),
             *zip(own.load_laws, recorded.load_laws, strict=True),
