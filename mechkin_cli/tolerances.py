@@ -46,6 +46,15 @@ NEWTON_ITERATIONS: Final = 6
 """A prediction that passes the jump test is within a tenth of a step; squared four times that is
 rounding, and a sixth step allows for a large constant. More would mean that the guess was wrong."""
 
+PRECISE_RESIDUAL_TIGHT: Final = 2e-32
+"""`RESIDUAL_TIGHT` of runs in double-double: a rounding and a half of 1."""
+
+PRECISE_STEP_COARSE: Final = 1e-16
+"""`STEP_COARSE` of runs in double-double."""
+
+PRECISE_RESIDUAL_ACCEPT: Final = 1e-30
+"""`RESIDUAL_ACCEPT` of runs in double-double: about 80 roundings."""
+
 # --- search for assemblies -------------------------------------------------------------------
 
 SEARCH_RESIDUAL: Final = 1e-10
@@ -476,6 +485,26 @@ the last: rounding leaves 1e-12, what is open is open by far more."""
 LAST_ROW: Final = 1e-9
 """Steps by which the last row may lie beyond the end of a sweep, part of format 1: the quotient of
 written numbers is wrong by 1e-16 times the number of rows, of which there are at most 1e7."""
+
+INPUT_ROUNDING: Final = 2.0**-50
+"""Inputs are at most this part of themselves off what the file says, in the kernel's units: a
+multiple of a step, a unit and a whole number of turns taken off are less than eight roundings."""
+
+ENCLOSURE_ROUNDING: Final = 2.0**-50
+"""Part of a coordinate and its radius that is added to the radius: both are converted to the file's
+units, by four roundings at most."""
+
+STRAIGHT_WAY: Final = 1e-9
+"""Change of the direction of the inputs' way (unit vectors of rad and lengths) at a row from which
+on no tube goes through: what remains is rounding of the inputs, and added to the tubes' inputs."""
+
+BRIDGE_NODES: Final = 120
+"""Places between two rows at which a mechanism is closed to join them by tubes: towards a dead
+centre four or five a decade are needed, and there are eight decades above rounding."""
+
+BRIDGE_STEP: Final = 1e-13
+"""Distance of inputs (rad, length units) below which places are not told apart: they are rounded to
+1e-16."""
 
 FAR_DRAWING: Final = 4.0
 """Distance of the drawing from the ground origin, in sizes, beyond which the kernel works about its

@@ -1,5 +1,5 @@
 """The compiled core; see src/module.cpp. Batched arrays are (columns, rows), C-contiguous
-float64."""
+float64; in double-double (columns, 2, rows), high and low."""
 
 from collections.abc import Callable, Sequence
 from enum import IntEnum, IntFlag
@@ -24,6 +24,9 @@ class TreeTableRow(TypedDict):
     freedoms: int
     states: int
     slides: int
+
+CONSTANT_LENGTH: Final[int]
+CONSTANT_SIZE: Final[int]
 
 class TreeCode(IntEnum):
     R = 0
@@ -166,6 +169,7 @@ def json_list(column: Floats | WordColumn, threads: int = 1) -> bytes: ...
 def available_processors() -> int: ...
 def output_width(type: int) -> int: ...
 def output_demand(type: int, order: int = 0) -> Demand: ...
+def enclose(plan: Plan, **arguments: Any) -> None: ...
 
 class Tape:
     def __init__(
@@ -332,6 +336,8 @@ class Plan:
     @property
     def blocks(self) -> int: ...
     @property
+    def equations(self) -> int: ...
+    @property
     def size(self) -> float: ...
     @property
     def constants(self) -> Floats: ...
@@ -377,6 +383,44 @@ class Plan:
         iterations: int = 0,
         tests: tuple[float, float, float],
         only: int | None = None,
+        lanes: int = 0,
+        threads: int = 1,
+    ) -> None: ...
+    def run_precise(
+        self,
+        *,
+        inputs: Floats | None,
+        guess: Floats | None,
+        rates: Floats | None = None,
+        accelerations: Floats | None = None,
+        jerks: Floats | None = None,
+        ties: Floats | None = None,
+        turned: Floats | None = None,
+        chart: Floats | None = None,
+        chart_rates: Floats | None = None,
+        chart_accelerations: Floats | None = None,
+        friction_told: Floats | None = None,
+        whole: Floats | None = None,
+        full: Floats | None = None,
+        time: Floats | None = None,
+        outputs: Outputs | None = None,
+        low: Floats | None = None,
+        low_outputs: Floats | None = None,
+        states: Floats,
+        values: Floats | None = None,
+        first: Floats | None = None,
+        second: Floats | None = None,
+        residual: Floats,
+        correction: Floats,
+        side: Floats | None = None,
+        power_error: Floats | None = None,
+        flags: NDArray[np.uint8],
+        loads: Floats | None = None,
+        undefined: NDArray[np.uint8] | None = None,
+        demand: int = 0,
+        shift: int = 0,
+        iterations: int = 0,
+        tests: tuple[float, float, float],
         lanes: int = 0,
         threads: int = 1,
     ) -> None: ...
@@ -668,3 +712,37 @@ class DrivenLaws:
         held: Sequence[float],
     ) -> None: ...
     def at(self, time: float) -> list[tuple[float, float, float]]: ...
+
+def prove_boxes(
+    plan: Plan,
+    *,
+    states: Floats,
+    off: Floats,
+    radii: Plan | None = None,
+    least: Floats | None = None,
+    radius: Floats,
+    contraction: Floats,
+    beyond: Floats,
+    proven: NDArray[np.uint8],
+) -> None:
+    """Whether there is exactly one position in a box about each of some states (states, places),
+    whose inputs are `off` (inputs, places) at most; see src/certify/proving_unit.hpp."""
+
+def prove_tubes(
+    plan: Plan,
+    *,
+    place: Floats,
+    inputs: Floats,
+    off: Floats,
+    states: Floats,
+    after: Floats,
+    before: Floats,
+    radius: Floats,
+    proven: NDArray[np.uint8],
+    bends: NDArray[np.uint8],
+    radii: Plan | None = None,
+    joined: NDArray[np.uint8],
+    width: Floats,
+) -> tuple[int, int]:
+    """Joins boxes by tubes along a way: how many there are, and how many were tried; see
+    src/certify/tubes.hpp."""

@@ -13,6 +13,7 @@ BASE = {
     "exact",
     "legible",
     "nearest",
+    "proof",
     "regular_file",
     "runs",
     "status",
@@ -59,7 +60,10 @@ HOMES = {
     "typer": {"cli"},
     "click": {"cli"},
     "rich": {"cli"},
-    "scipy": set(),
+    "scipy": {"benchmark"},
+    "pinocchio": {"benchmark"},
+    "casadi": {"benchmark"},
+    "mujoco": {"benchmark"},
 }
 """Libraries that only one room may import."""
 
@@ -100,7 +104,7 @@ WITHIN_ANALYSIS = {
     "modes": {"assembly"},
     "ranges": {"assembly"},
     "response": {"assembly", "sweep"},
-    "sweep": {"assembly", "derived", "mobility"},
+    "sweep": {"assembly", "derived", "mobility", "proof"},
 }
 """What each room of `analysis/` knows of the others: no circles."""
 

@@ -41,6 +41,10 @@ def random_pose(generator: np.random.Generator) -> Any:
     return doubles(turned)
 
 
+def exactly(x: Any) -> Any:
+    return x if isinstance(x, mp.mpf) else mp.mpf(float(x))
+
+
 def floats(values: Any) -> tuple[float, ...]:
     return tuple(float(v) for v in values)
 
@@ -120,7 +124,7 @@ class Chain:
         homes: list[Any] = []
         moves: list[Any] = []
         for number, joint in enumerate(self.joints):
-            q = [mp.mpf(float(states[s])) for s in self.states_of(number)]
+            q = [exactly(states[s]) for s in self.states_of(number)]
             columns = self.columns_of(number)
             v = [mp.mpf(0 if first is None else float(first[c])) for c in columns]
             a = [mp.mpf(0 if second is None else float(second[c])) for c in columns]

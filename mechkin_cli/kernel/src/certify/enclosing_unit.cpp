@@ -1,0 +1,213 @@
+// Enclosures of rates, accelerations, forces and outputs in intervals, and of equations and their derivatives over boxes.
+#define MECHKIN_WIDE_PLAN
+#include "two_part_plan.hpp"
+
+#include "enclosed_motion.hpp"
+#include "enclosing_unit.hpp"
+#include "outputs.hpp"
+
+namespace {
+
+struct Memory {
+  Workspace w;
+  Box box;
+  Solving solving;
+  Pack* derivatives;  // largest block x columns
+};
+
+inline long lay_out_solving(const Plan& p, Room& room, Memory* m) {
+  long inverse = 0, error = 0;
+  for (int b = 0; b < p.blocks; ++b) {
+    const long rows = p.block[b].rows, n = p.block[b].size;
+    inverse += rows * n, error += n * n;
+  }
+  const long largest = p.largest_block;
+  m->box.turn = room.take<Pack>(p.columns);
+  m->derivatives = room.take<Pack>((int)(largest * p.columns));
+  m->solving.inverse = room.take<Real>((int)inverse);
+  m->solving.error = room.take<Real>((int)error);
+  m->solving.across = room.take<Real>((int)(largest * largest));
+  m->solving.room = room.take<Pack>((int)solution_room((int)largest, (int)largest));
+  m->solving.scalar = room.take<double>((int)inverse_numbers(largest));
+  return room.used;
+}
+
+struct Lookup {
+  long rows, row;
+  int count;
+  Real real(const double* base, long number) const {
+    double lanes[LANES];
+    for (int i = 0; i < LANES; ++i) lanes[i] = base[number * rows + row + (i < count ? i : count - 1)];
+    return load(lanes);
+  }
+  Pack get(const double* base, long number) const { return {real(base, 2 * number), real(base, 2 * number + 1)}; }
+};
+
+const Pack UNKNOWN_NUMBER = __builtin_nan("");
+// 2 pi
+constexpr TwoParts FULL_TURN = {0x1.921fb54442d18p+2, 0x1p-51};
+
+// What loads read of a row beside the workspace, see quantity_program.hpp.
+struct RowValues {
+  const EnclosingRequest& r;
+  const Lookup& in;
+  Pack time() const { return UNKNOWN_NUMBER; }
+  Pack turned(int turn, bool closing, Pack angle) const {
+    if (turn == -1 || !(turn >= 0 ? r.turned : r.whole)) return angle;
+    if (turn < -1) return angle + Pack(FULL_TURN) * Pack(in.real(r.whole, -2 - turn));
+    const Real known = in.real(r.turned, turn);
+    // how many turns is known from following; of two that are as near either is a value of the angle
+    const Real turns = closing ? nearest_integer((known - angle.midpoint) / Real(FULL_TURN.first)) : known;
+    return angle + Pack(FULL_TURN) * Pack(turns);
+  }
+  Pack input(int number, Pack, Pack angle) const { return turned(-2 - number, false, angle); }
+};
+
+// The states of the box, inputs with their radius, unknowns with that of their columns.
+void read_box(const Plan& p, const EnclosingRequest& r, Memory& m, const Lookup& in) {
+  Workspace& w = m.w;
+  for (int s = 0; s < p.states; ++s) w.q[s] = Pack(in.real(r.states, s));
+  for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
+  for (int c = 0; c < p.columns; ++c) {
+    const Pack radius = {Real(0.0), r.radius ? in.real(r.radius, c) : Real(0.0)};
+    m.box.turn[c] = p.column_state[c] < 0 ? radius : Pack(0.0);
+    if (p.column_state[c] >= 0) w.q[p.column_state[c]] += radius;
+  }
+}
+
+void put_position(const Plan& p, const EnclosingRequest& r, const Memory& m, int index, const Writer& out) {
+  const long first = place_of_block(p, index).rows;
+  const Block& b = p.block[index];
+  if (r.equations)
+    for (int i = 0; i < b.rows; ++i) out.to(r.equations).put(first + i, m.w.right[i]);
+  if (r.sides)
+    for (int c = b.closing_begin; c < b.closing_end; ++c) {
+      Pack side = 1.0;
+      with_closing_joint(p.closing[c].type, [&](auto entry) { entry.sides(m.w.closure[c], [&](Pack x) { side = x; }); });
+      out.to(r.sides).put(c, side);
+    }
+}
+
+// All forces on the links, or that nothing is known of them: of friction, of loads by laws, of efforts at actuators.
+Balance enclose_forces(const Plan& p, Memory& m, const RowValues& row_values, const EnclosingRequest& r) {
+  Workspace& w = m.w;
+  Balance balance = {p, w, zero_wrench(), zero_wrench(), r.rates != nullptr, UNKNOWN_NUMBER};
+  for (int v = 0; v < p.load_values; ++v) w.load[v] = UNKNOWN_NUMBER;
+  apply_inertia(balance, r.accelerations != nullptr);
+  for (int l = 0; l < p.loads; ++l) apply_load(balance, p.load[l], row_values);
+  const Vec3 unknown = {UNKNOWN_NUMBER, UNKNOWN_NUMBER, UNKNOWN_NUMBER};
+  if (p.frictions || p.actuators)
+    for (int k = 0; k < p.links; ++k) w.carried[k] += Wrench{unknown, unknown};
+  enclose_distribution(p, w, m.solving);
+  return balance;
+}
+
+OutputOf<TwoParts> enclosed_output(const EnclosingRequest& r, int number) {
+  const Output& o = r.wanted->output[number];
+  const Output* const radii = r.wanted_radii ? &r.wanted_radii->output[number] : nullptr;
+  OutputOf<TwoParts> out = {o.type, o.index, o.order, o.freedom, o.slot, {}, {o.factor, radii ? radii->factor : 0.0}};
+  for (int k = 0; k < 3; ++k) out.data[k] = {o.data[k], radii ? radii->data[k] : 0.0};
+  return out;
+}
+
+// What friction and actuators would find, which nothing is known of.
+void forget_others(const Plan& p, Workspace& w) {
+  for (int e = 0; e < efforts(p); ++e) w.actuation.motor[e] = UNKNOWN_NUMBER;
+  *w.actuation.least = UNKNOWN_NUMBER;
+  w.rubbing.self_locking = UNKNOWN_NUMBER;
+  Rubbing& r = w.rubbing;
+  for (int f = 0; f < p.frictions; ++f) r.force[f] = r.normal[f] = r.state[f] = r.speed[f] = UNKNOWN_NUMBER;
+}
+
+void enclose_positions(const Plan& p, const EnclosingRequest& r, Memory& m, const Lookup& in, const Writer& out) {
+  Workspace& w = m.w;
+  read_box(p, r, m, in);
+  for (int b = 0; b < p.blocks; ++b) {
+    place_enclosed_block(p, w, m.box, b);
+    closing_equations(p, w, p.block[b], [](auto, const Pack*) {});
+    put_position(p, r, m, b, out);
+    if (!r.derivatives) continue;
+    enclosed_derivatives(p, w, m.box, b, m.derivatives);
+    const long first = place_of_block(p, b).rows * p.columns;
+    for (long e = 0; e < (long)p.block[b].rows * p.columns; ++e) out.to(r.derivatives).put(first + e, m.derivatives[e]);
+  }
+  for (int k = 0; k < p.rest_count; ++k) place_enclosed(p, w, m.box, p.rest[k]);
+}
+
+void enclose_motion(const Plan& p, const EnclosingRequest& r, Memory& m, const Lookup& in) {
+  Workspace& w = m.w;
+  for (int i = 0; i < p.inputs; ++i) w.rate[p.input_column[i]] = in.get(r.rates, i);
+  for (int b = 0; b < p.blocks; ++b) enclose_rates(p, w, m.solving, b);
+  for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], false);
+  if (!r.accelerations) return;
+  for (int i = 0; i < p.inputs; ++i) w.acceleration[p.input_column[i]] = in.get(r.accelerations, i);
+  for (int b = 0; b < p.blocks; ++b) enclose_accelerations(p, w, m.solving, b);
+  for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], true);
+}
+
+void enclose_pack(const Plan& p, const EnclosingRequest& r, Memory& m, const Lookup& in) {
+  Workspace& w = m.w;
+  const Writer out = {nullptr, in.rows, in.row, in.count};
+  enclose_positions(p, r, m, in, out);
+  if (r.rates || r.forces)
+    for (int b = 0; b < p.blocks; ++b) prepare_block(p, w, m.solving, b);
+  if (r.rates) enclose_motion(p, r, m, in);
+  for (int c = 0; c < p.columns; ++c) {
+    if (r.velocities && r.rates) out.to(r.velocities).put(c, w.rate[c]);
+    if (r.second && r.accelerations) out.to(r.second).put(c, w.acceleration[c]);
+  }
+  const RowValues row_values = {r, in};
+  forget_others(p, w);
+  Balance balance = {p, w, zero_wrench(), zero_wrench(), false, UNKNOWN_NUMBER};
+  if (r.forces) {
+    const Balance found = enclose_forces(p, m, row_values, r);
+    balance.inertia = found.inertia, balance.outside = found.outside;
+    if (!p.actuators) find_motors(p, w, [&](int t) { return r.ties ? in.get(r.ties, t) : UNKNOWN_NUMBER; });
+  }
+  if (!r.wanted) return;
+  for (int o = 0; o < r.wanted->count; ++o) {
+    const OutputOf<TwoParts> wanted = enclosed_output(r, o);
+    Pack value[3];
+    const int width = output_value(p, w, &balance, row_values, wanted, value);
+    for (int k = 0; k < width; ++k) out.to(r.outputs).put(wanted.slot + k, value[k]);
+  }
+}
+
+char* aligned(char* memory) { return memory + (64 - (std::uintptr_t)memory % 64) % 64; }
+
+// The plan's structure alone, which the sizes of memory go by.
+Plan structure_of(const LanePlan& given) {
+  Plan p = {};
+  static_cast<PlanShape&>(p) = given;
+  p.law.reads = given.law.reads, p.law.curves = given.law.curves, p.law.constants = given.law.constants;
+  p.law.inputs = given.law.inputs, p.law.instructions = given.law.instructions;
+  return p;
+}
+
+long workspace_size(const LanePlan& given) {
+  const Plan p = structure_of(given);
+  Memory m;
+  Room room = {nullptr};
+  return join_parts(given, nullptr, nullptr) + lay_out(p, nullptr, &m.w) + lay_out_solving(p, room, &m) + 256;
+}
+
+void enclose(const LanePlan& given, const LanePlan* radii, const EnclosingRequest& r, char* memory) {
+  char* at = aligned(memory);
+  const long used = join_parts(given, radii, at);
+  Plan& p = *reinterpret_cast<Plan*>(at);
+  // conventions, not measures
+  p.length.second = p.size.second = p.row_weight.second = 0.0;
+  at = aligned(at + used);
+  Memory m;
+  at = aligned(at + lay_out(p, at, &m.w));
+  Room room = {at};
+  lay_out_solving(p, room, &m);
+  for (long row = 0; row < r.rows; row += LANES)
+    enclose_pack(p, r, m, {r.rows, row, r.rows - row < LANES ? (int)(r.rows - row) : LANES});
+}
+
+const EnclosingUnit unit = {workspace_size, enclose};
+
+}  // namespace
+
+extern "C" const EnclosingUnit* mechkin_enclosing() { return &unit; }

@@ -1,0 +1,83 @@
+"""Boxes about the rows of a sweep that hold the true positions, found by Krawczyk's operator with
+the kernel's equations and derivatives; sums in plain doubles, which is enough for tests."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.solver.enclosures import Boxes, Enclosure
+
+ROUNDING = 2.0**-50
+"""Of inputs against the file's numbers, relative."""
+
+
+def enclosed(values: np.ndarray) -> Enclosure:
+    return Enclosure(values, ROUNDING * np.abs(values))
+
+
+def interleaved(enclosure: Enclosure) -> np.ndarray:
+    both = np.stack(enclosure, axis=1)
+    return np.ascontiguousarray(both.reshape(-1, both.shape[2]))
+
+
+def boxes_of(session: Any, states: np.ndarray) -> Boxes:
+    """Of the session's rows with their states (states, rows)."""
+    middle, radius = session.precise.enclosed_constants(session).T
+    radius = radius.copy()
+    radius[[0, 4]] = 1.0  # length unit and size, which are conventions
+    plan = session.plan.with_constants(np.ascontiguousarray(middle))
+    radii = plan.with_constants(np.ascontiguousarray(radius))
+    inputs = session.inputs
+    rows = states.shape[1]
+    given = Boxes(
+        plan,
+        radii,
+        np.ascontiguousarray(states),
+        np.zeros((plan.columns, rows)),
+        enclosed(inputs.reduced),
+        enclosed(inputs.rates),
+        enclosed(inputs.accelerations),
+    )
+    unknown = [session.layout.column(k, f) for b in session.graph.blocks for k, f in b.unknowns]
+    radius = np.stack([_radius(given, row, unknown) for row in range(rows)], axis=1)
+    return given._replace(radius=np.ascontiguousarray(radius))
+
+
+def _radius(boxes: Boxes, row: int, unknown: list[int]) -> np.ndarray:
+    """Radii (columns,) of a box with exactly one solution; fails where none is found."""
+    point = np.zeros(boxes.plan.columns)
+    equations, derivatives = evaluated(boxes, row, point)
+    inverse = np.linalg.pinv(derivatives[:, unknown, 0])
+    image = np.abs(inverse) @ (np.abs(equations[:, 0]) + equations[:, 1])
+    radius = 2.0 * image + 1e-22
+    for _ in range(8):
+        point[unknown] = radius
+        _, derivatives = evaluated(boxes, row, point)
+        middle, width = derivatives[:, unknown, 0], derivatives[:, unknown, 1]
+        rest = np.abs(np.eye(len(unknown)) - inverse @ middle) + np.abs(inverse) @ width
+        found = image + rest @ radius
+        if (found < radius).all():
+            return point
+        radius = 2.0 * found
+    raise AssertionError(f"no box about row {row}")
+
+
+def evaluated(boxes: Boxes, row: int, radius: np.ndarray) -> tuple[Any, Any]:
+    """Equations (equations, 2) and derivatives (equations, columns, 2) over a row's box."""
+    count = boxes.plan.equations
+    equations = np.empty((2 * count, 1))
+    derivatives = np.empty((2 * count * boxes.plan.columns, 1))
+    part = Enclosure(boxes.inputs.middle[:, [row]], boxes.inputs.radius[:, [row]])
+    _kernel.enclose(
+        boxes.plan,
+        radii=boxes.radii,
+        states=np.ascontiguousarray(boxes.states[:, [row]]),
+        inputs=interleaved(part),
+        radius=np.ascontiguousarray(radius[:, None]),
+        equations=equations,
+        derivatives=derivatives,
+    )
+    return equations.reshape(count, 2), derivatives.reshape(count, -1, 2)
