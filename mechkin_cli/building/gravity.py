@@ -19,7 +19,8 @@ from mechkin_cli.units import ACCELERATION, UNITS, conversion, parse_unit
 STANDARD = conversion(UNITS["g0"].factor).multiplier
 """m/s^2, by the third General Conference on Weights and Measures."""
 
-DOWN: Vector = (0.0, 0.0, -1.0)
+DOWN: Vector = (0.0, 0.0, -STANDARD)
+"""Along -z."""
 
 USUAL = ("m/s^2", "mm/s^2", "cm/s^2", "in/s^2", "ft/s^2")
 """Units in which people know the number of gravity."""
@@ -29,7 +30,7 @@ def gravity_of(fields: Fields, path: Path, section: Gravity) -> Vector:
     """The acceleration of free fall in m/s^2; doubts are noted in `fields`."""
     if section.g == "standard":
         if section.direction is None:
-            return scale(STANDARD, DOWN)
+            return DOWN
         return scale(STANDARD, fields.direction((*path, "direction"), section.direction))
     found = fields.vector((*path, "g"), section.g, ACCELERATION)
     _check_unit(fields, (*path, "g"), section.g)
