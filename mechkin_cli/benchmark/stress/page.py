@@ -40,6 +40,8 @@ as a file. Numbers depend on rows and seed alone, not on the machine.
   {wrong} u k^2 and 1e-9 of the row's largest. A rod that is short beside the mechanism has its
   direction to u over its length only, which `row.condition`, a measure of places, does not see. A
   documented limit.
+- *Proven*: every tenth mechanism is proven by `--certify`, too, and the closed forms lie within its
+  enclosures.
 - *Wrong, warned*: another place, with a warning. *False alarm*: there is a row, and it stays empty.
   *False ok*: a wrong place, or one that cannot be, that says ok.
 """
