@@ -101,18 +101,25 @@ class Expression(NamedTuple):
                             f"write spaces around the sign to mean the name, {unit} for the unit",
                         )
 
-    def evaluate(self, resolve: Resolve, units: UnitSystem = _DEFAULT_UNITS) -> Quantity:
+    def evaluate(
+        self,
+        resolve: Resolve,
+        units: UnitSystem = _DEFAULT_UNITS,
+        literal: Callable[[Number], Quantity] | None = None,
+    ) -> Quantity:
         """The value in SI, with names looked up by `resolve`.
 
         Values of names may be floats, rows of shape (rows,), or vectors of these. Rows take nan and
         infinities quietly; a constant that is not finite is an error. To check dimensions alone,
-        resolve every name to rows of length one. `units` are only used to write hints.
+        resolve every name to rows of length one. `units` are only used to write hints; `literal`
+        gives numbers of the text (None: as doubles).
 
         Raises:
             ExpressionError: unknown name, dimensions that do not fit, a value outside a function's
                 domain; the offset is that of the offending part.
         """
         self.reject_ambiguous_units(lambda word: _exists(word, resolve))
+        literal = literal or _literal
         stack: list[Operand] = []
         with np.errstate(all="ignore"):
             for node in self.nodes:
@@ -121,7 +128,7 @@ class Expression(NamedTuple):
                     del stack[-node.arity :]
                     stack.append(_operate(node, operands, units))
                 elif isinstance(node, Number):
-                    stack.append(Operand(_literal(node), node.offset, node))
+                    stack.append(Operand(literal(node), node.offset, node))
                 else:
                     stack.append(Operand(_look_up(node, resolve), node.offset))
         return stack[-1].quantity

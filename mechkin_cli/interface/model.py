@@ -146,6 +146,7 @@ class Model(Certified):
         closed_at: Sequence[str] | None = None,
         lanes: int = 0,
         threads: int = 0,
+        errors: bool = False,
     ) -> Analysis:
         """Runs the sweep.
 
@@ -154,8 +155,8 @@ class Model(Certified):
             tables: names of the tables wanted; None: all, [] none.
             mode: assembly mode at the first row instead of the file's choice.
             closed_at: closing joints to use (the answers do not depend on them).
-            lanes: width of the kernel's packs, 0 for the widest (nor on this).
-            threads: how many split the rows, 0 for all cores where that pays (nor on this).
+            lanes, threads: width of packs, how many split the rows; 0: the most (nor on these).
+            errors: measure the true error of every cell now (else when `errors` is first read).
 
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
@@ -163,7 +164,7 @@ class Model(Certified):
         """
         from mechkin_cli.interface.sweeps import run_sweep
 
-        return run_sweep(self, quantities, tables, mode, closed_at, lanes, threads)
+        return run_sweep(self, quantities, tables, mode, closed_at, lanes, threads, errors)
 
     def respond(
         self,

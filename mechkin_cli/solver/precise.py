@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.mechanism.exact_motion import ExactMotion
     from mechkin_cli.mechanism.model import Attached
+    from mechkin_cli.mechanism.motion import Assembly
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.session import Session
@@ -143,10 +144,15 @@ class Precise:
         return replace(
             own,
             mechanism=replace(mechanism, **parts),
-            assembly=self._recorded(own.assembly),
+            assembly=self._assembly(own.assembly),
             parameters=self.problem.parameters,
             load_laws=tuple(map(self._recorded, own.load_laws)),
         )
+
+    def _assembly(self, own: Assembly) -> Assembly:
+        """The recorded assembly; what a session names of the file's coordinates."""
+        near = self.problem.assembly.near
+        return replace(own, near={name: near.get(name, own.near[name]) for name in own.near})
 
     def _recorded(self, part: Any) -> Any:
         """A part of the file's problem as it is recorded; another one must be of whole numbers, as
