@@ -24,7 +24,7 @@ from mechkin_cli.expressions.operand import Operand, Resolve, Site
 from mechkin_cli.expressions.parser import parse_nodes
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Value, Vector
 from mechkin_cli.expressions.tokens import VANISHES, WRITE_ZERO
-from mechkin_cli.tape.scalars import is_finite, is_number, plain
+from mechkin_cli.tape.scalars import Recorded, as_recorded, is_finite, is_number, plain
 from mechkin_cli.units import UNITS, UnitError, UnitSystem, conversion
 
 _NAMED = "names are those of parameters and directions, and of quantities such as J.theta"
@@ -66,6 +66,17 @@ class Expression(NamedTuple):
         """The number literal, with or without unit, that the whole expression consists of."""
         only = self.nodes[0]
         return only if len(self.nodes) == 1 and isinstance(only, Number) else None
+
+    @property
+    def in_doubles(self) -> Expression:
+        """The same with its numbers as doubles, where they are recorded: to check it on rows."""
+        if not any(isinstance(n, Number) and isinstance(n.value, Recorded) for n in self.nodes):
+            return self
+        nodes = (
+            n._replace(value=as_recorded(n.value)) if isinstance(n, Number) else n
+            for n in self.nodes
+        )
+        return Expression(self.text, tuple(nodes))
 
     def taking_whole(self, names: Collection[str]) -> Expression:
         """The same where some names are no components of others."""

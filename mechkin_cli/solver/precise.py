@@ -20,7 +20,7 @@ from mechkin_cli.solver.precise_inputs import PreciseInputs, enclosed_inputs, pr
 from mechkin_cli.solver.records import flatten
 from mechkin_cli.solver.same_structure import graph_of
 from mechkin_cli.tape.decimal_replay import double_doubles, enclosures
-from mechkin_cli.tape.traced import register
+from mechkin_cli.tape.traced import TraceLost, register
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -63,8 +63,21 @@ class Precise:
         return double_doubles(self.tape(self._constants(session)))
 
     def enclosed_constants(self, session: Session) -> Floats:
-        """The same enclosed (constants, 2): midpoints, which are the high parts, and radii."""
+        """The same enclosed (constants, 2): midpoints, which are the high parts, and radii.
+
+        Raises:
+            TraceLost: loads are read from tables (`rounds_tables`).
+            NotEnclosed: a constant is not defined.
+        """
+        if self.rounds_tables(session):
+            raise TraceLost("the curve through a table of a load is known in doubles alone")
         return enclosures(self.tape(self._constants(session)))
+
+    def rounds_tables(self, session: Session) -> bool:
+        """Whether loads of the session are read from tables. The curves through these are structure
+        of a plan, not constants: they stay doubles."""
+        laws = self.layout(session).laws
+        return laws is not None and any(law.curve is not None for law in laws.laws)
 
     def outputs(
         self, session: Session, wanted: Iterable[Wanted], points: Iterable[Attached] = ()
@@ -170,7 +183,6 @@ class Precise:
         own, recorded = self.base, self.problem
         pairs: list[tuple[Any, Any]] = [
             (own.mechanism.gravity, recorded.mechanism.gravity),
-            (own.assembly, recorded.assembly),
             *zip(own.mechanism.loads, recorded.mechanism.loads, strict=True),
             *zip(own.mechanism.frictions, recorded.mechanism.frictions, strict=True),
             *zip(own.load_laws, recorded.load_laws, strict=True),
