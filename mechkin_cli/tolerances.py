@@ -46,6 +46,15 @@ NEWTON_ITERATIONS: Final = 6
 """A prediction that passes the jump test is within a tenth of a step; squared four times that is
 rounding, and a sixth step allows for a large constant. More would mean that the guess was wrong."""
 
+PRECISE_RESIDUAL_TIGHT: Final = 2e-32
+"""`RESIDUAL_TIGHT` of runs in double-double: a rounding and a half of 1."""
+
+PRECISE_STEP_COARSE: Final = 1e-16
+"""`STEP_COARSE` of runs in double-double."""
+
+PRECISE_RESIDUAL_ACCEPT: Final = 1e-30
+"""`RESIDUAL_ACCEPT` of runs in double-double: about 80 roundings."""
+
 # --- search for assemblies -------------------------------------------------------------------
 
 SEARCH_RESIDUAL: Final = 1e-10

@@ -1,4 +1,6 @@
-"""`mechkin bench`: what a row costs on this machine, for RCSR and a general 7R.
+"""`mechkin bench`: run time against error, for any mechanism file.
 
-Everything is measured in one run on one thread. Nothing is read but the package itself.
+A *scene* is a mechanism whose rows are closed; a *method* is a way to its answers at one setting,
+made by a family (`methods/`, one file each); a *measurement* is its time and its errors against
+what is right (`truth`). `runs` puts them together, `outputs` writes them.
 """

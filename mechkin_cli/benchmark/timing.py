@@ -17,7 +17,7 @@ import numpy as np
 Key = TypeVar("Key", bound=Hashable)
 
 ROUNDS = 41
-SHORTEST = 2e-4
+SHORTEST = 2e-3
 """A call that takes less (s) is repeated within a round until it takes as long."""
 
 

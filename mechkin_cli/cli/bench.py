@@ -1,63 +1,167 @@
-"""`mechkin bench`: what a row costs on this machine."""
+"""`mechkin bench`: run time against error on this machine."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mechkin_cli.cli.messages import put_json
+from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import Record, put, put_json, refusal
 from mechkin_cli.cli.options import Json
+from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
     from rich.table import Table as RichTable
 
     from mechkin_cli.benchmark.report import Table
+    from mechkin_cli.benchmark.runs import Bench, Rounds
+    from mechkin_cli.benchmark.scene import Scene
+    from mechkin_cli.benchmark.subject import Subject
 
 
 def bench(
+    files: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Mechanism files instead of the known ones.", metavar="[FILE]..."),
+    ] = None,
     quick: Annotated[
         bool, typer.Option("--quick", help="Few rounds: seconds, and rougher.")
     ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", metavar="DIR", help="Also write bench.json, bench.csv, bench.md, bench.svg."
+        ),
+    ] = None,
     json: Json = False,
 ) -> None:
-    """Measure run times on the RCSR mechanism and a general 7R."""
+    """Measure run time against error, mechkin's and others'.
+
+    Without files: eight mechanisms, variants and a response. Other methods are those whose
+    libraries are installed (pip install 'mechkin[bench]').
+    """
     from mechkin_cli.benchmark.machine import machine
-    from mechkin_cli.benchmark.runs import timing_tables
+    from mechkin_cli.benchmark.outputs import record, write
+    from mechkin_cli.benchmark.runs import FULL, QUICK
 
-    described = machine()
-    tables = timing_tables(quick=quick)
+    rounds = QUICK if quick else FULL
+    code, subjects, scenes, refused = _read(files or [])
+    described, shown = machine(), not json
+    if shown and scenes:
+        put(", ".join(f"{name} {value}" for name, value in described.items()) + "\n")
+    benches = list(_benches(scenes, rounds, shown=shown))
+    tables = list(_tables(subjects, scenes, rounds, whole=not files, shown=shown))
+    if out is not None and scenes:
+        command = " ".join(["mechkin bench", *map(str, files or [])])
+        try:
+            written = write(out, described, benches, tables, command)
+        except OSError as error:
+            reason = f"{error.strerror or error}"
+            raise UsageError(f"--out {out}: {reason}; name a folder that can be written") from None
+        if shown:
+            put("\n" + "".join(f"{path}\n" for path in written))
     if json:
-        record: dict[str, object] = {"machine": described}
-        put_json(record | {table.name: table.record() for table in tables})
+        put_json(record(described, benches, tables) | ({"refused": refused} if refused else {}))
+    if code:
+        raise typer.Exit(code)
+
+
+def _read(files: Sequence[Path]) -> tuple[int, list[Subject], list[Scene], list[Record]]:
+    """The scenes of the files, or the known ones; files that cannot be measured are told."""
+    from mechkin_cli.benchmark.scene import Scene
+    from mechkin_cli.benchmark.scenes import subjects
+    from mechkin_cli.benchmark.subject import Subject
+    from mechkin_cli.interface import load
+
+    if not files:
+        known = subjects()
+        return ExitCode.OK, known, [Scene(each.name, each.model) for each in known], []
+    code, found, scenes = int(ExitCode.OK), [], []
+    refused: list[Record] = []
+    for file in files:
+        try:
+            subject = Subject(file.stem, load(file), file)
+            scenes.append(Scene(subject.name, subject.model))
+            found.append(subject)
+        except (InvalidFile, UsageError) as error:
+            own, record = refusal(file, error)
+            code, refused = max(code, own), [*refused, record]
+    return code, found, scenes, refused
+
+
+def _benches(scenes: Sequence[Scene], rounds: Rounds, *, shown: bool) -> Iterator[Bench]:
+    """Each scene's measurements, shown as soon as they are there."""
+    from mechkin_cli.benchmark.runs import bench as measure
+    from mechkin_cli.benchmark.tables import bench_table
+
+    for number, scene in enumerate(scenes, 1):
+        with _progress(f"{scene.name}: {number} of {len(scenes)}"):
+            found = measure(scene, rounds)
+        if shown:
+            _show(bench_table(found))
+        yield found
+
+
+def _tables(
+    subjects: Sequence[Subject],
+    scenes: Sequence[Scene],
+    rounds: Rounds,
+    *,
+    whole: bool,
+    shown: bool,
+) -> Iterator[Table]:
+    """What settings cost, variants and responses, each shown as soon as it is there."""
+    from mechkin_cli.benchmark.runs import tables
+
+    found = tables(subjects, scenes, rounds, whole=whole) if scenes else iter(())
+    while True:
+        with _progress("demand plan, threads, variants, responses"):
+            table = next(found, None)
+        if table is None:
+            return
+        if shown:
+            _show(table)
+        yield table
+
+
+@contextmanager
+def _progress(words: str) -> Iterator[None]:
+    """What is measured now, on a terminal alone."""
+    if not sys.stderr.isatty():
+        yield
         return
-    sys.stdout.write(", ".join(f"{name} {value}" for name, value in described.items()) + "\n")
-    _print(tables)
+    sys.stderr.write(f"measuring {words} ...")
+    sys.stderr.flush()
+    try:
+        yield
+    finally:
+        sys.stderr.write("\r\x1b[K")
+        sys.stderr.flush()
 
 
-def _print(tables: Iterator[Table]) -> None:
-    """Each table as soon as it is there: styled on a terminal wide enough, else aligned text."""
+def _show(table: Table) -> None:
+    """Styled on a terminal wide enough, else aligned text."""
     from mechkin_cli.benchmark.report import plain_text, width
 
     if not sys.stdout.isatty():
-        for table in tables:
-            sys.stdout.write("\n" + plain_text(table))
-            sys.stdout.flush()
+        put("\n" + plain_text(table))
         return
     from rich.console import Console
 
     console = Console()
-    for table in tables:
-        console.print()
-        # a table that does not fit would lose digits
-        if width(table) > console.width:
-            console.out(plain_text(table), end="", highlight=False)
-            continue
-        console.print(_styled(table))
-        for note in table.notes:
-            console.print(note, style="dim", highlight=False, markup=False)
+    console.print()
+    # a table that does not fit would lose digits
+    if width(table) > console.width:
+        console.out(plain_text(table), end="", highlight=False)
+        return
+    console.print(_styled(table))
+    for note in table.notes:
+        console.print(note, style="dim", highlight=False, markup=False)
 
 
 def _styled(table: Table) -> RichTable:

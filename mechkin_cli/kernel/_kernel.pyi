@@ -1,5 +1,5 @@
 """The compiled core; see src/module.cpp. Batched arrays are (columns, rows), C-contiguous
-float64."""
+float64; in double-double (columns, 2, rows), high and low."""
 
 from collections.abc import Callable, Sequence
 from enum import IntEnum, IntFlag
@@ -380,6 +380,44 @@ class Plan:
         iterations: int = 0,
         tests: tuple[float, float, float],
         only: int | None = None,
+        lanes: int = 0,
+        threads: int = 1,
+    ) -> None: ...
+    def run_precise(
+        self,
+        *,
+        inputs: Floats | None,
+        guess: Floats | None,
+        rates: Floats | None = None,
+        accelerations: Floats | None = None,
+        jerks: Floats | None = None,
+        ties: Floats | None = None,
+        turned: Floats | None = None,
+        chart: Floats | None = None,
+        chart_rates: Floats | None = None,
+        chart_accelerations: Floats | None = None,
+        friction_told: Floats | None = None,
+        whole: Floats | None = None,
+        full: Floats | None = None,
+        time: Floats | None = None,
+        outputs: Outputs | None = None,
+        low: Floats | None = None,
+        low_outputs: Floats | None = None,
+        states: Floats,
+        values: Floats | None = None,
+        first: Floats | None = None,
+        second: Floats | None = None,
+        residual: Floats,
+        correction: Floats,
+        side: Floats | None = None,
+        power_error: Floats | None = None,
+        flags: NDArray[np.uint8],
+        loads: Floats | None = None,
+        undefined: NDArray[np.uint8] | None = None,
+        demand: int = 0,
+        shift: int = 0,
+        iterations: int = 0,
+        tests: tuple[float, float, float],
         lanes: int = 0,
         threads: int = 1,
     ) -> None: ...

@@ -17,7 +17,7 @@ from mechkin_cli.solver.stepping import step_limits
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.kernel._kernel import Plan, StepLimits
     from mechkin_cli.solver.route import Way
 
 
@@ -91,6 +91,7 @@ def follow(
     straight: bool = False,
     course: _kernel.Course | None = None,
     whole: Floats | None = None,
+    limits: StepLimits | None = None,
 ) -> Followed:
     """Follows the branch through `start` (states at the first row) along all rows.
 
@@ -105,6 +106,7 @@ def follow(
         straight: pass branch points along the smooth continuation.
         course: of the inputs between the rows, where they do not go straight.
         whole: (inputs, rows) whole turns.
+        limits: what a step may do, instead of what `tolerances` says (and of `straight`).
     """
     rows = inputs.shape[1]
     guess, limit = np.empty((start.size, rows)), np.empty(rows)
@@ -117,15 +119,15 @@ def follow(
         start.tolist(),
         given,
         every_row,
-        step_limits(straight=straight),
+        limits or step_limits(straight=straight),
         guess,
         limit,
         along,
         course,
     )
     end, reached, steps, _, place, state, last_turn, direction = found[:8]
-    limits, crossings, piece, parameter = found[8:]
-    ending = None if limits is None else Ending(PassageEnd(limits[0]), *limits[1:])
+    ends, crossings, piece, parameter = found[8:]
+    ending = None if ends is None else Ending(PassageEnd(ends[0]), *ends[1:])
     crossed = tuple(Crossing(*each) for each in crossings)
     return Followed(
         guess,

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, TypeVar, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.demand import Slot
     from mechkin_cli.solver.precise import Precise
+    from mechkin_cli.solver.precise_run import PreciseBatch
     from mechkin_cli.solver.route import Route, Way
     from mechkin_cli.solver.search import Found, Within
     from mechkin_cli.solver.tie import Tie
@@ -369,4 +370,22 @@ class Session:
             tests=tests,
             lanes=self.packing.lanes,
             threads=self.packing.threads,
+        )
+
+    def run_precise(
+        self, inputs: Floats, guess: Floats, *, readout: Readout | None = None, **given: Any
+    ) -> PreciseBatch:
+        """Closes rows that are closed in doubles, and computes what is demanded, in double-double;
+        arguments as those of `solver.precise_run.run_precise`, constants as
+        `session.precise.constants(session)` and `session.precise.outputs(session, wanted)`."""
+        from mechkin_cli.solver.precise_run import run_precise
+
+        return run_precise(
+            self.plan,
+            inputs,
+            guess,
+            outputs=None if readout is None else readout.outputs,
+            lanes=self.packing.lanes,
+            threads=self.packing.threads,
+            **given,
         )

@@ -8,19 +8,18 @@ import tomllib
 
 from architecture.package import FILES, ROOT, imports
 
-DISTRIBUTIONS = {"yaml": "pyyaml", "pydantic_core": "pydantic-core"}
+DISTRIBUTIONS = {"yaml": "pyyaml", "pydantic_core": "pydantic-core", "pinocchio": "pin"}
 """Libraries whose distribution has another name."""
 
-BY_HAND = {
-    "mpmath": "the benchmark says so where it is not installed",
-    "run": "the yardstick of the benchmark, from its own folder",
-}
+BY_HAND = {}
 """Modules that are looked for, and done without."""
 
 
 def declared() -> set[str]:
-    project = tomllib.loads((ROOT.parent / "pyproject.toml").read_text(encoding="utf-8"))
-    return {re.split(r"[<>=;\[ ]", text)[0] for text in project["project"]["dependencies"]}
+    project = tomllib.loads((ROOT.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    # what the benchmark compares with is asked for by its extra, and done without
+    named = [*project["dependencies"], *project["optional-dependencies"]["bench"]]
+    return {re.split(r"[<>=;\[ ]", text)[0] for text in named}
 
 
 def test_what_is_imported_is_declared() -> None:

@@ -59,7 +59,10 @@ HOMES = {
     "typer": {"cli"},
     "click": {"cli"},
     "rich": {"cli"},
-    "scipy": set(),
+    "scipy": {"benchmark"},
+    "pinocchio": {"benchmark"},
+    "casadi": {"benchmark"},
+    "mujoco": {"benchmark"},
 }
 """Libraries that only one room may import."""
 

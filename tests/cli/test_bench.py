@@ -33,15 +33,64 @@ def command() -> list[str]:
     return [str(script)] if script.is_file() else [sys.executable, "-P", "-m", "mechkin_cli"]
 
 
-def test_nothing_of_the_current_folder_runs(trapped: Path) -> None:
+MECHANISM = """\
+format: 1
+name: RSSR
+units: {length: m}
+links: {crank: {}, rod: {}, rocker: {}}
+joints:
+  O1: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}
+  O2: {type: S, links: [crank, rod], point: [0.4, 0, 0]}
+  O3: {type: S, links: [rod, rocker], point: [1.4, 1, 0.6]}
+  O4: {type: R, links: [ground, rocker], point: [1.6, 0, 0.6], axis: [0.25, 0, 1]}
+motion: {inputs: {O1.theta: {from: 0, to: 60, step: 10, rate: 2 rad/s}}}
+"""
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "rssr.yaml"
+    path.write_text(MECHANISM, encoding="utf-8")
+    return path
+
+
+def test_nothing_of_the_current_folder_runs(trapped: Path, file: Path) -> None:
     done = run(
-        [*command(), "bench", "--quick", "--json"], cwd=trapped, capture_output=True, text=True
+        [*command(), "bench", str(file), "--quick", "--json"],
+        cwd=trapped,
+        capture_output=True,
+        text=True,
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert not (trapped.parent / "mark").exists()
     record = json.loads(done.stdout)
-    assert list(record) == ["machine", "sweeps_rcsr", "demand_rcsr", "sweeps_7r", "demand_7r"]
-    assert all(row["microseconds"] > 0.0 for row in record["sweeps_rcsr"]["rows"])
+    assert list(record) == ["format", "machine", "mechanisms", "tables"]
+    (mechanism,) = record["mechanisms"]
+    assert mechanism["name"] == "rssr"
+    assert all(m["microseconds"] > 0.0 for m in mechanism["measurements"])
+    assert {"ahead", "demand_rssr", "threads"} == set(record["tables"])
+
+
+def test_files_that_cannot_be_measured_are_told(file: Path, tmp_path: Path) -> None:
+    wrong = tmp_path / "wrong.yaml"
+    wrong.write_text("format: 1\nname: x\n", encoding="utf-8")
+    response = Path(__file__).parents[2] / "mechanisms" / "rcsr_response.yaml"
+    files = [str(path) for path in (response, wrong)]
+    done = run([*command(), "bench", *files, "--quick"], capture_output=True, text=True)
+    assert done.returncode == 3
+    assert "has no sweep to measure" in done.stderr
+    assert "wrong.yaml" in done.stderr
+    assert done.stdout == ""
+
+
+def test_an_output_folder_that_takes_no_file_is_told(file: Path, tmp_path: Path) -> None:
+    taken = tmp_path / "taken"
+    taken.write_text("")
+    line = [*command(), "bench", str(file), "--quick", "--out", str(taken)]
+    done = run(line, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "--out" in done.stderr
+    assert "name a folder" in done.stderr
 
 
 def test_the_traps_would_be_seen(trapped: Path) -> None:

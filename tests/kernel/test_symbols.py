@@ -51,7 +51,7 @@ def compile_unit(name: str, target: Path) -> Path:
         arithmetic = []
     else:
         lanes, fused, options = DOUBLE_DOUBLE[instructions]
-        arithmetic = ["-DMECHKIN_ARITHMETIC=1", f"-DMECHKIN_FUSED={fused}"]
+        arithmetic = ["-DMECHKIN_ARITHMETIC=1", f"-DMECHKIN_FUSED={fused}", "-Os"]
     defined = [f"-DMECHKIN_LANES={lanes}", f"-DMECHKIN_UNIT=mechkin_{name}", *arithmetic]
     source = SOURCES / ("unit.cpp" if kind == "unit" else f"{kind}_unit.cpp")
     return compile_with(source, target, *PLAIN, *defined, *options)

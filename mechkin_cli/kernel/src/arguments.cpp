@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 namespace nb = nanobind;
 
@@ -37,13 +38,17 @@ nb::object Arguments::find(const char* name) {
 
 template <class Array>
 void Arguments::check_shape(const Array& array, const char* name, long columns) {
-  const std::size_t dimensions = columns == ONE_PER_ROW ? 1 : 2;
+  const bool flags = std::is_same_v<Array, Flags>;
+  const int parts = flags ? 1 : parts_;
+  const std::size_t dimensions = (columns == ONE_PER_ROW ? 1 : 2) + (parts > 1);
   if (array.ndim() != dimensions)
     refuse(name, std::to_string(array.ndim()) + " dimensions instead of " + std::to_string(dimensions));
   const long rows = (long)array.shape(dimensions - 1);
   if (rows_ < 0) rows_ = rows;
   if (rows != rows_) refuse(name, std::to_string(rows) + " rows instead of " + std::to_string(rows_));
-  if (dimensions == 2 && (long)array.shape(0) != columns)
+  if (parts > 1 && (long)array.shape(dimensions - 2) != parts)
+    refuse(name, std::to_string(array.shape(dimensions - 2)) + " parts of a number instead of " + std::to_string(parts));
+  if (columns != ONE_PER_ROW && (long)array.shape(0) != columns)
     refuse(name, std::to_string(array.shape(0)) + " columns instead of " + std::to_string(columns));
 }
 
@@ -52,6 +57,18 @@ const double* Arguments::read(const char* name, long columns) {
   if (object.is_none()) return nullptr;
   const auto array = array_of<Reading>(object, name, "not a C-contiguous array of float64");
   check_shape(array, name, columns);
+  const char* const begin = reinterpret_cast<const char*>(array.data());
+  ranges_.push_back({begin, begin + array.nbytes(), name, false});
+  kept_.push_back(object);
+  return array.data();
+}
+
+const double* Arguments::numbers(const char* name, std::size_t count) {
+  nb::object object = find(name);
+  if (object.is_none()) return nullptr;
+  const auto array = array_of<Reading>(object, name, "not a C-contiguous array of float64");
+  if (array.ndim() != 1 || array.shape(0) != count)
+    refuse(name, std::to_string(array.size()) + " numbers instead of " + std::to_string(count));
   const char* const begin = reinterpret_cast<const char*>(array.data());
   ranges_.push_back({begin, begin + array.nbytes(), name, false});
   kept_.push_back(object);

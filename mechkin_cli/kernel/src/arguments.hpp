@@ -10,7 +10,8 @@
 
 class Arguments {
  public:
-  explicit Arguments(const nanobind::kwargs& given) : given_(given) {}
+  // Numbers of `parts` parts stand in arrays (columns, parts, rows), or (parts, rows) for one per row.
+  explicit Arguments(const nanobind::kwargs& given, int parts = 1) : given_(given), parts_(parts) {}
 
   // Arrays of float64, C-contiguous; null where the argument is left out or None. (columns, rows), or (rows,) for
   // `columns` ONE_PER_ROW. Rows must be `rows` of the first array asked for.
@@ -21,6 +22,9 @@ class Arguments {
   const double* read_required(const char* name, long columns);
   double* write_required(const char* name, long columns);
   unsigned char* write_flags_required(const char* name);
+
+  // (count,) numbers, null where they are left out.
+  const double* numbers(const char* name, std::size_t count);
 
   long rows() const { return rows_; }
   // A whole number from least to most; `otherwise` where it is left out.
@@ -42,6 +46,7 @@ class Arguments {
   void check_shape(const Array& array, const char* name, long columns);
 
   const nanobind::kwargs& given_;
+  int parts_;
   std::size_t found_ = 0;
   long rows_ = -1;
   std::vector<const char*> names_;

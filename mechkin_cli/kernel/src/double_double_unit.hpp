@@ -1,10 +1,17 @@
 // The entries of a unit that computes in double-double: PARTS of numbers, high and low, on rows of their own (pack.hpp).
 #pragma once
 
+#include "plan.hpp"
 #include "tape.hpp"
 
 struct DoubleDoubleUnit {
   int lanes;
+  // Bytes of the plan of high and low constants, each a plan of one structure (null: no low ones); writes it, where there
+  // is memory.
+  long (*join)(const PlanOf<double>& high, const PlanOf<double>* low, char* memory);
+  long (*workspace_size)(const char* plan);
+  // Rows [begin, end) alone; what a row gets does not depend on the cut. Arrays of numbers have two rows of doubles each.
+  void (*run_rows)(const char* plan, const Request&, long begin, long end, char* workspace);
   long (*replay_size)(const Tape&);
   void (*replay)(const Tape&, const TapeRequest&, char* workspace);
 };

@@ -19,7 +19,8 @@ namespace {
 // By how much L w must be below w: far above the rounding of a few dozen sums, far below what tells friction that jams.
 constexpr double CONTRACTION_MARGIN = 1e-12;
 // Residuals, in parts of the largest friction force: a few roundings of the sums; where Newton gets no further; accepted.
-constexpr double FRICTION_TIGHT = 4e-15, FRICTION_STALLED = 1e-12, FRICTION_ACCEPT = 1e-10;
+constexpr double FRICTION_TIGHT = PARTS == 1 ? 4e-15 : 2e-30, FRICTION_STALLED = PARTS == 1 ? 1e-12 : 1e-27,
+                 FRICTION_ACCEPT = PARTS == 1 ? 1e-10 : 1e-25;
 constexpr int FRICTION_ITERATIONS = 60;
 // Softness of magnitudes in parts of the loads at which they hardly bend, and steps, two for each halving, to their rounding.
 constexpr double FRICTION_SOFTEST = 16.0;

@@ -106,12 +106,23 @@ bool FrozenPlan::assign(const double* constants) noexcept {
   const std::size_t count = structure_->constant.size();
   if (!all_finite(constants, count) || !(constants[CONSTANT_LENGTH] > 0.0) || !(constants[CONSTANT_SIZE] > 0.0))
     return false;
+  write(constants);
+  derive();
+  return true;
+}
+
+FrozenPlan FrozenPlan::with_numbers(const double* numbers) const {
+  FrozenPlan other(*this);
+  other.write(numbers);
+  return other;
+}
+
+void FrozenPlan::write(const double* constants) noexcept {
+  const std::size_t count = structure_->constant.size();
   for (std::size_t i = 0; i < count; ++i)
     std::memcpy(arena_.get() + structure_->constant[i], constants + i, sizeof *constants);
   for (const auto& [number, offset] : structure_->repeated)
     std::memcpy(arena_.get() + offset, constants + number, sizeof *constants);
-  derive();
-  return true;
 }
 
 bool FrozenPlan::assign_size(double size) noexcept {

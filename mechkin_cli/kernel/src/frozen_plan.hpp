@@ -101,6 +101,9 @@ class FrozenPlan {
   // False, and nothing changed, if a constant is not finite or length or size not positive.
   bool assign(const double* constants) noexcept;
   bool assign_size(double size) noexcept;
+  // A plan with other numbers in the places of the constants, whatever they are and without what follows from them: the
+  // low parts of this one's constants.
+  FrozenPlan with_numbers(const double* numbers) const;
 
  private:
   struct Free {
@@ -108,6 +111,7 @@ class FrozenPlan {
   };
   Plan& plan() { return *reinterpret_cast<Plan*>(arena_.get()); }
   void derive() noexcept;
+  void write(const double* constants) noexcept;
 
   std::shared_ptr<const PlanStructure> structure_;
   std::unique_ptr<char, Free> arena_;

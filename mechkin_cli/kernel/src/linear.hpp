@@ -121,12 +121,12 @@ inline Pack column_square(const Pack* a, int m, int n, int column) {
 
 // Smallest singular value of the m x n matrix a (destroyed), by one-sided Jacobi rotations of its
 // columns (Demmel and Veselic 1992: accurate to high relative precision). A pair of columns that is
-// orthogonal to rounding is left alone, lane by lane. Cosines between columns that were below 1e-8 throughout
+// orthogonal to rounding is left alone, lane by lane. Cosines between columns that were below its root throughout
 // a sweep are below rounding after it (quadratic convergence), so no sweep is needed to see that.
 // `square` is room for n packs.
 inline Pack smallest_singular_value(Pack* a, int m, int n, Pack* square) {
-  // squared cosines: of about ten roundings, and of 1e-8
-  const Pack negligible = 1e-30, last = 1e-16;
+  // squared cosines: of about ten roundings, and of the root of one
+  const Pack negligible = PARTS == 1 ? 1e-30 : 1e-61, last = PARTS == 1 ? 1e-16 : 1e-32;
   // against turning to and fro by rounding without an end: convergence takes some six to ten sweeps
   for (int sweep = 0; sweep < 30; ++sweep) {
     bool again = false;

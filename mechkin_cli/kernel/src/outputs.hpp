@@ -132,9 +132,9 @@ inline int output_value(const Plan& p, const Workspace& w, const Balance* balanc
   }
 }
 
-template <class RowValue>
+template <class Number, class RowValue>
 inline void write_output(const Plan& p, const Workspace& w, const Balance* balance, const RowValue& row_value,
-                         const Output& o, const Writer& out) {
+                         const OutputOf<Number>& o, const Writer& out) {
   Pack value[3];
   const int width = output_value(p, w, balance, row_value, o, value);
   for (int k = 0; k < width; ++k) out.put(o.slot + k, value[k]);

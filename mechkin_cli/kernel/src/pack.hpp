@@ -8,7 +8,7 @@
 //   MECHKIN_DOUBLE_DOUBLE  DoubleDouble: high and low (arithmetic/double_double.hpp)
 //   MECHKIN_INTERVALS      Interval: midpoint and radius (arithmetic/interval.hpp)
 //
-// A number of PARTS parts takes PARTS consecutive rows of an array: part i of number k of a row stands at
+// HALF_PLACE is half the last place of 1. A number of PARTS parts takes PARTS consecutive rows of an array: part i of number k of a row stands at
 // [(PARTS * k + i) * rows + row].
 #pragma once
 
@@ -29,7 +29,7 @@
 #include "arithmetic/doubles.hpp"
 #endif
 
-#if MECHKIN_ENCLOSES  // each operation is a dozen of doubles': what is made of them is inlined where the compiler likes it
+#if MECHKIN_ARITHMETIC != MECHKIN_DOUBLES  // each operation is a dozen of doubles': what is made of them is inlined where the compiler likes it
 #undef MECHKIN_INLINE
 #define MECHKIN_INLINE inline
 #endif
@@ -39,6 +39,8 @@ namespace {
 #if MECHKIN_ARITHMETIC == MECHKIN_DOUBLE_DOUBLE
 using Pack = DoubleDouble;
 constexpr int PARTS = 2;
+constexpr double HALF_PLACE = 0x1p-105;
+constexpr TwoParts FULL_TURN = {0x1.921fb54442d18p+2, 0x1.1a62633145c07p-52};
 MECHKIN_INLINE Pack from_parts(const Real* part) { return {part[0], part[1]}; }
 MECHKIN_INLINE Real part_of(Pack a, int i) { return i ? a.low : a.high; }
 #elif MECHKIN_ARITHMETIC == MECHKIN_INTERVALS
@@ -49,6 +51,8 @@ MECHKIN_INLINE Real part_of(Pack a, int i) { return i ? a.radius : a.midpoint; }
 #else
 using Pack = Real;
 constexpr int PARTS = 1;
+constexpr double HALF_PLACE = 0x1p-53;
+constexpr double FULL_TURN = 2.0 * 3.14159265358979323846;
 MECHKIN_INLINE Pack from_parts(const Real* part) { return part[0]; }
 MECHKIN_INLINE Real part_of(Pack a, int) { return a; }
 #endif

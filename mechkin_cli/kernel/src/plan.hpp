@@ -5,7 +5,7 @@
 // carried by tree joint k; ground is -1. Link frames: the frame of the link's tree joint, moved.
 //
 // The constants that parameters reach are of the type `Number`: a double, or a pack where each lane has a plan of its
-// own with the same structure (wide_plan.hpp). `Plan`, `Frame` ... are those of the constants of this compiled unit.
+// own with the same structure, or a number of two parts (wide_plan.hpp). `Plan`, `Frame` ... are those of the constants of this compiled unit.
 #pragma once
 
 #include "friction_records.hpp"
@@ -238,7 +238,7 @@ struct PlanOf : PlanShape {
   Number row_weight;         // length unit / size: closure lengths to parts of the size
 };
 
-#ifndef MECHKIN_WIDE_PLAN  // else wide_plan.hpp says what they are
+#ifndef MECHKIN_WIDE_PLAN  // else wide_plan.hpp says what they are: of packs, or of numbers of two parts
 using Frame = FrameOf<double>;
 using TreeJoint = TreeJointOf<double>;
 using ClosingJoint = ClosingJointOf<double>;
@@ -295,6 +295,7 @@ struct Request {
   const double* full;           // inputs x rows, may be null: inputs with their whole turns, as laws of loads read them
   const double* time;           // rows, may be null: what laws of loads read as time (s)
   OutputsView wanted;           // what `outputs` receives
+  OutputsView wanted_second;    // the second parts of their numbers, where these have two; empty: zero
   double* states;               // states x rows
   double* outputs;              // slots x rows, may be null
   double* velocities;           // columns x rows, may be null

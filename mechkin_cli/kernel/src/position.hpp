@@ -126,7 +126,7 @@ inline void advance_block(const Plan& p, Workspace& w, int index, const Pack* st
 
 // |f| in parts of the scale that the limit of closing equations is measured by:
 //
-//     reach + 2^-53 sum |x_j| |df/dx_j| / accept
+//     reach + HALF_PLACE sum |x_j| |df/dx_j| / accept
 //
 // so that a row counts as closed up to accept * reach + what half the last place of each coordinate met moves the
 // equation. Reach: 1 for angles; of lengths the size of the mechanism, or of the loop that reaches farther. The sum
@@ -134,7 +134,7 @@ inline void advance_block(const Plan& p, Workspace& w, int index, const Pack* st
 // their own values. w.right, w.closure and the poses are those of the place; screws are made here, for those in the
 // workspace may be of a place before.
 MECHKIN_RARE Pack residual_with_rounding(const Plan& p, const Workspace& w, const Block& b, double accept) {
-  const Pack half_place = 0x1p-53;
+  const Pack half_place = HALF_PLACE;
   const Pack lengths = Pack(p.row_weight), reach = max(Pack(1.0), lengths * block_reach(p, w, b));
   Pack worst = 0.0;
   for (int c = b.closing_begin; c < b.closing_end; ++c) {

@@ -19,12 +19,13 @@ inline Tape instructions_of(const ProgramOf<Number>& program) {
   return t;
 }
 
-// The piece from the last knot that is not above x.
-inline const Knot& piece_at(const Knot* first, int count, double x) {
+// The piece from the last knot that is not above lane i of x.
+inline const Knot& piece_at(const Knot* first, int count, Pack x, int i) {
+  const double leading = lane(part_of(x, 0), i), rest = PARTS == 1 ? 0.0 : lane(part_of(x, PARTS - 1), i);
   int low = 0, high = count - 1;
   while (low < high) {
     const int middle = (low + high + 1) / 2;
-    if (first[middle].x <= x)
+    if (first[middle].x < leading || (first[middle].x == leading && rest >= 0.0))
       low = middle;
     else
       high = middle - 1;
@@ -39,11 +40,11 @@ inline Pack curve_value(const ProgramCurve& c, const Knot* knot, Pack at) {
   const Mask inside = (at >= Pack(c.low)) & (at <= Pack(c.high));
   const Pack within = select(at < start, start, select(at > end, end, at));
   Knot piece[LANES];
-  for (int i = 0; i < LANES; ++i) piece[i] = piece_at(first, count, lane(within, i));
+  for (int i = 0; i < LANES; ++i) piece[i] = piece_at(first, count, within, i);
   const auto field = [&piece](double Knot::*of) {
     double values[LANES];
     for (int i = 0; i < LANES; ++i) values[i] = piece[i].*of;
-    return load(values);
+    return Pack(load(values));
   };
   const Pack u = within - field(&Knot::x);
   const Pack value = field(&Knot::y) + u * (field(&Knot::b) + u * (field(&Knot::c) + u * field(&Knot::d)));
@@ -90,7 +91,7 @@ inline Pack kink_value(const ProgramOf<Number>& program, int k, const Pack* r) {
   switch (program.operation[instruction]) {
     case TAPE_MAGNITUDE:
     case TAPE_SIGN: return r[o[0]];
-    case TAPE_WHOLE: return cos(Pack(3.14159265358979323846) * r[o[0]]);
+    case TAPE_WHOLE: return cos(Pack(0.5) * Pack(FULL_TURN) * r[o[0]]);
     default: return r[o[0]] - r[o[1]];
   }
 }

@@ -25,9 +25,22 @@ struct TwoPartConstants {
   void frame(Frame* to, At&& at) const { gather_frame(*this, to, at); }
 };
 
-// Writes the plan of the two, as widen_by.
+inline TwoParts ratio(TwoParts a, TwoParts b) {
+  const Pack q = Pack(a) / Pack(b);
+  return {lane(part_of(q, 0), 0), lane(part_of(q, 1), 0)};
+}
+
+// Writes the plan of the two, as widen_by; what follows from constants is computed of both their parts.
 inline long join_parts(const LanePlan& first, const LanePlan* second, char* memory) {
-  return widen_by(first, TwoPartConstants{first, second}, memory);
+  const long bytes = widen_by(first, TwoPartConstants{first, second}, memory);
+  if (!memory) return bytes;
+  Plan& joined = *reinterpret_cast<Plan*>(memory);
+  joined.row_weight = ratio(joined.length, joined.size);
+  TwoParts* const weight = const_cast<TwoParts*>(joined.column_weight);  // the memory is the caller's
+  for (int c = 0; c < first.columns; ++c)
+    // angles weigh 1, slides size by length
+    weight[c] = first.column_weight[c] == 1.0 ? TwoParts{1.0, 0.0} : ratio(joined.size, joined.length);
+  return bytes;
 }
 
 }  // namespace

@@ -20,19 +20,19 @@ constexpr TwoParts HALF_PI = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 
 // A number modulo 2^64 in fixed point, its first word whole, the others its fraction.
 constexpr int FIXED_WORDS = 6;
-struct Fixed {
+struct FixedPoint {
   std::uint64_t word[FIXED_WORDS] = {};
 };
 
 // `sum` += x 2/pi modulo 2^64, for finite x. With x = m 2^e, the bits of 2/pi of weight 2^(64 - e) and more only add
 // multiples of 2^64; of those after them 384 times m leave an error below 2^53 of the last of `sum`.
-inline void add_quadrants(double x, Fixed& sum) {
+inline void add_quadrants(double x, FixedPoint& sum) {
   std::uint64_t bits;
   std::memcpy(&bits, &x, sizeof bits);
   const int biased = (int)(bits >> 52 & 0x7ff), e = (biased ? biased : 1) - 1075;
   const std::uint64_t m = (bits & 0xfffffffffffffULL) | (biased ? 0x10000000000000ULL : 0);
   const auto word = [](int i) { return i < 0 || i >= TWO_OVER_PI_WORDS ? 0 : TWO_OVER_PI[i]; };
-  Fixed product;
+  FixedPoint product;
   std::uint64_t carry = 0;
   for (int j = FIXED_WORDS - 1; j >= 0; --j) {
     const int at = e + 64 * j + 64 * 32, first = at / 64 - 32, shift = at % 64;  // not below zero before it is divided
@@ -49,7 +49,7 @@ inline void add_quadrants(double x, Fixed& sum) {
 }
 
 // The fraction in [-1/2, 1/2] as three doubles of 53 bits each, and the quadrant.
-inline void read_fraction(Fixed x, double* part, std::int64_t& quadrant) {
+inline void read_fraction(FixedPoint x, double* part, std::int64_t& quadrant) {
   quadrant = (std::int64_t)x.word[0];
   const bool negative = x.word[1] >> 63;
   if (negative) {
@@ -80,7 +80,7 @@ __attribute__((noinline, cold)) inline void reduce_large_lanes(const DoubleDoubl
     double part[3] = {high - high, 0.0, 0.0};
     std::int64_t quadrant = 0;
     if (part[0] == 0.0) {
-      Fixed sum;
+      FixedPoint sum;
       add_quadrants(high, sum), add_quadrants(low, sum);
       read_fraction(sum, part, quadrant);
     }

@@ -3,4 +3,5 @@
 
 struct TwoParts {
   double first, second;
+  friend TwoParts operator-(TwoParts a) { return {-a.first, -a.second}; }
 };

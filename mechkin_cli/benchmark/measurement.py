@@ -1,0 +1,143 @@
+"""What is measured: a method at a setting, and the record of its time and its errors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.benchmark.scene import Asked, Values
+
+if TYPE_CHECKING:
+    from mechkin_cli.benchmark.timing import Timing
+
+ERROR_KINDS = ("position", "velocity", "acceleration", "loads")
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to the answers at one setting.
+
+    Args:
+        family: who made it, as `scipy`.
+        curve: the method; its settings are points of one curve.
+        setting: what is varied along the curve, in words.
+        level: what it computes, see `scene.LEVELS`.
+        call: what is timed.
+        rows: how many rows a call solves.
+        read: what it finds at the scene's places.
+        slow: in Python, row by row: timed in few rounds.
+    """
+
+    family: str
+    curve: str
+    setting: str
+    level: str
+    call: Callable[[], object]
+    rows: int
+    read: Callable[[], Values]
+    slow: bool = False
+
+
+@dataclass(frozen=True)
+class Skipped:
+    """A method that cannot run here, and why."""
+
+    scene: str
+    family: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A method's time and errors on a scene.
+
+    `microseconds` per row: the median of the rounds, `least` of them, and `spread`, half the
+    distance of the quartiles in parts of the median. `ratio`: to one kernel call with the same
+    level in the same rounds. Errors are the largest ones in parts of their quantity's largest
+    value; None where the method does not find it.
+    """
+
+    scene: str
+    family: str
+    curve: str
+    setting: str
+    level: str
+    rows: int
+    microseconds: float
+    least: float
+    spread: float
+    ratio: float
+    position: float | None
+    velocity: float | None
+    acceleration: float | None
+    loads: float | None
+
+    def record(self) -> dict[str, Any]:
+        """As plain data."""
+        return asdict(self)
+
+
+def measured(
+    scene: str,
+    method: Method,
+    timing: Timing,
+    unit: Timing,
+    unit_rows: int,
+    errors: Mapping[str, float | None],
+) -> Measurement:
+    """The record of a method; `unit` is the timing of the kernel in the same rounds."""
+    return Measurement(
+        scene,
+        method.family,
+        method.curve,
+        method.setting,
+        method.level,
+        method.rows,
+        _micro(timing.median / method.rows),
+        _micro(min(timing.seconds) / method.rows),
+        timing.spread,
+        timing.ratio(unit, method.rows / unit_rows),
+        **{kind: errors.get(kind) for kind in ERROR_KINDS},
+    )
+
+
+def errors_of(asked: Asked, lengths: frozenset[str], found: Values, true: Values) -> dict[str, Any]:
+    """Largest errors by kind, each in parts of its quantity's largest value.
+
+    Args:
+        asked: names by kind.
+        lengths: names that are no angles; angles are compared but for whole turns.
+        found, true: quantities by name, arrays (width, rows).
+    """
+    kinds = {kind: getattr(asked, kind) for kind in ERROR_KINDS}
+    worst: dict[str, Any] = {}
+    for kind, names in kinds.items():
+        errors = [
+            _error(found[name], true[name], turns=kind == "position" and name not in lengths)
+            for name in names
+            if name in found and name in true
+        ]
+        worst[kind] = max((e for e in errors if e is not None), default=None)
+    return worst
+
+
+def _error(found: Any, true: Any, *, turns: bool) -> float | None:
+    """Of one quantity; None where it is zero by its nature."""
+    miss = np.asarray(found, np.longdouble) - true
+    if turns:
+        # whole turns as exact as the subtraction
+        turn = 2 * np.arccos(np.longdouble(-1))
+        miss = miss - turn * np.round(miss / turn)
+        true = true - turn * np.round(true / turn)
+    size = float(np.max(np.abs(true)))
+    if not size:
+        return None
+    error = float(np.max(np.abs(miss))) / size
+    return error if np.isfinite(error) else float("inf")
+
+
+def _micro(seconds: float) -> float:
+    return 1e6 * seconds

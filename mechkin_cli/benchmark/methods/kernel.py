@@ -1,0 +1,134 @@
+"""mechkin itself: the kernel and the sweep, and what each of their settings costs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.sweep import analyze
+from mechkin_cli.arrays import Floats
+from mechkin_cli.benchmark.measurement import Method
+from mechkin_cli.benchmark.scene import ALONE, BATCH, LEVELS, Scene, Values
+from mechkin_cli.kernel.width import widths
+from mechkin_cli.solver.batch import RESIDUAL_TESTS, Batch
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.follow import follow
+from mechkin_cli.solver.session import Packing
+from mechkin_cli.solver.stepping import step_limits
+
+FAMILY = "mechkin"
+UNIT = "kernel, guesses as followed"
+"""The curve that others are measured by."""
+
+FOLLOWED = "sweep, followed and closed"
+ANALYZED = "sweep, verdicts"
+
+TOLERANCES = tuple(10.0**-k for k in (1, 2, 4, 6, 8, 10, 12, 14))
+STEPS = (1, 2, 3, 4)
+SPACINGS = tuple(2.0**-k for k in range(1, 7))
+"""Longest steps of the skeleton (rad, length units); the first is that of every sweep."""
+
+
+def methods(scene: Scene) -> Iterator[Method]:
+    """Newton's tolerance and steps, levels, widths, the sweep with its skeleton, verdicts."""
+    for level in LEVELS:
+        yield _kernel(scene, UNIT, level, level, scene.followed)
+    for limit in TOLERANCES:
+        tests = (limit, np.sqrt(limit), limit)
+        yield _kernel(
+            scene,
+            "kernel, by tolerance",
+            f"{limit:.0e}",
+            "position",
+            scene.from_before,
+            tests=tests,
+        )
+    for steps in STEPS:
+        start, name = scene.from_before, "kernel, by Newton steps"
+        yield _kernel(scene, name, str(steps), "position", start, iterations=steps)
+    for lanes in widths():
+        name, packing = "kernel, by width", Packing(lanes, 1)
+        yield _kernel(scene, name, f"{lanes} lanes", "everything", scene.followed, packing=packing)
+    yield from _sweeps(scene)
+
+
+def _kernel(
+    scene: Scene,
+    curve: str,
+    setting: str,
+    level: str,
+    guess: Floats,
+    *,
+    iterations: int = tolerances.NEWTON_ITERATIONS,
+    tests: tuple[float, float, float] = RESIDUAL_TESTS,
+    packing: Packing = ALONE,
+    more: Demand = Demand.POSITION,
+) -> Method:
+    """A call of the kernel with many rows."""
+    make = partial(
+        scene.kernel,
+        level,
+        guess,
+        iterations=iterations,
+        tests=tests,
+        packing=packing,
+        more=more,
+    )
+    call, once = make(count=BATCH), make()
+    return Method(FAMILY, curve, setting, level, call, BATCH, lambda: scene.found(level, once()))
+
+
+def _sweeps(scene: Scene) -> Iterator[Method]:
+    """Whole sweeps: followed by skeletons of some spacings, with verdicts and without."""
+    rows = scene.result.rows
+    if scene.session.route is None and scene.is_whole:
+        for spacing in SPACINGS:
+            call, read = followed_by(scene, "position", spacing)
+            yield Method(
+                FAMILY, "sweep, by skeleton spacing", f"{spacing:g}", "position", call, rows, read
+            )
+        for level in LEVELS:
+            call, read = followed_by(scene, level, SPACINGS[0])
+            yield Method(FAMILY, FOLLOWED, level, level, call, rows, read)
+    for level in LEVELS:
+        for verdicts, curve in ((True, ANALYZED), (False, "sweep, no verdicts")):
+            call, read = _analyzed(scene, level, verdicts=verdicts)
+            yield Method(FAMILY, curve, level, level, call, rows, read)
+
+
+def followed_by(
+    scene: Scene, level: str, spacing: float
+) -> tuple[Callable[[], object], Callable[[], Values]]:
+    """Following all rows with steps up to `spacing`, and closing them: call, and what it finds."""
+    session, inputs = scene.session, scene.session.inputs
+    limits = step_limits(longest_step=spacing, straight=scene.problem.assembly.straight)
+    start = np.ascontiguousarray(scene.result.row_states.states[:, scene.result.start.row])
+    path, whole = inputs.reduced, inputs.whole
+    close = scene.closing(level, np.arange(path.shape[1]))
+
+    def call() -> Batch:
+        followed = follow(session.plan, path, start, turns=True, whole=whole, limits=limits)
+        return close(followed.guess)
+
+    def read() -> Values:
+        found = scene.found(level, call())
+        return {name: columns[:, scene.places] for name, columns in found.items()}
+
+    return call, read
+
+
+def _analyzed(
+    scene: Scene, level: str, *, verdicts: bool
+) -> tuple[Callable[[], object], Callable[[], Values]]:
+    names = scene.asked.level(level)
+    session = scene.model.session.packed(ALONE)
+    call = partial(analyze, session, names, verdicts=verdicts)
+
+    def read() -> Values:
+        columns = call().columns
+        return {name: columns[name][:, scene.places] for name in names if name in columns}
+
+    return call, read

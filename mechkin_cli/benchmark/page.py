@@ -1,0 +1,107 @@
+"""The page of a run: the machine, the figure, what it shows in words, and all tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from mechkin_cli.benchmark.methods.kernel import ANALYZED, FAMILY, FOLLOWED, UNIT
+from mechkin_cli.benchmark.report import Cell, Column, Table
+from mechkin_cli.benchmark.tables import bench_table, markdown
+
+if TYPE_CHECKING:
+    from mechkin_cli.benchmark.measurement import Measurement
+    from mechkin_cli.benchmark.runs import Bench
+
+MOTION = ("position", "velocity", "acceleration")
+SAME = 10.0
+"""Errors within this factor count as the same."""
+
+BEST_COLUMNS = (
+    Column("scene", "mechanism"),
+    Column("level", "asked for"),
+    Column("peer", "fastest other method as exact"),
+    Column("peer_error", "its error", "error"),
+    Column("peer_us", "us per row", "time"),
+    Column("own_error", "mechkin's error", "error"),
+    Column("sweep_us", "`analyze` with verdicts, us per row", "time"),
+    Column("sweep_ratio", "times faster", "time"),
+    Column("followed_us", "followed and closed, us per row", "time"),
+    Column("followed_ratio", "times faster", "time"),
+    Column("kernel_us", "kernel alone, us per row", "time"),
+    Column("kernel_ratio", "times faster", "time"),
+)
+
+
+def best_table(benches: Iterable[Bench]) -> Table:
+    """For positions and for the motion: the fastest other method whose error is no more than ten
+    times that of mechkin's sweep."""
+    rows = [
+        row for bench in benches for level in ("position", "motion") for row in _best(bench, level)
+    ]
+    notes = (
+        "as exact: every error at most ten times that of mechkin's sweep with its verdicts.",
+        "`analyze` finds the first assembly, follows, closes and judges every row; it has some",
+        "0.4 ms of its own, however few the rows are. Followed and closed: its two calls of the",
+        "kernel. Kernel alone: guesses are given. CasADi's code takes a second and more to compile",
+        "for every mechanism, which is not counted; it neither follows nor judges.",
+    )
+    return Table("ahead", "The fastest other method at no larger error", BEST_COLUMNS, rows, notes)
+
+
+def _best(bench: Bench, level: str) -> list[dict[str, Cell]]:
+    own = {m.curve: m for m in bench.measurements if m.family == FAMILY and m.setting == level}
+    others = [m for m in bench.measurements if m.family != FAMILY and m.level == level]
+    if not others:
+        return []
+    sweep = own[ANALYZED]
+    limits = {kind: SAME * (getattr(sweep, kind) or 0.0) for kind in MOTION}
+
+    def is_exact(m: Measurement) -> bool:
+        return all((getattr(m, kind) or 0.0) <= limits[kind] for kind in MOTION if limits[kind])
+
+    row: dict[str, Cell] = {"scene": bench.scene.name, "level": level, "own_error": _worst(sweep)}
+    row["peer"] = "none"
+    exact = [m for m in others if is_exact(m)]
+    peer = min(exact, key=lambda m: m.microseconds, default=None)
+    if peer is not None:
+        row["peer"] = f"{peer.family}, {peer.curve}, {peer.setting}"
+        row |= {"peer_error": _worst(peer), "peer_us": peer.microseconds}
+    for key, curve in (("sweep", ANALYZED), ("followed", FOLLOWED), ("kernel", UNIT)):
+        if curve in own:
+            row[f"{key}_us"] = own[curve].microseconds
+            if peer is not None:
+                row[f"{key}_ratio"] = peer.microseconds / own[curve].microseconds
+    return [row]
+
+
+def _worst(m: Measurement) -> float | None:
+    found = [e for e in (m.position, m.velocity, m.acceleration) if e is not None]
+    return max(found, default=None)
+
+
+def page(
+    machine: Mapping[str, str],
+    benches: Sequence[Bench],
+    tables: Iterable[Table],
+    figure: str,
+    command: str,
+) -> str:
+    """The page as Markdown; `figure` is where the picture lies, `command` what made it."""
+    said = ", ".join(f"{name} {value}" for name, value in machine.items())
+    head = [
+        "# What mechkin costs, and what it is worth",
+        "",
+        f"Made by `{command}` on {said};",
+        "one thread, unless a line says otherwise. Times are medians of rounds in which all",
+        "methods of a table take turns, with half the distance of the quartiles; those of another",
+        "machine differ, ratios less. Every method is given the same tree and the same closing",
+        "joints; other libraries start each row from the row before, as a script does.",
+        "",
+        f"![time per position against error]({figure})",
+        "",
+        markdown(best_table(benches)),
+    ]
+    rest = [markdown(table) for table in tables]
+    rest += [markdown(bench_table(bench)) for bench in benches]
+    return "\n".join([*head, *rest])

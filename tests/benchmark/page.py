@@ -1,0 +1,80 @@
+"""Makes `docs/validation.md` and its figure: everything that is measured, on this machine.
+
+    python -P tests/benchmark/page.py [--quick] [--out FOLDER]
+
+`mechkin bench` on the known mechanisms, then the yardstick at every width (needs gcc), whole
+processes, and the same 7R table by a script with Pinocchio where it is installed. Run it on an
+otherwise idle machine; it takes about five minutes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator
+from importlib.util import find_spec
+from pathlib import Path
+from subprocess import CalledProcessError
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+sys.path.insert(0, str(HERE.parent))
+
+from benchmark import targets
+from benchmark.yardstick_kernel import Yardstick, load
+
+from mechkin_cli.benchmark.machine import machine
+from mechkin_cli.benchmark.outputs import figure
+from mechkin_cli.benchmark.page import page
+from mechkin_cli.benchmark.report import Table
+from mechkin_cli.benchmark.runs import FULL, QUICK, bench, tables
+from mechkin_cli.benchmark.scene import Scene
+from mechkin_cli.benchmark.scenes import subjects
+from mechkin_cli.benchmark.specimens import rcsr_specimen, sevenr_specimen
+from mechkin_cli.benchmark.tables import csv_text
+
+RCSR_FILE = ROOT / "mechanisms" / "rcsr.yaml"
+PINOCCHIO = HERE / "pinocchio_7r.py"
+COMMAND = "python -P tests/benchmark/page.py"
+
+
+def against() -> Iterator[Table]:
+    """The yardstick, and whole processes."""
+    yardstick = load()
+    if isinstance(yardstick, Yardstick):
+        with yardstick:
+            for specimen in (rcsr_specimen(), sevenr_specimen()):
+                yield targets.table(specimen, yardstick)
+    else:
+        print(f"left out: {yardstick}", file=sys.stderr)
+    peer = [sys.executable, "-P", str(PINOCCHIO), "FILE", "DIR"] if find_spec("pinocchio") else []
+    try:
+        yield targets.process_table(RCSR_FILE, peer)
+    except CalledProcessError as error:
+        print(f"left out: no whole processes, {error}", file=sys.stderr)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--quick", action="store_true", help="few rounds, rougher")
+    parser.add_argument("--out", type=Path, default=ROOT / "docs", help="the folder")
+    options = parser.parse_args()
+    rounds = QUICK if options.quick else FULL
+    known = subjects()
+    scenes, benches = [Scene(each.name, each.model) for each in known], []
+    for scene in scenes:
+        print(scene.name, file=sys.stderr, flush=True)
+        benches.append(bench(scene, rounds))
+    print("settings, variants, responses, yardstick, processes", file=sys.stderr, flush=True)
+    found = [*tables(known, scenes, rounds, whole=True), *against()]
+    text = page(machine(), benches, found, "bench.svg", COMMAND)
+    for name, content in {
+        "validation.md": text,
+        "bench.svg": figure(benches),
+        "bench.csv": csv_text(benches),
+    }.items():
+        (options.out / name).write_text(content, encoding="utf-8", newline="\n")
+
+
+if __name__ == "__main__":
+    main()
