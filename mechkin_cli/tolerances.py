@@ -486,6 +486,26 @@ LAST_ROW: Final = 1e-9
 """Steps by which the last row may lie beyond the end of a sweep, part of format 1: the quotient of
 written numbers is wrong by 1e-16 times the number of rows, of which there are at most 1e7."""
 
+INPUT_ROUNDING: Final = 2.0**-50
+"""Inputs are at most this part of themselves off what the file says, in the kernel's units: a
+multiple of a step, a unit and a whole number of turns taken off are less than eight roundings."""
+
+ENCLOSURE_ROUNDING: Final = 2.0**-50
+"""Part of a quantity, its whole turns and its radius that is added to the radius: all are converted
+to the file's units, by six roundings at most."""
+
+STRAIGHT_WAY: Final = 1e-9
+"""Change of the direction of the inputs' way (unit vectors of rad and lengths) at a row from which
+on no tube goes through: what remains is rounding of the inputs, and added to the tubes' inputs."""
+
+BRIDGE_NODES: Final = 120
+"""Places between two rows at which a mechanism is closed to join them by tubes: towards a dead
+centre four or five a decade are needed, and there are eight decades above rounding."""
+
+BRIDGE_STEP: Final = 1e-13
+"""Distance of inputs (rad, length units) below which places are not told apart: they are rounded to
+1e-16."""
+
 FAR_DRAWING: Final = 4.0
 """Distance of the drawing from the ground origin, in sizes, beyond which the kernel works about its
 own origin: nearer, the origin costs three bits at most."""

@@ -45,12 +45,11 @@ def write(
     tables: Sequence[Table],
     command: str,
 ) -> list[Path]:
-    """Writes all four files and says where they are.
+    """Writes all four files into a folder that is there and says where they are.
 
     Raises:
         OSError: the folder takes no file.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     texts = {
         "json": json_text(record(machine, benches, tables)),
         "csv": csv_text(benches),

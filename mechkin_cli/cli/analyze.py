@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import Progress, Record, put, put_json, refusal, say, say_diagnostics
 from mechkin_cli.cli.parameters import parameters
-from mechkin_cli.cli.runs import run_all
+from mechkin_cli.cli.runs import certify_sweeps, run_all
 from mechkin_cli.diagnostics import InvalidFile, UsageError
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.tables.writers import USUAL_FORMATS, WRITERS, Results, written_files
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ class _Request:
     json: bool
     quiet: bool
     strict: bool
+    certify: bool
 
 
 def analyze_files(
@@ -47,6 +49,7 @@ def analyze_files(
     json: bool = False,
     quiet: bool = False,
     strict: bool = False,
+    certify: bool = False,
 ) -> ExitCode:
     """Runs the sweep and the responses of each file and writes their tables.
 
@@ -60,7 +63,16 @@ def analyze_files(
     force_width(lanes)
     force_threads(threads)
     request = _Request(
-        parameters(set_), mode, table, _formats(format), threads, explain, json, quiet, strict
+        parameters(set_),
+        mode,
+        table,
+        _formats(format),
+        threads,
+        explain,
+        json,
+        quiet,
+        strict,
+        certify,
     )
     code = ExitCode.OK
     records: list[Record] = []
@@ -86,6 +98,8 @@ def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]
         model = load(path, request.settings)
         with OutputFolder(folder) as output:
             analyses = run_all(model, request.tables, request.mode)
+            if request.certify:
+                certify_sweeps(analyses)
             results = [_results(analysis, request) for analysis in analyses]
             written = output.write(written_files(results, request.formats))
     except (InvalidFile, UsageError) as error:
@@ -107,6 +121,9 @@ def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]
 
 
 def _is_enough(analysis: Analysis, request: _Request) -> bool:
+    proofs = request.strict and request.certify and analysis.run == SWEEP
+    if proofs and not analysis.certificate.is_one_branch:
+        return False
     return analysis.complete and (analysis.result.sound or not request.strict)
 
 

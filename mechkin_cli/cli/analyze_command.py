@@ -36,6 +36,10 @@ def analyze(
         int,
         typer.Option("--threads", metavar="N", help="Threads that split the rows; 0: all cores."),
     ] = 0,
+    certify: Annotated[
+        bool,
+        typer.Option("--certify", help="Prove a sweep's positions, and that they are one branch."),
+    ] = False,
     strict: Annotated[
         bool,
         typer.Option("--strict", help="Exit with 4 where a row is near-singular or rank-unclear."),
@@ -48,7 +52,7 @@ def analyze(
 ) -> None:
     """Run the sweep and the responses of each file and write their tables."""
     code = analyze_files(
-        files, out, format, set_, mode, table, lanes, threads, explain, json, quiet, strict
+        files, out, format, set_, mode, table, lanes, threads, explain, json, quiet, strict, certify
     )
     if code:
         raise typer.Exit(code)

@@ -50,6 +50,8 @@ def bench(
     from mechkin_cli.benchmark.runs import FULL, QUICK
 
     rounds = QUICK if quick else FULL
+    if out is not None:
+        _made(out)
     code, subjects, scenes, refused = _read(files or [])
     described, shown = machine(), not json
     if shown and scenes:
@@ -58,17 +60,23 @@ def bench(
     tables = list(_tables(subjects, scenes, rounds, whole=not files, shown=shown))
     if out is not None and scenes:
         command = " ".join(["mechkin bench", *map(str, files or [])])
-        try:
-            written = write(out, described, benches, tables, command)
-        except OSError as error:
-            reason = f"{error.strerror or error}"
-            raise UsageError(f"--out {out}: {reason}; name a folder that can be written") from None
+        written = write(out, described, benches, tables, command)
         if shown:
             put("\n" + "".join(f"{path}\n" for path in written))
     if json:
         put_json(record(described, benches, tables) | ({"refused": refused} if refused else {}))
     if code:
         raise typer.Exit(code)
+
+
+def _made(folder: Path) -> None:
+    """Makes the folder of the files before anything is measured."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        why = error.strerror or str(error)
+        cure = "name a folder that can be written"
+        raise UsageError(f"--out {folder}: {why}; {cure}") from None
 
 
 def _read(files: Sequence[Path]) -> tuple[int, list[Subject], list[Scene], list[Record]]:

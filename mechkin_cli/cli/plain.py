@@ -29,6 +29,7 @@ OPTIONS = {
     "--table": Option("table", str, True),
     "--lanes": Option("lanes", int),
     "--threads": Option("threads", int),
+    "--certify": Option("certify", None),
     "--strict": Option("strict", None),
     "--explain": Option("explain", None),
     "--json": Option("json", None),

@@ -37,6 +37,8 @@ def summary(path: Path, analysis: Analysis) -> list[str]:
     if result.mode:
         rows.append(("branch", _branch(analysis)))
     rows += [("rows", _rows(analysis)), ("worst", _worst(analysis))]
+    if analysis.run == SWEEP and result.is_certified:
+        rows.append(("proof", analysis.certificate.words))
     if analysis.run != SWEEP:
         rows.insert(-1, ("ended", _ended(analysis)))
     return [f"{name} ({path})", *(_line(*row) for row in rows)]

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.analysis.sweep import Result
+    from mechkin_cli.interface.certificate import Certificate
     from mechkin_cli.interface.model import Model
     from mechkin_cli.mechanism.balance import AnyBalance
 
@@ -59,7 +60,22 @@ class Analysis:
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """Everything that the run has to say."""
-        return (*self.result.diagnostics, *self._balanced[1])
+        return (*self.result.diagnostics, *self._balanced[1], *self._unproven)
+
+    @cached_property
+    def certificate(self) -> Certificate:
+        """Proofs of the rows of a sweep, made when they are asked for: `--certify`.
+
+        Raises:
+            UsageError: the rows are those of a response.
+        """
+        from mechkin_cli.interface.certificate import Certificate
+
+        return Certificate(self)
+
+    @property
+    def _unproven(self) -> tuple[Diagnostic, ...]:
+        return self.certificate.diagnostics if "certificate" in self.__dict__ else ()
 
     @property
     def complete(self) -> bool:
@@ -116,8 +132,8 @@ class Analysis:
         """A quantity or an expression of quantities, in the file's units.
 
         Returns (rows,), for a vector (rows, 3); nan where a row has no solution; `row.status`,
-        `row.mode` and, of a response, `row.event` are arrays of words. What the run did not compute
-        is computed now.
+        `row.mode`, `row.proof` and, of a response, `row.event` are arrays of words. What the run
+        did not compute is computed now.
 
         Raises:
             ExpressionError: no such quantity, or dimensions that do not fit.

@@ -12,6 +12,7 @@ from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.arguments import Setting, a_text, texts
 from mechkin_cli.interface.asking import run_name
+from mechkin_cli.interface.certified import Certified
 from mechkin_cli.interface.settings import input_values
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.response import response_problem
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.precise import Precise
 
 
-class Model:
+class Model(Certified):
     """A checked mechanism file."""
 
     def __init__(self, built: Built, stem: str) -> None:

@@ -25,6 +25,9 @@ class TreeTableRow(TypedDict):
     states: int
     slides: int
 
+CONSTANT_LENGTH: Final[int]
+CONSTANT_SIZE: Final[int]
+
 class TreeCode(IntEnum):
     R = 0
     P = 1
@@ -709,3 +712,37 @@ class DrivenLaws:
         held: Sequence[float],
     ) -> None: ...
     def at(self, time: float) -> list[tuple[float, float, float]]: ...
+
+def prove_boxes(
+    plan: Plan,
+    *,
+    states: Floats,
+    off: Floats,
+    radii: Plan | None = None,
+    least: Floats | None = None,
+    radius: Floats,
+    contraction: Floats,
+    beyond: Floats,
+    proven: NDArray[np.uint8],
+) -> None:
+    """Whether there is exactly one position in a box about each of some states (states, places),
+    whose inputs are `off` (inputs, places) at most; see src/certify/proving_unit.hpp."""
+
+def prove_tubes(
+    plan: Plan,
+    *,
+    place: Floats,
+    inputs: Floats,
+    off: Floats,
+    states: Floats,
+    after: Floats,
+    before: Floats,
+    radius: Floats,
+    proven: NDArray[np.uint8],
+    bends: NDArray[np.uint8],
+    radii: Plan | None = None,
+    joined: NDArray[np.uint8],
+    width: Floats,
+) -> tuple[int, int]:
+    """Joins boxes by tubes along a way: how many there are, and how many were tried; see
+    src/certify/tubes.hpp."""

@@ -54,7 +54,7 @@ class Given(NamedTuple):
         try:
             precise = session.precise.enclosed_inputs(session)
         except (LookupError, ValueError, TraceLost):
-            return cls._of_doubles(session)
+            return cls.of_doubles(session)
         ties, time = precise.tie_rates, precise.time
         return cls(
             _both(precise.reduced),
@@ -66,7 +66,8 @@ class Given(NamedTuple):
         )
 
     @classmethod
-    def _of_doubles(cls, session: Session) -> Given:
+    def of_doubles(cls, session: Session) -> Given:
+        """As the kernel holds them."""
         inputs, moments = session.inputs, session.problem.motion.time
         ties = session.tie_rates
         return cls(
@@ -79,7 +80,7 @@ class Given(NamedTuple):
         )
 
 
-class Boxes(NamedTuple):
+class Positions(NamedTuple):
     """Where the rows' positions are.
 
     Attributes:
@@ -98,7 +99,7 @@ class Boxes(NamedTuple):
 
 def enclose(
     session: Session,
-    boxes: Boxes,
+    positions: Positions,
     given: Given,
     wanted: Iterable[Wanted],
     *,
@@ -120,16 +121,16 @@ def enclose(
         raise ValueError("third derivatives are not enclosed")
     readout = session.readout(wanted)
     outputs, output_radii = _outputs(session, readout.outputs, wanted)
-    rows = boxes.states.shape[1]
+    rows = positions.states.shape[1]
     moving, forces = bool(demand & Demand.VELOCITY), bool(demand & Demand.FORCES)
     accelerating = bool(demand & Demand.ACCELERATION)
     values = np.full((2 * outputs.slots, rows), np.nan)
     _kernel.enclose(
-        boxes.plan,
-        radii=boxes.radii,
-        states=np.ascontiguousarray(boxes.states),
+        positions.plan,
+        radii=positions.radii,
+        states=np.ascontiguousarray(positions.states),
         inputs=_parts(given.inputs),
-        radius=boxes.radius,
+        radius=positions.radius,
         rates=_parts(given.rates) if moving else None,
         accelerations=_parts(given.accelerations) if accelerating else None,
         ties=None if given.ties is None else _parts(given.ties),

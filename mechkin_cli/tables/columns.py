@@ -1,7 +1,7 @@
 """Column values of a table: expressions evaluated over all rows, in the units of the file.
 
 Values are float64 arrays of shape (rows,), nan where a cell stays empty. In a row without solution
-only inputs, `row.mode` and `row.status` keep their cells.
+only inputs, `row.mode`, `row.status` and `row.proof` keep their cells.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.expressions import ExpressionError, Quantity, Vector
+from mechkin_cli.proof import Proof
 from mechkin_cli.status import Status, has_solution
-from mechkin_cli.tables.layout import ROW_EVENT, ROW_NUMBERS, ColumnLayout, TableLayout
+from mechkin_cli.tables.layout import ROW_EVENT, ROW_NUMBERS, ROW_PROOF, ColumnLayout, TableLayout
 from mechkin_cli.tables.source import FloatArray, Source
 from mechkin_cli.tables.uniqueness import unique_cells
 from mechkin_cli.units import DIMENSIONLESS
@@ -88,6 +89,11 @@ def status_words(source: Source) -> Words:
     return Words(codes, tuple(status.label for status in Status))
 
 
+def proof_words(source: Source) -> Words:
+    """What is proven of every row of a sweep."""
+    return Words(source.proof.astype(np.int32), tuple(proof.label for proof in Proof))
+
+
 def mode_words(source: Source) -> Words:
     """The letter of every row's assembly mode."""
     return Words(np.zeros(source.rows, dtype=np.int32), (source.letter,))
@@ -100,7 +106,12 @@ def event_words(source: Source) -> Words:
     return Words(np.array([numbers[text] for text in source.events], dtype=np.int32), known)
 
 
-_WORDS = {"row.mode": mode_words, "row.status": status_words, ROW_EVENT: event_words}
+_WORDS = {
+    "row.mode": mode_words,
+    "row.status": status_words,
+    ROW_PROOF: proof_words,
+    ROW_EVENT: event_words,
+}
 
 
 def row_words(name: str, source: Source) -> Words:

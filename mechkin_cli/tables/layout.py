@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 ROW_TEXTS = ("row.mode", "row.status")
 """Quantities of a row that are texts: each can only be a column of its own."""
 
+ROW_PROOF = "row.proof"
+"""A text of the rows of a sweep: what is proven of it."""
+
 ROW_EVENT = "row.event"
 """A text of the rows of a response: what ended it there."""
 
@@ -69,7 +72,7 @@ class TableLayout(NamedTuple):
 
 def row_texts(run: str) -> tuple[str, ...]:
     """The quantities that are texts in the rows of a run."""
-    return ROW_TEXTS if run == SWEEP else (*ROW_TEXTS, ROW_EVENT)
+    return (*ROW_TEXTS, ROW_PROOF if run == SWEEP else ROW_EVENT)
 
 
 class CoefficientsLayout(NamedTuple):

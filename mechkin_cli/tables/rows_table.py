@@ -9,13 +9,20 @@ from __future__ import annotations
 import numpy as np
 
 from mechkin_cli.runs import SWEEP
-from mechkin_cli.tables.columns import Column, Columns, Words, event_words, status_words
+from mechkin_cli.tables.columns import (
+    Column,
+    Columns,
+    Words,
+    event_words,
+    proof_words,
+    status_words,
+)
 from mechkin_cli.tables.source import Source
 
 
 def rows_table(source: Source, run: str = SWEEP) -> Columns:
-    """Columns row, the inputs, mode, status, residual, condition, power_error; of a response
-    additionally event and energy_error.
+    """Columns row, the inputs, mode, status, residual, condition, power_error; of a sweep whose
+    proofs were asked for additionally proof, of a response event and energy_error.
 
     Rows count from 1; inputs are in file units, errors and condition without dimension.
     """
@@ -33,6 +40,8 @@ def rows_table(source: Source, run: str = SWEEP) -> Columns:
         Column("power_error", "", source.power_error),
     ]
     if run == SWEEP:
+        if source.is_certified:
+            columns.insert(-3, Column("proof", "", proof_words(source)))
         return Columns("rows", "Rows and their verdicts", tuple(columns))
     columns.insert(-3, Column("event", "", event_words(source)))
     error = np.asarray(source.quantity("row.energy_error").value, dtype=np.float64)

@@ -62,6 +62,16 @@ class Source(Protocol):
         ...
 
     @property
+    def is_certified(self) -> bool:
+        """Whether proofs of the rows have been asked for."""
+        ...
+
+    @property
+    def proof(self) -> StatusArray:
+        """Codes of `mechkin_cli.proof.Proof`, found now if they were not."""
+        ...
+
+    @property
     def residual(self) -> FloatArray:
         """Largest closure component of the row, dimensionless; nan where not computed."""
         ...

@@ -13,6 +13,7 @@ BASE = {
     "exact",
     "legible",
     "nearest",
+    "proof",
     "regular_file",
     "runs",
     "status",
@@ -103,7 +104,7 @@ WITHIN_ANALYSIS = {
     "modes": {"assembly"},
     "ranges": {"assembly"},
     "response": {"assembly", "sweep"},
-    "sweep": {"assembly", "derived", "mobility"},
+    "sweep": {"assembly", "derived", "mobility", "proof"},
 }
 """What each room of `analysis/` knows of the others: no circles."""
 

@@ -17,11 +17,10 @@ from subprocess import CalledProcessError
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
-from benchmark import routes, stress, targets
+from benchmark import demand_steps, routes, stress, targets
 from benchmark.exact import rcsr_specimen, sevenr_specimen
 from benchmark.yardstick_kernel import Yardstick, load
 
-from mechkin_cli.benchmark import demand_steps
 from mechkin_cli.benchmark.machine import machine
 from mechkin_cli.benchmark.report import Table, plain_text
 from mechkin_cli.tables.json_writer import json_text

@@ -21,6 +21,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
+from benchmark.specimens import sevenr_specimen
 from change_points.four_bars import FourBar, file_of, joints_of
 from mpmath import mp, mpf
 from random_families.no_wrong_row.branch import TURN, Undecided, way
@@ -28,7 +29,6 @@ from random_families.no_wrong_row.case import drawn
 
 from mechkin_cli.benchmark.machine import machine
 from mechkin_cli.benchmark.report import Cell, Column, Table, plain_text
-from mechkin_cli.benchmark.specimens import sevenr_specimen
 from mechkin_cli.tables.json_writer import json_text
 
 MECHANISMS = HERE.parents[1] / "mechanisms"

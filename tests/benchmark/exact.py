@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from benchmark import loop_loads, reference
+from benchmark import loop_loads, reference, specimens
 from benchmark.arithmetic import Arithmetic
+from benchmark.specimen import Specimen
 
-from mechkin_cli.benchmark import rcsr, sevenr, specimens
-from mechkin_cli.benchmark.specimen import Specimen
+from mechkin_cli.benchmark import rcsr, sevenr
 
 
 @dataclass(frozen=True)

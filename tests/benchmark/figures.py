@@ -22,19 +22,19 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 from benchmark.chains import chain_text
-from benchmark.process import command
-
-import mechkin_cli as mk
-from mechkin_cli.benchmark.kernel_case import (
+from benchmark.kernel_case import (
     BATCH,
     KernelCase,
     PlannedRun,
     degree_rows,
     repeated,
 )
+from benchmark.process import command
+from benchmark.specimens import sevenr_specimen
+
+import mechkin_cli as mk
 from mechkin_cli.benchmark.machine import machine
 from mechkin_cli.benchmark.report import Cell, Column, Table, plain_text
-from mechkin_cli.benchmark.specimens import sevenr_specimen
 from mechkin_cli.benchmark.timing import Timing, in_turns
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.tables.json_writer import json_text

@@ -21,6 +21,7 @@ ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE.parent))
 
 from benchmark import targets
+from benchmark.specimens import rcsr_specimen, sevenr_specimen
 from benchmark.yardstick_kernel import Yardstick, load
 
 from mechkin_cli.benchmark.machine import machine
@@ -30,7 +31,6 @@ from mechkin_cli.benchmark.report import Table
 from mechkin_cli.benchmark.runs import FULL, QUICK, bench, tables
 from mechkin_cli.benchmark.scene import Scene
 from mechkin_cli.benchmark.scenes import subjects
-from mechkin_cli.benchmark.specimens import rcsr_specimen, sevenr_specimen
 from mechkin_cli.benchmark.tables import csv_text
 
 RCSR_FILE = ROOT / "mechanisms" / "rcsr.yaml"

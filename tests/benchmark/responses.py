@@ -25,6 +25,14 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 from benchmark.accuracy import relative_error
+from benchmark.kernel_case import (
+    BATCH,
+    KernelCase,
+    PlannedRun,
+    degree_rows,
+    repeated,
+)
+from benchmark.specimens import rcsr_specimen
 from references import exact
 
 import mechkin_cli as mk
@@ -32,16 +40,8 @@ from mechkin_cli.analysis.response.respond import Prepared, prepare, read, rows_
 from mechkin_cli.analysis.sweep.sweep import analyze, at_once
 from mechkin_cli.arrays import Floats
 from mechkin_cli.benchmark import sevenr
-from mechkin_cli.benchmark.kernel_case import (
-    BATCH,
-    KernelCase,
-    PlannedRun,
-    degree_rows,
-    repeated,
-)
 from mechkin_cli.benchmark.machine import machine
 from mechkin_cli.benchmark.report import Cell, Column, Table, plain_text
-from mechkin_cli.benchmark.specimens import rcsr_specimen
 from mechkin_cli.benchmark.timing import in_turns
 from mechkin_cli.solver.free_motion import MotionRows, MotionStart, integrate
 from mechkin_cli.solver.session import Packing, Session

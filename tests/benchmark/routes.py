@@ -12,10 +12,7 @@ from benchmark.accuracy import errors
 from benchmark.arithmetic import Arithmetic, extended
 from benchmark.closure import drawing, kinematics
 from benchmark.exact import ExactSpecimen
-from benchmark.peers import Closure, dense_loads, differences, fsolve_positions
-from benchmark.reference import POSITIONS
-
-from mechkin_cli.benchmark.kernel_case import (
+from benchmark.kernel_case import (
     BATCH,
     SWEEP_ROWS,
     KernelCase,
@@ -24,6 +21,9 @@ from mechkin_cli.benchmark.kernel_case import (
     repeated,
     sweep_rows,
 )
+from benchmark.peers import Closure, dense_loads, differences, fsolve_positions
+from benchmark.reference import POSITIONS
+
 from mechkin_cli.benchmark.rcsr import Dimensions, dimensions
 from mechkin_cli.benchmark.report import Cell, Column, Table
 from mechkin_cli.benchmark.timing import Timing, in_turns

@@ -16,11 +16,11 @@ from benchmark.accuracy import errors
 from benchmark.arithmetic import Arithmetic, best
 from benchmark.closure import dead_centre, drawing
 from benchmark.exact import ExactSpecimen, rcsr_specimen, sevenr_specimen
+from benchmark.kernel_case import sweep_rows
+from benchmark.specimen import values
 
-from mechkin_cli.benchmark.kernel_case import sweep_rows
 from mechkin_cli.benchmark.rcsr import SPAN, dimensions
 from mechkin_cli.benchmark.report import Cell, Column, Table
-from mechkin_cli.benchmark.specimen import values
 from mechkin_cli.interface import Analysis, loads
 from mechkin_cli.status import Status
 

@@ -8,11 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Literal
 
-from benchmark.process import bare_imports, process_times
-from benchmark.yardstick_kernel import LEVELS, Yardstick
-
-from mechkin_cli.benchmark import sevenr
-from mechkin_cli.benchmark.kernel_case import (
+from benchmark.kernel_case import (
     BATCH,
     SWEEP_ROWS,
     KernelCase,
@@ -21,8 +17,12 @@ from mechkin_cli.benchmark.kernel_case import (
     repeated,
     sweep_rows,
 )
+from benchmark.process import bare_imports, process_times
+from benchmark.specimen import Specimen
+from benchmark.yardstick_kernel import LEVELS, Yardstick
+
+from mechkin_cli.benchmark import sevenr
 from mechkin_cli.benchmark.report import Cell, Column, Table
-from mechkin_cli.benchmark.specimen import Specimen
 from mechkin_cli.benchmark.timing import Timing, in_turns
 from mechkin_cli.kernel.width import widths
 

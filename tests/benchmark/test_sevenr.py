@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from benchmark.arithmetic import best, extended
 from benchmark.exact import sevenr_specimen
+from benchmark.kernel_case import BATCH
+from benchmark.specimen import values
 from benchmark.yardstick_kernel import Yardstick
 from oracle import document, mp, newton_euler, read, solve
 from properties.expected import expected
 
 import mechkin_cli as mk
 from mechkin_cli.benchmark import sevenr
-from mechkin_cli.benchmark.kernel_case import BATCH
-from mechkin_cli.benchmark.specimen import values
 
 SEVENR = sevenr_specimen()
 THETA1 = [0.75, 4.5]

@@ -7,14 +7,18 @@ and of the pairs' ratios. `threshold` looks for the rows from which two threads 
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from statistics import median
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
-from mechkin_cli.benchmark.kernel_case import KernelCase, PlannedRun, driven, repeated, sweep_rows
-from mechkin_cli.benchmark.specimens import rcsr_specimen, sevenr_specimen
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from benchmark.kernel_case import KernelCase, PlannedRun, driven, repeated, sweep_rows
+from benchmark.specimens import rcsr_specimen, sevenr_specimen
+
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.solver.batch import run
 

@@ -14,8 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-
-from mechkin_cli.benchmark.kernel_case import BATCH
+from benchmark.kernel_case import BATCH
 
 FOLDER = Path(__file__).resolve().parent / "yardstick"
 MODULES = ("run", "prep", "mechs")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.solver.enclosures import Boxes, Enclosure, Given
+from mechkin_cli.solver.enclosures import Enclosure, Given, Positions
 
 
 def interleaved(enclosure: Enclosure) -> np.ndarray:
@@ -16,7 +16,7 @@ def interleaved(enclosure: Enclosure) -> np.ndarray:
     return np.ascontiguousarray(both.reshape(-1, both.shape[2]))
 
 
-def boxes_of(session: Any, given: Given, states: np.ndarray) -> Boxes:
+def boxes_of(session: Any, given: Given, states: np.ndarray) -> Positions:
     """Of the session's rows with their inputs and states (states, rows)."""
     middle, radius = session.precise.enclosed_constants(session).T
     radius = radius.copy()
@@ -24,13 +24,13 @@ def boxes_of(session: Any, given: Given, states: np.ndarray) -> Boxes:
     plan = session.plan.with_constants(np.ascontiguousarray(middle))
     radii = plan.with_constants(np.ascontiguousarray(radius))
     rows = states.shape[1]
-    boxes = Boxes(plan, radii, np.ascontiguousarray(states), np.zeros((plan.columns, rows)))
+    boxes = Positions(plan, radii, np.ascontiguousarray(states), np.zeros((plan.columns, rows)))
     unknown = [session.layout.column(k, f) for b in session.graph.blocks for k, f in b.unknowns]
     radius = np.stack([_radius(boxes, given, row, unknown) for row in range(rows)], axis=1)
     return boxes._replace(radius=np.ascontiguousarray(radius))
 
 
-def _radius(boxes: Boxes, given: Given, row: int, unknown: list[int]) -> np.ndarray:
+def _radius(boxes: Positions, given: Given, row: int, unknown: list[int]) -> np.ndarray:
     """Radii (columns,) of a box with exactly one solution; fails where none is found."""
     point = np.zeros(boxes.plan.columns)
     equations, derivatives = evaluated(boxes, given, row, point)
@@ -50,7 +50,7 @@ def _radius(boxes: Boxes, given: Given, row: int, unknown: list[int]) -> np.ndar
 
 
 def evaluated(
-    boxes: Boxes, given: Given, row: int, radius: np.ndarray
+    boxes: Positions, given: Given, row: int, radius: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Equations (equations, 2) and derivatives (equations, columns, 2) over a row's box."""
     count = boxes.plan.equations

@@ -23,6 +23,7 @@ from mechkin_cli.analysis.sweep.admissible import (
 from mechkin_cli.analysis.sweep.closing_angles import make_continuous
 from mechkin_cli.analysis.sweep.error_bound import error_bound
 from mechkin_cli.analysis.sweep.friction_rows import FrictionRows
+from mechkin_cli.analysis.sweep.proven import Proven
 from mechkin_cli.analysis.sweep.read_off import read_off
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
@@ -54,7 +55,7 @@ ROW_NUMBERS = {f"row.{n}": n for n in ("residual", "condition", "power_error", "
 """Verdicts that are numbers, by the names of their quantities."""
 
 
-class Result:
+class Result(Proven):
     """The rows of a sweep with a position and a verdict each.
 
     Args:

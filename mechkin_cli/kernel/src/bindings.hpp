@@ -12,6 +12,8 @@ void bind_codes(nanobind::module_& m);
 void bind_integrator(nanobind::module_& m);
 // Responses of plans with a chart; needs the class Plan bound before.
 void bind_response(nanobind::module_& m);
+// Proofs of positions; needs the class Plan bound before.
+void bind_certify(nanobind::module_& m);
 // Enclosures of what rows write; needs the class Plan bound before.
 void bind_enclosing(nanobind::module_& m);
 // PlanBuilder, Plan, Outputs.

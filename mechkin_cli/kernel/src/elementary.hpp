@@ -8,6 +8,8 @@
 #include "arithmetic/double_double_functions.hpp"
 #elif MECHKIN_ARITHMETIC == MECHKIN_INTERVALS
 #include "arithmetic/interval_functions.hpp"
+#elif MECHKIN_ARITHMETIC == MECHKIN_TAYLOR
+#include "arithmetic/taylor_functions.hpp"
 #else
 #include "arithmetic/exponential.hpp"
 #include "arithmetic/inverse_trigonometric.hpp"

@@ -91,5 +91,6 @@ NB_MODULE(_kernel, m) {
   bind_positions(m);
   bind_integrator(m);
   bind_response(m);
+  bind_certify(m);
   bind_enclosing(m);
 }

@@ -7,6 +7,7 @@
 //   MECHKIN_DOUBLES        Real: + - * / sqrt of IEEE (arithmetic/doubles.hpp)
 //   MECHKIN_DOUBLE_DOUBLE  DoubleDouble: high and low (arithmetic/double_double.hpp)
 //   MECHKIN_INTERVALS      Interval: midpoint and radius (arithmetic/interval.hpp)
+//   MECHKIN_TAYLOR         Taylor: coefficients by a parameter and radius (arithmetic/taylor.hpp)
 //
 // HALF_PLACE is half the last place of 1. A number of PARTS parts takes PARTS consecutive rows of an array: part i of number k of a row stands at
 // [(PARTS * k + i) * rows + row].
@@ -15,6 +16,7 @@
 #define MECHKIN_DOUBLES 0
 #define MECHKIN_DOUBLE_DOUBLE 1
 #define MECHKIN_INTERVALS 2
+#define MECHKIN_TAYLOR 3
 #ifndef MECHKIN_ARITHMETIC
 #define MECHKIN_ARITHMETIC MECHKIN_DOUBLES
 #endif
@@ -25,6 +27,8 @@
 #include "arithmetic/double_double_scalar.hpp"
 #elif MECHKIN_ARITHMETIC == MECHKIN_INTERVALS
 #include "arithmetic/interval.hpp"
+#elif MECHKIN_ARITHMETIC == MECHKIN_TAYLOR
+#include "arithmetic/taylor.hpp"
 #else
 #include "arithmetic/doubles.hpp"
 #endif
@@ -48,6 +52,16 @@ using Pack = Interval;
 constexpr int PARTS = 2;
 MECHKIN_INLINE Pack from_parts(const Real* part) { return {part[0], part[1]}; }
 MECHKIN_INLINE Real part_of(Pack a, int i) { return i ? a.radius : a.midpoint; }
+#elif MECHKIN_ARITHMETIC == MECHKIN_TAYLOR
+using Pack = Taylor;
+constexpr int PARTS = ORDER + 2;
+MECHKIN_INLINE Pack from_parts(const Real* part) {
+  Pack a;
+  for (int k = 0; k <= ORDER; ++k) a.c[k] = part[k];
+  a.radius = part[ORDER + 1];
+  return a;
+}
+MECHKIN_INLINE Real part_of(const Pack& a, int i) { return i <= ORDER ? a.c[i] : a.radius; }
 #else
 using Pack = Real;
 constexpr int PARTS = 1;

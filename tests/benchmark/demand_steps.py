@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from functools import partial
 
-from mechkin_cli.benchmark.kernel_case import (
+from benchmark.kernel_case import (
     BATCH,
     KernelCase,
     PlannedRun,
     degree_rows,
     repeated,
 )
+from benchmark.specimen import Specimen
+
 from mechkin_cli.benchmark.report import Cell, Column, Table
-from mechkin_cli.benchmark.specimen import Specimen
 from mechkin_cli.benchmark.timing import ROUNDS, in_turns
 from mechkin_cli.kernel.width import widths
 from mechkin_cli.solver.codes import Demand

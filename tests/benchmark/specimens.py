@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from functools import partial
 
+from benchmark.specimen import Specimen
+
 from mechkin_cli.benchmark import rcsr, sevenr
-from mechkin_cli.benchmark.specimen import Specimen
 
 
 def rcsr_specimen(scale: float = 1.0) -> Specimen:

@@ -7,9 +7,9 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from benchmark.specimen import Specimen, values
 
 from mechkin_cli import tolerances
-from mechkin_cli.benchmark.specimen import Specimen, values
 from mechkin_cli.interface import loads
 from mechkin_cli.solver.batch import Batch, run
 from mechkin_cli.solver.codes import Demand

@@ -1,0 +1,63 @@
+"""Joins two rows that no one tube joins, by closing the mechanism at places between them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.solver.proofs import Enclosed, Nodes, prove_boxes, prove_tubes
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.solver.session import Session
+
+
+def bridge(enclosed: Enclosed, ends: Nodes) -> int:
+    """The tubes that join two nodes; 0 where the branch is not proven to lead from one to the
+    other.
+
+    Where a tube is missing its middle is closed, and both halves are tried: near a dead centre the
+    places go there by halves of what is left.
+    """
+    nodes = ends
+    while True:
+        boxes = prove_boxes(enclosed, nodes)
+        tubes = prove_tubes(enclosed, nodes, boxes)
+        if tubes.joined.all():
+            return tubes.number
+        missing = np.flatnonzero(~tubes.joined)
+        length = np.abs(np.diff(nodes.values, axis=1)).max(axis=0, initial=0.0)
+        is_hopeless = (
+            not boxes.proven.all()
+            or nodes.states.shape[1] + missing.size > tolerances.BRIDGE_NODES
+            or bool((length[missing] < tolerances.BRIDGE_STEP).any())
+        )
+        middle = None if is_hopeless else _middles(enclosed.session, nodes, missing)
+        if middle is None:
+            return 0
+        nodes = Nodes(
+            *(
+                np.insert(old, missing + 1, new, axis=1)
+                for old, new in zip(nodes, middle, strict=True)
+            )
+        )
+
+
+def _middles(session: Session, nodes: Nodes, before: NDArray[np.intp]) -> Nodes | None:
+    """The closed places half way between nodes and the next, followed from there; None where the
+    branch does not lead so far."""
+    after = before + 1
+    values = 0.5 * (nodes.values[:, before] + nodes.values[:, after])
+    reduced = nodes.reduced[:, before] + (values - nodes.values[:, before])
+    guess = np.empty((nodes.states.shape[0], before.size))
+    for k, node in enumerate(before):
+        way = np.stack([nodes.reduced[:, node], reduced[:, k]], axis=1)
+        found = session.follow(way, nodes.states[:, node], every_row=True)
+        if found.reached < 2:
+            return None
+        guess[:, k] = found.guess[:, 1]
+    closed = session.close(reduced, guess)
+    return Nodes(values, reduced, closed.states) if closed.good.all() else None

@@ -1,0 +1,151 @@
+"""Proofs of a sweep in the file's units and words."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.proof.enclosures import enclosures, is_enclosed
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number, UsageError
+from mechkin_cli.interface.arguments import a_text
+from mechkin_cli.mechanism.joint_table import is_angle
+from mechkin_cli.proof import Proof
+from mechkin_cli.runs import SWEEP
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.analysis.proof import Certificate as Found
+    from mechkin_cli.analysis.proof.certificate import Gap
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.interface.analysis import Analysis
+
+FULL_TURN = 2.0 * np.pi
+GAPS_TOLD = 4
+"""Gaps that are told one by one."""
+
+_WHY = {
+    "no position": "there is no position",
+    "box": "no box about the position could be proven to hold exactly one",
+    "branch": "the positions are proven, that they continue those of the rows before is not",
+}
+_CURE = {
+    "no position": None,
+    "box": "the place is singular or nearly so: look at row.condition and row.status",
+    "branch": "ask for rows between the last that is proven and the first that is not",
+}
+
+
+class Certificate:
+    """What is proven of the rows of a sweep.
+
+    Raises:
+        UsageError: the rows are those of a response.
+    """
+
+    def __init__(self, analysis: Analysis) -> None:
+        if analysis.run != SWEEP:
+            raise UsageError(f"{analysis.run} is a response: proofs are of sweeps")
+        self.analysis = analysis
+        self._found: Found = analysis.result.certificate
+
+    @cached_property
+    def status(self) -> NDArray[np.str_]:
+        """`proven`, `proven to closure` or `not proven` of every row (rows,)."""
+        labels = np.array([proof.label for proof in Proof])
+        found: NDArray[np.str_] = labels[self._found.status]
+        return found
+
+    @property
+    def is_one_branch(self) -> bool:
+        """Whether all rows are proven, or proven to closure: as the inputs go straight from each
+        row to the next, the mechanism moves through all of these positions."""
+        return self._found.is_complete
+
+    @property
+    def tubes(self) -> int:
+        """How many tubes join the rows."""
+        return self._found.tubes
+
+    @property
+    def closure(self) -> Floats:
+        """At most the size of the closing equations beyond those solved for, anywhere in the
+        row's box (rows,): lengths in the kernel's unit; nan where nothing is proven."""
+        boxes = self._found.boxes
+        return np.where(boxes.proven, boxes.beyond, np.nan)
+
+    @cached_property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Where nothing is proven, and why."""
+        gaps = self._found.gaps
+        told = [self._told(gap) for gap in gaps[:GAPS_TOLD]]
+        if not self._found.of_text:
+            text = (
+                "what is proven is proven of the mechanism as the kernel holds it, in doubles: its "
+                "numbers could not be followed back to the file's text"
+            )
+            told.append(Diagnostic("proof-of-doubles", "note", text))
+        if len(gaps) > GAPS_TOLD:
+            text = f"{len(gaps) - GAPS_TOLD} more stretches of rows are not proven"
+            told.append(Diagnostic("not-proven", "warning", text))
+        return tuple(told)
+
+    @property
+    def words(self) -> str:
+        """One line for a person."""
+        found = self._found
+        counts = [(int((found.status == proof).sum()), proof.label) for proof in reversed(Proof)]
+        rows = ", ".join(f"{count} {label}" for count, label in counts if count)
+        if not self.is_one_branch or found.rows < 2:
+            return rows
+        tubes = "tube" if found.tubes == 1 else "tubes"
+        return f"{rows}; one branch from end to end ({found.tubes} {tubes})"
+
+    def enclosure(self, name: str) -> tuple[Floats, Floats]:
+        """Bounds of a quantity in the file's units: two arrays (rows,), of a vector (rows, 3).
+
+        Coordinates, points, rates, accelerations, reactions and efforts of the mechanism as the
+        file's text says it lie between them, in every row that is proven; nan elsewhere, where the
+        quantity is not unique, and where it goes by friction, actuators or tables of loads.
+
+        Raises:
+            UsageError: no such quantity, or one that is not enclosed: derived ones, jerks.
+        """
+        a_text("quantity", name, '"O4.theta_dot"')
+        result = self.analysis.result
+        wanted = result.problem.quantities().get(name)
+        if wanted is None or not is_enclosed(result.problem.mechanism, wanted):
+            raise UsageError(f"{name[:LONGEST_NAME]} is no quantity that is enclosed")
+        middle, radius = enclosures(result, self._found, [wanted])[name]
+        known = np.asarray(result.units.to_si(self.analysis[name], wanted.dimension))
+        scale = np.abs(middle)
+        if wanted.kind == "coordinate" and not wanted.order and is_angle(wanted.coordinate):
+            turns = FULL_TURN * np.rint((known - middle) / FULL_TURN)
+            middle, scale = middle + turns, scale + np.abs(turns)
+        middle, radius, scale = (
+            np.asarray(result.units.from_si(part, wanted.dimension))
+            for part in (middle, radius, scale)
+        )
+        off = radius + tolerances.ENCLOSURE_ROUNDING * (radius + scale)
+        off = np.where(np.isfinite(off) & np.isfinite(np.atleast_2d(known.T)), off, np.nan)
+        low, high = (middle - off).T, (middle + off).T
+        return (low, high) if wanted.vector else (low[:, 0], high[:, 0])
+
+    def _told(self, gap: Gap) -> Diagnostic:
+        rows = (
+            f"row {gap.first + 1} is"
+            if gap.first == gap.last
+            else f"rows {gap.first + 1} to {gap.last + 1} are"
+        )
+        numbers = (Number("first_row", gap.first + 1), Number("last_row", gap.last + 1))
+        measured = None
+        if gap.why == "box":
+            worst = float(self._found.boxes.contraction[gap.first : gap.last + 1].max())
+            measured = f"the operator leaves {worst:.2g} of a box (limit 1)"
+        text = f"{rows} not proven: {_WHY[gap.why]}"
+        return Diagnostic(
+            "not-proven", "warning", text, None, measured, None, _CURE[gap.why], numbers
+        )

@@ -1,0 +1,158 @@
+"""Proofs of positions by the kernel: boxes about places, and tubes along a way of the inputs.
+
+A box is as wide as rounding leaves the position; a tube is a box at every place between two places
+of the way (docs/numerics.md, Proofs).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.tape.traced import TraceLost
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Bools, Floats
+    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.solver.session import Session
+
+
+class Enclosed(NamedTuple):
+    """A session's mechanism with its constants enclosed.
+
+    Attributes:
+        session: the mechanism in doubles.
+        plan: its plan at the constants' midpoints.
+        radii: their radii in the same places; None where the doubles are taken as they are.
+        of_text: whether these constants enclose the numbers of the file's text.
+    """
+
+    session: Session
+    plan: Plan
+    radii: Plan | None
+    of_text: bool
+
+    @classmethod
+    def of(cls, session: Session) -> Enclosed:
+        """As the file's text says it; where the text cannot be followed to all constants, the
+        mechanism that the doubles are."""
+        try:
+            middle, radius = session.precise.enclosed_constants(session).T
+        except (LookupError, ValueError, TraceLost):
+            return cls(session, session.plan, None, False)
+        scale = [_kernel.CONSTANT_LENGTH, _kernel.CONSTANT_SIZE]
+        radius = radius.copy()
+        radius[scale] = middle[scale]  # of units, which are conventions
+        plan = session.plan.with_constants(np.ascontiguousarray(middle))
+        return cls(session, plan, plan.with_constants(radius), True)
+
+
+class Boxes(NamedTuple):
+    """Boxes about places, arrays over these.
+
+    Attributes:
+        proven: whether the box holds exactly one solution of the equations solved for.
+        radius: of the box by columns (columns, places), rad and lengths of the kernel; of an
+            orientation of the increments that turn it.
+        contraction: at most the part of a box that the operator leaves, below 1 where proven.
+        beyond: at most the size of the closing equations beyond those solved for; 0 where there
+            are none, or where they hold exactly.
+    """
+
+    proven: Bools
+    radius: Floats
+    contraction: Floats
+    beyond: Floats
+
+    def part(self, places: slice) -> Boxes:
+        """Some of the places."""
+        radius = np.ascontiguousarray(self.radius[:, places])
+        return Boxes(self.proven[places], radius, self.contraction[places], self.beyond[places])
+
+
+class Nodes(NamedTuple):
+    """Places along a way of the inputs in the kernel's units, which goes straight from each to the
+    next: inputs with whole turns and without (inputs, nodes), states (states, nodes)."""
+
+    values: Floats
+    reduced: Floats
+    states: Floats
+
+    def part(self, nodes: slice) -> Nodes:
+        """Some of the places."""
+        return Nodes(*(array[:, nodes] for array in self))
+
+
+class Tubes(NamedTuple):
+    """Whether each node is joined to the next (nodes - 1,), the largest radius of the tube there,
+    and how many tubes there are."""
+
+    joined: Bools
+    width: Floats
+    number: int
+
+
+def input_rounding(values: Floats) -> Floats:
+    """How far inputs may be from what the file says, of the same shape."""
+    rounding: Floats = tolerances.INPUT_ROUNDING * np.abs(values)
+    return rounding
+
+
+def prove_boxes(enclosed: Enclosed, nodes: Nodes) -> Boxes:
+    """Looks for the one position near each node's states."""
+    plan, places = enclosed.plan, nodes.states.shape[1]
+    radius, proven = np.empty((plan.columns, places)), np.empty(places, dtype=np.uint8)
+    contraction, beyond = np.empty(places), np.empty(places)
+    _kernel.prove_boxes(
+        plan,
+        states=np.ascontiguousarray(nodes.states),
+        off=input_rounding(nodes.reduced),
+        radii=enclosed.radii,
+        radius=radius,
+        contraction=contraction,
+        beyond=beyond,
+        proven=proven,
+    )
+    return Boxes(proven.astype(bool), radius, contraction, beyond)
+
+
+def prove_tubes(enclosed: Enclosed, nodes: Nodes, boxes: Boxes) -> Tubes:
+    """Joins nodes by tubes; those whose box is not proven are joined to none."""
+    session, count = enclosed.session, nodes.states.shape[1]
+    step = np.diff(nodes.values, axis=1)
+    length = np.sqrt(sum((way * way for way in step), np.zeros(count - 1)))
+    direction = step / np.where(length > 0.0, length, 1.0)
+    after = np.concatenate([direction, direction[:, -1:]], axis=1)
+    before = np.concatenate([direction[:, :1], direction], axis=1)
+    bends = (np.abs(after - before) > tolerances.STRAIGHT_WAY).any(axis=0)
+    first = _derivatives(session, nodes, after)
+    joined, width = np.empty(count, dtype=np.uint8), np.empty(count)
+    found, _ = _kernel.prove_tubes(
+        enclosed.plan,
+        radii=enclosed.radii,
+        place=np.concatenate([[0.0], np.cumsum(length)]),
+        inputs=np.ascontiguousarray(nodes.values),
+        off=input_rounding(nodes.values),
+        states=np.ascontiguousarray(nodes.states),
+        after=first,
+        before=_derivatives(session, nodes, before) if bends.any() else first,
+        radius=boxes.radius,
+        proven=boxes.proven.astype(np.uint8),
+        bends=bends.astype(np.uint8),
+        joined=joined,
+        width=width,
+    )
+    return Tubes(joined[:-1].astype(bool), width[:-1], found)
+
+
+def _derivatives(session: Session, nodes: Nodes, direction: Floats) -> Floats:
+    """Derivatives of the columns (columns, nodes) by the way's length."""
+    batch = session.run(
+        nodes.reduced, nodes.states, demand=Demand.VELOCITY, rates=direction, derivatives=True
+    )
+    assert batch.first is not None
+    return batch.first
