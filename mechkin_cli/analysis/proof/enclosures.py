@@ -26,7 +26,9 @@ _OF_ROWS = {"kinetic_energy", "potential_energy"}
 
 def is_enclosed(mechanism: Mechanism, quantity: Wanted) -> bool:
     """Whether a quantity is among those that can be enclosed."""
-    if quantity.kind in DERIVED_KINDS or (quantity.owner == "row" and quantity.kind not in _OF_ROWS):
+    if quantity.kind in DERIVED_KINDS or (
+        quantity.owner == "row" and quantity.kind not in _OF_ROWS
+    ):
         return False
     return not demand_of(mechanism, [quantity]) & Demand.JERK
 
@@ -52,5 +54,6 @@ def _are_inside(result: Result, given: Given) -> Bools:
     """Rows whose inputs are among those that the boxes were proven for."""
     reduced = result.session.inputs.reduced
     off = np.abs(given.inputs.middle - reduced) + given.inputs.radius
-    inside: Bools = (off <= input_rounding(reduced)).all(axis=0)
-    return inside
+    inside = off <= input_rounding(reduced)
+    found: Bools = np.asarray(inside.all(axis=0), dtype=np.bool_)
+    return found
