@@ -487,12 +487,17 @@ LAST_ROW: Final = 1e-9
 written numbers is wrong by 1e-16 times the number of rows, of which there are at most 1e7."""
 
 INPUT_ROUNDING: Final = 2.0**-50
-"""Inputs are at most this part of themselves off what the file says, in the kernel's units: a
-multiple of a step, a unit and a whole number of turns taken off are less than eight roundings."""
+"""Inputs are at most this part of the rows' largest value off what the file says, in the kernel's
+units: a multiple of a step, a unit and a whole number of turns taken off are less than eight
+roundings."""
 
 ENCLOSURE_ROUNDING: Final = 2.0**-50
 """Part of a quantity, its whole turns and its radius that is added to the radius: all are converted
 to the file's units, by six roundings at most."""
+
+SAME_BOX: Final = 2.0**-44
+"""Distance (rad, length units, parts of either) added to the radii of two boxes before they are
+told apart: what is compared is rounded some twenty times."""
 
 STRAIGHT_WAY: Final = 1e-9
 """Change of the direction of the inputs' way (unit vectors of rad and lengths) at a row from which

@@ -5,6 +5,7 @@ import re
 import subprocess
 from functools import cache
 from math import cos, radians, sin, sqrt
+from pathlib import Path
 
 import pytest
 import typer
@@ -12,6 +13,7 @@ from mpmath import ellipk
 from references import RCSR, exact, published
 
 import mechkin_cli as mk
+from mechkin_cli.cli.analyze import analyze_files
 from mechkin_cli.cli.app import app
 from mechkin_cli.cli.exit_codes import ExitCode
 
@@ -60,6 +62,14 @@ def test_every_option_named_anywhere_exists() -> None:
     of_other_programs = {"--strict"}
     known = {"--help", "--version"} | of_other_programs | set().union(*options().values())
     assert set(re.findall(r"(?<![-\w<])--[a-z]+", README)) <= known
+
+
+def test_the_line_of_errors_is_that_of_the_command(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    analyze_files([RCSR], tmp_path, ["csv"], errors=True)
+    (line,) = [x for x in capsys.readouterr().err.splitlines() if x.startswith("  errors")]
+    assert line + "\n" in blocks("text")
 
 
 def test_exit_codes() -> None:

@@ -13,6 +13,10 @@ from mechkin_cli.benchmark.scene import Asked, Values
 if TYPE_CHECKING:
     from mechkin_cli.benchmark.timing import Timing
 
+ZERO = 1e-18
+"""Parts of the largest value of its kind up to which a quantity is zero by its nature: beyond the
+last digit of doubles, far above that of double-double."""
+
 ERROR_KINDS = ("position", "velocity", "acceleration", "loads")
 
 
@@ -115,10 +119,14 @@ def errors_of(asked: Asked, lengths: frozenset[str], found: Values, true: Values
     kinds = {kind: getattr(asked, kind) for kind in ERROR_KINDS}
     worst: dict[str, Any] = {}
     for kind, names in kinds.items():
+        known = [name for name in names if name in found and name in true]
+        # what is zero by its nature is rounding of the numbers that are right
+        sizes = {name: float(np.max(np.abs(true[name]))) for name in known}
+        nothing = ZERO * max(sizes.values(), default=0.0)
         errors = [
             _error(found[name], true[name], turns=kind == "position" and name not in lengths)
-            for name in names
-            if name in found and name in true
+            for name in known
+            if sizes[name] > nothing
         ]
         worst[kind] = max((e for e in errors if e is not None), default=None)
     return worst

@@ -6,8 +6,6 @@ Closures are 4x4 matrices of doubles; the first row starts from its own closed c
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,11 +17,8 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.benchmark.scene import Scene, Values
 
-EVALUATIONS = 4
-"""Jacobians by differences that a row needs, about."""
-
-LONGEST = 1.0
-"""Seconds of a sweep from which on few settings are measured."""
+MANY_UNKNOWNS = 12
+"""Beyond, differences of the whole closure in Python take tens of milliseconds a row."""
 
 Gap = Callable[["Floats"], "Floats"]
 Solve = Callable[[Gap, "Floats"], "Floats"]
@@ -49,18 +44,10 @@ class RowByRow:
         self.start: Floats = values[:, 0]
         self.turned = {ball: _first(matrix) for ball, matrix in turned.items()}
 
-    @cached_property
-    def seconds(self) -> float:
-        """About what a row takes by differences, s."""
-        begun, count = perf_counter(), 3
-        for _ in range(count):
-            self.gap(self.start, self.turned)
-        return EVALUATIONS * (len(self.unknowns) + 1) * (perf_counter() - begun) / count
-
     @property
     def is_long(self) -> bool:
         """Whether a sweep takes so long that few settings have to do."""
-        return self.seconds * self.scene.rows > LONGEST
+        return len(self.unknowns) > MANY_UNKNOWNS
 
     @property
     def is_square(self) -> bool:

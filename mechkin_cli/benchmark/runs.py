@@ -12,7 +12,7 @@ from mechkin_cli.benchmark.methods import FAMILIES, methods_of
 from mechkin_cli.benchmark.methods.kernel import FAMILY, UNIT
 from mechkin_cli.benchmark.scene import Scene, Values
 from mechkin_cli.benchmark.timing import Timing, in_turns
-from mechkin_cli.benchmark.truth import true_values
+from mechkin_cli.benchmark.wide import exact_values
 
 if TYPE_CHECKING:
     from mechkin_cli.benchmark.report import Table
@@ -58,11 +58,12 @@ def tables(
 
 @dataclass(frozen=True)
 class Bench:
-    """All that a scene was measured by."""
+    """All that a scene was measured by; errors are against `exact`."""
 
     scene: Scene
     measurements: tuple[Measurement, ...]
     skipped: tuple[Skipped, ...]
+    exact: str
 
     def record(self) -> dict[str, Any]:
         """As plain data."""
@@ -73,6 +74,7 @@ class Bench:
             "places": self.scene.rows,
             "unknowns": len(chain.unknowns),
             "equations": chain.equations,
+            "exact": self.exact,
             "measurements": [m.record() for m in self.measurements],
             "skipped": [{"family": s.family, "reason": s.reason} for s in self.skipped],
         }
@@ -84,7 +86,7 @@ def bench(scene: Scene, rounds: Rounds, families: Iterable[str] = tuple(FAMILIES
     found = [each for family in wanted for each in methods_of(scene, family)]
     methods = [each for each in found if isinstance(each, Method)]
     skipped = tuple(each for each in found if isinstance(each, Skipped))
-    true = true_values(scene)
+    true, exact = exact_values(scene)
     lengths = frozenset(c.name for c in scene.chain.coordinates if c.is_length)
     units = {m.level: m for m in methods if m.family == FAMILY and m.curve == UNIT}
     measurements = []
@@ -92,7 +94,7 @@ def bench(scene: Scene, rounds: Rounds, families: Iterable[str] = tuple(FAMILIES
         errors = errors_of(scene.asked, lengths, values, true)
         unit = units[method.level]
         measurements.append(measured(scene.name, method, timing, by, unit.rows, errors))
-    return Bench(scene, tuple(measurements), skipped)
+    return Bench(scene, tuple(measurements), skipped, exact)
 
 
 def _timed(

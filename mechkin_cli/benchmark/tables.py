@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from mechkin_cli.benchmark.measurement import Measurement
 from mechkin_cli.benchmark.report import Cell, Column, Table
-from mechkin_cli.benchmark.truth import width as exact_width
 
 if TYPE_CHECKING:
     from mechkin_cli.benchmark.runs import Bench
@@ -41,7 +40,7 @@ def bench_table(bench: Bench) -> Table:
         f"{scene.name}: {scene.result.rows} rows, {chain.equations} equations in "
         f"{len(chain.unknowns)} unknowns"
     )
-    exact = f"exact: the closure of another formula, {exact_width()}, from the same doubles."
+    exact = f"exact: {bench.exact}."
     name = "bench_" + "".join(c if c.isalnum() else "_" for c in scene.name.lower())
     return Table(name, title, COLUMNS, rows, (*NOTES, exact, *skipped))
 

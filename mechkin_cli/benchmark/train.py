@@ -14,7 +14,7 @@ def text(loops: int = LOOPS, motion: str = "{from: 0 deg, to: 60 deg, step: 0.25
     The k-th rocker turns about (4 k, 0); bars are 1.6 and 1.7 long by turns, so that no loop is a
     parallelogram.
     """
-    links = ["  bar0: {mass: 1, center_of_mass: [0, 0.8, 0], inertia: {zz: 0.2}}"]
+    links = ["  bar0: {mass: 1, center_of_mass: [0, 0.8, 0], inertia: {xx: 0.2, yy: 0.1, zz: 0.2}}"]
     joints = ["  G0: {type: R, links: [ground, bar0], point: [0, 0, 0], axis: [0, 0, 1]}"]
     for k in range(loops):
         x0, x1 = STEP * k, STEP * (k + 1)

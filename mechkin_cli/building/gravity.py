@@ -10,13 +10,13 @@ from math import sqrt
 
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.diagnostics import Diagnostic, Number
-from mechkin_cli.expressions import literal
+from mechkin_cli.expressions import literal, number_of
 from mechkin_cli.mechanism.vectors import Vector, scale
 from mechkin_cli.schema.loads import Gravity
 from mechkin_cli.tolerances import GRAVITY_ON_EARTH, LARGEST_NUMBER
-from mechkin_cli.units import ACCELERATION, UNITS, conversion, parse_unit
+from mechkin_cli.units import ACCELERATION, parse_unit
 
-STANDARD = conversion(UNITS["g0"].factor).multiplier
+STANDARD = 9.80665
 """m/s^2, by the third General Conference on Weights and Measures."""
 
 DOWN: Vector = (0.0, 0.0, -1.0)
@@ -28,9 +28,11 @@ USUAL = ("m/s^2", "mm/s^2", "cm/s^2", "in/s^2", "ft/s^2")
 def gravity_of(fields: Fields, path: Path, section: Gravity) -> Vector:
     """The acceleration of free fall in m/s^2; doubts are noted in `fields`."""
     if section.g == "standard":
+        standard = number_of(str(STANDARD))
+        assert standard is not None
         if section.direction is None:
-            return scale(STANDARD, DOWN)
-        return scale(STANDARD, fields.direction((*path, "direction"), section.direction))
+            return scale(standard, DOWN)
+        return scale(standard, fields.direction((*path, "direction"), section.direction))
     found = fields.vector((*path, "g"), section.g, ACCELERATION)
     _check_unit(fields, (*path, "g"), section.g)
     return found

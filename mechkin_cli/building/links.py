@@ -101,8 +101,9 @@ def _is_surely_physical(tensor: tuple[float, ...]) -> bool:
 
 def _check_physical(fields: Fields, path: Path, name: str, tensor: tuple[float, ...]) -> None:
     """Principal moments of a real body are not negative and none exceeds the sum of the others."""
-    if any(isinstance(entry, Recorded) for entry in tensor):
-        if not _is_surely_physical(tensor):
+    recorded = [entry for entry in tensor if isinstance(entry, Recorded)]
+    if recorded:
+        if not all(entry.is_settled for entry in recorded) and not _is_surely_physical(tensor):
             from mechkin_cli.tape.traced import TraceLost
 
             raise TraceLost(f"the inertia of {name} belongs to no real body")

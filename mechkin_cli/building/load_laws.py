@@ -74,7 +74,7 @@ class LoadLaws:
     def by_expression(self, path: Path, expression: Expression, dimension: Dimension) -> Varying:
         """The value of an expression of a dimension."""
         try:
-            scalar(expression, dimension, self.fields.units, self._sample)
+            scalar(expression.in_doubles, dimension, self.fields.units, self._sample)
         except ExpressionError as error:
             self.fields.expression_error(path, error)
             return Varying(0)
@@ -91,7 +91,7 @@ class LoadLaws:
             if expression.names <= self.fields.parameters.keys():
                 hint = "write an expression of coordinates, rates, positions, velocities or time"
                 raise ExpressionError("this value never changes", 0, hint)
-            found = expression.evaluate(self._sample, self.fields.units)
+            found = expression.in_doubles.evaluate(self._sample, self.fields.units)
             if isinstance(found.value, Vector):
                 hint = "write one component: .x, .y or .z"
                 raise ExpressionError(f"{self.reader} takes one number, this is a vector", 0, hint)

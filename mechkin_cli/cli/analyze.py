@@ -33,6 +33,7 @@ class _Request:
     json: bool
     quiet: bool
     strict: bool
+    errors: bool
     certify: bool
 
 
@@ -49,6 +50,7 @@ def analyze_files(
     json: bool = False,
     quiet: bool = False,
     strict: bool = False,
+    errors: bool = False,
     certify: bool = False,
 ) -> ExitCode:
     """Runs the sweep and the responses of each file and writes their tables.
@@ -72,6 +74,7 @@ def analyze_files(
         json,
         quiet,
         strict,
+        errors,
         certify,
     )
     code = ExitCode.OK
@@ -157,7 +160,10 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
 def _results(analysis: Analysis, request: _Request) -> Results:
     name, result = analysis.model.name, analysis.result
     tables = (*analysis.tables, *analysis.coefficients, *analysis.balance_tables)
-    return Results(name, tables, result, analysis.diagnostics, request.threads, analysis.run)
+    errors = analysis.errors.columns if request.errors else None
+    return Results(
+        name, tables, result, analysis.diagnostics, request.threads, analysis.run, errors
+    )
 
 
 def _report(
@@ -176,6 +182,6 @@ def _report(
     if request.quiet:
         return
     for analysis in analyses:
-        for line in summary(path, analysis):
+        for line in summary(path, analysis, errors=request.errors):
             say(line)
     say(files_line(folder, written))

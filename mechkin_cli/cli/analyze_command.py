@@ -44,6 +44,10 @@ def analyze(
         bool,
         typer.Option("--strict", help="Exit with 4 where a row is near-singular or rank-unclear."),
     ] = False,
+    errors: Annotated[
+        bool,
+        typer.Option("--errors", help="Measure the true error of every cell; write errors.csv."),
+    ] = False,
     explain: Annotated[
         bool, typer.Option("--explain", help="Show the solver graph and what is skipped.")
     ] = False,
@@ -52,7 +56,20 @@ def analyze(
 ) -> None:
     """Run the sweep and the responses of each file and write their tables."""
     code = analyze_files(
-        files, out, format, set_, mode, table, lanes, threads, explain, json, quiet, strict, certify
+        files,
+        out,
+        format,
+        set_,
+        mode,
+        table,
+        lanes,
+        threads,
+        explain,
+        json,
+        quiet,
+        strict,
+        errors,
+        certify,
     )
     if code:
         raise typer.Exit(code)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mechkin_cli.cli import stress_options as options
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import Record, put, put_json, refusal
 from mechkin_cli.cli.options import Json
@@ -39,12 +40,29 @@ def bench(
         ),
     ] = None,
     json: Json = False,
+    stress: options.Stress = False,
+    rows: options.Rows = 2_000,
+    seed: options.Seed = 1,
+    family: options.Family = None,
+    only: options.Only = None,
+    page: options.Page = None,
+    check: options.Check = False,
+    processes: options.Processes = 0,
 ) -> None:
     """Measure run time against error, mechkin's and others'.
 
     Without files: eight mechanisms, variants and a response. Other methods are those whose
-    libraries are installed (pip install 'mechkin[bench]').
+    libraries are installed (pip install 'mechkin[bench]'). With --stress: hard mechanisms by the
+    thousand, every row decided by a closed form.
     """
+    if stress:
+        from mechkin_cli.cli.bench_stress import Stress, stress_command
+
+        asked = Stress(round(rows), seed, family, only, page, check, processes, json)
+        code = stress_command(asked, _show)
+        if code:
+            raise typer.Exit(code)
+        return
     from mechkin_cli.benchmark.machine import machine
     from mechkin_cli.benchmark.outputs import record, write
     from mechkin_cli.benchmark.runs import FULL, QUICK

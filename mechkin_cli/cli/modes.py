@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -31,13 +31,17 @@ def modes(
         str | None,
         typer.Option("--run", metavar="NAME", help="At the start of this response."),
     ] = None,
+    certify: Annotated[
+        bool,
+        typer.Option("--certify", help="Prove that each exists, and that no two are the same."),
+    ] = False,
     set_: Set = None,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """List the ways to assemble a mechanism."""
     question = Question(
-        ask=lambda model: model.modes(_place(at), run=run),
+        ask=lambda model: model.modes(_place(at), run=run, certify=certify),
         is_answered=lambda found: bool(found.modes),
         record=_record,
         show=lambda model, found: _print(model, found, quiet),
@@ -60,6 +64,15 @@ def _place(texts: list[str] | None) -> str | dict[str, str] | None:
 
 
 def _record(model: Model, found: Modes) -> Record:
+    record = _found_record(model, found)
+    if found.proofs is not None:
+        for mode, proof in zip(record["modes"], found.proofs.modes, strict=True):
+            mode["proof"] = proof.label
+        record["proofs"] = found.proofs.sentence
+    return record
+
+
+def _found_record(model: Model, found: Modes) -> dict[str, Any]:
     return {
         "name": model.name,
         "inputs": found.inputs,
@@ -91,6 +104,8 @@ def _print(model: Model, found: Modes, quiet: bool) -> None:
         return
     place = ", ".join(f"{name} = {value:.12g}" for name, value in found.inputs.items())
     say(f"{model.name}{' at ' if place else ''}{place}: {found.sentence}")
+    if found.proofs is not None:
+        say(f"  proofs: {found.proofs.sentence}")
     if found.picked:
         say(f"  * mode {found.picked} is the one that the file takes")
     if any(mode.name == UNNAMED for mode in found.modes):

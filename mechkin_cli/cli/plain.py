@@ -31,6 +31,7 @@ OPTIONS = {
     "--threads": Option("threads", int),
     "--certify": Option("certify", None),
     "--strict": Option("strict", None),
+    "--errors": Option("errors", None),
     "--explain": Option("explain", None),
     "--json": Option("json", None),
     "--quiet": Option("quiet", None),

@@ -23,9 +23,9 @@ IDLE_SHOWN = 2
 """Idle freedoms that are named one by one."""
 
 
-def summary(path: Path, analysis: Analysis) -> list[str]:
+def summary(path: Path, analysis: Analysis, *, errors: bool = False) -> list[str]:
     """Lines: driven freedoms, loops, branch, rows, worst residual and power error; of a response
-    what is free, and how it ended."""
+    what is free, and how it ended; with `errors` how many digits are right."""
     result = analysis.result
     name = analysis.model.name
     if analysis.run == SWEEP:
@@ -41,6 +41,10 @@ def summary(path: Path, analysis: Analysis) -> list[str]:
         rows.append(("proof", analysis.certificate.words))
     if analysis.run != SWEEP:
         rows.insert(-1, ("ended", _ended(analysis)))
+    if errors:
+        from mechkin_cli.cli.errors_line import errors_line
+
+        rows.append(("errors", errors_line(analysis)))
     return [f"{name} ({path})", *(_line(*row) for row in rows)]
 
 

@@ -24,7 +24,7 @@ from mechkin_cli.expressions.operand import Operand, Resolve, Site
 from mechkin_cli.expressions.parser import parse_nodes
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Value, Vector
 from mechkin_cli.expressions.tokens import VANISHES, WRITE_ZERO
-from mechkin_cli.tape.scalars import is_finite, is_number, plain
+from mechkin_cli.tape.scalars import Recorded, as_recorded, is_finite, is_number, plain
 from mechkin_cli.units import UNITS, UnitError, UnitSystem, conversion
 
 _NAMED = "names are those of parameters and directions, and of quantities such as J.theta"
@@ -67,6 +67,17 @@ class Expression(NamedTuple):
         only = self.nodes[0]
         return only if len(self.nodes) == 1 and isinstance(only, Number) else None
 
+    @property
+    def in_doubles(self) -> Expression:
+        """The same with its numbers as doubles, where they are recorded: to check it on rows."""
+        if not any(isinstance(n, Number) and isinstance(n.value, Recorded) for n in self.nodes):
+            return self
+        nodes = (
+            n._replace(value=as_recorded(n.value)) if isinstance(n, Number) else n
+            for n in self.nodes
+        )
+        return Expression(self.text, tuple(nodes))
+
     def taking_whole(self, names: Collection[str]) -> Expression:
         """The same where some names are no components of others."""
         nodes = (
@@ -101,18 +112,25 @@ class Expression(NamedTuple):
                             f"write spaces around the sign to mean the name, {unit} for the unit",
                         )
 
-    def evaluate(self, resolve: Resolve, units: UnitSystem = _DEFAULT_UNITS) -> Quantity:
+    def evaluate(
+        self,
+        resolve: Resolve,
+        units: UnitSystem = _DEFAULT_UNITS,
+        literal: Callable[[Number], Quantity] | None = None,
+    ) -> Quantity:
         """The value in SI, with names looked up by `resolve`.
 
         Values of names may be floats, rows of shape (rows,), or vectors of these. Rows take nan and
         infinities quietly; a constant that is not finite is an error. To check dimensions alone,
-        resolve every name to rows of length one. `units` are only used to write hints.
+        resolve every name to rows of length one. `units` are only used to write hints; `literal`
+        gives numbers of the text (None: as doubles).
 
         Raises:
             ExpressionError: unknown name, dimensions that do not fit, a value outside a function's
                 domain; the offset is that of the offending part.
         """
         self.reject_ambiguous_units(lambda word: _exists(word, resolve))
+        literal = literal or _literal
         stack: list[Operand] = []
         with np.errstate(all="ignore"):
             for node in self.nodes:
@@ -121,7 +139,7 @@ class Expression(NamedTuple):
                     del stack[-node.arity :]
                     stack.append(_operate(node, operands, units))
                 elif isinstance(node, Number):
-                    stack.append(Operand(_literal(node), node.offset, node))
+                    stack.append(Operand(literal(node), node.offset, node))
                 else:
                     stack.append(Operand(_look_up(node, resolve), node.offset))
         return stack[-1].quantity

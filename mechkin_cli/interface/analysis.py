@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.analysis.sweep import Result
     from mechkin_cli.interface.certificate import Certificate
+    from mechkin_cli.interface.errors import Errors
     from mechkin_cli.interface.model import Model
     from mechkin_cli.mechanism.balance import AnyBalance
 
@@ -108,6 +109,14 @@ class Analysis:
         found = [balance_table(balance, self.result) for balance in self.chosen_balances]
         faults = dict.fromkeys(fault for _, own in found for fault in own)
         return tuple(table for table, _ in found), tuple(faults)
+
+    @cached_property
+    def errors(self) -> Errors:
+        """How far every cell is from its true value: the rows repeated in double-double when this
+        is first read. A response is not repeated, which `errors.why` says."""
+        from mechkin_cli.interface.errors import Errors
+
+        return Errors(self)
 
     @cached_property
     def tables(self) -> tuple[Columns, ...]:

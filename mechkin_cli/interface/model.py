@@ -79,11 +79,8 @@ class Model(Certified):
         return self.built.problem.responses[name]
 
     def response_graph(self, name: str) -> SolverGraph:
-        """Tree, closing joints and blocks at the start of a response.
-
-        Raises:
-            InvalidFile: its start names too few coordinates or too many, or nothing is free.
-        """
+        """Tree, closing joints and blocks at the start of a response; InvalidFile where that names
+        too few coordinates or too many, or nothing is free."""
         graph = self._sound(self.built.response_graphs[name])
         response = self.built.problem.responses[name]
         if response.independent:
@@ -146,6 +143,7 @@ class Model(Certified):
         closed_at: Sequence[str] | None = None,
         lanes: int = 0,
         threads: int = 0,
+        errors: bool = False,
     ) -> Analysis:
         """Runs the sweep.
 
@@ -154,8 +152,8 @@ class Model(Certified):
             tables: names of the tables wanted; None: all, [] none.
             mode: assembly mode at the first row instead of the file's choice.
             closed_at: closing joints to use (the answers do not depend on them).
-            lanes: width of the kernel's packs, 0 for the widest (nor on this).
-            threads: how many split the rows, 0 for all cores where that pays (nor on this).
+            lanes, threads: width of packs, how many split the rows; 0: the most (nor on these).
+            errors: measure the true error of every cell now (else when `errors` is first read).
 
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
@@ -163,7 +161,7 @@ class Model(Certified):
         """
         from mechkin_cli.interface.sweeps import run_sweep
 
-        return run_sweep(self, quantities, tables, mode, closed_at, lanes, threads)
+        return run_sweep(self, quantities, tables, mode, closed_at, lanes, threads, errors)
 
     def respond(
         self,
@@ -332,15 +330,19 @@ class Model(Certified):
         return self._sessions[run]
 
     def modes(
-        self, at: Setting | Mapping[str, Setting] | None = None, *, run: str | None = None
+        self,
+        at: Setting | Mapping[str, Setting] | None = None,
+        *,
+        run: str | None = None,
+        certify: bool = False,
     ) -> Modes:
         """All assembly modes at the first row, or at another place.
 
         Args:
             run: `sweep`, or a response, whose start is the first row; None: the file's first run.
-            at: the input there (of several, the first that the file sweeps), or inputs by name;
-                a number is in the file's units, a text may carry its own ("0.5 rad"). Inputs that
-                are not given keep their value of the first row.
+            at: the input there (of several, the first that the file sweeps), or inputs by name, in
+                the file's units or such as "0.5 rad"; those left out are as in the first row.
+            certify: prove that each exists and that all are different (`proofs`).
 
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
@@ -355,14 +357,13 @@ class Model(Certified):
 
         session = self.session_of(run_name(self.runs, run))
         places = None if at is None else input_values(session.problem, at)
-        return find_modes(session, places)
+        return find_modes(session, places, certify=certify)
 
     def ranges(self, input: str | None = None, outputs: Iterable[str] = ()) -> Ranges:
         """The ranges of an input over which each mode assembles, and the circuits they form.
 
         Args:
-            input: an input's name; None: the first that the file sweeps. Others are held as in the
-                first row.
+            input: its name; None: the first that the file sweeps. Others stay as in the first row.
             outputs: coordinates whose dead centres (extremes) are wanted, too.
 
         Raises:

@@ -32,6 +32,7 @@ def run_sweep(
     closed_at: Sequence[str] | None,
     lanes: int,
     threads: int,
+    errors: bool,
 ) -> Analysis:
     """Runs the sweep of a model; arguments and errors are those of `Model.analyze`."""
     packing = a_packing(lanes, threads)
@@ -54,7 +55,10 @@ def run_sweep(
     result = analyze(session.packed(packing), names)
     systems = chosen(model.built.coefficients, tables)
     analysis = Analysis(model, layouts, result, SWEEP, systems, balances)
-    return analysis if mode is None else known_mode(analysis)
+    analysis = analysis if mode is None else known_mode(analysis)
+    if errors:
+        _ = analysis.errors
+    return analysis
 
 
 def _closed_at(problem: Problem, names: Sequence[str]) -> Session:

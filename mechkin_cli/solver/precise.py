@@ -20,12 +20,13 @@ from mechkin_cli.solver.precise_inputs import PreciseInputs, enclosed_inputs, pr
 from mechkin_cli.solver.records import flatten
 from mechkin_cli.solver.same_structure import graph_of
 from mechkin_cli.tape.decimal_replay import double_doubles, enclosures
-from mechkin_cli.tape.traced import register
+from mechkin_cli.tape.traced import TraceLost, register
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.mechanism.exact_motion import ExactMotion
     from mechkin_cli.mechanism.model import Attached
+    from mechkin_cli.mechanism.motion import Assembly
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.session import Session
@@ -62,8 +63,21 @@ class Precise:
         return double_doubles(self.tape(self._constants(session)))
 
     def enclosed_constants(self, session: Session) -> Floats:
-        """The same enclosed (constants, 2): midpoints, which are the high parts, and radii."""
+        """The same enclosed (constants, 2): midpoints, which are the high parts, and radii.
+
+        Raises:
+            TraceLost: loads are read from tables (`rounds_tables`).
+            NotEnclosed: a constant is not defined.
+        """
+        if self.rounds_tables(session):
+            raise TraceLost("the curve through a table of a load is known in doubles alone")
         return enclosures(self.tape(self._constants(session)))
+
+    def rounds_tables(self, session: Session) -> bool:
+        """Whether loads of the session are read from tables. The curves through these are structure
+        of a plan, not constants: they stay doubles."""
+        laws = self.layout(session).laws
+        return laws is not None and any(law.curve is not None for law in laws.laws)
 
     def outputs(
         self, session: Session, wanted: Iterable[Wanted], points: Iterable[Attached] = ()
@@ -143,10 +157,15 @@ class Precise:
         return replace(
             own,
             mechanism=replace(mechanism, **parts),
-            assembly=self._recorded(own.assembly),
+            assembly=self._assembly(own.assembly),
             parameters=self.problem.parameters,
             load_laws=tuple(map(self._recorded, own.load_laws)),
         )
+
+    def _assembly(self, own: Assembly) -> Assembly:
+        """The recorded assembly; what a session names of the file's coordinates."""
+        near = self.problem.assembly.near
+        return replace(own, near={name: near.get(name, own.near[name]) for name in own.near})
 
     def _recorded(self, part: Any) -> Any:
         """A part of the file's problem as it is recorded; another one must be of whole numbers, as
@@ -164,7 +183,6 @@ class Precise:
         own, recorded = self.base, self.problem
         pairs: list[tuple[Any, Any]] = [
             (own.mechanism.gravity, recorded.mechanism.gravity),
-            (own.assembly, recorded.assembly),
             *zip(own.mechanism.loads, recorded.mechanism.loads, strict=True),
             *zip(own.mechanism.frictions, recorded.mechanism.frictions, strict=True),
             *zip(own.load_laws, recorded.load_laws, strict=True),

@@ -96,9 +96,11 @@ class Tubes(NamedTuple):
     number: int
 
 
-def input_rounding(values: Floats) -> Floats:
-    """How far inputs may be from what the file says, of the same shape."""
-    rounding: Floats = tolerances.INPUT_ROUNDING * np.abs(values)
+def input_rounding(session: Session, values: Floats) -> Floats:
+    """How far inputs may be from what the file says, of the same shape: their largest values over
+    the rows tell, since one near zero may be what two large ones leave."""
+    largest = np.abs(session.inputs.values).max(axis=1, initial=0.0, keepdims=True)
+    rounding: Floats = tolerances.INPUT_ROUNDING * np.maximum(largest, np.abs(values))
     return rounding
 
 
@@ -110,7 +112,7 @@ def prove_boxes(enclosed: Enclosed, nodes: Nodes) -> Boxes:
     _kernel.prove_boxes(
         plan,
         states=np.ascontiguousarray(nodes.states),
-        off=input_rounding(nodes.reduced),
+        off=np.ascontiguousarray(input_rounding(enclosed.session, nodes.reduced)),
         radii=enclosed.radii,
         radius=radius,
         contraction=contraction,
@@ -136,7 +138,7 @@ def prove_tubes(enclosed: Enclosed, nodes: Nodes, boxes: Boxes) -> Tubes:
         radii=enclosed.radii,
         place=np.concatenate([[0.0], np.cumsum(length)]),
         inputs=np.ascontiguousarray(nodes.values),
-        off=input_rounding(nodes.values),
+        off=np.ascontiguousarray(input_rounding(session, nodes.values)),
         states=np.ascontiguousarray(nodes.states),
         after=first,
         before=_derivatives(session, nodes, before) if bends.any() else first,

@@ -15,12 +15,14 @@ from typing import TYPE_CHECKING
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.legible import SURROGATES, escape
 from mechkin_cli.runs import SWEEP
+from mechkin_cli.tables.cell_errors import least_digits
 from mechkin_cli.tables.columns import Columns, Words
 from mechkin_cli.tables.native_columns import number_column, threads_for, word_column
 from mechkin_cli.tables.rows_table import rows_table
 from mechkin_cli.tables.source import FloatArray, Source
 
 if TYPE_CHECKING:
+    from mechkin_cli.tables.cell_errors import ColumnErrors
     from mechkin_cli.tables.writers import Results
 
 Plain = dict[str, object]
@@ -56,13 +58,17 @@ def analysis_record(
     diagnostics: Iterable[Diagnostic] = (),
     threads: int = 0,
     run: str = SWEEP,
+    errors: Sequence[ColumnErrors] | None = None,
 ) -> Plain:
-    """One run as plain data and `Cells`; values are in file units, each column names its own."""
+    """One run as plain data and `Cells`; values are in file units, each column names its own;
+    `errors` of all columns, where they were asked for."""
+    measured = {} if errors is None else {"errors": _errors_record(errors)}
     return {
         "name": name,
         "row_count": source.rows,
         "tables": [table_record(table, threads) for table in tables],
         "rows": _column_records(rows_table(source, run), threads),
+        **measured,
         "diagnostics": [diagnostic.record() for diagnostic in diagnostics],
     }
 
@@ -114,6 +120,24 @@ def _column_records(columns: Columns, threads: int) -> list[Plain]:
         }
         for column in columns.columns
     ]
+
+
+def _errors_record(errors: Sequence[ColumnErrors]) -> Plain:
+    """The digits that every cell has, and of each column its errors; null where none is known."""
+    return {
+        "digits": least_digits(errors),
+        "columns": [
+            {
+                "table": column.table,
+                "label": column.label,
+                "unit": column.unit,
+                "why": column.why,
+                "error": Cells(column.error),
+                "relative": Cells(column.relative),
+            }
+            for column in errors
+        ],
+    }
 
 
 def _one_line_json(value: object) -> str:

@@ -13,13 +13,14 @@ from mechkin_cli.runs import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.tables.cell_errors import ColumnErrors
     from mechkin_cli.tables.columns import Columns
     from mechkin_cli.tables.source import Source
 
 
 class Results(NamedTuple):
     """What there is to write of one run of a mechanism; `threads` 0: as many as a table is
-    worth."""
+    worth; `errors` of all columns, None where they were not asked for."""
 
     name: str
     tables: tuple[Columns, ...]
@@ -27,6 +28,7 @@ class Results(NamedTuple):
     diagnostics: tuple[Diagnostic, ...] = ()
     threads: int = 0
     run: str = SWEEP
+    errors: tuple[ColumnErrors, ...] | None = None
 
 
 File = tuple[str, bytes]
@@ -47,6 +49,11 @@ def _markdown(runs: Sequence[Results]) -> Iterator[File]:
     for results in runs:
         for table in results.tables:
             yield f"{table.name}.md", markdown_bytes(table, results.source, results.threads)
+        if results.errors is not None:
+            from mechkin_cli.tables.errors_table import worst_table
+
+            worst = worst_table(results.errors, results.run)
+            yield f"{worst.name}.md", markdown_bytes(worst, results.source, results.threads)
 
 
 def _json(runs: Sequence[Results]) -> Iterator[File]:
@@ -66,7 +73,8 @@ USUAL_FORMATS = ("csv", "md")
 
 
 def written_files(runs: Sequence[Results], formats: Iterable[str]) -> dict[str, bytes]:
-    """All files of the formats by name, and `rows.csv`, of a response `NAME.rows.csv`."""
+    """All files of the formats by name, and `rows.csv`, of a response `NAME.rows.csv`; where errors
+    were asked for, `errors.csv` and of a response `NAME.errors.csv`."""
     from mechkin_cli.tables.csv_writer import csv_bytes
     from mechkin_cli.tables.rows_table import rows_table
 
@@ -74,4 +82,9 @@ def written_files(runs: Sequence[Results], formats: Iterable[str]) -> dict[str, 
     for results in runs:
         rows = rows_table(results.source, results.run)
         files[f"{rows.name}.csv"] = csv_bytes(rows, threads=results.threads)
+        if results.errors is not None:
+            from mechkin_cli.tables.errors_table import cells_table
+
+            cells = cells_table(results.errors, results.run)
+            files[f"{cells.name}.csv"] = csv_bytes(cells, threads=results.threads)
     return files

@@ -46,6 +46,8 @@ class ExactTape(NamedTuple):
 class ExactRecorder(Recorder):
     """Records without inputs: `written` numbers and constants are all that there is."""
 
+    is_settled = True
+
     def __init__(self) -> None:
         super().__init__((), ())
         self.exact: dict[int, Fraction] = {}

@@ -28,10 +28,12 @@ class Recorder:
 
     Attributes:
         values: what every register held when it was recorded.
+        is_settled: whether no other numbers will be put in.
         holds_others: whether numbers of other recordings are constants of this one.
     """
 
     holds_others = False
+    is_settled = False
 
     def __init__(self, inputs: Sequence[str], values: Sequence[float]) -> None:
         self.inputs = tuple(inputs)

@@ -21,6 +21,11 @@ class Recorded:
     is_row = False
 
     @property
+    def is_settled(self) -> bool:
+        """Whether all is decided: the number stands for the one double that has been judged."""
+        return False
+
+    @property
     def recorded(self) -> float:
         """The value when it was recorded."""
         raise NotImplementedError

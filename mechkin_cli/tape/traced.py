@@ -67,6 +67,11 @@ class Traced(Recorded):
         self.recorder, self.register = recorder, register
 
     @property
+    def is_settled(self) -> bool:
+        """As `Recorded.is_settled`."""
+        return self.recorder.is_settled
+
+    @property
     def recorded(self) -> float:
         """The value when it was recorded."""
         return self.recorder.values[self.register]

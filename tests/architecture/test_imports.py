@@ -101,7 +101,7 @@ WITHIN_ANALYSIS = {
     "errors": {"derived", "sweep"},
     "derived": set(),
     "mobility": {"assembly"},
-    "modes": {"assembly"},
+    "modes": {"proof", "assembly"},
     "ranges": {"assembly"},
     "response": {"assembly", "sweep"},
     "sweep": {"assembly", "derived", "mobility", "proof"},

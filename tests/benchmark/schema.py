@@ -19,6 +19,7 @@ MECHANISM = {
     "required": ["name", "rows", "places", "unknowns", "equations", "measurements", "skipped"],
     "properties": {
         "name": {"type": "string"},
+        "exact": {"type": "string"},
         **{name: {"type": "integer"} for name in ("rows", "places", "unknowns", "equations")},
         "measurements": {"type": "array", "items": MEASUREMENT},
         "skipped": {

@@ -32,7 +32,7 @@ def by_typer(words: list[str], monkeypatch: pytest.MonkeyPatch) -> dict[str, Any
     except Exception:
         return None
     names = ("files", "out", "format", "set_", "mode", "table", "lanes", "threads")
-    names += ("explain", "json", "quiet", "strict")
+    names += ("explain", "json", "quiet", "strict", "errors", "certify")
     return dict(zip(names, seen[0], strict=True)) if seen else None
 
 

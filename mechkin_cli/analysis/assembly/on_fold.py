@@ -1,4 +1,5 @@
-"""A first row on a fold has two branches; which is meant is judged at the second row."""
+"""A first row on a fold has two branches; which is meant is judged at the second row, unless `near`
+tells them apart at the first."""
 
 from __future__ import annotations
 
@@ -11,6 +12,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.distances import (
     distances_home,
     distances_near,
+    distances_of,
     in_order,
     is_unclear,
     unclear,
@@ -43,20 +45,20 @@ def judged_at_second_row(session: Session, start: Start) -> Start:
     home = distances_home(session, modes.points)
     near = session.problem.assembly.near
     distances = distances_near(session.problem, modes.coordinates) if near else home
-    order = [
-        i
-        for i in in_order(distances, home)
-        if _comes_back(session, modes.found.states[:, i], start.state)
-    ]
+    back = {i: _followed_back(session, modes.found.states[:, i]) for i in in_order(distances, home)}
+    order = [i for i, state in back.items() if _is_same(session, state, start.state)]
     if not order:
         return start
     notes = list(start.diagnostics)
-    if len(order) > 1 and is_unclear(distances[order[0]], distances[order[1]]):
+    chosen, how = order[0], "the first row lies on a fold, the second one decides"
+    told = _told_apart(session, [back[i] for i in order])
+    if told is not None:
+        chosen, how = order[told], "next to a fold, where near tells its branches apart"
+    elif len(order) > 1 and is_unclear(distances[order[0]], distances[order[1]]):
         pair = (distances[order[0]], distances[order[1]])
         notes.append(unclear("two assemblies of the second row", pair))
-    how = f"{start.how}; the first row lies on a fold, the second one decides"
-    state = np.ascontiguousarray(modes.found.states[:, order[0]])
-    return replace(start, state=state, how=how, diagnostics=notes, row=1)
+    state = np.ascontiguousarray(modes.found.states[:, chosen])
+    return replace(start, state=state, how=f"{start.how}; {how}", diagnostics=notes, row=1)
 
 
 def _condition(session: Session, inputs: Floats, state: Floats) -> float | None:
@@ -65,10 +67,30 @@ def _condition(session: Session, inputs: Floats, state: Floats) -> float | None:
     return float(batch.condition[0]) if batch.good[0] and batch.condition is not None else None
 
 
-def _comes_back(session: Session, state: Floats, first: Floats) -> bool:
-    """Whether the branch of an assembly at the second row leads to the first row's."""
+def _followed_back(session: Session, state: Floats) -> Floats | None:
+    """The first row's state on the branch of an assembly at the second row; None where it ends."""
     back = session.follow_rows(state, 1, -1)
-    if back.end != TrackEnd.FINISHED:
+    return back.guess[:, -1] if back.end == TrackEnd.FINISHED else None
+
+
+def _is_same(session: Session, state: Floats | None, first: Floats) -> bool:
+    """Whether a state at the first row is its assembly, or the other one on the same fold."""
+    if state is None:
         return False
-    keys = [pose_keys(session.layout, s[:, None]) for s in (first, back.guess[:, -1])]
+    keys = [pose_keys(session.layout, s[:, None]) for s in (first, state)]
     return bool(same_poses(keys[0], keys[1], tolerances.SAME_FOLD)[0, 0])
+
+
+def _told_apart(session: Session, states: list[Floats | None]) -> int | None:
+    """Which of several assemblies at the first row `near` clearly means; None where it names none,
+    or they are too near to each other for that."""
+    if len(states) < 2 or not session.problem.assembly.near:
+        return None
+    together = np.stack([state for state in states if state is not None], axis=1)
+    inputs = session.inputs.reduced[:, 0]
+    closed = session.close(np.repeat(inputs[:, None], together.shape[1], axis=1), together)
+    if not closed.good.all():
+        return None
+    distances, home = distances_of(session, inputs, closed.states)
+    first, second = in_order(distances, home)[:2]
+    return None if is_unclear(distances[first], distances[second]) else first

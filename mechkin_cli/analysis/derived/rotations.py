@@ -13,7 +13,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.derived.row_vectors import dot, length, scale
-from mechkin_cli.kernel.functions import atan2
+from mechkin_cli.tape.scalars import of_two
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.derived.row_vectors import RowVector
@@ -72,7 +72,8 @@ def upright(q: Quaternion) -> Quaternion:
 
 def angle(q: Quaternion) -> Floats:
     """Angle in [0, pi]."""
-    return 2.0 * atan2(length(q[1:]), np.abs(q[0]))
+    found: Floats = 2.0 * of_two("ATAN2", length(q[1:]), np.abs(q[0]))
+    return found
 
 
 def rotation_vector(q: Quaternion) -> RowVector:

@@ -30,12 +30,12 @@ from mechkin_cli.analysis.derived.row_vectors import (
     scale,
     subtract,
 )
-from mechkin_cli.kernel.functions import atan2
 from mechkin_cli.mechanism.derived_quantities import driving_joint
 from mechkin_cli.mechanism.model import Joint, JointLoad, Link, Mechanism
 from mechkin_cli.mechanism.quantities import REACTION_LEVEL, Wanted
 from mechkin_cli.mechanism.vectors import ZERO
 from mechkin_cli.status import Status
+from mechkin_cli.tape.scalars import of_two
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.derived.row_vectors import RowVector
@@ -108,4 +108,4 @@ def _velocity(
 def _between(force: RowVector, velocity: RowVector) -> Floats:
     """asin of |F.v|/(|F||v|), accurate at both ends; nan where either is zero."""
     along, across = np.abs(dot(force, velocity)), length(cross(force, velocity))
-    return np.where((along > 0.0) | (across > 0.0), atan2(along, across), np.nan)
+    return np.where((along > 0.0) | (across > 0.0), of_two("ATAN2", along, across), np.nan)

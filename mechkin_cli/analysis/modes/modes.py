@@ -29,6 +29,7 @@ from mechkin_cli.solver.search import Found, with_assemblies
 from mechkin_cli.units import Dimension
 
 if TYPE_CHECKING:
+    from mechkin_cli.analysis.proof.modes import ModeProofs
     from mechkin_cli.arrays import Floats
     from mechkin_cli.solver.session import Session
 
@@ -56,7 +57,8 @@ class Modes:
     `stopped` says that the search ended at its most starts before that chance was small. `complete`
     says that these are all modes, proven: as many as such loops have at most (`bound`, if one is
     known), or as the loops' equations have real roots; `is_cut` that there are more than are
-    listed. `turns` are the turns of threads searched to either side, None without threads.
+    listed. `turns` are the turns of threads searched to either side, None without threads. `proofs`
+    say which modes are proven to exist, in the order of `modes`, where that was asked for.
     """
 
     modes: tuple[Mode, ...]
@@ -72,6 +74,7 @@ class Modes:
     bound: int | None
     turns: int | None
     diagnostics: tuple[Diagnostic, ...]
+    proofs: ModeProofs | None = None
 
     @property
     def sentence(self) -> str:
@@ -101,9 +104,11 @@ class Modes:
         return text
 
 
-def find_modes(session: Session, at: Mapping[str, float] | None = None) -> Modes:
+def find_modes(
+    session: Session, at: Mapping[str, float] | None = None, *, certify: bool = False
+) -> Modes:
     """The assembly modes at the first row, or with the inputs `at` (by name, in the file's units)
-    in place of the values there."""
+    in place of the values there; with proofs if they are to be certified."""
     layout = session.layout
     first = session.inputs.values[:, 0]
     named = name_modes(session, first)
@@ -114,7 +119,7 @@ def find_modes(session: Session, at: Mapping[str, float] | None = None) -> Modes
     if at is None:
         notes = start.diagnostics
         names = [named.letters[i] for i in range(named.number)]
-        return _result(session, first, {}, named.found, names, letter, notes)
+        return _result(session, first, {}, named.found, names, letter, notes, certify)
     place = _inputs_at(session, at)
     ends, notes = _follow_all(session, first, place, named)
     found = session.search(place)
@@ -124,7 +129,7 @@ def find_modes(session: Session, at: Mapping[str, float] | None = None) -> Modes
     if found.number == 0:
         notes = [nothing_found(session, found, "there")]
     names = _names_at(layout, found, ends)
-    return _result(session, place, at, found, names, letter, notes)
+    return _result(session, place, at, found, names, letter, notes, certify)
 
 
 def _inputs_at(session: Session, at: Mapping[str, float]) -> Floats:
@@ -191,6 +196,7 @@ def _result(
     names: list[str],
     letter: str,
     notes: list[Diagnostic],
+    certify: bool,
 ) -> Modes:
     problem = session.problem
     if found.free and found.number:
@@ -228,7 +234,14 @@ def _result(
         bound=found.bound,
         turns=problem.assembly.turns if threads else None,
         diagnostics=(*problem.diagnostics, *notes),
+        proofs=_proofs(session, place, found.states[:, order]) if certify else None,
     )
+
+
+def _proofs(session: Session, place: Floats, states: Floats) -> ModeProofs:
+    from mechkin_cli.analysis.proof.modes import prove_modes
+
+    return prove_modes(session, place, states)
 
 
 def _shown(problem: Problem, inputs: Mapping[str, float], name: str, value: float) -> float:

@@ -54,6 +54,6 @@ def _are_inside(result: Result, given: Given) -> Bools:
     """Rows whose inputs are among those that the boxes were proven for."""
     reduced = result.session.inputs.reduced
     off = np.abs(given.inputs.middle - reduced) + given.inputs.radius
-    inside = off <= input_rounding(reduced)
+    inside = off <= input_rounding(result.session, reduced)
     found: Bools = np.asarray(inside.all(axis=0), dtype=np.bool_)
     return found

@@ -19,6 +19,7 @@ Family = Callable[["Scene"], Iterator[Method]]
 
 FAMILIES = {
     "mechkin": "kernel",
+    "dense": "dense",
     "scipy": "with_scipy",
     "stepping": "stepping",
     "Pinocchio": "with_pinocchio",

@@ -36,7 +36,7 @@ def methods(scene: Scene) -> Iterator[Method]:
     """Both methods over their steps."""
     rows = RowByRow(scene)
     if rows.is_long:
-        raise Unable(f"a row of {len(rows.unknowns)} unknowns takes {rows.seconds:.2g} s in Python")
+        raise Unable(f"{len(rows.unknowns)} unknowns at once: differences take too long in Python")
     plans = [("Euler's method", euler, n) for n in EULER_STEPS]
     plans += [("Runge-Kutta method", runge_kutta, n) for n in RUNGE_KUTTA_STEPS]
     for curve, rule, steps in plans:

@@ -8,7 +8,8 @@ namespace {
 
 // Rounding of a dead centre's place in parts of max(1, |sigma|): a row so near lies on it.
 constexpr double ON_DEAD_CENTRE = 1e-14;
-// What may be left of a way after whole turns of written numbers; steps so short are no longer than what rounding corrects.
+// What may be left of a way after whole turns of written numbers, in parts of the largest state (threads count their
+// turns): steps so short are no longer than what rounding corrects.
 constexpr double AT_END = 1e-12;
 // The rounding of a branch point's place, which is extrapolated: a row so near has no branch of its own.
 constexpr double ON_BRANCH_POINT = 1e-11;
@@ -70,7 +71,7 @@ class Tracker {
   bool go_on() {
     if (!progress_.goes_on(node_.sigma)) return stop(TrackEnd::exhausted, 0.0);
     const double least = limits_.least_step * std::fmax(1.0, std::fabs(node_.sigma));
-    if (end_ - node_.sigma <= AT_END * std::fmax(1.0, std::fabs(node_.sigma))) return arrive();
+    if (end_ - node_.sigma <= AT_END * largest()) return arrive();
     // the last step ends exactly on the last row
     // a rest of a millionth of a step is taken along
     const bool last = node_.sigma + 1.000001 * step_ >= end_;
@@ -104,6 +105,13 @@ class Tracker {
     for (; row_ < rows_ && sigma_[row_] <= end_; ++row_) put_row(node_, limit, first_ + row_, out_);
     node_.sigma = end_;
     return false;
+  }
+
+  // The largest number of the node that rounds: its place on the path, or a state.
+  double largest() const {
+    double most = std::fmax(1.0, std::fabs(node_.sigma));
+    for (double state : node_.state) most = std::fmax(most, std::fabs(state));
+    return most;
   }
 
   // The tree's angles within half a turn, where their turns are counted.

@@ -1,0 +1,88 @@
+"""One block of a family's mechanisms: drawn, solved, judged."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mechkin_cli.benchmark.stress.draws import generator
+from mechkin_cli.benchmark.stress.families.table import FAMILIES
+from mechkin_cli.benchmark.stress.family import Block, Family
+from mechkin_cli.benchmark.stress.judge import FAULTS, Found, Judged, Verdict, judge
+from mechkin_cli.benchmark.stress.quantity import Truth
+from mechkin_cli.benchmark.stress.solve import solve
+from mechkin_cli.benchmark.stress.tally import REFUSED, Fault, Tally
+from mechkin_cli.status import Status
+
+CHUNK = 50_000
+"""Rows of a mechanism that are judged at once: double-double rows and their rates take a kilobyte
+each."""
+
+
+def drawn(family: Family, seed: int, numbers: Sequence[int]) -> Block:
+    """Mechanisms of one make."""
+    (make,) = {family.makes[number % len(family.makes)] for number in numbers}
+    with np.errstate(all="ignore"):
+        return make([generator(seed, family.name, number) for number in numbers])
+
+
+def text_of(name: str, seed: int, number: int) -> str:
+    """The file of one mechanism."""
+    return drawn(FAMILIES[name], seed, [number]).texts[0]
+
+
+def run_block(name: str, seed: int, numbers: Sequence[int]) -> Tally:
+    """What becomes of mechanisms of one make."""
+    family = FAMILIES[name]
+    block = drawn(family, seed, numbers)
+    tally = Tally(name, mechanisms=len(numbers))
+    with np.errstate(all="ignore"):
+        known = block.truth(block.places[:, :1]).quantities
+        count = block.places.shape[1]
+        found, refused = solve(block.texts, count, known, response=family.response)
+        for first in range(0, count, CHUNK):
+            rows = slice(first, first + CHUNK)
+            truth = block.truth(block.places[:, rows])
+            part = _rows(found, rows)
+            judged = judge(part, truth, response=family.response)
+            tally.add(judged, response=family.response)
+            for fault in _faults(numbers, first, judged, part, truth):
+                tally.tell(fault)
+    for k, words in refused.items():
+        tally.verdicts[REFUSED] += 1
+        tally.tell(Fault(REFUSED, numbers[k], 0, words))
+    return tally
+
+
+def _rows(found: Found, rows: slice) -> Found:
+    values = {name: value[:, rows] for name, value in found.values.items()}
+    condition, bound = found.condition[:, rows], found.bound[:, rows]
+    return Found(found.codes[:, rows], condition, bound, values, found.noted)
+
+
+def _faults(
+    numbers: Sequence[int], first: int, judged: Judged, found: Found, truth: Truth
+) -> list[Fault]:
+    """The first row of each kind of fault of each mechanism."""
+    faults = []
+    for verdict in FAULTS:
+        for k in np.flatnonzero((judged.verdict == verdict).any(axis=1)).tolist():
+            row = int(np.argmax(judged.verdict[k] == verdict))
+            words = _words(found, truth, k, row)
+            faults.append(Fault(Verdict(verdict).name, numbers[k], first + row, words))
+    return faults
+
+
+def _words(found: Found, truth: Truth, k: int, row: int) -> str:
+    status = Status(int(found.codes[k, row])).label
+    said = [status, f"condition {found.condition[k, row]:.2g}"]
+    if not truth.exists[k, row]:
+        return ", ".join([*said, "where the branch has ended"])
+    for quantity in truth.quantities:
+        right = np.broadcast_to(quantity.value.number.high, found.codes.shape)[k, row]
+        unit = " rad" if quantity.kind != "length" else " m"
+        given = found.values[quantity.name][k, row]
+        shown = "none" if np.isnan(given) else f"{given:.17g}{' deg' if unit == ' rad' else ' m'}"
+        said.append(f"{quantity.name} {shown} for {right:.17g}{unit}")
+    return ", ".join(said)

@@ -1,0 +1,180 @@
+"""The verdict on every row: what the solver said of it, against what is true."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mechkin_cli.benchmark.stress.numbers.double_double import PI, DoubleDouble, radians
+from mechkin_cli.benchmark.stress.numbers.series import Series
+from mechkin_cli.benchmark.stress.quantity import Mask, Quantity, Rows, Truth
+from mechkin_cli.status import Status, has_solution
+
+ROUNDING = 2.0**-53
+WRONG = 100.0
+"""Errors above this many roundings times the condition (of rates its square) are no rounding but
+another place, unless nine digits are right, which is what `ok` promises
+(`CONDITION_NEAR_SINGULAR`)."""
+NINE_DIGITS = 1e-9
+WRONG_TOLERANCES = 1000.0
+"""The same of responses, in their tolerances: errors of steps add up."""
+TOLERANCE = 1e-10
+"""Of a response that names none."""
+FAR = 16.0
+"""Rad or sizes: states are reduced to a turn, cells are not."""
+TURN = DoubleDouble.of(2 * PI)
+
+
+class Verdict(IntEnum):
+    """What became of a row."""
+
+    right = 0
+    right_warned = 1
+    """Right, `near-singular` or `rank-unclear`."""
+    rightly_none = 2
+    """There is none, and none was given."""
+    undecided = 3
+    """Rounding of the written numbers alone decides whether there is one."""
+    false_alarm = 4
+    """There is one, and none was given."""
+    wrong_warned = 5
+    """Wrong, `near-singular` or `rank-unclear`."""
+    false_ok = 6
+    """Wrong, or there is none, and the row says ok."""
+    rates_lost = 7
+    """The place is right and says ok, rates or accelerations are not right to nine digits: a
+    documented limit of rods that are short beside the mechanism."""
+    taken_as_drawn = 8
+    """One of these faults where the run itself says that the mechanism is taken for one whose axes
+    or points coincide (`COMMON_MOTION`, `LOOP_RANK`): a documented limit."""
+
+
+FAULTS = (Verdict.false_ok, Verdict.wrong_warned, Verdict.false_alarm, Verdict.rates_lost)
+
+
+@dataclass(frozen=True)
+class Found:
+    """What the solver gave, in radians' degrees and SI as files of this room are written.
+
+    `codes`, `condition` and `bound` (nan where rows have none) are (mechanisms, rows), as are the
+    values by name, angles in degrees and rates in rad/s; `noted` (mechanisms, 1) says of which runs
+    say that they take the mechanism for one whose axes or points coincide.
+    """
+
+    codes: NDArray[np.int8]
+    condition: Rows
+    bound: Rows
+    values: dict[str, Rows]
+    noted: Mask
+
+
+@dataclass(frozen=True)
+class Judged:
+    """(mechanisms, rows) each; errors and bounds are nan where there is nothing to compare.
+
+    Positions in rad and parts of the size, or of the value where that is larger; `miss` without
+    these parts, nan where a value is so large that its cell rounds by more than a state. Rates and
+    accelerations in parts of the row's largest.
+    """
+
+    verdict: NDArray[np.int8]
+    condition: Rows
+    bound: Rows
+    position: Rows
+    miss: Rows
+    rate: Rows
+    acceleration: Rows
+
+
+def judge(found: Found, truth: Truth, *, response: bool = False) -> Judged:
+    """All rows of a block; those of a response count in its tolerances."""
+    solved = has_solution(found.codes) & truth.exists
+    with np.errstate(all="ignore"):
+        position, miss, elsewhere = _positions(found, truth)
+        rate, acceleration = _rates(found, truth)
+        condition = np.fmax(found.condition, 1.0)
+        wrong, well = elsewhere < position, np.ones(position.shape, bool)
+        if response:
+            wrong |= ~(position <= WRONG_TOLERANCES * TOLERANCE)
+        else:
+            rounding = WRONG * ROUNDING * condition
+            wrong |= ~(position <= np.maximum(rounding, NINE_DIGITS))
+            rates = np.fmax(rate, acceleration)
+            well = ~(rates > np.maximum(rounding * condition, NINE_DIGITS))
+    # what a held freedom keeps is a convention, and no error
+    blank = np.where(solved & truth.decided & ~found.noted, 0.0, np.nan)
+    return Judged(
+        _verdicts(found, truth, wrong, well),
+        condition,
+        found.bound + blank,
+        position + blank,
+        miss + blank,
+        rate + blank,
+        acceleration + blank,
+    )
+
+
+def _verdicts(found: Found, truth: Truth, wrong: Mask, well: Mask) -> NDArray[np.int8]:
+    """`well`: whose rates are right, too."""
+    solved = has_solution(found.codes)
+    certain = found.codes == Status.ok
+    good = solved & truth.exists & ~wrong
+    verdict = np.where(solved, np.where(certain, Verdict.false_ok, Verdict.wrong_warned), 0)
+    right = np.where(well, Verdict.right, Verdict.rates_lost)
+    verdict = np.where(good, np.where(certain, right, Verdict.right_warned), verdict)
+    none = np.where(truth.exists, Verdict.false_alarm, Verdict.rightly_none)
+    verdict = np.where(solved, verdict, none)
+    verdict = np.where(found.noted & np.isin(verdict, FAULTS), Verdict.taken_as_drawn, verdict)
+    return np.where(truth.decided, verdict, Verdict.undecided).astype(np.int8)
+
+
+def _positions(found: Found, truth: Truth) -> tuple[Rows, Rows, Rows]:
+    """The largest errors, in parts of large values and without, and how far the row is from the
+    other assembly where that is told."""
+    shape = found.codes.shape
+    error, bare, elsewhere = np.zeros(shape), np.zeros(shape), np.full(shape, np.inf)
+    for quantity in truth.quantities:
+        value = quantity.value
+        right = value.value if isinstance(value, Series) else value
+        scale = truth.size if quantity.kind == "length" else 1.0
+        miss = _apart(found, quantity, right) / scale
+        far = np.abs(right.high) / scale
+        bare = np.maximum(bare, np.where(far < FAR, miss, np.nan))
+        error = np.maximum(error, miss / np.maximum(1.0, far))
+        if quantity.other is not None:
+            elsewhere = np.fmin(elsewhere, _apart(found, quantity, quantity.other) / scale)
+    return error, bare, elsewhere
+
+
+def _apart(found: Found, quantity: Quantity, right: DoubleDouble) -> Rows:
+    """How far a coordinate is from a value, in m or rad."""
+    given = found.values[quantity.name]
+    if quantity.kind == "length":
+        return np.abs((right - given).high)
+    miss = radians(given) - right
+    if quantity.kind == "angle":
+        miss = miss - TURN * np.rint((miss / TURN).high)
+    return np.abs(miss.high)
+
+
+def _rates(found: Found, truth: Truth) -> tuple[Rows, Rows]:
+    """Errors of rates in parts of the largest rate of the row; of accelerations in parts of the
+    largest, or of that rate squared."""
+    shape = found.codes.shape
+    fastest, strongest = np.ones(shape), np.ones(shape)
+    errors = [np.full(shape, np.nan), np.full(shape, np.nan)]
+    for quantity in truth.quantities:
+        if not isinstance(quantity.value, Series):
+            continue
+        scale = truth.size if quantity.kind == "length" else 1.0
+        rate, bend = quantity.value.rate, quantity.value.acceleration
+        fastest = np.maximum(fastest, np.abs(rate.high) / scale)
+        strongest = np.maximum(strongest, np.abs(bend.high) / scale)
+        for k, (right, suffix) in enumerate(((rate, "_dot"), (bend, "_ddot"))):
+            miss = np.abs((right - found.values[quantity.name + suffix]).high) / scale
+            errors[k] = np.fmax(errors[k], miss)
+    strongest = np.maximum(strongest, fastest * fastest)
+    return errors[0] / fastest, errors[1] / strongest

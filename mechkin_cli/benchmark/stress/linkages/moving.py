@@ -1,0 +1,34 @@
+"""Inputs of all families as series in time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from mechkin_cli.benchmark.stress.linkages.writing import ACCELERATION, RATE
+from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble, radians
+from mechkin_cli.benchmark.stress.numbers.series import Number, Series
+from mechkin_cli.benchmark.stress.numbers.vectors import Vector
+from mechkin_cli.benchmark.stress.quantity import Rows
+
+Field = Callable[[Rows], Number]
+"""Makes numbers of exact doubles: `DoubleDouble`, or a test's numbers of 40 digits."""
+
+
+def turning(degrees: Rows) -> Series:
+    """Angles (mechanisms, rows) in degrees, in rad with the rates that the files write."""
+    angle = radians(degrees)
+    return constant_rates(angle)
+
+
+def constant_rates(value: DoubleDouble) -> Series:
+    """A coordinate with the rates that the files write."""
+    ones = np.ones_like(value.high)
+    return Series(value, DoubleDouble(RATE * ones), DoubleDouble(ACCELERATION * ones))
+
+
+def vector(field: Field, components: Rows) -> Vector:
+    """Of (mechanisms, 3), numbers of shape (mechanisms, 1) each."""
+    x, y, z = (field(components[:, k : k + 1]) for k in range(3))
+    return x, y, z

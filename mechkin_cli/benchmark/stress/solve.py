@@ -1,0 +1,56 @@
+"""The solver's answers to a block of files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mechkin_cli.benchmark.stress.judge import Found
+from mechkin_cli.benchmark.stress.numbers.series import Series
+from mechkin_cli.benchmark.stress.quantity import Quantity
+from mechkin_cli.diagnostics import MechkinError
+from mechkin_cli.interface import Analysis, loads
+from mechkin_cli.status import Status
+
+CONDITION, BOUND = "row.condition", "row.error_bound"
+TAKEN = ("conventional", "hold-ends", "undriven-freedom", "input-locked", "input-dependent")
+"""Notes of a run that takes axes or points for coinciding: a freedom is held that nothing moves, or
+is not driven, or an input does not move anything."""
+
+
+def solve(
+    texts: Sequence[str], rows: int, quantities: Sequence[Quantity], *, response: bool = False
+) -> tuple[Found, dict[int, str]]:
+    """Runs every file; with what was said of those that were refused, by their number."""
+    names = []
+    for quantity in quantities:
+        rates = ("_dot", "_ddot") if isinstance(quantity.value, Series) else ()
+        names += [quantity.name + suffix for suffix in ("", *rates)]
+    shape = len(texts), rows
+    codes = np.full(shape, Status.not_assembled, np.int8)
+    condition, bound = np.full(shape, np.nan), np.full(shape, np.nan)
+    values = {name: np.full(shape, np.nan) for name in names}
+    noted = np.zeros((len(texts), 1), bool)
+    refused = {}
+    for k, text in enumerate(texts):
+        try:
+            analysis = _run(text, names, response=response)
+        except MechkinError as error:
+            refused[k] = str(error)
+            continue
+        codes[k] = analysis.result.status
+        condition[k] = analysis[CONDITION]
+        if not response:
+            bound[k] = analysis[BOUND]
+        for name in names:
+            values[name][k] = analysis[name]
+        noted[k] = any(note.code in TAKEN for note in analysis.diagnostics)
+    return Found(codes, condition, bound, values, noted), refused
+
+
+def _run(text: str, names: Sequence[str], *, response: bool) -> Analysis:
+    model = loads(text)
+    if response:
+        return model.respond(quantities=[*names, CONDITION], tables=[], threads=1)
+    return model.analyze([*names, CONDITION, BOUND], tables=[], threads=1)

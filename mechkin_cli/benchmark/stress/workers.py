@@ -1,0 +1,76 @@
+"""Blocks shared among processes that end with the one that started them.
+
+Each reads tasks as lines of JSON and answers with tallies; where its input ends, it ends.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator
+from queue import SimpleQueue
+from threading import Thread
+from typing import IO
+
+from mechkin_cli.benchmark.stress.block import run_block
+from mechkin_cli.benchmark.stress.plan import Task
+from mechkin_cli.benchmark.stress.tally import Tally, of_record
+
+COMMAND = (sys.executable, "-P", "-m", "mechkin_cli.benchmark.stress.worker")
+
+
+def results(tasks: Iterable[Task], seed: int, processes: int) -> Iterator[Tally]:
+    """The tally of every task, in the order in which they are done."""
+    if processes == 1:
+        yield from (run_block(task.family, seed, task.numbers) for task in tasks)
+        return
+    waiting: Iterator[Task] = iter(tasks)
+    done: SimpleQueue[tuple[int, str]] = SimpleQueue()
+    with contextlib.ExitStack() as stack:
+        workers = [stack.enter_context(_Worker(k, done)) for k in range(processes)]
+        busy = sum(worker.give(next(waiting, None), seed) for worker in workers)
+        while busy:
+            number, line = done.get()
+            if not line:
+                raise RuntimeError("a process of the stress test ended before its answer")
+            yield of_record(json.loads(line))
+            busy -= not workers[number].give(next(waiting, None), seed)
+
+
+class _Worker:
+    """One process; its answers are put into a queue with its number, "" where it has ended."""
+
+    def __init__(self, number: int, done: SimpleQueue[tuple[int, str]]) -> None:
+        self.number = number
+        self.done = done
+        self.process = subprocess.Popen(
+            COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf-8"
+        )
+        Thread(target=self._read, args=(self.process.stdout,), daemon=True).start()
+
+    def _read(self, answers: IO[str]) -> None:
+        for line in answers:
+            self.done.put((self.number, line))
+        self.done.put((self.number, ""))
+
+    def give(self, task: Task | None, seed: int) -> bool:
+        """Whether there was a task to give."""
+        if task is None:
+            return False
+        assert self.process.stdin is not None
+        self.process.stdin.write(json.dumps([task.family, seed, list(task.numbers)]) + "\n")
+        self.process.stdin.flush()
+        return True
+
+    def __enter__(self) -> _Worker:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        assert self.process.stdin is not None
+        with contextlib.suppress(OSError):
+            self.process.stdin.close()
+        # a task that nobody waits for is not finished
+        self.process.terminate()
+        self.process.wait()

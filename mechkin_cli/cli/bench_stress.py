@@ -1,0 +1,138 @@
+"""`mechkin bench --stress`: families of hard mechanisms, every row decided by a closed form."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import Progress, put, put_json, say
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
+from mechkin_cli.nearest import nearest_hint
+
+if TYPE_CHECKING:
+    from mechkin_cli.benchmark.report import Table
+    from mechkin_cli.benchmark.stress.tally import Tally
+
+
+class Stress(NamedTuple):
+    """What the command line asks for."""
+
+    rows: int
+    seed: int
+    family: str | None
+    only: int | None
+    page: Path | None
+    check: bool
+    processes: int
+    json: bool
+
+
+def stress_command(asked: Stress, show: Callable[[Table], None]) -> int:
+    """Runs what is asked for; `show` prints a table for a person.
+
+    Returns:
+        The exit code: 1 where a row is wrong and says ok, or where the page is not current.
+
+    Raises:
+        UsageError: an unknown family, or options that do not go together.
+    """
+    from mechkin_cli.benchmark.stress.families.table import FAMILIES
+
+    names = list(FAMILIES)
+    if asked.family is not None:
+        if asked.family not in FAMILIES:
+            hint = nearest_hint(asked.family, names) or f"known are {', '.join(names)}"
+            raise UsageError(f"there is no family {asked.family[:LONGEST_NAME]}; {hint}")
+        names = [asked.family]
+    if asked.only is not None:
+        return _one(asked)
+    if asked.check:
+        return _checked(asked)
+    tallies = _run(asked, asked.rows, asked.seed, names)
+    if asked.page is not None:
+        _write(asked, tallies)
+    if asked.json:
+        families = {tally.family: tally.record() for tally in tallies}
+        put_json({"rows": asked.rows, "seed": asked.seed, "families": families})
+    else:
+        from mechkin_cli.benchmark.stress.tables import tables
+
+        for table in tables(tallies):
+            show(table)
+    wrong = any(tally.verdicts["false_ok"] for tally in tallies)
+    return ExitCode.DIFFERENCES if wrong else ExitCode.OK
+
+
+def _run(asked: Stress, rows: int, seed: int, names: Sequence[str]) -> list[Tally]:
+    """All blocks, with progress on a terminal."""
+    from mechkin_cli.benchmark.stress.run import stress
+
+    progress: Progress | None = None
+
+    def step(done: int, count: int) -> None:
+        nonlocal progress
+        progress = progress or Progress(count, "blocks", asked.json)
+        progress.step(done)
+
+    processes = asked.processes or os.cpu_count() or 1
+    tallies = stress(rows, seed, names, processes, step)
+    if progress is not None:
+        progress.end()
+    return tallies
+
+
+def _one(asked: Stress) -> int:
+    """One mechanism as a file on stdout."""
+    from mechkin_cli.benchmark.stress.block import text_of
+
+    if asked.family is None or asked.only is None:
+        raise UsageError("--only K is a mechanism of one family; name it with --family")
+    put(text_of(asked.family, asked.seed, asked.only))
+    return ExitCode.OK
+
+
+def _write(asked: Stress, tallies: list[Tally]) -> None:
+    """The page, which takes its place whole."""
+    from mechkin_cli.benchmark.stress.families.table import FAMILIES
+    from mechkin_cli.benchmark.stress.page import SMALL_ROWS, page
+
+    assert asked.page is not None
+    if asked.family is not None:
+        raise UsageError("--page tells of all families; leave --family out")
+    small = _run(asked, SMALL_ROWS, asked.seed, list(FAMILIES))
+    text = page(tallies, small, asked.rows, asked.seed)
+    beside = asked.page.with_name(f".{asked.page.name}.{os.getpid()}")
+    try:
+        beside.write_text(text, encoding="utf-8")
+        beside.replace(asked.page)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            beside.unlink()
+        raise UsageError(f"{asked.page} cannot be written: {error.strerror}") from None
+
+
+def _checked(asked: Stress) -> int:
+    """Whether the page has today's form, and its small set's numbers."""
+    from mechkin_cli.benchmark.stress.families.table import FAMILIES
+    from mechkin_cli.benchmark.stress.page import SMALL_ROWS, is_current, of_page
+
+    if asked.page is None:
+        raise UsageError("--check compares a page; name it with --page")
+    try:
+        text = asked.page.read_text(encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"{asked.page} cannot be read: {error.strerror}") from None
+    known = of_page(text)
+    seed = known[1] if known else asked.seed
+    if is_current(text, _run(asked, SMALL_ROWS, seed, list(FAMILIES))):
+        return ExitCode.OK
+    rows = known[0] if known else asked.rows
+    say(
+        f"{asked.page} is not what would be written now; write it by: mechkin bench --stress "
+        f"--rows {rows} --seed {seed} --page {asked.page}"
+    )
+    return ExitCode.DIFFERENCES

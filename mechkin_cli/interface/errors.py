@@ -1,0 +1,170 @@
+"""The true errors of an analysis: how far its cells are from exact numbers."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.analysis.errors import Repeated
+from mechkin_cli.analysis.errors.reasons import OTHER_TABLE, RESPONSE, WORDS, reason_of
+from mechkin_cli.analysis.errors.repeated import NotRepeated
+from mechkin_cli.building.columns import used_quantities
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.expressions import parse
+from mechkin_cli.interface.arguments import a_text
+from mechkin_cli.runs import SWEEP
+from mechkin_cli.tables.cell_errors import (
+    ALL_COLUMNS,
+    ColumnErrors,
+    column_errors,
+    least_digits,
+    not_repeated,
+    worst_column,
+)
+from mechkin_cli.tables.columns import Words
+from mechkin_cli.tables.layout import row_texts
+from mechkin_cli.tables.true_columns import true_values
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.expressions import Expression
+    from mechkin_cli.interface.analysis import Analysis
+    from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.tables.columns import Column, Columns
+    from mechkin_cli.tables.layout import ColumnLayout
+
+
+class Errors:
+    """True errors of the cells of an analysis, in the file's units.
+
+    `errors["theta4"]` is |cell - true value| over the rows, of a column by its label, of a column
+    of a table by `errors["table_03", "theta4"]`, or of any expression of quantities; nan where
+    there is no number, or where it is not repeated (`why`).
+
+    Attributes:
+        columns: the errors of every column of every table, in order.
+    """
+
+    def __init__(self, analysis: Analysis) -> None:
+        self._analysis = analysis
+        self.columns: tuple[ColumnErrors, ...] = tuple(
+            found
+            for layout, table in zip(analysis.layouts, analysis.tables, strict=True)
+            for found in self._of_table(layout.columns, table)
+        ) + tuple(
+            not_repeated(table.name, ALL_COLUMNS, "", 0, OTHER_TABLE)
+            for table in (*analysis.coefficients, *analysis.balance_tables)
+        )
+
+    @cached_property
+    def repeated(self) -> Repeated:
+        """The rows in double-double."""
+        from mechkin_cli.analysis.errors import wide
+
+        result = self._analysis.result
+        repeated = Repeated(result, wide.wide_run(result))
+        repeated.read(self._readable())
+        return repeated
+
+    def _readable(self) -> list[Wanted]:
+        """What the tables read, as far as it is repeated."""
+        problem = self._analysis.result.problem
+        known = problem.quantities()
+        names = used_quantities(self._analysis.layouts, known)
+        return [known[name] for name in names if not reason_of(problem, known[name])]
+
+    @property
+    def digits(self) -> int | None:
+        """Digits to which every cell is right, in parts of its column's largest; None where nothing
+        was repeated."""
+        return least_digits(self.columns)
+
+    @property
+    def worst(self) -> ColumnErrors | None:
+        """The column with the largest error in parts of its largest number."""
+        return worst_column(self.columns)
+
+    @property
+    def why(self) -> dict[str, str]:
+        """Columns, as TABLE.LABEL, that were not repeated, and why."""
+        return {f"{c.table}.{c.label}": c.why for c in self.columns if c.why}
+
+    @cached_property
+    def states(self) -> NDArray[np.float64]:
+        """The largest error of any state in every row (rows,), in rad or in parts of the length
+        unit of the mechanism's size: what `row.error_bound` bounds."""
+        wide = self.repeated.wide
+        known = wide.states
+        with np.errstate(invalid="ignore"):
+            off = np.abs((known - self._analysis.result.row_states.states).high)
+        found: NDArray[np.float64] = np.max(off, axis=0, initial=0.0)
+        return found
+
+    def __getitem__(self, name: str | tuple[str, str]) -> NDArray[Any]:
+        """The errors of a column, or of an expression.
+
+        Raises:
+            UsageError: several tables have other columns of this label.
+            ExpressionError: neither a label nor an expression of quantities.
+        """
+        if isinstance(name, tuple):
+            return self._of(*name).error.copy()
+        a_text("a label or expression", name, '"theta4"')
+        known = [column for column in self.columns if column.label == name]
+        if not known:
+            return self._of_expression(name)
+        first, *others = known
+        if any(not np.array_equal(c.error, first.error, equal_nan=True) for c in others):
+            tables = ", ".join(column.table for column in known)
+            raise UsageError(
+                f"{name} is a column of {tables}; ask for one of them: "
+                f'errors["{first.table}", "{name}"]'
+            )
+        return first.error.copy()
+
+    def _of(self, table: str, label: str) -> ColumnErrors:
+        for column in self.columns:
+            if (column.table, column.label) == (table, label):
+                return column
+        raise UsageError(f"there is no column {label} in a table {table}")
+
+    def _of_expression(self, text: str) -> NDArray[Any]:
+        values = self._analysis[text]
+        parts = values.T if values.ndim > 1 else values[None]
+        true = true_values(parse(text), self.repeated)
+        found = [
+            column_errors("", text, "", cells, exact).error
+            for cells, exact in zip(parts, true, strict=True)
+        ]
+        return np.stack(found, axis=1) if len(found) > 1 else found[0]
+
+    def _of_table(self, layouts: tuple[ColumnLayout, ...], table: Columns) -> list[ColumnErrors]:
+        return [
+            self._of_column(layout.expression, table.name, column)
+            for layout, column in zip(layouts, table.columns, strict=True)
+        ]
+
+    def _of_column(self, expression: Expression, table: str, column: Column) -> ColumnErrors:
+        values = column.values
+        why = self._refused(expression)
+        if why or isinstance(values, Words):
+            return not_repeated(table, column.label, column.unit, _values(column), why or WORDS)
+        try:
+            (true,) = true_values(expression, self.repeated)
+        except NotRepeated as reason:
+            return not_repeated(table, column.label, column.unit, values, str(reason))
+        return column_errors(table, column.label, column.unit, values, true)
+
+    def _refused(self, expression: Expression) -> str:
+        """Why a column cannot be repeated, whatever its numbers are."""
+        text = expression.text.strip()
+        if self._analysis.run != SWEEP:
+            return WORDS if text in row_texts(self._analysis.run) else RESPONSE
+        return WORDS if text in row_texts(SWEEP) else ""
+
+
+def _values(column: Column) -> Any:
+    return column.rows if isinstance(column.values, Words) else column.values

@@ -1,0 +1,133 @@
+"""The true errors of a table's cells: against the same columns in double-double numbers.
+
+The error of a cell is |cell - true value|, in the file's units; its relative error is that in parts
+of the largest number of its column, and its right digits are those of the relative error: 12 for
+3e-13. A column that is zero but for rounding has errors and no digits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.tape.double_doubles import DoubleDoubles, difference
+from mechkin_cli.tolerances import ZERO_BUT_FOR_ROUNDING
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.tables.source import FloatArray
+
+EMPTY = "empty"
+"""Said of a cell without a number."""
+
+LOST = "no value in double-double"
+"""Said of a cell that the repetition has no number for."""
+
+ZERO = "zero but for rounding"
+"""Said of a column whose true numbers are none beside its rounding."""
+
+ALL_COLUMNS = "all columns"
+"""Stands for the labels of a table of which no column is repeated."""
+
+NO_DIGITS = -1
+"""Stands for the right digits of a cell of which nothing is known."""
+
+MOST_DIGITS = 16
+"""Digits of a cell that is the nearest double."""
+
+_POWERS = tuple(float(f"1e-{k}") for k in range(1, MOST_DIGITS + 1))
+
+
+@dataclass(frozen=True, eq=False)
+class ColumnErrors:
+    """Of one column of a table.
+
+    Attributes:
+        table: its name.
+        label: of the column.
+        unit: of cells and errors.
+        values: (rows,) the cells, nan where empty.
+        error: (rows,) |cell - true value|; nan where a cell is empty or was not repeated.
+        why: why the column was not repeated, or has no digits; "" of others.
+    """
+
+    table: str
+    label: str
+    unit: str
+    values: FloatArray
+    error: FloatArray
+    why: str = ""
+
+    @cached_property
+    def largest(self) -> float:
+        """The largest magnitude in the column; 0 where it has no number."""
+        sizes = np.abs(self.values[np.isfinite(self.values)])
+        return float(sizes.max(initial=0.0))
+
+    @cached_property
+    def relative(self) -> FloatArray:
+        """The errors in parts of the column's largest (rows,)."""
+        if self.why:
+            return np.full(self.error.shape, np.nan)
+        size = self.largest
+        found: FloatArray = self.error / size if size > 0.0 else np.where(self.error > 0, 1.0, 0.0)
+        return np.where(np.isfinite(self.error), found, np.nan)
+
+    @cached_property
+    def digits(self) -> NDArray[np.int8]:
+        """Right digits (rows,), `NO_DIGITS` where nothing is known."""
+        with np.errstate(invalid="ignore"):
+            found = np.count_nonzero([self.relative <= power for power in _POWERS], axis=0)
+        known = np.isfinite(self.relative)
+        return np.where(known, found, NO_DIGITS).astype(np.int8)
+
+    @cached_property
+    def worst(self) -> int:
+        """The row with the largest error, -1 where none is known."""
+        known = np.isfinite(self.error)
+        return int(np.argmax(np.where(known, self.error, -1.0))) if known.any() else -1
+
+    @cached_property
+    def lost(self) -> int:
+        """Cells with a number of which the repetition has none."""
+        if self.why:
+            return 0
+        return int(np.count_nonzero(np.isfinite(self.values) & ~np.isfinite(self.error)))
+
+
+def not_repeated(
+    table: str, label: str, unit: str, values: FloatArray | int, why: str
+) -> ColumnErrors:
+    """Of a column whose cells are no numbers (`values`: how many), or that was not repeated."""
+    cells = np.full(values, np.nan) if isinstance(values, int) else values
+    return ColumnErrors(table, label, unit, cells, np.full(cells.shape, np.nan), why)
+
+
+def column_errors(
+    table: str, label: str, unit: str, values: FloatArray, true: DoubleDoubles
+) -> ColumnErrors:
+    """Of a column with what its cells should be, both (rows,) in its unit."""
+    with np.errstate(invalid="ignore"):
+        error = np.abs(difference(values, true))
+    error = np.where(np.isfinite(values), error, np.nan)
+    known = np.isfinite(error)
+    cells, exact = (np.abs(v[known]).max(initial=0.0) for v in (values, true.high))
+    zero = cells > 0.0 and exact <= ZERO_BUT_FOR_ROUNDING * cells
+    return ColumnErrors(table, label, unit, values, error, ZERO if zero else "")
+
+
+def least_digits(columns: Sequence[ColumnErrors]) -> int | None:
+    """Digits that every cell has; None where nothing was repeated."""
+    known = [int(c.digits[c.digits >= 0].min()) for c in columns if (c.digits >= 0).any()]
+    return min(known, default=None)
+
+
+def worst_column(columns: Sequence[ColumnErrors]) -> ColumnErrors | None:
+    """The column with the largest relative error; None where nothing was repeated."""
+    known = [c for c in columns if (c.digits >= 0).any()]
+    return max(known, key=lambda c: float(np.nanmax(c.relative)), default=None)

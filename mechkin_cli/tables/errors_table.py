@@ -1,0 +1,112 @@
+"""The true errors of a run as tables: cell by cell (`errors.csv`), and the worst of each column.
+
+Both say, in the column `why`, what of a table was not repeated, or why a cell has no error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.runs import SWEEP
+from mechkin_cli.tables.cell_errors import EMPTY, LOST, NO_DIGITS, ColumnErrors
+from mechkin_cli.tables.columns import Column, Columns, Words, words_of
+
+if TYPE_CHECKING:
+    from mechkin_cli.tables.source import FloatArray
+
+
+def _name(run: str) -> str:
+    return "errors" if run == SWEEP else f"{run}.errors"
+
+
+def cells_table(columns: Sequence[ColumnErrors], run: str = SWEEP) -> Columns:
+    """Columns table, column, unit, row, value, error, relative, digits, why: a line for each cell.
+
+    Rows count from 1. A column that was not repeated has one line, without a row.
+    """
+    parts = [_cells(column) for column in columns]
+    counts = [len(rows) for rows, *_ in parts]
+    number = [np.concatenate([part[k] for part in parts] or [np.empty(0)]) for k in range(5)]
+    row, value, error, relative, digits = number
+    whys = [why for c, count in zip(columns, counts, strict=True) for why in _whys(c, count)]
+    return Columns(
+        _name(run),
+        "True errors of the cells",
+        (
+            *_names(columns, counts),
+            Column("row", "", row, 0),
+            Column("value", "", value),
+            Column("error", "", error),
+            Column("relative", "", relative),
+            Column("digits", "", digits, 0),
+            Column("why", "", words_of(whys)),
+        ),
+        of_rows=False,
+    )
+
+
+def worst_table(columns: Sequence[ColumnErrors], run: str = SWEEP) -> Columns:
+    """Columns table, column, unit, largest, error, relative, digits, row, why: a line for each
+    column, with its worst cell."""
+    at = [c.worst for c in columns]
+    pairs = list(zip(columns, at, strict=True))
+    worst = [c.error[k] if k >= 0 else np.nan for c, k in pairs]
+    relative = [c.relative[k] if k >= 0 else np.nan for c, k in pairs]
+    digits = [float(c.digits[k]) if k >= 0 else np.nan for c, k in pairs]
+    return Columns(
+        _name(run),
+        "True errors, worst of each column",
+        (
+            *_names(columns, [1] * len(columns)),
+            Column("largest", "", np.array([c.largest or np.nan for c in columns])),
+            Column("error", "", np.array(worst)),
+            Column("relative", "", np.array(relative)),
+            Column("digits", "", _or_nan(np.array(digits)), 0),
+            Column("row", "", np.array([k + 1.0 if k >= 0 else np.nan for k in at]), 0),
+            Column("why", "", words_of([_why(c) for c in columns])),
+        ),
+        of_rows=False,
+    )
+
+
+def _why(column: ColumnErrors) -> str:
+    return column.why or (f"{column.lost} cells without: {LOST}" if column.lost else "")
+
+
+def _names(columns: Sequence[ColumnErrors], counts: Sequence[int]) -> tuple[Column, ...]:
+    """The columns table, column and unit."""
+    codes = np.repeat(np.arange(len(columns), dtype=np.int32), counts)
+
+    def words(texts: Sequence[str]) -> Words:
+        found = words_of(texts)
+        return Words(found.codes[codes], found.words)
+
+    return (
+        Column("table", "", words([c.table for c in columns])),
+        Column("column", "", words([c.label for c in columns])),
+        Column("unit", "", words([c.unit for c in columns])),
+    )
+
+
+def _cells(column: ColumnErrors) -> tuple[FloatArray, ...]:
+    """Row, value, error, relative and digits of a column's lines."""
+    if not np.isfinite(column.error).any() and column.why:
+        return tuple(np.full(1, np.nan) for _ in range(5))
+    rows = np.arange(1.0, column.values.size + 1.0)
+    digits = _or_nan(column.digits.astype(np.float64))
+    return rows, column.values, column.error, column.relative, digits
+
+
+def _whys(column: ColumnErrors, count: int) -> list[str]:
+    """What is said of each of a column's lines."""
+    if column.why:
+        return [column.why] * count
+    empty, known = ~np.isfinite(column.values), np.isfinite(column.error)
+    return [EMPTY if e else "" if k else LOST for e, k in zip(empty, known, strict=True)]
+
+
+def _or_nan(digits: FloatArray) -> FloatArray:
+    return np.where(digits == NO_DIGITS, np.nan, digits)

@@ -1,0 +1,99 @@
+"""`mechkin analyze --errors`: what it writes and says, and that nothing else changes."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from cli.files import CRANK, TABLES
+from references import MECHANISMS, RCSR
+
+from mechkin_cli.cli.analyze import analyze_files
+
+ALL = ["csv", "md", "json"]
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def lines(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_tables_keep_their_bytes(tmp_path: Path) -> None:
+    for name, errors in (("without", False), ("with", True)):
+        analyze_files([RCSR], tmp_path / name, ["csv", "md"], quiet=True, errors=errors)
+    without, found = files(tmp_path / "without"), files(tmp_path / "with")
+    assert set(found) - set(without) == {"errors.csv", "errors.md"}
+    assert {name: found[name] for name in without} == without
+
+
+def test_every_cell_has_its_line(tmp_path: Path) -> None:
+    analyze_files([RCSR], tmp_path, ["csv", "json"], quiet=True, errors=True)
+    found = lines(tmp_path / "errors.csv")
+    assert list(found[0]) == [
+        *("table", "column", "unit", "row", "value", "error", "relative", "digits", "why")
+    ]
+    repeated = [line for line in found if line["row"]]
+    for table in lines(tmp_path / "table_03.csv")[:1]:
+        assert [f["column"] for f in repeated if f["table"] == "table_03" and f["row"] == "1"] == [
+            *table
+        ]
+    cells = {(f["table"], f["column"], f["row"]): f["value"] for f in repeated}
+    for number, row in enumerate(lines(tmp_path / "table_18.csv"), 1):
+        for label, value in row.items():
+            assert cells["table_18", label, str(number)] == value
+    assert min(int(line["digits"]) for line in repeated if line["digits"]) >= 13
+    assert {f["table"]: f["why"] for f in found if not f["row"]} == {
+        "table_14": "no table of rows",
+        "table_14_unknowns": "no table of rows",
+    }
+    record = json.loads((tmp_path / "analysis.json").read_text(encoding="utf-8"))
+    assert record["errors"]["digits"] >= 13
+    own = record["errors"]["columns"][1]
+    errors = [float(f["error"]) for f in repeated if f["column"] == own["label"]][:27]
+    assert own["error"] == errors
+
+
+def test_the_summary_has_a_line(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    analyze_files([RCSR], tmp_path, ["csv"], errors=True)
+    (line,) = [x for x in capsys.readouterr().err.splitlines() if x.startswith("  errors")]
+    assert "digits; worst: " in line
+    assert line.endswith("not repeated: table_14, table_14_unknowns (no table of rows)")
+
+
+def test_cells_that_are_exact(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "crank.yaml"
+    path.write_text(CRANK + TABLES, encoding="utf-8")
+    analyze_files([path], tmp_path / "out", ["csv"], errors=True)
+    (line,) = [x for x in capsys.readouterr().err.splitlines() if x.startswith("  errors")]
+    assert "right to 15 digits" in line or "right to 16 digits" in line
+    x = [f for f in lines(tmp_path / "out" / "errors.csv") if f["column"] == "x"]
+    # 2 cos 90 deg is zero; what the cell has is its error
+    assert float(x[2]["error"]) == pytest.approx(abs(float(x[2]["value"])), abs=1e-30)
+    assert np.isclose(float(x[0]["error"]), 0.0, atol=1e-30)
+
+
+def test_a_response_says_that_it_is_not_repeated(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = MECHANISMS / "rcsr_response.yaml"
+    analyze_files([path], tmp_path, ["csv", "md"], errors=True)
+    (line,) = [x for x in capsys.readouterr().err.splitlines() if x.startswith("  errors")]
+    assert line.endswith("(a response)")
+    found = lines(tmp_path / "response.errors.csv")
+    assert {f["why"] for f in found} <= {"a response", "words"}
+
+
+@pytest.mark.parametrize("options", [{"lanes": 2}, {"threads": 2}])
+def test_lanes_and_threads_keep_the_bytes(options: dict[str, int], tmp_path: Path) -> None:
+    for name, given in (("other", options), ("one", {})):
+        analyze_files([RCSR], tmp_path / name, ["csv"], quiet=True, errors=True, **given)
+    assert (tmp_path / "one/errors.csv").read_bytes() == (
+        tmp_path / "other/errors.csv"
+    ).read_bytes()

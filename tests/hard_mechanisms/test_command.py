@@ -1,0 +1,83 @@
+"""The command: a small set of every family, in processes, as a page and as files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import mechkin_cli as mk
+from mechkin_cli.benchmark.stress import page, workers
+from mechkin_cli.benchmark.stress.families.table import FAMILIES
+from mechkin_cli.benchmark.stress.plan import tasks
+from mechkin_cli.benchmark.stress.run import stress
+from mechkin_cli.benchmark.stress.tally import Tally
+from mechkin_cli.cli.app import app
+
+PAGE = Path(__file__).parents[2] / "docs" / "stress.md"
+
+
+@pytest.fixture(scope="module")
+def small() -> list[Tally]:
+    """What the page's check computes anew."""
+    known = page.of_page(PAGE.read_text(encoding="utf-8"))
+    assert known is not None
+    return stress(page.SMALL_ROWS, known[1], list(FAMILIES))
+
+
+def test_no_row_is_wrong_and_says_ok(small: list[Tally]) -> None:
+    assert [tally.family for tally in small] == list(FAMILIES)
+    for tally in small:
+        assert tally.verdicts["false_ok"] == 0, tally.faults
+        assert tally.verdicts["refused"] == 0, tally.faults
+        assert tally.rows == sum(tally.verdicts.values())
+
+
+def test_the_page_is_what_would_be_written_now(small: list[Tally]) -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    assert page.is_current(text, small)
+    assert not page.is_current(text.replace("| sizes | 4 ", "| sizes | 5 "), small)
+    assert not page.is_current(text.replace("| leads |", "| lead |", 1), small)
+
+
+def test_processes_give_the_same(small: list[Tally]) -> None:
+    family = "double modes"
+    blocks = list(tasks(400, [family]))
+    known = Tally(family)
+    for tally in workers.results([*blocks, *blocks], 1, 2):
+        known.merge(tally)
+    once = Tally(family)
+    for tally in workers.results([*blocks, *blocks], 1, 1):
+        once.merge(tally)
+    assert known.in_order().record() == once.in_order().record()
+
+
+def test_one_mechanism_is_printed_as_a_file() -> None:
+    one = ("bench", "--stress", "--family", "leads", "--only", "3")
+    text = CliRunner().invoke(app, one).stdout
+    assert text == CliRunner().invoke(app, one).stdout
+    assert mk.loads(text).name == "leads"
+    assert text != CliRunner().invoke(app, [*one, "--seed", "2"]).stdout
+
+
+def test_json() -> None:
+    asked = ["bench", "--stress", "--family", "change points", "--rows", "1e2", "--json"]
+    found = json.loads(CliRunner().invoke(app, asked).stdout)
+    assert found["rows"] == 100
+    assert found["families"]["change points"]["verdicts"] == {"right": 120}
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (["--family", "doubel modes"], "did you mean double modes?"),
+        (["--only", "3"], "name it with --family"),
+        (["--check"], "name it with --page"),
+    ],
+)
+def test_what_is_not_understood(asked: list[str], said: str) -> None:
+    result = CliRunner().invoke(app, ["bench", "--stress", *asked])
+    assert result.exit_code != 0
+    assert said in str(result.exception)

@@ -1,0 +1,101 @@
+"""The judge can find every kind of fault: right answers are spoilt on purpose."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mechkin_cli.benchmark.stress.block import drawn, run_block
+from mechkin_cli.benchmark.stress.families.table import FAMILIES
+from mechkin_cli.benchmark.stress.judge import Found, Judged, Verdict, judge
+from mechkin_cli.benchmark.stress.numbers.double_double import DEGREE
+from mechkin_cli.benchmark.stress.quantity import Truth
+from mechkin_cli.benchmark.stress.solve import solve
+from mechkin_cli.benchmark.stress.tally import Tally, of_record
+from mechkin_cli.status import Status
+
+ROW = 7
+
+
+@pytest.fixture(scope="module")
+def solved() -> tuple[Found, Truth]:
+    """One R S S R, whose first rows all exist."""
+    block = drawn(FAMILIES["sizes"], 1, [0])
+    truth = block.truth(block.places)
+    found, refused = solve(block.texts, block.places.shape[1], truth.quantities)
+    assert not refused
+    assert truth.exists[0, : ROW + 1].all()
+    return found, truth
+
+
+def spoilt(found: Found, name: str, value: float) -> Found:
+    values = {key: cells.copy() for key, cells in found.values.items()}
+    values[name][0, ROW] = value
+    return replace(found, values=values)
+
+
+def verdict(judged: Judged) -> Verdict:
+    others = np.delete(judged.verdict[0], ROW)
+    assert np.isin(others, (Verdict.right, Verdict.rightly_none)).all()
+    return Verdict(judged.verdict[0, ROW])
+
+
+def test_nothing_is_wrong_as_it_is(solved: tuple[Found, Truth]) -> None:
+    assert verdict(judge(*solved)) == Verdict.right
+
+
+def test_a_row_on_the_other_branch(solved: tuple[Found, Truth]) -> None:
+    found, truth = solved
+    (quantity,) = truth.quantities
+    other = float((quantity.other / DEGREE).high[0, ROW])
+    assert verdict(judge(spoilt(found, "D.theta", other), truth)) == Verdict.false_ok
+
+
+def test_a_row_that_is_off(solved: tuple[Found, Truth]) -> None:
+    found, truth = solved
+    near = found.values["D.theta"][0, ROW] * (1.0 + 1e-7)
+    assert verdict(judge(spoilt(found, "D.theta", near), truth)) == Verdict.false_ok
+
+
+def test_the_same_with_a_warning(solved: tuple[Found, Truth]) -> None:
+    found, truth = solved
+    codes = found.codes.copy()
+    codes[0, ROW] = Status.near_singular
+    off = spoilt(replace(found, codes=codes), "D.theta", 1.0)
+    assert verdict(judge(off, truth)) == Verdict.wrong_warned
+
+
+def test_rates_that_are_off(solved: tuple[Found, Truth]) -> None:
+    found, truth = solved
+    fast = found.values["D.theta_dot"][0, ROW] + 1e-5
+    assert verdict(judge(spoilt(found, "D.theta_dot", fast), truth)) == Verdict.rates_lost
+
+
+def test_a_row_that_is_lost(solved: tuple[Found, Truth]) -> None:
+    found, truth = solved
+    codes = found.codes.copy()
+    codes[0, ROW] = Status.branch_lost
+    assert verdict(judge(replace(found, codes=codes), truth)) == Verdict.false_alarm
+
+
+def test_a_row_that_cannot_be(solved: tuple[Found, Truth]) -> None:
+    found, truth = solved
+    exists = truth.exists.copy()
+    exists[0, ROW] = False
+    assert verdict(judge(found, replace(truth, exists=exists))) == Verdict.false_ok
+
+
+def test_what_a_run_says_it_takes_as_drawn_is_no_fault(solved: tuple[Found, Truth]) -> None:
+    found, truth = solved
+    noted = replace(spoilt(found, "D.theta", 1.0), noted=np.ones((1, 1), bool))
+    assert verdict(judge(noted, truth)) == Verdict.taken_as_drawn
+
+
+def test_parts_of_a_family_add_up_to_the_whole() -> None:
+    whole = run_block("many turns", 3, [0, 3, 6])
+    parts = Tally("many turns")
+    for number in (6, 0, 3):
+        parts.merge(of_record(run_block("many turns", 3, [number]).record()))
+    assert parts.in_order().record() == whole.in_order().record()

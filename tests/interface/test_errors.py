@@ -1,0 +1,120 @@
+"""True errors of analyses: what does not change them, and what is said where there are none."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from references import MECHANISMS, RCSR
+
+import mechkin_cli as mk
+from mechkin_cli.tape.double_doubles import exactly
+
+RUBBING = """
+format: 1
+units: {length: mm, force: N}
+links: {crank: {mass: 1, center_of_mass: [10, 0, 0], inertia: {xx: 10, yy: 10, zz: 20}}}
+joints: {A: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}}
+motion: {inputs: {A.theta: {from: 0, to: 90, step: 30, rate: 3 rad/s}}}
+loads:
+  - {type: gravity, g: standard}
+  - {type: friction, joint: A, coefficient: 0.1, radius: 8 mm}
+tables:
+  - {name: one, columns: [A.theta, A.effort, row.power_error, crank.omega.z]}
+"""
+
+ROCKER = """
+format: 1
+units: {length: UNIT, angle: deg}
+links: {crank: {}, rod: {}, rocker: {}}
+joints:
+  A: {type: R, links: [ground, crank], point: [0 mm, 0 mm, 0 mm], axis: [0, 0, 1]}
+  B: {type: R, links: [crank, rod], point: [20.3 mm, 0 mm, 0 mm], axis: [0, 0, 1]}
+  C: {type: R, links: [rod, rocker], point: [60.1 mm, 50.7 mm, 0 mm], axis: [0, 0, 1]}
+  D: {type: R, links: [ground, rocker], point: [70 mm, 0 mm, 0 mm], axis: [0, 0, 1]}
+points: {tip: {link: rod, at: [40 mm, 60 mm, 0 mm]}}
+motion: {inputs: {D.theta: VALUES}}
+tables:
+  - {name: one, columns: [D.theta, A.theta, {label: x, value: tip.position.x}]}
+"""
+
+
+def rocker(values: str, unit: str = "mm", **options: int) -> mk.Analysis:
+    return mk.loads(ROCKER.replace("VALUES", values).replace("UNIT", unit)).analyze(**options)
+
+
+def true(r: mk.Analysis, label: str) -> np.ndarray:
+    """True values in the file's units, as cells less their signed errors would be."""
+    quantity = r.errors.repeated.quantity(label)
+    return exactly(quantity.value)
+
+
+def test_rcsr():
+    errors = mk.load(RCSR).analyze(errors=True).errors
+    assert errors.digits is not None
+    assert errors.digits >= 13
+    assert (errors["theta1"] == 0.0).all()
+    assert errors["table_03", "theta4"].max() < 1e-13
+    assert errors["O4.theta"].tolist() == errors["table_03", "theta4"].tolist()
+    assert errors["norm(O3.force)"].max() < 1e-11
+
+
+def test_rows_do_not_depend_on_each_other():
+    alone = true(rocker("{at: 10}"), "A.theta")
+    for values in ("{values: [0, 10, 20]}", "{values: [20, 10, 0]}", "{values: [5, 10]}"):
+        beside = true(rocker(values), "A.theta")[1]
+        assert abs((beside - alone[0]).high) < 1e-30
+
+
+@pytest.mark.parametrize("options", [{"lanes": 2}, {"threads": 2}, {"lanes": 2, "threads": 1}])
+def test_lanes_and_threads_change_nothing(options):
+    rows = "{from: 0, to: 25, step: 0.5}"
+    for one, other in zip(
+        rocker(rows).errors.columns, rocker(rows, **options).errors.columns, strict=True
+    ):
+        assert np.array_equal(one.error, other.error, equal_nan=True)
+
+
+def test_other_units_change_nothing():
+    rows = "{from: 0, to: 25, step: 5}"
+    one, other = (true(rocker(rows, unit), "A.theta") for unit in ("mm", "in"))
+    assert np.abs((one - other).high).max() < 1e-30
+
+
+def test_rows_without_a_position_have_no_errors():
+    r = rocker("{from: 0, to: 60, step: 5}")
+    there = r.result.solved
+    assert not there.all()
+    assert np.isnan(r.errors["x"][~there]).all()
+    assert np.isfinite(r.errors["x"][there]).all()
+    assert sum(column.lost for column in r.errors.columns) == 0
+
+
+def test_friction_is_not_repeated_and_says_so():
+    errors = mk.loads(RUBBING).analyze().errors
+    assert errors.why == {"one.A.effort": "friction", "one.row.power_error": "a verdict"}
+    assert errors["crank.omega.z"].max() == 0.0
+
+
+def test_responses_and_dense_systems_are_not_repeated_and_say_so():
+    found = mk.load(MECHANISMS / "rcsr_response.yaml").respond("response").errors
+    assert set(found.why.values()) <= {"a response", "words"}
+    assert found.digits is None
+    found = mk.load(MECHANISMS / "rchch.yaml").analyze().errors
+    assert found.why["table_32.all columns"] == "no table of rows"
+
+
+@pytest.mark.parametrize(
+    "name", ["J3.quaternion", "screws", "advantages", "coefficients", "transmission"]
+)
+def test_derived_quantities_are_repeated(name):
+    words = {
+        "J3.quaternion": "O3.q1",
+        "screws": "coupler.screw_pitch",
+        "advantages": "O4.theta.mechanical_advantage",
+        "coefficients": "O1.effort.per_acceleration",
+        "transmission": "O4.theta.transmission_angle",
+    }
+    r = mk.load(RCSR).analyze([], tables=[])
+    error, value = r.errors[words[name]], r[words[name]]
+    assert np.nanmax(error) < 1e-12 * np.nanmax(np.abs(value))
+    assert np.nanmax(error) > 0.0
