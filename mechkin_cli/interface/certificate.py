@@ -119,7 +119,9 @@ class Certificate:
         wanted = result.problem.quantities().get(name)
         if wanted is None or not is_enclosed(result.problem.mechanism, wanted):
             raise UsageError(f"{name[:LONGEST_NAME]} is no quantity that is enclosed")
-        middle, radius = enclosures(result, self._found, [wanted])[name]
+        rows = result.row_states
+        found = enclosures(result.session, self._found, [wanted], rows.states, rows.turns)
+        middle, radius = found[name]
         known = np.asarray(result.units.to_si(self.analysis[name], wanted.dimension))
         scale = np.abs(middle)
         if wanted.kind == "coordinate" and not wanted.order and is_angle(wanted.coordinate):

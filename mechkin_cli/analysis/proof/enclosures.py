@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from mechkin_cli.analysis.proof.certificate import Certificate
-    from mechkin_cli.analysis.sweep import Result
-    from mechkin_cli.arrays import Bools
+    from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.mechanism.model import Mechanism
     from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.solver.session import Session
 
 _OF_ROWS = {"kinetic_energy", "potential_energy"}
 
@@ -34,26 +34,34 @@ def is_enclosed(mechanism: Mechanism, quantity: Wanted) -> bool:
 
 
 def enclosures(
-    result: Result, certificate: Certificate, wanted: Sequence[Wanted]
+    session: Session,
+    certificate: Certificate,
+    wanted: Sequence[Wanted],
+    states: Floats,
+    turned: Floats,
 ) -> Mapping[str, Enclosure]:
     """Enclosures of quantities in SI (width, rows), of the rows that are proven; elsewhere nothing
-    is known. Angles up to whole turns; of reactions that are not unique one of many."""
-    session, rows = result.session, result.row_states
+    is known. Angles up to whole turns; of reactions that are not unique one of many.
+
+    Args:
+        states: of the rows in doubles (states, rows).
+        turned: the closing joints' angles as following has them (turn slots, rows).
+    """
     enclosed = session.once("enclosed", lambda: Enclosed.of(session))
     given = Given.of(session) if enclosed.of_text else Given.of_doubles(session)
-    positions = Positions(enclosed.plan, enclosed.radii, rows.states, certificate.boxes.radius)
-    found = enclose(session, positions, given, wanted, turned=rows.turns)
-    known = certificate.on_branch & _are_inside(result, given)
+    positions = Positions(enclosed.plan, enclosed.radii, states, certificate.boxes.radius)
+    found = enclose(session, positions, given, wanted, turned=turned)
+    known = certificate.on_branch & _are_inside(session, given)
     return {
         name: Enclosure(middle, np.where(known, radius, np.inf))
         for name, (middle, radius) in found.items()
     }
 
 
-def _are_inside(result: Result, given: Given) -> Bools:
+def _are_inside(session: Session, given: Given) -> Bools:
     """Rows whose inputs are among those that the boxes were proven for."""
-    reduced = result.session.inputs.reduced
+    reduced = session.inputs.reduced
     off = np.abs(given.inputs.middle - reduced) + given.inputs.radius
-    inside = off <= input_rounding(result.session, reduced)
+    inside = off <= input_rounding(session, reduced)
     found: Bools = np.asarray(inside.all(axis=0), dtype=np.bool_)
     return found
