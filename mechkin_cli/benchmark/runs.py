@@ -32,6 +32,8 @@ FULL, QUICK = Rounds(), Rounds(3, 1)
 DEMAND_SCENES = ("RCSR", "7R", "Stewart")
 """Of the mechanisms without a file, those whose demand plan and threads are looked at."""
 
+PROCESS_SCENES = ("RCSR", "7R")
+
 LONG = 0.5
 """Seconds of a sweep by a slow method from which on one round has to do."""
 
@@ -47,6 +49,12 @@ def tables(
     for subject, scene in list(zip(subjects, scenes, strict=True)):
         if not whole or scene.name in DEMAND_SCENES:
             yield demand_table(scene, subject, rounds.fast, processes)
+    if processes:
+        from mechkin_cli.benchmark.process_table import process_table
+
+        for subject in subjects:
+            if not whole or subject.name in PROCESS_SCENES:
+                yield process_table(subject, processes)
     yield thread_table([s for s in scenes if not whole or s.name in DEMAND_SCENES], rounds.slow)
     if whole:
         from mechkin_cli.benchmark.response_table import response_table

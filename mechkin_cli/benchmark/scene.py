@@ -89,10 +89,15 @@ class Scene:
         self.problem = model.problem
         self.quantities = model.problem.quantities()
         self.asked = self._asked(model.session)
-        if not self.asked.position:
+        if not model.session.graph.blocks:
             raise UsageError(
                 f"{name} has nothing that is solved for: all its coordinates are inputs; bench "
                 "takes mechanisms with closed loops"
+            )
+        if not self.asked.position:
+            raise UsageError(
+                f"{name} has nothing by which errors could be told: no unknown coordinate has a "
+                "name; write points: on a link that moves"
             )
         self.result = analyze(model.session.packed(ALONE), self.asked.level("everything"))
         self.solved = np.flatnonzero(self.result.row_states.reached)

@@ -6,7 +6,7 @@ of another formula and without the kernel, stands beside it: the tests hold one 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -35,7 +35,7 @@ def exact_values(scene: Scene) -> tuple[Values, str]:
         return true_values(scene), said
     demand = demand_of(scene.problem.mechanism, wanted)
     found = wide.run(wanted, scene.session, wide.inputs, demand)
-    values = {
+    values: dict[str, Any] = {
         name: np.asarray(parts.high, np.longdouble)[:, scene.places]
         + np.asarray(parts.low, np.longdouble)[:, scene.places]
         for name, parts in found.items()

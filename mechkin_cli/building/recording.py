@@ -13,7 +13,7 @@ from decimal import Decimal
 from fractions import Fraction
 from math import pi
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from mechkin_cli.building.build import Built, build_problem, check_spins, read_fields
 from mechkin_cli.building.exact_motion import exact_motion
@@ -22,6 +22,7 @@ from mechkin_cli.exact import PI
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.expressions.written import numbers_read_by
 from mechkin_cli.mechanism.exact_motion import ExactMotion
+from mechkin_cli.mechanism.held import Held
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.precise import Precise
@@ -81,12 +82,24 @@ def record_exactly(built: Built, given: Mapping[str, Quantity] = _NOTHING) -> Ex
     problem = replace(
         problem,
         hold_idle=base.hold_idle,
-        held=base.held,
+        held=_held(base, problem, recorder),
         follow=base.follow,
         diagnostics=base.diagnostics,
     )
-    _refuse_made_pairs(problem)
     return ExactRecording(recorder, settled(problem), motion)
+
+
+def _held(base: Problem, problem: Problem, recorder: ExactRecorder) -> tuple[Held, ...]:
+    """What holds the idle freedoms, with its pairs on the recording."""
+    if not base.held:
+        return ()
+    from mechkin_cli.mechanism.exact_holds import exact_holds
+
+    def lift(value: float) -> Any:
+        return recorder.number(recorder.constant(value))
+
+    own, recorded = base.mechanism, problem.mechanism
+    return tuple(exact_holds(held, own, recorded, lift) for held in base.held)
 
 
 def precise(built: Built, problem: Problem, given: Mapping[str, Quantity] = _NOTHING) -> Precise:
@@ -94,17 +107,6 @@ def precise(built: Built, problem: Problem, given: Mapping[str, Quantity] = _NOT
     the other arguments and errors as those of `record_exactly`."""
     recording = record_exactly(built, given)
     return Precise(*recording, problem)
-
-
-def _refuse_made_pairs(problem: Problem) -> None:
-    """Pairs that were put in to hold idle freedoms, or told anew for it, stand in no text.
-
-    Raises:
-        TraceLost: there is one.
-    """
-    for held in problem.held:
-        if held.told is not None or held.stop is not None:
-            raise TraceLost(f"{held.words}: what holds it is known in doubles alone")
 
 
 def record(built: Built, names: Sequence[str]) -> Recording:

@@ -101,14 +101,13 @@ def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]
         model = load(path, request.settings)
         with OutputFolder(folder) as output:
             analyses = run_all(model, request.tables, request.mode)
-            if request.certify:
-                certify_sweeps(analyses)
+            notes = certify_sweeps(analyses) if request.certify else ()
             results = [_results(analysis, request) for analysis in analyses]
             written = output.write(written_files(results, request.formats))
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
     said = dict.fromkeys(found for analysis in analyses for found in analysis.diagnostics)
-    say_diagnostics(tuple(said), str(path))
+    say_diagnostics((*said, *notes), str(path))
     record: Record = {}
     if request.json:
         record = {"file": str(path)} | runs_record(results)

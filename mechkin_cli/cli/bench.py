@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 def bench(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Mechanism files instead of the known ones.", metavar="[FILE]..."),
+        typer.Argument(help="Mechanism files instead of the known ones.", metavar="FILE"),
     ] = None,
     quick: Annotated[
         bool, typer.Option("--quick", help="Few rounds: seconds, and rougher.")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.runs import SWEEP
 
 if TYPE_CHECKING:
@@ -36,11 +36,16 @@ def run_all(
     return found
 
 
-def certify_sweeps(analyses: Sequence[Analysis]) -> None:
-    """Makes the proofs of sweeps; rows of responses have none."""
+def certify_sweeps(analyses: Sequence[Analysis]) -> tuple[Diagnostic, ...]:
+    """Makes the proofs of sweeps; a note for each response, whose rows have none."""
+    notes = []
     for analysis in analyses:
         if analysis.run == SWEEP:
             _ = analysis.certificate
+            continue
+        text = f"the rows of response {analysis.run} are not proven: --certify proves sweeps"
+        notes.append(Diagnostic("not-proven", "note", text))
+    return tuple(notes)
 
 
 def _of_run(model: Model, tables: Sequence[str], run: str) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -66,7 +67,9 @@ class Errors:
 
         result = self._analysis.result
         repeated = Repeated(result, wide.wide_run(result))
-        repeated.read(self._readable())
+        # what cannot be repeated says so at its own column
+        with suppress(NotRepeated):
+            repeated.read(self._readable())
         return repeated
 
     def _readable(self) -> list[Wanted]:
@@ -107,7 +110,8 @@ class Errors:
         """The errors of a column, or of an expression.
 
         Raises:
-            UsageError: several tables have other columns of this label.
+            UsageError: several tables have other columns of this label, or what it says is not
+                repeated.
             ExpressionError: neither a label nor an expression of quantities.
         """
         if isinstance(name, tuple):
@@ -134,7 +138,10 @@ class Errors:
     def _of_expression(self, text: str) -> NDArray[Any]:
         values = self._analysis[text]
         parts = values.T if values.ndim > 1 else values[None]
-        true = true_values(parse(text), self.repeated)
+        try:
+            true = true_values(parse(text), self.repeated)
+        except NotRepeated as reason:
+            raise UsageError(f"{text} is not repeated in double-double: {reason}") from None
         found = [
             column_errors("", text, "", cells, exact).error
             for cells, exact in zip(parts, true, strict=True)

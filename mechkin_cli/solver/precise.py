@@ -160,6 +160,7 @@ class Precise:
             assembly=self._assembly(own.assembly),
             parameters=self.problem.parameters,
             load_laws=tuple(map(self._recorded, own.load_laws)),
+            held=tuple(map(self._recorded, own.held)),
         )
 
     def _assembly(self, own: Assembly) -> Assembly:
@@ -186,6 +187,7 @@ class Precise:
             *zip(own.mechanism.loads, recorded.mechanism.loads, strict=True),
             *zip(own.mechanism.frictions, recorded.mechanism.frictions, strict=True),
             *zip(own.load_laws, recorded.load_laws, strict=True),
+            *zip(own.held, recorded.held, strict=True),
         ]
         for name in ("links", "joints", "points", "directions"):
             parts = getattr(recorded.mechanism, name)

@@ -93,6 +93,27 @@ def test_friction_is_not_repeated_and_says_so():
     errors = mk.loads(RUBBING).analyze().errors
     assert errors.why == {"one.A.effort": "friction", "one.row.power_error": "a verdict"}
     assert errors["crank.omega.z"].max() == 0.0
+    with pytest.raises(mk.UsageError, match="friction"):
+        errors["2*A.effort"]
+
+
+def test_a_varied_model_is_repeated_with_its_own_numbers():
+    """A length of 0.48 in, which is no double in metres, against the file that says so."""
+    m = mk.load(RCSR)
+    varied = m.with_parameters({"P1": "0.48 in"}).analyze().errors
+    written = mk.loads(RCSR.read_text(encoding="utf-8").replace("P1: 0.5 in", "P1: 0.48 in"))
+    for one, other in zip(varied.columns, written.analyze().errors.columns, strict=True):
+        if one.table == "table_03":
+            assert one.digits[one.digits >= 0].min() >= 13
+            assert np.nanmax(np.abs(one.error - other.error)) <= 1e-13 * one.largest
+
+
+def test_inertia_of_no_real_body_is_repeated():
+    text = RUBBING.replace("{xx: 10, yy: 10, zz: 20}", "{xx: 10.1, yy: 10, zz: 90}")
+    text = text.replace("  - {type: friction, joint: A, coefficient: 0.1, radius: 8 mm}\n", "")
+    errors = mk.loads(text).analyze().errors
+    assert errors.digits is not None
+    assert errors.digits >= 15
 
 
 def test_responses_and_dense_systems_are_not_repeated_and_say_so():

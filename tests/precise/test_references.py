@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from interface.test_errors import ROCKER
 from mechanisms.runs import run
 from mechanisms.test_oracle import NAMES, mechanism, reactions, solution
 from oracle import mp
@@ -86,3 +87,33 @@ def test_constants_as_doubles_are_seen(monkeypatch):
     wanted = expected(its.mechanism, its.solution, its.reactions)
     rows = Repeated(result, wide_run(result))
     assert max(worst(rows, its.row, wanted, condition_of(result, its.row)).values()) > 1e8
+
+
+def crank_of(rocker: Any) -> Any:
+    """The crank's angle of a four-bar by its circles, from the rocker's; both zero as drawn."""
+    a, d, c = mp.mpf("20.3"), mp.mpf(70), (mp.mpf("60.1"), mp.mpf("50.7"))
+    rod = (c[0] - a) ** 2 + c[1] ** 2
+    x, y = c[0] - d, c[1]
+    x, y = d + mp.cos(rocker) * x - mp.sin(rocker) * y, mp.sin(rocker) * x + mp.cos(rocker) * y
+    size = mp.sqrt(x * x + y * y)
+    between = mp.acos((size * size + a * a - rod) / (2 * a * size))
+    return mp.atan2(y, x) - between
+
+
+def test_toward_a_dead_centre():
+    """The rocker drives, down to 1e-9 degrees before its dead centre: conditions up to 1e6."""
+    places = ["10", "39.93", "39.93118", "39.9311809", "39.9311809496"]
+    text = ROCKER.replace("UNIT", "mm").replace(
+        "VALUES", f"{{values: [0, {', '.join(places)}], rate: 1 rad/s}}"
+    )
+    r = mk.loads(text).analyze()
+    rows = Repeated(r.result, wide_run(r.result))
+    for row, place in enumerate(places, 1):
+        rocker, condition = mp.mpf(place) * mp.pi / 180, condition_of(r.result, row)
+        exact = (crank_of(rocker), mp.diff(crank_of, rocker, h=mp.mpf(10) ** -30))
+        for name, value, power in zip(("A.theta", "A.theta_dot"), exact, (1, 2), strict=True):
+            limit = max(CLOSE, BY_CONDITION * condition**power) * max(1.0, abs(float(value)))
+            (found,) = numbers(rows, name, row)
+            assert abs(found - value) < limit, (place, name)
+    assert condition > 1e5
+    assert (r.errors.states <= r["row.error_bound"]).all()

@@ -16,6 +16,7 @@ VERDICT = "a verdict"
 WORDS = "words"
 INTEGRAL = "an integral over the rows"
 FRICTION = "friction"
+TABLE_LOADS = "a load that is read from a table"
 DRAWING = "measured from the drawing in doubles"
 RESPONSE = "a response"
 OTHER_TABLE = "no table of rows"
@@ -27,9 +28,13 @@ def reason_of(problem: Problem, quantity: Wanted) -> str:
         return VERDICT
     if quantity.kind in LEDGER_KINDS:
         return INTEGRAL
-    if problem.mechanism.frictions and demand_of(problem.mechanism, [quantity]) & Demand.FORCES:
+    forces = demand_of(problem.mechanism, [quantity]) & Demand.FORCES
+    if problem.mechanism.frictions and forces:
         # whether a joint sticks or slips is decided by doubles
         return FRICTION
+    if forces and any(law.curve is not None for law in problem.load_laws):
+        # the curve through the table is known in doubles
+        return TABLE_LOADS
     if quantity.kind in FINITE_KINDS - {"finite_angle"}:
         return DRAWING
     return ""

@@ -87,7 +87,10 @@ class KernelRows:
         self, wanted: Sequence[Wanted], session: Session, inputs: KernelInputs, demand: Demand
     ) -> Wide:
         """Quantities of the kernel on the rows of the run; nan in rows that did not close."""
-        values = self._run(wanted, session, inputs, demand)[1]
+        try:
+            values = self._run(wanted, session, inputs, demand)[1]
+        except (TraceLost, LookupError, ValueError) as lost:
+            raise NotRepeated(str(lost)) from None
         assert values is not None
         slots = session.readout(wanted).slots
         return {

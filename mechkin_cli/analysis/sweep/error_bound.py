@@ -59,22 +59,35 @@ def largest_move(result: Result) -> Floats:
     largest = np.zeros(result.rows)
     if not rows.states.size:
         return largest
+    sizes = _input_sizes(session)
     constants = np.array(flatten(plan_records(session.layout)), dtype=np.float64)
     for _ in range(tolerances.ERROR_PROBES):
         other = _with_constants(session, _off(constants, stream))
         inputs = session.inputs
-        parts = 1.0 + _signed(stream, inputs.reduced.shape[0])[:, None] * tolerances.ERROR_PROBE
+        off = _signed(stream, len(sizes))[:, None] * tolerances.ERROR_PROBE * sizes
         batch = result.run(
             (),
             Demand.POSITION,
             session=other,
-            inputs=inputs._replace(reduced=inputs.reduced * parts),
+            inputs=inputs._replace(reduced=inputs.reduced + off),
             iterations=tolerances.NEWTON_ITERATIONS,
         )
         move = np.max(np.abs(batch.states - rows.states), axis=0)
         # of a row far from its place the move says nothing
         largest = np.where(move <= tolerances.ERROR_MOVE, np.fmax(largest, move), np.nan)
     return largest
+
+
+def _input_sizes(session: Session) -> Floats:
+    """By what each input is rounded in every row (inputs, rows), in parts of u: by its size with
+    its whole turns, unless it is a whole number in the file's unit that no law gave."""
+    motion, inputs = session.problem.motion, session.inputs
+    sizes = np.abs(inputs.reduced)
+    for number, item in enumerate(motion.inputs):
+        rounded = (item.written != np.rint(item.written)) | (motion.time is not None)
+        full = np.maximum(np.abs(inputs.values[number]), sizes[number])
+        sizes[number] = np.where(rounded, full, sizes[number])
+    return sizes
 
 
 def _with_constants(session: Session, constants: Floats) -> Session:

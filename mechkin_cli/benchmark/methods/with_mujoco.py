@@ -45,6 +45,8 @@ HINGES = {"R": ("hinge",), "P": ("slide",), "C": ("hinge", "slide")}
 def methods(scene: Scene) -> Iterator[Method]:
     """Steps in time, by their number between two rows."""
     mujoco = import_module("mujoco")
+    # that a step was too long is seen in the error; a callback of one's own would be kept for ever
+    mujoco.set_mju_user_warning(str)
     rows = RowByRow(scene)
     _check(scene.chain, rows)
     for steps in STEPS:
@@ -63,8 +65,15 @@ def _check(chain: Chain, rows: RowByRow) -> None:
         raise Unable(f"no model of this tree was written for it (joints {other} in the tree)")
     if not all(_pairs(closing) for closing in chain.closings):
         raise Unable("only loops that close in a ball or a hinge are written for it (its connect)")
-    if not rows.rates.any():
-        raise Unable("the inputs have no rates, so that no time passes between rows")
+    if not between_rows(rows) > 0.0:
+        raise Unable("its inputs have no rates that lead from row to row, so that no time passes")
+
+
+def between_rows(rows: RowByRow) -> float:
+    """The time in s from a row to the next at the inputs' largest rates; 0 where they have none."""
+    largest = np.max(np.abs(rows.rates), axis=1, initial=0.0)
+    moved = np.abs(np.diff(rows.inputs, axis=1))[largest > 0.0]
+    return float(np.max(moved / largest[largest > 0.0, None], initial=0.0))
 
 
 class Stepping:
@@ -72,8 +81,7 @@ class Stepping:
 
     def __init__(self, mujoco: Any, rows: RowByRow, steps: int) -> None:
         self.mujoco, self.rows, self.steps, self.chain = mujoco, rows, steps, rows.chain
-        time = np.abs(np.diff(rows.inputs[0])) / np.max(np.abs(rows.rates[0]))
-        self.step = float(np.median(time)) / steps
+        self.step = between_rows(rows) / steps
         self.names: dict[int, str] = {}
         self.model = mujoco.MjModel.from_xml_string(self._text())
         # its compiler takes points on second bodies from a drawing that need not be closed

@@ -39,17 +39,17 @@ MECHKIN_APART Vec3 third_of_d(const Closure& k, const MotionToJerk& a, const Mot
   return b.point_jerk(k.B.o) - a.point_jerk(k.A.o);
 }
 // Second derivative of axis.d for an axis carried by a link with motion m.
-MECHKIN_INLINE Pack second_along(Vec3 axis, const Motion& m, const Closure& k, const Motion& a, const Motion& b) {
+MECHKIN_INLINE Pack second_along(const Vec3& axis, const Motion& m, const Closure& k, const Motion& a, const Motion& b) {
   return dot(axis, second_of_d(k, a, b)) + Pack(2.0) * dot(m.rate(axis), first_of_d(k, a, b)) +
          dot(m.second_rate(axis), k.d);
 }
-MECHKIN_APART Pack third_along(Vec3 axis, const MotionToJerk& m, const Closure& k, const MotionToJerk& a,
+MECHKIN_APART Pack third_along(const Vec3& axis, const MotionToJerk& m, const Closure& k, const MotionToJerk& a,
                               const MotionToJerk& b) {
   return dot(axis, third_of_d(k, a, b)) + Pack(3.0) * dot(m.rate(axis), second_of_d(k, a, b)) +
          Pack(3.0) * dot(m.second_rate(axis), first_of_d(k, a, b)) + dot(m.third_rate(axis), k.d);
 }
 // Third derivative of x.z for vectors carried by links with motions a and b.
-MECHKIN_APART Pack third_of_product(Vec3 x, const MotionToJerk& a, Vec3 z, const MotionToJerk& b) {
+MECHKIN_APART Pack third_of_product(const Vec3& x, const MotionToJerk& a, const Vec3& z, const MotionToJerk& b) {
   return dot(a.third_rate(x), z) + Pack(3.0) * dot(a.second_rate(x), b.rate(z)) +
          Pack(3.0) * dot(a.rate(x), b.second_rate(z)) + dot(x, b.third_rate(z));
 }
@@ -104,7 +104,7 @@ struct DirectionCondition {
 template <class U>
 struct InPlane : LengthCondition<1> {
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = dot(U::vector(k), k.d); }
-  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) { r[0] = dot(U::vector(k), s.at(point(k))); }
+  static MECHKIN_INLINE void column(const Closure& k, const Twist& s, Pack* r) { r[0] = dot(U::vector(k), s.at(point(k))); }
   static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
     r[0] = second_along(U::vector(k), U::of(a, b), k, a, b);
   }
@@ -121,7 +121,7 @@ struct ParallelAxes : DirectionCondition<2> {
     r[0] = dot(k.A.X, k.B.Z);
     r[1] = dot(k.A.Y, k.B.Z);
   }
-  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) {
+  static MECHKIN_INLINE void column(const Closure& k, const Twist& s, Pack* r) {
     const Vec3 n = cross(k.B.Z, s.angular);  // omega.(z_B x x_A) = -x_A.(z_B x omega)
     r[0] = -dot(k.A.X, n);
     r[1] = -dot(k.A.Y, n);
@@ -147,7 +147,7 @@ struct ParallelAxes : DirectionCondition<2> {
 template <class Cosine>
 struct KeptAngle : DirectionCondition<1> {
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = dot(k.A.Z, k.B.Z) - Cosine::value(k); }
-  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) {
+  static MECHKIN_INLINE void column(const Closure& k, const Twist& s, Pack* r) {
     r[0] = dot(s.angular, cross(k.B.Z, k.A.Z));
   }
   static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
@@ -165,7 +165,7 @@ struct Distance : LengthCondition<1> {
   static MECHKIN_INLINE Pack length(const Closure& k) { return sqrt(dot(k.d, k.d)); }
   static MECHKIN_INLINE Vec3 line(const Closure& k) { return (Pack(1.0) / length(k)) * k.d; }
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = length(k) - k.parameter; }
-  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) { r[0] = dot(line(k), s.at(k.B.o)); }
+  static MECHKIN_INLINE void column(const Closure& k, const Twist& s, Pack* r) { r[0] = dot(line(k), s.at(k.B.o)); }
   static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
     const Vec3 e = line(k), d1 = first_of_d(k, a, b);
     const Pack along = dot(e, d1);

@@ -35,7 +35,7 @@ struct Conditions<One, Rest...> {
     One::residual(k, r);
     Others::residual(k, r + count);
   }
-  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) {
+  static MECHKIN_INLINE void column(const Closure& k, const Twist& s, Pack* r) {
     One::column(k, s, r);
     Others::column(k, s, r + count);
   }

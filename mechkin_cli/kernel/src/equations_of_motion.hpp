@@ -67,7 +67,7 @@ inline void move(const Plan& p, Workspace& w, const ReducedMotion& m, const Pack
 }
 
 // Momentum of a link that moves with a twist: m v and I omega about the kernel's origin.
-inline Wrench momentum(const LinkInertia& m, const Pose& pose, Twist twist) {
+inline Wrench momentum(const LinkInertia& m, const Pose& pose, const Twist& twist) {
   const Vec3 centre = pose.point(m.centre), omega = pose.components(twist.angular);
   const auto* t = m.tensor;
   const Vec3 spin = {Pack(t[0]) * omega.x + Pack(t[3]) * omega.y + Pack(t[4]) * omega.z,

@@ -20,7 +20,7 @@ struct Reflectors {
 inline void reflect(Reflectors f) {
   for (int k = 0; k < f.n; ++k) {
     Pack square = 0.0;
-    for (int i = k; i < f.m; ++i) square += f.a[i * f.n + k] * f.a[i * f.n + k];
+    for (int i = k; i < f.m; ++i) add_product(square, f.a[i * f.n + k], f.a[i * f.n + k]);
     const Pack first = f.a[k * f.n + k], length = copysign(sqrt(square), first);
     f.pivot[k] = -length;
     f.a[k * f.n + k] = first + length;
@@ -28,9 +28,9 @@ inline void reflect(Reflectors f) {
     f.beta[k] = select(v2 > Pack(0.0), Pack(2.0) / v2, Pack(0.0));
     for (int j = k + 1; j < f.n; ++j) {
       Pack s = 0.0;
-      for (int i = k; i < f.m; ++i) s += f.a[i * f.n + k] * f.a[i * f.n + j];
+      for (int i = k; i < f.m; ++i) add_product(s, f.a[i * f.n + k], f.a[i * f.n + j]);
       s *= f.beta[k];
-      for (int i = k; i < f.m; ++i) f.a[i * f.n + j] -= s * f.a[i * f.n + k];
+      for (int i = k; i < f.m; ++i) subtract_product(f.a[i * f.n + j], s, f.a[i * f.n + k]);
     }
   }
 }
@@ -43,16 +43,16 @@ inline Pack least_pivot(Reflectors f) {
 
 MECHKIN_INLINE void apply_reflector(Reflectors f, int k, Pack* b) {
   Pack s = 0.0;
-  for (int i = k; i < f.m; ++i) s += f.a[i * f.n + k] * b[i];
+  for (int i = k; i < f.m; ++i) add_product(s, f.a[i * f.n + k], b[i]);
   s *= f.beta[k];
-  for (int i = k; i < f.m; ++i) b[i] -= s * f.a[i * f.n + k];
+  for (int i = k; i < f.m; ++i) subtract_product(b[i], s, f.a[i * f.n + k]);
 }
 
 // The least-squares solution replaces the first n entries of b (m).
 inline void solve(Reflectors f, Pack* b) {
   for (int k = 0; k < f.n; ++k) apply_reflector(f, k, b);
   for (int k = f.n - 1; k >= 0; --k) {
-    for (int j = k + 1; j < f.n; ++j) b[k] -= f.a[k * f.n + j] * b[j];
+    for (int j = k + 1; j < f.n; ++j) subtract_product(b[k], f.a[k * f.n + j], b[j]);
     b[k] = b[k] / f.pivot[k];
   }
 }
@@ -68,7 +68,7 @@ MECHKIN_INLINE Pack shift_part(int shift, int index) {
 inline void solve_transposed(Reflectors f, Pack* b, int shift, Pack level = 0.0) {
   Pack largest = level;
   for (int k = 0; k < f.n; ++k) {
-    for (int j = 0; j < k; ++j) b[k] -= f.a[j * f.n + k] * b[j];
+    for (int j = 0; j < k; ++j) subtract_product(b[k], f.a[j * f.n + k], b[j]);
     b[k] = b[k] / f.pivot[k];
     largest = max(abs(b[k]), largest);
   }

@@ -18,7 +18,7 @@ constexpr double JOINT_AT_REST = 1e-10;
 constexpr double NO_FRICTION = 1e-12;
 
 // The part of a relative motion that rubs.
-MECHKIN_INLINE Vec3 rubbing_part(int code, Vec3 axis, Vec3 a) {
+MECHKIN_INLINE Vec3 rubbing_part(int code, const Vec3& axis, const Vec3& a) {
   if (code < 0) return zero3();
   if (code == FREE_ALL) return a;
   const Vec3 along = dot(axis, a) * axis;
@@ -30,7 +30,7 @@ struct Slip {
   Vec3 turn, slide;
   Pack speed;
 };
-MECHKIN_INLINE Slip slip_of(const Friction& f, Vec3 axis, Vec3 angular, Vec3 linear) {
+MECHKIN_INLINE Slip slip_of(const Friction& f, const Vec3& axis, const Vec3& angular, const Vec3& linear) {
   Slip s = {rubbing_part(f.turns, axis, angular), rubbing_part(f.slides, axis, linear), Pack(0.0)};
   const Pack radius = f.radius;
   s.speed = sqrt(dot(s.slide, s.slide) + radius * radius * dot(s.turn, s.turn));

@@ -28,9 +28,9 @@ constexpr int FRICTION_LEVELS = 112;
 // Part of Newton's step below which z := mu N(z) is taken instead: at kinks of the magnitudes steps of an eighth help.
 constexpr double FRICTION_SHORTEST = 1.0 / 1024.0;
 
-MECHKIN_INLINE Pack magnitude(Vec3 a) { return sqrt(dot(a, a)); }
+MECHKIN_INLINE Pack magnitude(const Vec3& a) { return sqrt(dot(a, a)); }
 // At least |a|, at most 1.74 times as much.
-MECHKIN_INLINE Pack sum_of_components(Vec3 a) { return abs(a.x) + abs(a.y) + abs(a.z); }
+MECHKIN_INLINE Pack sum_of_components(const Vec3& a) { return abs(a.x) + abs(a.y) + abs(a.z); }
 
 // The Lipschitz matrix L of the friction forces into r.bound, `size` being at least the length of a vector.
 template <class Size>

@@ -10,7 +10,7 @@ namespace {
 // d = 0: a common point, in ground axes.
 struct CommonPoint : LengthCondition<3> {
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = k.d.x, r[1] = k.d.y, r[2] = k.d.z; }
-  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) {
+  static MECHKIN_INLINE void column(const Closure& k, const Twist& s, Pack* r) {
     const Vec3 v = s.at(k.B.o);
     r[0] = v.x, r[1] = v.y, r[2] = v.z;
   }
@@ -40,7 +40,7 @@ struct SameOrientation : DirectionCondition<3> {
     const Vec3 e = select(tiny, lost, (angle / select(tiny, Pack(1.0), s)) * skew);
     r[0] = e.x, r[1] = e.y, r[2] = e.z;
   }
-  static MECHKIN_INLINE void column(const Closure&, Twist s, Pack* r) {
+  static MECHKIN_INLINE void column(const Closure&, const Twist& s, Pack* r) {
     r[0] = s.angular.x, r[1] = s.angular.y, r[2] = s.angular.z;
   }
   static MECHKIN_INLINE void second(const Closure&, const Motion& a, const Motion& b, Pack* r) {

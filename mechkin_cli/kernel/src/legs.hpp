@@ -15,7 +15,7 @@
 namespace {
 
 // Places a leg's body: its start where the pose's origin is, its line towards `end`.
-MECHKIN_INLINE void aim(Pose& pose, const Leg& leg, Vec3 end) {
+MECHKIN_INLINE void aim(Pose& pose, const Leg& leg, const Vec3& end) {
   const Vec3 d = end - pose.o;
   const Pack one = 1.0, none = 0.0;
   pose.X = {one, none, none}, pose.Y = {none, one, none}, pose.Z = {none, none, one};
@@ -23,7 +23,7 @@ MECHKIN_INLINE void aim(Pose& pose, const Leg& leg, Vec3 end) {
 }
 
 // Motion of the body between A on a link with motion a and B on one with motion b.
-MECHKIN_INLINE Motion leg_motion(Vec3 A, Vec3 B, Motion a, Motion b, bool second) {
+MECHKIN_INLINE Motion leg_motion(const Vec3& A, const Vec3& B, Motion a, Motion b, bool second) {
   const Vec3 d = B - A, at_start = a.velocity.at(A), d1 = b.velocity.at(B) - at_start;
   const Pack scale = Pack(1.0) / dot(d, d);
   const Vec3 omega = scale * cross(d, d1);
@@ -38,7 +38,7 @@ MECHKIN_INLINE Motion leg_motion(Vec3 A, Vec3 B, Motion a, Motion b, bool second
 }
 
 // Its spatial jerk, from its motion and those of its ends.
-MECHKIN_INLINE Twist leg_jerk(Vec3 A, Vec3 B, Motion leg, const MotionToJerk& a, const MotionToJerk& b) {
+MECHKIN_INLINE Twist leg_jerk(const Vec3& A, const Vec3& B, Motion leg, const MotionToJerk& a, const MotionToJerk& b) {
   const Vec3 d = B - A, d1 = b.velocity.at(B) - a.velocity.at(A),
              d2 = b.point_acceleration(B) - a.point_acceleration(A), start = a.point_jerk(A),
              d3 = b.point_jerk(B) - start;

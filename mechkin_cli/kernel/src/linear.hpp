@@ -9,6 +9,9 @@
 
 namespace {
 
+// Whether a size known to the compiler pays: not where each operation is many.
+constexpr bool SIZED_BLOCKS = PARTS == 1;
+
 struct Factors {
   Pack* a;     // n x n: L below the diagonal, U above it, reciprocal pivots on it
   Mask* swap;  // n (n - 1) / 2 exchanges in order
@@ -35,7 +38,7 @@ MECHKIN_INLINE void factor_sized(Factors f, int runtime) {
     for (int i = k + 1; i < n; ++i) {
       const Pack l = f.a[i * n + k] * inverse;
       f.a[i * n + k] = l;
-      for (int j = k + 1; j < n; ++j) f.a[i * n + j] -= l * f.a[k * n + j];
+      for (int j = k + 1; j < n; ++j) subtract_product(f.a[i * n + j], l, f.a[k * n + j]);
     }
   }
 }
@@ -52,9 +55,9 @@ MECHKIN_INLINE void solve_sized(Factors f, int runtime, Pack* b) {
       b[i] = select(c, x, y);
     }
   for (int k = 0; k < n; ++k)
-    for (int i = k + 1; i < n; ++i) b[i] -= f.a[i * n + k] * b[k];
+    for (int i = k + 1; i < n; ++i) subtract_product(b[i], f.a[i * n + k], b[k]);
   for (int k = n - 1; k >= 0; --k) {
-    for (int j = k + 1; j < n; ++j) b[k] -= f.a[k * n + j] * b[j];
+    for (int j = k + 1; j < n; ++j) subtract_product(b[k], f.a[k * n + j], b[j]);
     b[k] *= f.a[k * n + k];
   }
 }
@@ -63,11 +66,11 @@ template <int N>
 MECHKIN_INLINE void solve_transposed_sized(Factors f, int runtime, Pack* b) {
   const int n = N ? N : runtime;
   for (int k = 0; k < n; ++k) {
-    for (int j = 0; j < k; ++j) b[k] -= f.a[j * n + k] * b[j];
+    for (int j = 0; j < k; ++j) subtract_product(b[k], f.a[j * n + k], b[j]);
     b[k] *= f.a[k * n + k];
   }
   for (int k = n - 1; k >= 0; --k)
-    for (int i = k + 1; i < n; ++i) b[k] -= f.a[i * n + k] * b[i];
+    for (int i = k + 1; i < n; ++i) subtract_product(b[k], f.a[i * n + k], b[i]);
   int s = n * (n - 1) / 2;
   for (int k = n - 1; k >= 0; --k)
     for (int i = n - 1; i > k; --i) {
@@ -79,7 +82,7 @@ MECHKIN_INLINE void solve_transposed_sized(Factors f, int runtime, Pack* b) {
 }
 
 #define MECHKIN_SIZED(FUNCTION, ...)                 \
-  switch (f.n) {                                     \
+  switch (SIZED_BLOCKS ? f.n : 0) {                  \
     case 1: return FUNCTION<1>(f, 1 __VA_ARGS__);    \
     case 2: return FUNCTION<2>(f, 2 __VA_ARGS__);    \
     case 3: return FUNCTION<3>(f, 3 __VA_ARGS__);    \

@@ -19,7 +19,7 @@ struct Writer {
     if (count == LANES) return store(at, x);
     for (int i = 0; i < count; ++i) at[i] = lane(x, i);
   }
-  MECHKIN_INLINE void put(long slot, Vec3 a) const {
+  MECHKIN_INLINE void put(long slot, const Vec3& a) const {
     put(slot, a.x), put(slot + 1, a.y), put(slot + 2, a.z);
   }
 };
@@ -36,7 +36,7 @@ inline Vec3 output_point(const Plan& p, const Workspace& w, const OutputOf<Numbe
 }
 
 // Moment about the ground's origin of a wrench of the kernel.
-inline Vec3 ground_moment(const Plan& p, Wrench r) {
+inline Vec3 ground_moment(const Plan& p, const Wrench& r) {
   return r.moment + (Pack(1.0) / Pack(p.length)) * cross(constant(p.origin), r.force);
 }
 
@@ -88,7 +88,7 @@ inline int output_value(const Plan& p, const Workspace& w, const Balance* balanc
     out[0] = a;
     return 1;
   };
-  const auto three = [out](Vec3 a) {
+  const auto three = [out](const Vec3& a) {
     out[0] = a.x, out[1] = a.y, out[2] = a.z;
     return 3;
   };

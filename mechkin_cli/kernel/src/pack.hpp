@@ -71,4 +71,16 @@ MECHKIN_INLINE Pack from_parts(const Real* part) { return part[0]; }
 MECHKIN_INLINE Real part_of(Pack a, int) { return a; }
 #endif
 
+#if MECHKIN_ARITHMETIC != MECHKIN_DOUBLE_DOUBLE  // which sums products at less cost
+MECHKIN_INLINE void add_product(Pack& x, const Pack& a, const Pack& b) { x += a * b; }
+MECHKIN_INLINE void subtract_product(Pack& x, const Pack& a, const Pack& b) { x -= a * b; }
+MECHKIN_INLINE Pack sum_of_products(const Pack& a, const Pack& b, const Pack& c, const Pack& d, const Pack& e,
+                                    const Pack& f) {
+  return a * b + c * d + e * f;
+}
+MECHKIN_INLINE Pack difference_of_products(const Pack& a, const Pack& b, const Pack& c, const Pack& d) {
+  return a * b - c * d;
+}
+#endif
+
 }  // namespace

@@ -6,7 +6,7 @@
 namespace {
 
 // axis.d and its derivatives, for an axis carried by a link with motion m.
-MECHKIN_APART void along(Vec3 axis, const MotionToJerk& m, const Closure& k, const PairMotion& p, Pack* out) {
+MECHKIN_APART void along(const Vec3& axis, const MotionToJerk& m, const Closure& k, const PairMotion& p, Pack* out) {
   out[0] = dot(axis, k.d);
   if (p.order < 1) return;
   out[1] = dot(axis, first_of_d(k, p.a, p.b)) + dot(m.rate(axis), k.d);

@@ -14,11 +14,11 @@ struct Powers {
   Pack sum, size;
   MECHKIN_INLINE void add(Pack x) { sum += x, size += abs(x); }
   // a.b component by component: what cancels within it is no rounding of the balance
-  MECHKIN_INLINE void add(Vec3 a, Vec3 b) { add(a.x * b.x), add(a.y * b.y), add(a.z * b.z); }
+  MECHKIN_INLINE void add(const Vec3& a, const Vec3& b) { add(a.x * b.x), add(a.y * b.y), add(a.z * b.z); }
 };
 
 // I a, a in the link's axes.
-inline Vec3 times_tensor(const LinkInertia& m, Vec3 a) {
+inline Vec3 times_tensor(const LinkInertia& m, const Vec3& a) {
   const auto* t = m.tensor;
   return {Pack(t[0]) * a.x + Pack(t[3]) * a.y + Pack(t[4]) * a.z, Pack(t[3]) * a.x + Pack(t[1]) * a.y + Pack(t[5]) * a.z,
           Pack(t[4]) * a.x + Pack(t[5]) * a.y + Pack(t[2]) * a.z};

@@ -11,12 +11,12 @@ namespace {
 
 // x_A.d = y_A.d = z_A.d = 0.
 struct CommonPoint : LengthCondition<3> {
-  static MECHKIN_INLINE void put(const Closure& k, Vec3 a, Pack* r) {
+  static MECHKIN_INLINE void put(const Closure& k, const Vec3& a, Pack* r) {
     r[0] = dot(k.A.X, a), r[1] = dot(k.A.Y, a), r[2] = dot(k.A.Z, a);
   }
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { put(k, k.d, r); }
   // d' - omega_A x d is the velocity against A of the point that passes B.o
-  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) { put(k, s.at(k.B.o), r); }
+  static MECHKIN_INLINE void column(const Closure& k, const Twist& s, Pack* r) { put(k, s.at(k.B.o), r); }
   static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
     InPlane<AX>::second(k, a, b, r), InPlane<AY>::second(k, a, b, r + 1), InPlane<AZ>::second(k, a, b, r + 2);
   }
@@ -31,14 +31,14 @@ struct CommonPoint : LengthCondition<3> {
 // trace, 1 + 2 cos(angle), is -1: a proof needs that positive beside it.
 struct SameOrientation : DirectionCondition<3> {
   // half of z_A.y - y_A.z, x_A.z - z_A.x, y_A.x - x_A.y
-  static MECHKIN_INLINE void put(const Closure& k, Vec3 x, Vec3 y, Vec3 z, Pack* r) {
+  static MECHKIN_INLINE void put(const Closure& k, const Vec3& x, const Vec3& y, const Vec3& z, Pack* r) {
     const Pack half = 0.5;
     r[0] = half * (dot(k.A.Z, y) - dot(k.A.Y, z));
     r[1] = half * (dot(k.A.X, z) - dot(k.A.Z, x));
     r[2] = half * (dot(k.A.Y, x) - dot(k.A.X, y));
   }
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { put(k, k.B.X, k.B.Y, k.B.Z, r); }
-  static MECHKIN_INLINE void column(const Closure& k, Twist s, Pack* r) {
+  static MECHKIN_INLINE void column(const Closure& k, const Twist& s, Pack* r) {
     const Vec3 omega = s.angular;
     put(k, cross(omega, k.B.X), cross(omega, k.B.Y), cross(omega, k.B.Z), r);
   }

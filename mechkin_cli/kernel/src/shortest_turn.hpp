@@ -7,7 +7,7 @@ namespace {
 
 // Turns a pose that stands as drawn by the shortest turn from the unit vector a to the unit vector b
 // (Rodrigues' formula); opposite vectors: half a turn about a vector square to a.
-MECHKIN_INLINE void turn_shortest(Pose& pose, Vec3 a, Vec3 b) {
+MECHKIN_INLINE void turn_shortest(Pose& pose, const Vec3& a, const Vec3& b) {
   const Vec3 v = cross(a, b);
   const Pack c = dot(a, b), square = dot(v, v), one = 1.0;
   // 1 / (1 + c), from |v|^2 = (1 + c)(1 - c) where 1 + c cancels
@@ -19,7 +19,7 @@ MECHKIN_INLINE void turn_shortest(Pose& pose, Vec3 a, Vec3 b) {
   const Vec3 x = {one, Pack(0.0), Pack(0.0)}, y = {Pack(0.0), one, Pack(0.0)};
   const Vec3 square_to = cross(a, select(flat, x, y));
   const Vec3 p = (one / sqrt(dot(square_to, square_to))) * square_to;
-  const auto turned = [&](Vec3 r) -> Vec3 {
+  const auto turned = [&](const Vec3& r) -> Vec3 {
     const Vec3 turn = c * r + cross(v, r) + (dot(v, r) * inverse) * v;
     const Vec3 half = (Pack(2.0) * dot(p, r)) * p - r;
     return select(opposite, half, turn);

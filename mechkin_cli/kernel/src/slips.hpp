@@ -52,14 +52,14 @@ inline long lay_out_slips(const Plan& p, char* at, Slips* s) {
   return room.used;
 }
 
-MECHKIN_INLINE Wrench select(Mask m, Wrench a, Wrench b) {
+MECHKIN_INLINE Wrench select(Mask m, const Wrench& a, const Wrench& b) {
   return {select(m, a.moment, b.moment), select(m, a.force, b.force)};
 }
-MECHKIN_INLINE Wrench couple(Vec3 moment) { return {moment, zero3()}; }
+MECHKIN_INLINE Wrench couple(const Vec3& moment) { return {moment, zero3()}; }
 
 // Directions of a kind of motion, `put` each: along the axis, two square to it that its link carries, or ground's axes.
 template <class Put>
-MECHKIN_INLINE void each_direction(const Workspace& w, const Friction& f, Vec3 axis, int code, Put&& put) {
+MECHKIN_INLINE void each_direction(const Workspace& w, const Friction& f, const Vec3& axis, int code, Put&& put) {
   if (code < 0) return;
   if (code == FREE_ALONG) return put(axis);
   const Pack one = 1.0, none = 0.0;
@@ -119,7 +119,7 @@ inline void find_frame(const Plan& p, const Workspace& w, const ReducedMotion& m
 }
 
 // The derivative of a slip at u'' = 0, right where the joint does not slip: of slides by the accelerations of its point.
-inline Pack convective_slip(const Workspace& w, const JointPlace& j, Vec3 point, Wrench frame) {
+inline Pack convective_slip(const Workspace& w, const JointPlace& j, const Vec3& point, const Wrench& frame) {
   const Motion a = motion_of(w, j.first), b = motion_of(w, j.second);
   const Vec3 carried = cross(b.velocity.angular, b.velocity.at(point)) - cross(a.velocity.angular, a.velocity.at(point));
   return power(b.acceleration - a.acceleration, frame) + dot(carried, frame.force);

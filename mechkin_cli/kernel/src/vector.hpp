@@ -11,17 +11,20 @@ namespace {
 
 struct Vec3 {
   Pack x, y, z;
-  friend MECHKIN_INLINE Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend MECHKIN_INLINE Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-  friend MECHKIN_INLINE Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
-  friend MECHKIN_INLINE Vec3 operator*(Pack s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
-  MECHKIN_INLINE Vec3& operator+=(Vec3 b) { return *this = *this + b; }
-  MECHKIN_INLINE Vec3& operator-=(Vec3 b) { return *this = *this - b; }
+  friend MECHKIN_INLINE Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend MECHKIN_INLINE Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend MECHKIN_INLINE Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
+  friend MECHKIN_INLINE Vec3 operator*(const Pack& s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
+  MECHKIN_INLINE Vec3& operator+=(const Vec3& b) { return *this = *this + b; }
+  MECHKIN_INLINE Vec3& operator-=(const Vec3& b) { return *this = *this - b; }
 };
 
-MECHKIN_INLINE Pack dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-MECHKIN_INLINE Vec3 cross(Vec3 a, Vec3 b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+MECHKIN_INLINE Pack dot(const Vec3& a, const Vec3& b) {
+  return sum_of_products(a.x, b.x, a.y, b.y, a.z, b.z);
+}
+MECHKIN_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
+          difference_of_products(a.x, b.y, a.y, b.x)};
 }
 // Constants of a plan: doubles that all lanes share, or packs.
 template <class Number>
@@ -36,14 +39,17 @@ struct Pose {
   // A constant vector given in this frame, in ground axes.
   template <class Number>
   MECHKIN_INLINE Vec3 vector(const Number* c) const {
-    return Pack(c[0]) * X + Pack(c[1]) * Y + Pack(c[2]) * Z;
+    return vector(Vec3{Pack(c[0]), Pack(c[1]), Pack(c[2])});
   }
-  MECHKIN_INLINE Vec3 vector(Vec3 c) const { return c.x * X + c.y * Y + c.z * Z; }
+  MECHKIN_INLINE Vec3 vector(const Vec3& c) const {
+    return {sum_of_products(c.x, X.x, c.y, Y.x, c.z, Z.x), sum_of_products(c.x, X.y, c.y, Y.y, c.z, Z.y),
+            sum_of_products(c.x, X.z, c.y, Y.z, c.z, Z.z)};
+  }
   // A constant point given in this frame, in ground axes.
   template <class Number>
   MECHKIN_INLINE Vec3 point(const Number* c) const { return o + vector(c); }
   // Components in this frame of a vector given in ground axes.
-  MECHKIN_INLINE Vec3 components(Vec3 a) const { return {dot(X, a), dot(Y, a), dot(Z, a)}; }
+  MECHKIN_INLINE Vec3 components(const Vec3& a) const { return {dot(X, a), dot(Y, a), dot(Z, a)}; }
 };
 
 // Unit quaternion, scalar part first.
@@ -51,53 +57,53 @@ struct Quaternion {
   Pack w, x, y, z;
 };
 
-MECHKIN_INLINE Quaternion product(Quaternion a, Quaternion b) {
+MECHKIN_INLINE Quaternion product(const Quaternion& a, const Quaternion& b) {
   return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
           a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
 }
-MECHKIN_INLINE Quaternion normalised(Quaternion a) {
+MECHKIN_INLINE Quaternion normalised(const Quaternion& a) {
   const Pack s = Pack(1.0) / sqrt(a.w * a.w + a.x * a.x + a.y * a.y + a.z * a.z);
   return {a.w * s, a.x * s, a.y * s, a.z * s};
 }
 
 struct Twist {
   Vec3 angular, linear;
-  friend MECHKIN_INLINE Twist operator+(Twist a, Twist b) {
+  friend MECHKIN_INLINE Twist operator+(const Twist& a, const Twist& b) {
     return {a.angular + b.angular, a.linear + b.linear};
   }
-  friend MECHKIN_INLINE Twist operator-(Twist a, Twist b) {
+  friend MECHKIN_INLINE Twist operator-(const Twist& a, const Twist& b) {
     return {a.angular - b.angular, a.linear - b.linear};
   }
-  friend MECHKIN_INLINE Twist operator*(Pack s, Twist a) { return {s * a.angular, s * a.linear}; }
-  MECHKIN_INLINE Twist& operator+=(Twist b) { return *this = *this + b; }
+  friend MECHKIN_INLINE Twist operator*(const Pack& s, const Twist& a) { return {s * a.angular, s * a.linear}; }
+  MECHKIN_INLINE Twist& operator+=(const Twist& b) { return *this = *this + b; }
   // Velocity of the body-fixed point that is at p.
-  MECHKIN_INLINE Vec3 at(Vec3 p) const { return linear + cross(angular, p); }
+  MECHKIN_INLINE Vec3 at(const Vec3& p) const { return linear + cross(angular, p); }
 };
 MECHKIN_INLINE Twist zero_twist() { return {zero3(), zero3()}; }
 
 // Lie bracket: the rate of a screw b that is carried by a body moving with twist a.
-MECHKIN_INLINE Twist bracket(Twist a, Twist b) {
+MECHKIN_INLINE Twist bracket(const Twist& a, const Twist& b) {
   return {cross(a.angular, b.angular), cross(a.angular, b.linear) + cross(a.linear, b.angular)};
 }
 
 struct Wrench {
   Vec3 moment, force;
-  friend MECHKIN_INLINE Wrench operator+(Wrench a, Wrench b) {
+  friend MECHKIN_INLINE Wrench operator+(const Wrench& a, const Wrench& b) {
     return {a.moment + b.moment, a.force + b.force};
   }
-  friend MECHKIN_INLINE Wrench operator-(Wrench a, Wrench b) {
+  friend MECHKIN_INLINE Wrench operator-(const Wrench& a, const Wrench& b) {
     return {a.moment - b.moment, a.force - b.force};
   }
-  friend MECHKIN_INLINE Wrench operator*(Pack s, Wrench a) { return {s * a.moment, s * a.force}; }
-  MECHKIN_INLINE Wrench& operator+=(Wrench b) { return *this = *this + b; }
-  MECHKIN_INLINE Wrench& operator-=(Wrench b) { return *this = *this - b; }
+  friend MECHKIN_INLINE Wrench operator*(const Pack& s, const Wrench& a) { return {s * a.moment, s * a.force}; }
+  MECHKIN_INLINE Wrench& operator+=(const Wrench& b) { return *this = *this + b; }
+  MECHKIN_INLINE Wrench& operator-=(const Wrench& b) { return *this = *this - b; }
 };
 MECHKIN_INLINE Wrench zero_wrench() { return {zero3(), zero3()}; }
 // A force whose line of action passes through p.
-MECHKIN_INLINE Wrench force_at(Vec3 p, Vec3 force) { return {cross(p, force), force}; }
+MECHKIN_INLINE Wrench force_at(const Vec3& p, const Vec3& force) { return {cross(p, force), force}; }
 
 // Power of a wrench on a twist.
-MECHKIN_INLINE Pack power(Twist t, Wrench w) {
+MECHKIN_INLINE Pack power(const Twist& t, const Wrench& w) {
   return dot(t.angular, w.moment) + dot(t.linear, w.force);
 }
 
@@ -105,12 +111,12 @@ MECHKIN_INLINE Pack power(Twist t, Wrench w) {
 struct Motion {
   Twist velocity, acceleration;
   // Second derivative of the position of the body-fixed point at p.
-  MECHKIN_INLINE Vec3 point_acceleration(Vec3 p) const {
+  MECHKIN_INLINE Vec3 point_acceleration(const Vec3& p) const {
     return acceleration.at(p) + cross(velocity.angular, velocity.at(p));
   }
   // Derivatives of a vector carried by the link.
-  MECHKIN_INLINE Vec3 rate(Vec3 a) const { return cross(velocity.angular, a); }
-  MECHKIN_INLINE Vec3 second_rate(Vec3 a) const {
+  MECHKIN_INLINE Vec3 rate(const Vec3& a) const { return cross(velocity.angular, a); }
+  MECHKIN_INLINE Vec3 second_rate(const Vec3& a) const {
     return cross(acceleration.angular, a) + cross(velocity.angular, cross(velocity.angular, a));
   }
 };
@@ -119,12 +125,12 @@ struct Motion {
 struct MotionToJerk : Motion {
   Twist jerk;
   // Third derivative of the position of the body-fixed point at p.
-  MECHKIN_INLINE Vec3 point_jerk(Vec3 p) const {
+  MECHKIN_INLINE Vec3 point_jerk(const Vec3& p) const {
     return jerk.at(p) + Pack(2.0) * cross(acceleration.angular, velocity.at(p)) +
            cross(velocity.angular, point_acceleration(p));
   }
   // Third derivative of a vector carried by the link.
-  MECHKIN_INLINE Vec3 third_rate(Vec3 a) const {
+  MECHKIN_INLINE Vec3 third_rate(const Vec3& a) const {
     return cross(jerk.angular, a) + Pack(2.0) * cross(acceleration.angular, rate(a)) +
            cross(velocity.angular, second_rate(a));
   }

@@ -5,13 +5,13 @@
 
 namespace {
 
-MECHKIN_INLINE Vec3 select(Mask m, Vec3 a, Vec3 b) {
+MECHKIN_INLINE Vec3 select(Mask m, const Vec3& a, const Vec3& b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
 }
 
 // The quaternion of a rotation with columns x, y, z, of either sign: the row of 4 q q^T with the largest diagonal
 // (Shepperd, Quaternion from rotation matrix, J. Guidance and Control 1, 1978).
-MECHKIN_INLINE Quaternion quaternion_of(Vec3 x, Vec3 y, Vec3 z) {
+MECHKIN_INLINE Quaternion quaternion_of(const Vec3& x, const Vec3& y, const Vec3& z) {
   const Pack one = 1.0, a = y.z - z.y, b = z.x - x.z, c = x.y - y.x;
   const Pack d = x.y + y.x, e = x.z + z.x, f = y.z + z.y;
   const Quaternion rows[4] = {{one + x.x + y.y + z.z, a, b, c},

@@ -15,11 +15,11 @@ struct Balance {
   bool moving;
   Pack level;  // of the joints' wrenches
 
-  MECHKIN_INLINE void apply(int link, Wrench load) {
+  MECHKIN_INLINE void apply(int link, const Wrench& load) {
     if (link < 0) return;
     w.carried[link] -= load;
   }
-  MECHKIN_INLINE void apply_outside(int link, Wrench load) {
+  MECHKIN_INLINE void apply_outside(int link, const Wrench& load) {
     apply(link, load);
     if (link >= 0) outside += load;
   }
@@ -32,7 +32,7 @@ inline Wrench inertia_wrench(const LinkInertia& m, const Pose& pose, const Motio
   const Vec3 omega = pose.components(motion.velocity.angular);
   const Vec3 alpha = pose.components(motion.acceleration.angular);
   const auto* t = m.tensor;
-  const auto tensor = [&](Vec3 a) -> Vec3 {
+  const auto tensor = [&](const Vec3& a) -> Vec3 {
     return {Pack(t[0]) * a.x + Pack(t[3]) * a.y + Pack(t[4]) * a.z,
             Pack(t[3]) * a.x + Pack(t[1]) * a.y + Pack(t[5]) * a.z,
             Pack(t[4]) * a.x + Pack(t[5]) * a.y + Pack(t[2]) * a.z};

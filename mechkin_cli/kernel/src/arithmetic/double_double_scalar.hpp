@@ -29,6 +29,36 @@ MECHKIN_APART DoubleDouble operator/(const DoubleDouble& a, const DoubleDouble& 
   return {select(proper, r.high, first), select(proper, r.low, Real(0.0))};
 }
 
+// Sums of products at once, in which only the high parts' sums are exact: relative errors of a few u^2, measured by the
+// sum of the products' magnitudes, as those of the products themselves are.
+
+// What the low parts add to a * b beside the product of the high ones.
+MECHKIN_INLINE Real mixed_products(const DoubleDouble& a, const DoubleDouble& b) { return a.high * b.low + a.low * b.high; }
+
+// x + a b, x - a b
+MECHKIN_APART void add_product(DoubleDouble& x, const DoubleDouble& a, const DoubleDouble& b) {
+  const DoubleDouble p = two_product(a.high, b.high), sum = two_sum(x.high, p.high);
+  x = two_sum(sum.high, sum.low + (x.low + (p.low + mixed_products(a, b))));
+}
+MECHKIN_APART void subtract_product(DoubleDouble& x, const DoubleDouble& a, const DoubleDouble& b) {
+  const DoubleDouble p = two_product(a.high, b.high), sum = two_sum(x.high, -p.high);
+  x = two_sum(sum.high, sum.low + (x.low - (p.low + mixed_products(a, b))));
+}
+// a b + c d + e f
+MECHKIN_APART DoubleDouble sum_of_products(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c,
+                                           const DoubleDouble& d, const DoubleDouble& e, const DoubleDouble& f) {
+  const DoubleDouble p = two_product(a.high, b.high), q = two_product(c.high, d.high), r = two_product(e.high, f.high);
+  const DoubleDouble two = two_sum(p.high, q.high), three = two_sum(two.high, r.high);
+  const Real low = (p.low + mixed_products(a, b)) + (q.low + mixed_products(c, d)) + (r.low + mixed_products(e, f));
+  return two_sum(three.high, (two.low + three.low) + low);
+}
+// a b - c d
+MECHKIN_APART DoubleDouble difference_of_products(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c,
+                                                  const DoubleDouble& d) {
+  const DoubleDouble p = two_product(a.high, b.high), q = two_product(c.high, d.high), sum = two_sum(p.high, -q.high);
+  return two_sum(sum.high, sum.low + ((p.low + mixed_products(a, b)) - (q.low + mixed_products(c, d))));
+}
+
 MECHKIN_INLINE DoubleDouble& DoubleDouble::operator+=(const DoubleDouble& b) { return *this = *this + b; }
 MECHKIN_INLINE DoubleDouble& DoubleDouble::operator-=(const DoubleDouble& b) { return *this = *this - b; }
 MECHKIN_INLINE DoubleDouble& DoubleDouble::operator*=(const DoubleDouble& b) { return *this = *this * b; }
