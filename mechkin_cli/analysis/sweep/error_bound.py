@@ -24,9 +24,11 @@ from mechkin_cli import tolerances
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.plan import plan_records
 from mechkin_cli.solver.random_starts import RandomStarts
-from mechkin_cli.solver.records import flatten
+from mechkin_cli.solver.records import ClosingJoint, Leg, TreeJoint, flatten
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.analysis.sweep import Result
     from mechkin_cli.arrays import Floats
     from mechkin_cli.solver.session import Session
@@ -60,9 +62,9 @@ def largest_move(result: Result) -> Floats:
     if not rows.states.size:
         return largest
     sizes = _input_sizes(session)
-    constants = np.array(flatten(plan_records(session.layout)), dtype=np.float64)
+    constants, placing = _constants(session)
     for _ in range(tolerances.ERROR_PROBES):
-        other = _with_constants(session, _off(constants, stream))
+        other = _with_constants(session, _off(constants, placing, stream))
         inputs = session.inputs
         off = _signed(stream, len(sizes))[:, None] * tolerances.ERROR_PROBE * sizes
         batch = result.run(
@@ -99,8 +101,18 @@ def _with_constants(session: Session, constants: Floats) -> Session:
     return changed
 
 
-def _off(constants: Floats, stream: RandomStarts) -> Floats:
-    return constants * (1.0 + _signed(stream, constants.size) * tolerances.ERROR_PROBE)
+def _constants(session: Session) -> tuple[Floats, NDArray[np.bool_]]:
+    """The plan's constants, and which of them place links: masses, loads and what else no position
+    reads must not change a random number."""
+    records = plan_records(session.layout)
+    placing = [isinstance(r, TreeJoint | ClosingJoint | Leg) for r in records for _ in flatten([r])]
+    return np.array(flatten(records), dtype=np.float64), np.array(placing, dtype=np.bool_)
+
+
+def _off(constants: Floats, placing: NDArray[np.bool_], stream: RandomStarts) -> Floats:
+    found = constants.copy()
+    found[placing] *= 1.0 + _signed(stream, int(placing.sum())) * tolerances.ERROR_PROBE
+    return found
 
 
 def _signed(stream: RandomStarts, count: int) -> Floats:
