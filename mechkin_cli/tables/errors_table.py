@@ -31,7 +31,6 @@ def cells_table(columns: Sequence[ColumnErrors], run: str = SWEEP) -> Columns:
     counts = [len(rows) for rows, *_ in parts]
     number = [np.concatenate([part[k] for part in parts] or [np.empty(0)]) for k in range(5)]
     row, value, error, relative, digits = number
-    whys = [why for c, count in zip(columns, counts, strict=True) for why in _whys(c, count)]
     return Columns(
         _name(run),
         "True errors of the cells",
@@ -42,7 +41,7 @@ def cells_table(columns: Sequence[ColumnErrors], run: str = SWEEP) -> Columns:
             Column("error", "", error),
             Column("relative", "", relative),
             Column("digits", "", digits, 0),
-            Column("why", "", words_of(whys)),
+            Column("why", "", _whys(columns, counts)),
         ),
         of_rows=False,
     )
@@ -100,12 +99,18 @@ def _cells(column: ColumnErrors) -> tuple[FloatArray, ...]:
     return rows, column.values, column.error, column.relative, digits
 
 
-def _whys(column: ColumnErrors, count: int) -> list[str]:
-    """What is said of each of a column's lines."""
-    if column.why:
-        return [column.why] * count
-    empty, known = ~np.isfinite(column.values), np.isfinite(column.error)
-    return [EMPTY if e else "" if k else LOST for e, k in zip(empty, known, strict=True)]
+def _whys(columns: Sequence[ColumnErrors], counts: Sequence[int]) -> Words:
+    """What is said of each line."""
+    words = tuple(dict.fromkeys(("", EMPTY, LOST, *(column.why for column in columns))))
+    known = [np.zeros(0, dtype=np.int32)]
+    for column, count in zip(columns, counts, strict=True):
+        if column.why:
+            codes = np.full(count, words.index(column.why))
+        else:
+            measured = np.where(np.isfinite(column.error), 0, 2)
+            codes = np.where(np.isfinite(column.values), measured, 1)
+        known.append(codes.astype(np.int32))
+    return Words(np.concatenate(known), words)
 
 
 def _or_nan(digits: FloatArray) -> FloatArray:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from friction.slider_crank import TEXT as FRICTION
 from mechanisms.runs import model, run
 from oracle import assemble, condition_of, document, mp, newton_euler, read, to_text
 from oracle_checks.legs import rssr, stewart, suspension
@@ -182,6 +183,31 @@ def test_a_redundant_loop_is_that_of_its_closed_form() -> None:
         assert min(abs(found - height), abs(found - height_other)) < 1e-29
 
 
+@pytest.mark.parametrize(
+    "text", [FRICTION, suspension(), stewart()], ids=["friction", "suspension", "platform"]
+)
+def test_powers_balance_to_the_last_digits(text: str) -> None:
+    """The balance of powers shares no sum with the balance of forces; with friction at all joints,
+    whose forces follow from the reactions."""
+    result = analyzed(text)
+    session, rows = result.session, result.row_states
+    inputs = session.precise.inputs(session)
+    batch = session.run_precise(
+        inputs.reduced,
+        rows.states,
+        # in doubles a leg's line has no length of one
+        constants=session.precise.constants(session),
+        rates=inputs.rates,
+        accelerations=inputs.accelerations,
+        turned=rows.turns,
+        whole=inputs.whole,
+        demand=MOTION | Demand.FORCES | Demand.POWER,
+    )
+    assert batch.good.all()
+    assert batch.power_error is not None
+    assert np.max(np.abs(batch.power_error[0])) < CLOSE
+
+
 def test_a_row_that_does_not_close_says_so() -> None:
     """A four-bar whose crank is turned where the others do not reach."""
     result = run("rssr").result
@@ -231,3 +257,14 @@ def test_the_condition_is_not_told() -> None:
     session, rows = run("rssr").result.session, run("rssr").result.row_states
     with pytest.raises(ValueError, match="told by a run in doubles"):
         session.run_precise(session.inputs.reduced, rows.states, demand=Demand.CONDITION)
+
+
+def test_numbers_that_do_not_fit_are_refused() -> None:
+    session, rows = run("rssr").result.session, run("rssr").result.row_states
+    inputs, constants = session.inputs.reduced, session.precise.constants(session)
+    with pytest.raises(ValueError, match="parts of a number"):
+        session.run_precise(np.zeros((1, 3, inputs.shape[1])), rows.states)
+    with pytest.raises(ValueError, match="instead of"):
+        session.run_precise(inputs, rows.states, constants=constants[:-1])
+    with pytest.raises(ValueError, match="low: not finite"):
+        session.run_precise(inputs, rows.states, constants=constants * np.array([1.0, np.nan]))
