@@ -35,7 +35,7 @@ def stress_command(asked: Stress, show: Callable[[Table], None]) -> int:
     """Runs what is asked for; `show` prints a table for a person.
 
     Returns:
-        The exit code: 1 where a row is wrong and says ok, or where the page is not current.
+        The exit code: 1 where a row is wrong and says ok, a file is refused, or the page is old.
 
     Raises:
         UsageError: an unknown family, or options that do not go together.
@@ -65,7 +65,7 @@ def stress_command(asked: Stress, show: Callable[[Table], None]) -> int:
 
         for table in tables(tallies):
             show(table)
-    wrong = any(tally.verdicts["false_ok"] for tally in tallies)
+    wrong = any(tally.verdicts["false_ok"] or tally.verdicts["refused"] for tally in tallies)
     return ExitCode.DIFFERENCES if wrong else ExitCode.OK
 
 

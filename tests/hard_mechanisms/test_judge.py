@@ -122,3 +122,14 @@ def test_parts_of_a_family_add_up_to_the_whole() -> None:
     for number in (6, 0, 3):
         parts.merge(of_record(run_block("many turns", 3, [number]).record()))
     assert parts.in_order().record() == whole.in_order().record()
+
+
+def test_a_file_that_is_refused_ends_no_other() -> None:
+    block = drawn(FAMILIES["sizes"], 1, [0])
+    truth = block.truth(block.places)
+    texts = ["format: 2\n", block.texts[0]]
+    found, _, refused = solve(texts, block.places.shape[1], truth.quantities)
+    assert list(refused) == [0]
+    assert "InvalidFile" in refused[0]
+    assert (found.codes[0] == Status.not_assembled).all()
+    assert (found.codes[1, : ROW + 1] == Status.ok).all()

@@ -11,7 +11,6 @@ from mechkin_cli.benchmark.stress.certify import Proofs, prove, unasked
 from mechkin_cli.benchmark.stress.judge import Found
 from mechkin_cli.benchmark.stress.numbers.series import Series
 from mechkin_cli.benchmark.stress.quantity import Quantity
-from mechkin_cli.diagnostics import MechkinError
 from mechkin_cli.interface import Analysis, loads
 from mechkin_cli.status import Status
 
@@ -53,8 +52,9 @@ def solve(
     for k, text in enumerate(texts):
         try:
             analysis = _run(text, names, response=response)
-        except MechkinError as error:
-            refused[k] = str(error)
+        # whatever a file brings about is a finding, and no end of the others
+        except Exception as error:
+            refused[k] = f"{type(error).__name__}: {error}"
             continue
         codes[k] = analysis.result.status
         condition[k] = analysis[CONDITION]
