@@ -492,8 +492,8 @@ units: a multiple of a step, a unit and a whole number of turns taken off are le
 roundings."""
 
 ENCLOSURE_ROUNDING: Final = 2.0**-50
-"""Part of a coordinate and its radius that is added to the radius: both are converted to the file's
-units, by four roundings at most."""
+"""Part of a quantity, its whole turns and its radius that is added to the radius: all are converted
+to the file's units, by six roundings at most."""
 
 SAME_BOX: Final = 2.0**-44
 """Distance (rad, length units, parts of either) added to the radii of two boxes before they are

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.analysis.proof.enclosures import enclosures, is_enclosed
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number, UsageError
 from mechkin_cli.interface.arguments import a_text
-from mechkin_cli.mechanism.joint_table import dimension_of
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.proof import Proof
 from mechkin_cli.runs import SWEEP
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.interface.analysis import Analysis
 
+FULL_TURN = 2.0 * np.pi
 GAPS_TOLD = 4
 """Gaps that are told one by one."""
 
@@ -103,35 +105,36 @@ class Certificate:
         return f"{rows}; one branch from end to end ({found.tubes} {tubes})"
 
     def enclosure(self, name: str) -> tuple[Floats, Floats]:
-        """Bounds of a coordinate that the tree carries, in the file's units: two arrays (rows,).
+        """Bounds of a quantity in the file's units: two arrays (rows,), of a vector (rows, 3).
 
-        The position of the mechanism as the kernel holds it lies between them, in every row that
-        is proven; nan elsewhere.
+        Coordinates, points, rates, accelerations, reactions and efforts of the mechanism as the
+        file's text says it lie between them, in every row that is proven; nan elsewhere, where the
+        quantity is not unique, and where it goes by friction, actuators or tables of loads.
 
         Raises:
-            UsageError: no such coordinate, or one that a closing joint has.
+            UsageError: no such quantity, or one that is not enclosed: derived ones, jerks.
         """
-        a_text("coordinate", name, '"O4.theta"')
-        result, session = self.analysis.result, self.analysis.result.session
-        owner, _, coordinate = name.rpartition(".")
-        edge = session.layout.edge_number.get(owner)
-        joint = session.layout.mechanism.joints.get(owner)
-        if joint is None or edge is None or coordinate not in joint.type.freedom_of:
-            raise UsageError(f"{name[:LONGEST_NAME]} is no coordinate of a joint of the tree")
-        freedom = joint.type.freedom_of[coordinate]
-        column = session.layout.column(edge, freedom)
-        unit = abs(joint.unit_of(coordinate, session.layout.length))  # a left thread's is negative
-        radius = self._found.boxes.radius[column] * unit
-        units, dimension = result.units, dimension_of(coordinate)
-        middle = self.analysis[name]
-        off = np.asarray(units.from_si(radius.copy(), dimension), dtype=np.float64)
-        # the conversion of both rounds
-        off = np.where(
-            self._found.on_branch,
-            off + tolerances.ENCLOSURE_ROUNDING * (off + np.abs(middle)),
-            np.nan,
+        a_text("quantity", name, '"O4.theta_dot"')
+        result = self.analysis.result
+        wanted = result.problem.quantities().get(name)
+        if wanted is None or not is_enclosed(result.problem.mechanism, wanted):
+            raise UsageError(f"{name[:LONGEST_NAME]} is no quantity that is enclosed")
+        rows = result.row_states
+        found = enclosures(result.session, self._found, [wanted], rows.states, rows.turns)
+        middle, radius = found[name]
+        known = np.asarray(result.units.to_si(self.analysis[name], wanted.dimension))
+        scale = np.abs(middle)
+        if wanted.kind == "coordinate" and not wanted.order and is_angle(wanted.coordinate):
+            turns = FULL_TURN * np.rint((known - middle) / FULL_TURN)
+            middle, scale = middle + turns, scale + np.abs(turns)
+        middle, radius, scale = (
+            np.asarray(result.units.from_si(part, wanted.dimension))
+            for part in (middle, radius, scale)
         )
-        return middle - off, middle + off
+        off = radius + tolerances.ENCLOSURE_ROUNDING * (radius + scale)
+        off = np.where(np.isfinite(off) & np.isfinite(np.atleast_2d(known.T)), off, np.nan)
+        low, high = (middle - off).T, (middle + off).T
+        return (low, high) if wanted.vector else (low[:, 0], high[:, 0])
 
     def _told(self, gap: Gap) -> Diagnostic:
         rows = (

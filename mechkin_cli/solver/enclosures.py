@@ -31,7 +31,56 @@ class Enclosure(NamedTuple):
     radius: Floats
 
 
-class Boxes(NamedTuple):
+class Given(NamedTuple):
+    """The inputs of rows, enclosed.
+
+    Attributes:
+        inputs, rates, accelerations: (inputs, rows), values without whole turns.
+        whole: those turns (inputs, rows).
+        ties: rates of tied inputs by those of their leaders (ties, rows).
+        time: what laws of loads read as time, s (1, rows).
+    """
+
+    inputs: Enclosure
+    rates: Enclosure
+    accelerations: Enclosure
+    whole: Floats
+    ties: Enclosure | None
+    time: Enclosure | None
+
+    @classmethod
+    def of(cls, session: Session) -> Given:
+        """As the file's text says them; where it cannot be followed to them, as the doubles are."""
+        try:
+            precise = session.precise.enclosed_inputs(session)
+        except (LookupError, ValueError, TraceLost):
+            return cls.of_doubles(session)
+        ties, time = precise.tie_rates, precise.time
+        return cls(
+            _both(precise.reduced),
+            _both(precise.rates),
+            _both(precise.accelerations),
+            precise.whole,
+            None if ties is None else _both(ties),
+            None if time is None else _both(time[None]),
+        )
+
+    @classmethod
+    def of_doubles(cls, session: Session) -> Given:
+        """As the kernel holds them."""
+        inputs, moments = session.inputs, session.problem.motion.time
+        ties = session.tie_rates
+        return cls(
+            _point(inputs.reduced),
+            _point(inputs.rates),
+            _point(inputs.accelerations),
+            inputs.whole,
+            None if ties is None else _point(ties),
+            None if moments is None else _point(moments.values[None]),
+        )
+
+
+class Positions(NamedTuple):
     """Where the rows' positions are.
 
     Attributes:
@@ -40,35 +89,30 @@ class Boxes(NamedTuple):
         states: the boxes' middles (states, rows).
         radius: their radii (columns, rows), rad and the kernel's lengths; of orientations those of
             the increments that turn them.
-        inputs, rates, accelerations: of the inputs, without whole turns (inputs, rows).
     """
 
     plan: Plan
     radii: Plan | None
     states: Floats
     radius: Floats
-    inputs: Enclosure
-    rates: Enclosure
-    accelerations: Enclosure
 
 
 def enclose(
     session: Session,
-    boxes: Boxes,
+    positions: Positions,
+    given: Given,
     wanted: Iterable[Wanted],
     *,
     turned: Floats | None = None,
-    ties: Floats | None = None,
 ) -> Mapping[str, Enclosure]:
     """Enclosures of quantities in SI (width, rows) by name.
 
     Nothing is known of what goes by friction, by efforts at actuators other than the inputs, or by
-    loads that laws vary. Reactions are those that the closing equations give which are solved
-    for: of unique ones, the reactions. Angles are those next to the kernel's, up to whole turns.
+    tables of loads. Reactions are those that the closing equations give which are solved for: of
+    unique ones, the reactions. Angles are those next to the kernel's, up to whole turns.
 
     Args:
         turned: the closing joints' angles as following has them (turn slots, rows).
-        ties: rates of tied inputs by those of their leaders (ties, rows), exact.
     """
     wanted = tuple(wanted)
     mechanism = session.problem.mechanism
@@ -77,21 +121,22 @@ def enclose(
         raise ValueError("third derivatives are not enclosed")
     readout = session.readout(wanted)
     outputs, output_radii = _outputs(session, readout.outputs, wanted)
-    rows = boxes.states.shape[1]
+    rows = positions.states.shape[1]
     moving, forces = bool(demand & Demand.VELOCITY), bool(demand & Demand.FORCES)
     accelerating = bool(demand & Demand.ACCELERATION)
     values = np.full((2 * outputs.slots, rows), np.nan)
     _kernel.enclose(
-        boxes.plan,
-        radii=boxes.radii,
-        states=np.ascontiguousarray(boxes.states),
-        inputs=_parts(boxes.inputs),
-        radius=boxes.radius,
-        rates=_parts(boxes.rates) if moving else None,
-        accelerations=_parts(boxes.accelerations) if accelerating else None,
-        ties=None if ties is None else _parts(Enclosure(ties, np.zeros_like(ties))),
+        positions.plan,
+        radii=positions.radii,
+        states=np.ascontiguousarray(positions.states),
+        inputs=_parts(given.inputs),
+        radius=positions.radius,
+        rates=_parts(given.rates) if moving else None,
+        accelerations=_parts(given.accelerations) if accelerating else None,
+        ties=None if given.ties is None else _parts(given.ties),
+        time=None if given.time is None else _parts(given.time),
         turned=turned,
-        whole=session.inputs.whole if session.inputs.whole.shape[1] == rows else None,
+        whole=given.whole,
         forces=int(forces),
         outputs=outputs,
         output_radii=output_radii,
@@ -105,6 +150,15 @@ def enclose(
         known = np.isfinite(middle) & np.isfinite(radius)
         found[quantity.name] = Enclosure(middle, np.where(known, radius, np.inf))
     return found
+
+
+def _both(parts: Floats) -> Enclosure:
+    """Of (numbers, 2, rows)."""
+    return Enclosure(parts[:, 0], parts[:, 1])
+
+
+def _point(values: Floats) -> Enclosure:
+    return Enclosure(values, np.zeros_like(values))
 
 
 def _parts(enclosure: Enclosure) -> Floats:

@@ -74,6 +74,10 @@ class Boxes(NamedTuple):
         return Boxes(self.proven[places], radius, self.contraction[places], self.beyond[places])
 
 
+_MEASURED = 1.0 + 1.0 / 1024.0
+"""Above what a distance in double-double may be off."""
+
+
 class Nodes(NamedTuple):
     """Places along a way of the inputs in the kernel's units, which goes straight from each to the
     next: inputs with whole turns and without (inputs, nodes), states (states, nodes)."""
@@ -101,7 +105,26 @@ def input_rounding(session: Session, values: Floats) -> Floats:
     the rows tell, since one near zero may be what two large ones leave."""
     largest = np.abs(session.inputs.values).max(axis=1, initial=0.0, keepdims=True)
     rounding: Floats = tolerances.INPUT_ROUNDING * np.maximum(largest, np.abs(values))
-    return rounding
+    return np.maximum(
+        rounding,
+        session.once(
+            ("off the text", session.inputs.values.tobytes()), lambda: _off_the_text(session)
+        ),
+    )
+
+
+def _off_the_text(session: Session) -> Floats:
+    """How far the inputs (inputs, 1) are from the text in some row, measured in double-double; zero
+    where the text cannot be followed to them. Laws and expressions may cancel."""
+    own = session.inputs
+    try:
+        found = session.precise.inputs(session)
+    except (LookupError, ValueError, TraceLost):
+        return np.zeros((len(own.values), 1))
+    pairs = ((own.values, found.values), (own.reduced, found.reduced))
+    off = [np.abs((text[:, 0] - mine) + text[:, 1]) for mine, text in pairs]
+    largest: Floats = np.maximum(*off).max(axis=1, initial=0.0, keepdims=True)
+    return largest * _MEASURED
 
 
 def prove_boxes(enclosed: Enclosed, nodes: Nodes) -> Boxes:

@@ -12,6 +12,7 @@ from precise.tapes import STEMS, model, mp
 
 import mechkin_cli as mk
 from mechkin_cli.solver.precise_inputs import PreciseInputs, enclosed_inputs, precise_inputs
+from mechkin_cli.solver.proofs import input_rounding
 from mechkin_cli.tape.exact_rows import ExactRows
 
 DEGREE = mp.pi / 180
@@ -231,6 +232,17 @@ def test_whole_turns_are_taken_off_exactly() -> None:
         high, low = found.reduced[0, :, row]
         assert abs(mp.mpf(high) + mp.mpf(low) - degrees * DEGREE) <= 1e-31
         assert found.whole[0, row] == (100 if degrees == 37 * row else 101)
+
+
+def test_proofs_know_how_far_inputs_are_from_the_text() -> None:
+    """An expression that cancels is farther off than its size tells."""
+    text = "1e8 mm*(sin(O.theta)^2 + cos(O.theta)^2 - 1)"
+    motion = f"  inputs: {{O.theta: {{from: 1, to: 50, count: 20}}, Q.s: {{with: '{text}'}}}}"
+    session = mk.loads(ARM.format(motion=motion, time="s")).session
+    off = np.abs(session.inputs.values[1])
+    assert off.max() > 1e-12
+    assert (input_rounding(session, session.inputs.values)[1] >= off).all()
+    assert (input_rounding(session, session.inputs.values)[0] <= 1e-15).all()
 
 
 def test_rates_of_ties() -> None:

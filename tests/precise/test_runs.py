@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from friction.slider_crank import TEXT as FRICTION
 from mechanisms.runs import model, run
 from oracle import assemble, condition_of, document, mp, newton_euler, read, to_text
 from oracle_checks.legs import rssr, stewart, suspension
@@ -180,6 +181,31 @@ def test_a_redundant_loop_is_that_of_its_closed_form() -> None:
         height_other = knee + mp.sqrt(mp.mpf("0.01") - out**2)
         found = numbers(batch, places["top.position"], row)[2]
         assert min(abs(found - height), abs(found - height_other)) < 1e-29
+
+
+@pytest.mark.parametrize(
+    "text", [FRICTION, suspension(), stewart()], ids=["friction", "suspension", "platform"]
+)
+def test_powers_balance_to_the_last_digits(text: str) -> None:
+    """The balance of powers shares no sum with the balance of forces; with friction at all joints,
+    whose forces follow from the reactions."""
+    result = analyzed(text)
+    session, rows = result.session, result.row_states
+    inputs = session.precise.inputs(session)
+    batch = session.run_precise(
+        inputs.reduced,
+        rows.states,
+        # in doubles a leg's line has no length of one
+        constants=session.precise.constants(session),
+        rates=inputs.rates,
+        accelerations=inputs.accelerations,
+        turned=rows.turns,
+        whole=inputs.whole,
+        demand=MOTION | Demand.FORCES | Demand.POWER,
+    )
+    assert batch.good.all()
+    assert batch.power_error is not None
+    assert np.max(np.abs(batch.power_error[0])) < CLOSE
 
 
 def test_a_row_that_does_not_close_says_so() -> None:

@@ -8,14 +8,7 @@ from typing import Any
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.solver.enclosures import Boxes, Enclosure
-
-ROUNDING = 2.0**-50
-"""Of inputs against the file's numbers, relative."""
-
-
-def enclosed(values: np.ndarray) -> Enclosure:
-    return Enclosure(values, ROUNDING * np.abs(values))
+from mechkin_cli.solver.enclosures import Enclosure, Given, Positions
 
 
 def interleaved(enclosure: Enclosure) -> np.ndarray:
@@ -23,39 +16,30 @@ def interleaved(enclosure: Enclosure) -> np.ndarray:
     return np.ascontiguousarray(both.reshape(-1, both.shape[2]))
 
 
-def boxes_of(session: Any, states: np.ndarray) -> Boxes:
-    """Of the session's rows with their states (states, rows)."""
+def boxes_of(session: Any, given: Given, states: np.ndarray) -> Positions:
+    """Of the session's rows with their inputs and states (states, rows)."""
     middle, radius = session.precise.enclosed_constants(session).T
     radius = radius.copy()
     radius[[0, 4]] = 1.0  # length unit and size, which are conventions
     plan = session.plan.with_constants(np.ascontiguousarray(middle))
     radii = plan.with_constants(np.ascontiguousarray(radius))
-    inputs = session.inputs
     rows = states.shape[1]
-    given = Boxes(
-        plan,
-        radii,
-        np.ascontiguousarray(states),
-        np.zeros((plan.columns, rows)),
-        enclosed(inputs.reduced),
-        enclosed(inputs.rates),
-        enclosed(inputs.accelerations),
-    )
+    boxes = Positions(plan, radii, np.ascontiguousarray(states), np.zeros((plan.columns, rows)))
     unknown = [session.layout.column(k, f) for b in session.graph.blocks for k, f in b.unknowns]
-    radius = np.stack([_radius(given, row, unknown) for row in range(rows)], axis=1)
-    return given._replace(radius=np.ascontiguousarray(radius))
+    radius = np.stack([_radius(boxes, given, row, unknown) for row in range(rows)], axis=1)
+    return boxes._replace(radius=np.ascontiguousarray(radius))
 
 
-def _radius(boxes: Boxes, row: int, unknown: list[int]) -> np.ndarray:
+def _radius(boxes: Positions, given: Given, row: int, unknown: list[int]) -> np.ndarray:
     """Radii (columns,) of a box with exactly one solution; fails where none is found."""
     point = np.zeros(boxes.plan.columns)
-    equations, derivatives = evaluated(boxes, row, point)
+    equations, derivatives = evaluated(boxes, given, row, point)
     inverse = np.linalg.pinv(derivatives[:, unknown, 0])
     image = np.abs(inverse) @ (np.abs(equations[:, 0]) + equations[:, 1])
     radius = 2.0 * image + 1e-22
     for _ in range(8):
         point[unknown] = radius
-        _, derivatives = evaluated(boxes, row, point)
+        _, derivatives = evaluated(boxes, given, row, point)
         middle, width = derivatives[:, unknown, 0], derivatives[:, unknown, 1]
         rest = np.abs(np.eye(len(unknown)) - inverse @ middle) + np.abs(inverse) @ width
         found = image + rest @ radius
@@ -65,12 +49,14 @@ def _radius(boxes: Boxes, row: int, unknown: list[int]) -> np.ndarray:
     raise AssertionError(f"no box about row {row}")
 
 
-def evaluated(boxes: Boxes, row: int, radius: np.ndarray) -> tuple[Any, Any]:
+def evaluated(
+    boxes: Positions, given: Given, row: int, radius: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Equations (equations, 2) and derivatives (equations, columns, 2) over a row's box."""
     count = boxes.plan.equations
     equations = np.empty((2 * count, 1))
     derivatives = np.empty((2 * count * boxes.plan.columns, 1))
-    part = Enclosure(boxes.inputs.middle[:, [row]], boxes.inputs.radius[:, [row]])
+    part = Enclosure(given.inputs.middle[:, [row]], given.inputs.radius[:, [row]])
     _kernel.enclose(
         boxes.plan,
         radii=boxes.radii,

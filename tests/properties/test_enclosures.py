@@ -15,7 +15,7 @@ import mechkin_cli as mk
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
-from mechkin_cli.solver.enclosures import Enclosure, enclose
+from mechkin_cli.solver.enclosures import Enclosure, Given, enclose
 
 DIGITS = mp.mpf(10) ** -40
 """What the oracle may be off."""
@@ -35,8 +35,9 @@ def enclosures(text: str) -> tuple[Any, dict[str, Enclosure]]:
     result = model.analyze([q.name for q in wanted], tables=[]).result
     session = result.session
     rows = result.row_states
+    given = Given.of(session)
     found = enclose(
-        session, boxes_of(session, rows.states), wanted, turned=rows.turns, ties=session.tie_rates
+        session, boxes_of(session, given, rows.states), given, wanted, turned=rows.turns
     )
     return model, dict(found)
 

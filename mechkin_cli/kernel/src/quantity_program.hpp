@@ -5,74 +5,10 @@
 // turns (LoadOf::turn), and `input(number, factor, angle)` an input with them, of which `angle` is the part within one.
 #pragma once
 
-#include "outputs.hpp"
+#include "program_reads.hpp"
 #include "tape_replay.hpp"
 
 namespace {
-
-// The tape of a program's instructions.
-template <class Number>
-inline Tape instructions_of(const ProgramOf<Number>& program) {
-  Tape t = {};
-  t.inputs = program.inputs, t.constants = program.constants, t.instructions = program.instructions;
-  t.operation = program.operation, t.operand = program.operand;
-  return t;
-}
-
-// The piece from the last knot that is not above lane i of x.
-inline const Knot& piece_at(const Knot* first, int count, Pack x, int i) {
-  const double leading = lane(part_of(x, 0), i), rest = PARTS == 1 ? 0.0 : lane(part_of(x, PARTS - 1), i);
-  int low = 0, high = count - 1;
-  while (low < high) {
-    const int middle = (low + high + 1) / 2;
-    if (first[middle].x < leading || (first[middle].x == leading && rest >= 0.0))
-      low = middle;
-    else
-      high = middle - 1;
-  }
-  return first[low];
-}
-
-inline Pack curve_value(const ProgramCurve& c, const Knot* knot, Pack at) {
-  const Knot* const first = knot + c.begin;
-  const int count = c.end - c.begin;
-  const Pack start = first->x, end = first[count - 1].x;
-  const Mask inside = (at >= Pack(c.low)) & (at <= Pack(c.high));
-  const Pack within = select(at < start, start, select(at > end, end, at));
-  Knot piece[LANES];
-  for (int i = 0; i < LANES; ++i) piece[i] = piece_at(first, count, within, i);
-  const auto field = [&piece](double Knot::*of) {
-    double values[LANES];
-    for (int i = 0; i < LANES; ++i) values[i] = piece[i].*of;
-    return Pack(load(values));
-  };
-  const Pack u = within - field(&Knot::x);
-  const Pack value = field(&Knot::y) + u * (field(&Knot::b) + u * (field(&Knot::c) + u * field(&Knot::d)));
-  return select(inside, value, Pack(__builtin_nan("")));
-}
-
-// The registers of reads, curves and constants; the reads' quantities are those that the workspace holds by then.
-template <class Number, class RowValue>
-inline void read_program(const Plan& p, const Workspace& w, const ProgramOf<Number>& program, const RowValue& row_value,
-                        Pack* r) {
-  for (int k = 0; k < program.reads; ++k) {
-    const ReadOf<Number>& read = program.read[k];
-    Pack* const at = r + read.output.slot;
-    if (read.kind == READ_TIME) {
-      *at = row_value.time();
-      continue;
-    }
-    output_value(p, w, nullptr, row_value, read.output, at);
-    if (read.kind != READ_ANGLE) continue;
-    at[1] = at[0];
-    at[0] = read.turn < -1 ? row_value.input(-2 - read.turn, Pack(read.output.factor), at[1])
-                           : row_value.turned(read.turn, read.output.type == OUT_CLOSING, at[1]);
-  }
-  Pack* const curve = r + program.inputs - program.curves;
-  for (int c = 0; c < program.curves; ++c)
-    curve[c] = curve_value(program.curve[c], program.knot, r[program.curve[c].over]);
-  for (int c = 0; c < program.constants; ++c) r[program.inputs + c] = Pack(program.constant[c]);
-}
 
 // Fills `r` (program.registers()).
 template <class Number, class RowValue>

@@ -107,8 +107,9 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
 
   Pack residual = 0.0, correction = 0.0, condition = 0.0;
   Mask converged = all_lanes(true), side = all_lanes(true);
-  const auto skips = [&](int b) { return r.held && r.held->use[b] == BLOCK_LEFT; };
-  const auto holds = [&](int b) { return r.held && r.held->use[b] == BLOCK_HELD; };
+  // runs in other arithmetics hold nothing, and their requests tell no turns
+  const auto skips = [&](int b) { return PARTS == 1 && r.held && r.held->use[b] == BLOCK_LEFT; };
+  const auto holds = [&](int b) { return PARTS == 1 && r.held && r.held->use[b] == BLOCK_HELD; };
   // first unknown and first equation of a held block among those of all
   const auto first_held = [&](int b) {
     struct {
@@ -199,7 +200,7 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
     for (int c = 0; c < p.columns; ++c) writer(r.second).put(c, w.acceleration[c]);
   writer(r.residual).put(0, residual);
   writer(r.correction).put(0, correction);
-  if (r.turn_count) write_turns(p, w, r, in);
+  if (PARTS == 1 && r.turn_count) write_turns(p, w, r, in);
   if (r.demand & DEMAND_CONDITION) writer(r.condition).put(0, condition);
 
   const RowValues row_values = {r, in};

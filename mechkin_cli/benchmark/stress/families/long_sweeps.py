@@ -38,5 +38,4 @@ FAMILY = Family(
     0,
     tuple(partial(_make, rows) for rows in ROWS),
     lengths=ROWS,
-    certified=False,
 )

@@ -52,5 +52,4 @@ FAMILY = Family(
     ROWS,
     (_make,),
     response=True,
-    certified=False,
 )

@@ -21,13 +21,14 @@ inline void enclose_solution(int count, const Real* near, const Pack* z, const E
   // sums of `count` products, each rounded: the last of them gives all of it back, as WIDEN does for nine roundings
   const Real more = 1.0 + (count + 4) * 0x1p-52;
   const auto by_errors = [&](int k, const Real* v) {
-    Real sum = LEAST;
+    Real sum = LEAST * (1 + count);
     for (int l = 0; l < count; ++l) sum += error(k, l) * v[l];
     return sum * more;
   };
   Real *const size = spread, *const v = spread + count;
   for (int k = 0; k < count; ++k) size[k] = size_of(z[k]);
-  for (int k = 0; k < count; ++k) v[k] = widened(size[k] + by_errors(k, size));
+  // what stands for lost digits is no part of it
+  for (int k = 0; k < count; ++k) v[k] = widened(size[k] + by_errors(k, size)) + Real(0x1p-1000);
   Real factor = 0.0;
   for (int k = 0; k < count; ++k) {
     const Real share = widened(by_errors(k, v) / v[k]);

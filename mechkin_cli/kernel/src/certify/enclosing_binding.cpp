@@ -9,6 +9,7 @@
 #include "enclosing_unit.hpp"
 #include "frozen_plan.hpp"
 #include "output_list.hpp"
+#include "program_store.hpp"
 #include "stepper.hpp"
 #include "units.hpp"
 
@@ -46,6 +47,7 @@ void check(const EnclosingRequest& r, const OutputList* outputs, const Plan& p) 
   refuse(outputs && (outputs->demand() & (DEMAND_VELOCITY | DEMAND_ACCELERATION | DEMAND_FORCES) & ~demand),
          "the outputs need more than is given");
   refuse(outputs && outputs->demand() & DEMAND_JERK, "third derivatives are not enclosed");
+  refuse(r.forces && program_demand(p.law) & ~demand, "loads that vary need more than is given");
   refuse(r.accelerations && !r.rates, "accelerations need rates of the inputs");
   refuse(r.velocities && !r.rates, "first derivatives need rates of the inputs");
   refuse(r.second && !r.accelerations, "second derivatives need accelerations of the inputs");
@@ -65,6 +67,7 @@ void enclose(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.ties = given.read("ties", 2L * p.ties);
   r.turned = given.read("turned", turn_slots(p, *kernel_unit(2)));
   r.whole = given.read("whole", p.inputs);
+  r.time = given.read("time", 2);
   r.velocities = given.write("first", 2L * p.columns);
   r.second = given.write("second", 2L * p.columns);
   r.equations = given.write("equations", 2 * equations);

@@ -3,6 +3,7 @@
 #include "two_part_plan.hpp"
 
 #include "enclosed_motion.hpp"
+#include "enclosed_program.hpp"
 #include "enclosing_unit.hpp"
 #include "outputs.hpp"
 
@@ -51,7 +52,7 @@ constexpr TwoParts FULL_TURN = {0x1.921fb54442d18p+2, 0x1p-51};
 struct RowValues {
   const EnclosingRequest& r;
   const Lookup& in;
-  Pack time() const { return UNKNOWN_NUMBER; }
+  Pack time() const { return r.time ? in.get(r.time, 0) : UNKNOWN_NUMBER; }
   Pack turned(int turn, bool closing, Pack angle) const {
     if (turn == -1 || !(turn >= 0 ? r.turned : r.whole)) return angle;
     if (turn < -1) return angle + Pack(FULL_TURN) * Pack(in.real(r.whole, -2 - turn));
@@ -88,11 +89,11 @@ void put_position(const Plan& p, const EnclosingRequest& r, const Memory& m, int
     }
 }
 
-// All forces on the links, or that nothing is known of them: of friction, of loads by laws, of efforts at actuators.
+// All forces on the links, or that nothing is known of them: of friction, and of efforts at actuators.
 Balance enclose_forces(const Plan& p, Memory& m, const RowValues& row_values, const EnclosingRequest& r) {
   Workspace& w = m.w;
   Balance balance = {p, w, zero_wrench(), zero_wrench(), r.rates != nullptr, UNKNOWN_NUMBER};
-  for (int v = 0; v < p.load_values; ++v) w.load[v] = UNKNOWN_NUMBER;
+  enclose_loads(p, w, row_values);
   apply_inertia(balance, r.accelerations != nullptr);
   for (int l = 0; l < p.loads; ++l) apply_load(balance, p.load[l], row_values);
   const Vec3 unknown = {UNKNOWN_NUMBER, UNKNOWN_NUMBER, UNKNOWN_NUMBER};

@@ -16,6 +16,7 @@ struct EnclosingRequest {
   const double* ties;           // ties x 2 x rows, may be null
   const double* turned;         // as in Request: turn slots x rows, inputs x rows
   const double* whole;
+  const double* time;           // 2 x rows, may be null: what laws of loads read as time (s)
   bool forces;
   const OutputsView* wanted;        // may be null
   const OutputsView* wanted_radii;  // the radii of its constants in the same places; null: zero

@@ -1,0 +1,82 @@
+"""What double-double costs: `python -P tests/benchmark/double_double.py [ROWS [PAIRS]]`.
+
+The kernel's run of everything on one thread, in doubles from second-order guesses and in
+double-double from the states that it finds, at every width and in turns, by the thread's processor
+time; medians of the times and of the pairs' ratios to doubles at the widest, with half the distance
+between the ratios' quartiles.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from time import thread_time
+from typing import Any
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from benchmark.kernel_case import KernelCase, PlannedRun, driven, repeated, sweep_rows
+from benchmark.specimens import rcsr_specimen, sevenr_specimen
+
+from mechkin_cli.kernel.width import widths
+from mechkin_cli.solver.batch import run
+from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.precise_run import run_precise
+
+
+def seconds(work: Callable[[], Any]) -> float:
+    before = thread_time()
+    work()
+    return thread_time() - before
+
+
+class Case:
+    """A specimen's rows with everything, as calls."""
+
+    def __init__(self, specimen: Any, rows: int) -> None:
+        case = KernelCase(specimen, sweep_rows(specimen))
+        self.planned = PlannedRun(case, specimen.levels[2])
+        self.inputs = repeated(case.inputs, rows)
+        self.guess = repeated(case.second_order_guesses(), rows)
+        rates, accelerations = driven(specimen, rows)
+        self.asked: dict[str, Any] = {
+            "rates": rates,
+            "accelerations": accelerations,
+            "outputs": self.planned.outputs.outputs,
+            "threads": 1,
+        }
+        self.states = self.doubles().states
+
+    def doubles(self) -> Any:
+        plan, demand = self.planned.plan, self.planned.demand
+        return run(plan, self.inputs, self.guess, demand=demand, **self.asked)
+
+    def precise(self, lanes: int) -> Any:
+        plan, demand = self.planned.plan, self.planned.demand & ~Demand.CONDITION
+        given = self.asked | {"demand": demand, "lanes": lanes}
+        return run_precise(plan, self.inputs, self.states, **given)
+
+
+def main(rows: int = 2048, pairs: int = 21) -> None:
+    """Prints a line for each specimen and width of double-double."""
+    for specimen in (rcsr_specimen(), sevenr_specimen()):
+        case = Case(specimen, rows)
+        for lanes in sorted({2, max(widths())}):
+            if not case.precise(lanes).good.all():
+                raise SystemExit(f"{specimen.name}: rows are not closed")
+            precise = partial(case.precise, lanes)
+            times = np.array([[seconds(case.doubles), seconds(precise)] for _ in range(pairs)])
+            low, middle, high = np.percentile(times[:, 1] / times[:, 0], [25, 50, 75])
+            one, other = np.median(times, axis=0) * 1e6
+            print(
+                f"{specimen.name}, {rows} rows: doubles {one:.0f} us, double-double at {lanes} "
+                f"lanes {other:.0f} us, {middle:.1f} +- {(high - low) / 2:.1f} times"
+            )
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:]))

@@ -1,0 +1,64 @@
+"""What proofs cost, and how many tubes they take:
+
+    python -P tests/proofs/cost.py
+
+CPU time on one thread, the least of thirty, with the constants of the text enclosed before.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import mechkin_cli as mk
+from mechkin_cli.analysis.proof import certify
+from mechkin_cli.benchmark import sevenr, train
+from mechkin_cli.solver.proofs import Enclosed, Nodes, prove_boxes
+
+REPETITIONS = 30
+RCSR = Path(__file__).parents[2] / "mechanisms" / "rcsr.yaml"
+SWEEP = "from: 150, to: 202, step: 2"
+
+
+def least_time(work: Callable[[], object]) -> float:
+    times = []
+    for _ in range(REPETITIONS):
+        begin = time.process_time()
+        work()
+        times.append(time.process_time() - begin)
+    return 1e3 * min(times)
+
+
+def tell(name: str, model: mk.Model) -> None:
+    result = model.analyze(tables=[]).result
+    session, states = result.session, result.row_states.states
+    first = time.process_time()
+    found = certify(session, states, result.solved)
+    first = 1e3 * (time.process_time() - first)
+    nodes = Nodes(session.inputs.values, session.inputs.reduced, states)
+    enclosed = session.once("enclosed", lambda: Enclosed.of(session))
+    rows = least_time(lambda: prove_boxes(enclosed, nodes))
+    both = least_time(lambda: certify(session, states, result.solved))
+    print(
+        f"{name}: {result.rows} rows, {'one branch' if found.is_complete else found.gaps}, "
+        f"{found.tubes} tubes; boxes {rows:.2f} ms, with tubes {both:.2f} ms; first {first:.0f} ms"
+    )
+
+
+def main() -> None:
+    text = RCSR.read_text(encoding="utf-8")
+    tell("RCSR", mk.loads(text.replace(SWEEP, "from: 150, to: 205, count: 361")))
+    tell("7R full turn", mk.loads(sevenr.text()))
+    tell("ten loops", mk.loads(train.text()))
+    model = mk.loads(text.replace(SWEEP, "from: 150, to: 210, step: 2"))
+    notes = [d for d in model.analyze(tables=[]).diagnostics if d.code == "dead-centre"]
+    end = next(number.value for number in notes[0].numbers if number.name == "O1.theta")
+    for decade in range(1, 10):
+        rows = f"values: [200, {end - 10.0**-decade!r}]"
+        proofs = mk.loads(text.replace(SWEEP, rows)).certify()
+        print(f"to 1e-{decade} deg before the dead centre: {proofs.words}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,60 @@
+"""Rates and accelerations of proven rows lie in their enclosures, at 60 digits; forces of random
+mechanisms: tests/properties/test_enclosures.py."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from oracle import solve
+from proofs.test_boxes import DEGREE, ROWS, certificate, mechanism
+from references import MECHANISMS, RCSR
+
+import mechkin_cli as mk
+
+
+def solution(name: str, row: int) -> Any:
+    analysis, guess = certificate(name).analysis, {}
+    for joint, its in mechanism(name).joints.items():
+        for coordinate in its.coordinates:
+            value = float(analysis[f"{joint}.{coordinate}"][row])
+            guess[f"{joint}.{coordinate}"] = value * (DEGREE if coordinate == "theta" else 1)
+    return solve(mechanism(name), mechanism(name).row(row), guess)
+
+
+@pytest.mark.parametrize("name", ["rcsr", "sevenr", "rchch", "rcrcr", "rprhrrr"])
+def test_true_rates_and_accelerations_are_enclosed(name: str) -> None:
+    proofs = certificate(name)
+    found = {
+        f"{joint}.{coordinate}{suffix}": proofs.enclosure(f"{joint}.{coordinate}{suffix}")
+        for joint, its in mechanism(name).joints.items()
+        for coordinate in its.coordinates
+        for suffix in ("_dot", "_ddot")
+    }
+    for row in ROWS:
+        true = solution(name, row)
+        for quantity, (low, high) in found.items():
+            assert low[row] <= true[quantity] <= high[row], (row, quantity)
+            assert high[row] - low[row] < 1e-7
+
+
+def test_vectors_and_efforts_have_bounds() -> None:
+    proofs = mk.load(RCSR).certify()
+    for name, shape in (("O2.force", (27, 3)), ("O1.effort", (27,)), ("O4.theta", (27,))):
+        low, high = proofs.enclosure(name)
+        assert low.shape == high.shape == shape
+        assert (low <= proofs.analysis[name]).all()
+        assert (proofs.analysis[name] <= high).all()
+
+
+def test_reactions_that_are_not_unique_have_none() -> None:
+    low, high = mk.load(MECHANISMS / "bennett.yaml").certify().enclosure("A.force")
+    assert np.isnan(low).all()
+    assert np.isnan(high).all()
+
+
+@pytest.mark.parametrize("name", ["no.such", "O2.theta_dddot", "row.condition", "row.proof"])
+def test_what_is_not_enclosed_is_refused(name: str) -> None:
+    with pytest.raises(mk.UsageError, match="no quantity that is enclosed"):
+        certificate("rcsr").enclosure(name)
