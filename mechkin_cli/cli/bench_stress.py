@@ -52,6 +52,8 @@ def stress_command(asked: Stress, show: Callable[[Table], None]) -> int:
         return _one(asked)
     if asked.check:
         return _checked(asked)
+    if asked.page is not None and asked.family is not None:
+        raise UsageError("--page tells of all families; leave --family out")
     tallies = _run(asked, asked.rows, asked.seed, names)
     if asked.page is not None:
         _write(asked, tallies)
@@ -101,8 +103,6 @@ def _write(asked: Stress, tallies: list[Tally]) -> None:
     from mechkin_cli.benchmark.stress.page import SMALL_ROWS, page
 
     assert asked.page is not None
-    if asked.family is not None:
-        raise UsageError("--page tells of all families; leave --family out")
     small = _run(asked, SMALL_ROWS, asked.seed, list(FAMILIES))
     text = page(tallies, small, asked.rows, asked.seed)
     beside = asked.page.with_name(f".{asked.page.name}.{os.getpid()}")
