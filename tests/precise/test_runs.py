@@ -257,3 +257,14 @@ def test_the_condition_is_not_told() -> None:
     session, rows = run("rssr").result.session, run("rssr").result.row_states
     with pytest.raises(ValueError, match="told by a run in doubles"):
         session.run_precise(session.inputs.reduced, rows.states, demand=Demand.CONDITION)
+
+
+def test_numbers_that_do_not_fit_are_refused() -> None:
+    session, rows = run("rssr").result.session, run("rssr").result.row_states
+    inputs, constants = session.inputs.reduced, session.precise.constants(session)
+    with pytest.raises(ValueError, match="parts of a number"):
+        session.run_precise(np.zeros((1, 3, inputs.shape[1])), rows.states)
+    with pytest.raises(ValueError, match="instead of"):
+        session.run_precise(inputs, rows.states, constants=constants[:-1])
+    with pytest.raises(ValueError, match="low: not finite"):
+        session.run_precise(inputs, rows.states, constants=constants * np.array([1.0, np.nan]))
