@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from mechkin_cli.benchmark.methods.kernel import ANALYZED, FAMILY, FOLLOWED, UNIT
-from mechkin_cli.benchmark.report import Cell, Column, Table
+from mechkin_cli.benchmark.report import Cell, Column, Table, cell_text
 from mechkin_cli.benchmark.tables import bench_table, markdown
 
 if TYPE_CHECKING:
@@ -16,6 +16,12 @@ if TYPE_CHECKING:
 MOTION = ("position", "velocity", "acceleration")
 SAME = 10.0
 """Errors within this factor count as the same."""
+
+FASTER = {
+    "kernel_ratio": "the kernel alone is",
+    "followed_ratio": "a sweep followed and closed",
+    "sweep_ratio": "`analyze` with everything it does beside",
+}
 
 BEST_COLUMNS = (
     Column("scene", "mechanism"),
@@ -47,6 +53,22 @@ def best_table(benches: Iterable[Bench]) -> Table:
         "for every mechanism, which is not counted; it neither follows nor judges.",
     )
     return Table("ahead", "The fastest other method at no larger error", BEST_COLUMNS, rows, notes)
+
+
+def summary(table: Table) -> str:
+    """What `best_table` says, in a sentence."""
+    parts = []
+    for key, words in FASTER.items():
+        found = [v for v in (row.get(key) for row in table.rows) if isinstance(v, float)]
+        if found:
+            low, high = (cell_text(end(found), "time") for end in (min, max))
+            parts.append(f"{words} {low} to {high} times")
+    if not parts:
+        return "No other method was measured."
+    return (
+        "Against the fastest other method at no larger error, over mechanisms and what is asked: "
+        f"{', '.join(parts)} as fast. Below 1 the other is faster."
+    )
 
 
 def _best(bench: Bench, level: str) -> list[dict[str, Cell]]:
@@ -89,6 +111,7 @@ def page(
 ) -> str:
     """The page as Markdown; `figure` is where the picture lies, `command` what made it."""
     said = ", ".join(f"{name} {value}" for name, value in machine.items())
+    best = best_table(benches)
     head = [
         "# What mechkin costs, and what it is worth",
         "",
@@ -100,7 +123,9 @@ def page(
         "",
         f"![time per position against error]({figure})",
         "",
-        markdown(best_table(benches)),
+        summary(best),
+        "",
+        markdown(best),
     ]
     rest = [markdown(table) for table in tables]
     rest += [markdown(bench_table(bench)) for bench in benches]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from io import StringIO
 from typing import TYPE_CHECKING
@@ -60,7 +61,9 @@ def csv_text(benches: Iterable[Bench]) -> str:
 
 def markdown(table: Table) -> str:
     """A table as Markdown, notes below."""
-    labels = [" ".join(c.label.replace("-\n", "").split()) for c in table.columns]
+    # a word that a line end divides is whole again
+    whole = [re.sub(r"(?<=[a-z])-\n", "", column.label) for column in table.columns]
+    labels = [" ".join(label.split()) for label in whole]
     sides = ["---" if c.kind == "text" else "---:" for c in table.columns]
     lines = [f"### {table.title}", "", _line(labels), _line(sides)]
     lines += [_line(cells) for cells in table.texts()]

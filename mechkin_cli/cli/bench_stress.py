@@ -35,7 +35,7 @@ def stress_command(asked: Stress, show: Callable[[Table], None]) -> int:
     """Runs what is asked for; `show` prints a table for a person.
 
     Returns:
-        The exit code: 1 where a row is wrong and says ok, or where the page is not current.
+        The exit code: 1 where a row is wrong and says ok, a file is refused, or the page is old.
 
     Raises:
         UsageError: an unknown family, or options that do not go together.
@@ -52,6 +52,8 @@ def stress_command(asked: Stress, show: Callable[[Table], None]) -> int:
         return _one(asked)
     if asked.check:
         return _checked(asked)
+    if asked.page is not None and asked.family is not None:
+        raise UsageError("--page tells of all families; leave --family out")
     tallies = _run(asked, asked.rows, asked.seed, names)
     if asked.page is not None:
         _write(asked, tallies)
@@ -63,7 +65,7 @@ def stress_command(asked: Stress, show: Callable[[Table], None]) -> int:
 
         for table in tables(tallies):
             show(table)
-    wrong = any(tally.verdicts["false_ok"] for tally in tallies)
+    wrong = any(tally.verdicts["false_ok"] or tally.verdicts["refused"] for tally in tallies)
     return ExitCode.DIFFERENCES if wrong else ExitCode.OK
 
 
@@ -101,8 +103,6 @@ def _write(asked: Stress, tallies: list[Tally]) -> None:
     from mechkin_cli.benchmark.stress.page import SMALL_ROWS, page
 
     assert asked.page is not None
-    if asked.family is not None:
-        raise UsageError("--page tells of all families; leave --family out")
     small = _run(asked, SMALL_ROWS, asked.seed, list(FAMILIES))
     text = page(tallies, small, asked.rows, asked.seed)
     beside = asked.page.with_name(f".{asked.page.name}.{os.getpid()}")

@@ -21,6 +21,10 @@ RESIDUAL_TESTS = (
     tolerances.STEP_COARSE,
     tolerances.RESIDUAL_ACCEPT,
 )
+_VELOCITY, _ACCELERATION, _FORCES = (
+    int(part) for part in (Demand.VELOCITY, Demand.ACCELERATION, Demand.FORCES)
+)
+_CONDITION, _POWER = int(Demand.CONDITION), int(Demand.POWER)
 
 
 class Chart(NamedTuple):
@@ -139,16 +143,16 @@ def run(
         ValueError: shapes, codes or numbers that do not fit the plan or each other.
     """
     rows = inputs.shape[1]
+    asked = int(demand)  # flags of an enumeration are slow, and short calls are many
     states = np.empty((plan.states, rows))
     values = None if outputs is None else np.empty((outputs.slots, rows))
-    moving, second_order = demand & Demand.VELOCITY, demand & Demand.ACCELERATION
-    first = np.empty((plan.columns, rows)) if derivatives and moving else None
-    second = np.empty((plan.columns, rows)) if derivatives and second_order else None
+    first = np.empty((plan.columns, rows)) if derivatives and asked & _VELOCITY else None
+    second = np.empty((plan.columns, rows)) if derivatives and asked & _ACCELERATION else None
     residual, correction, side = np.empty(rows), np.empty(rows), np.ones((plan.blocks, rows))
-    condition = np.empty(rows) if demand & Demand.CONDITION else None
-    power_error = np.empty(rows) if demand & Demand.POWER else None
+    condition = np.empty(rows) if asked & _CONDITION else None
+    power_error = np.empty(rows) if asked & _POWER else None
     flags = np.empty(rows, dtype=np.uint8)
-    varying = plan.load_values and demand & Demand.FORCES
+    varying = plan.load_values if asked & _FORCES else 0
     loads = np.empty((plan.load_values, rows)) if varying else None
     undefined = np.empty(rows, dtype=np.uint8) if varying else None
     plan.run(
@@ -176,7 +180,7 @@ def run(
         loads=loads,
         undefined=undefined,
         flags=flags,
-        demand=int(demand),
+        demand=asked,
         shift=shift,
         iterations=iterations,
         tests=tests,

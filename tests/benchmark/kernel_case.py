@@ -63,6 +63,8 @@ class PlannedRun:
             outputs=self.outputs.outputs,
             iterations=iterations,
             lanes=lanes,
+            # times are those of this thread
+            threads=1,
         )
 
     def quantities(self, batch: Batch) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from mechkin_cli.benchmark.measurement import Measurement, Skipped, errors_of
 from mechkin_cli.benchmark.methods import FAMILIES, methods_of
 from mechkin_cli.benchmark.methods.kernel import ANALYZED
 from mechkin_cli.benchmark.outputs import NAMES, record, write
-from mechkin_cli.benchmark.page import best_table
+from mechkin_cli.benchmark.page import best_table, summary
 from mechkin_cli.benchmark.report import Table
 from mechkin_cli.benchmark.response_table import exact_motion
 from mechkin_cli.benchmark.runs import Rounds, bench
@@ -304,12 +304,21 @@ def test_the_best_of_the_others_is_as_exact(measured: runs.Bench) -> None:
             assert row["peer_error"] <= 10.0 * row["own_error"]
 
 
+def test_the_page_sums_up_what_its_table_says() -> None:
+    rows = [{"kernel_ratio": 2.0, "sweep_ratio": 0.5}, {"kernel_ratio": 8.0}]
+    said = summary(Table("ahead", "", (), rows))
+    assert "the kernel alone is 2.00 to 8.00 times" in said
+    assert "0.500 to 0.500 times" in said
+    assert "followed" not in said
+    assert summary(Table("ahead", "", (), [])) == "No other method was measured."
+
+
 def test_tables_become_markdown() -> None:
     from mechkin_cli.benchmark.report import Column
 
-    columns = (Column("a", "a\nb"), Column("t", "us per\nrow", "time"))
+    columns = (Column("a", "posi-\ntion"), Column("t", "+-\n%", "time"))
     text = markdown(Table("t", "title", columns, [{"a": "x|y", "t": 1.5}], ("note",)))
-    assert text == ("### title\n\n| a b | us per row |\n| --- | ---: |\n| x\\|y | 1.50 |\n\nnote\n")
+    assert text == ("### title\n\n| position | +- % |\n| --- | ---: |\n| x\\|y | 1.50 |\n\nnote\n")
 
 
 def test_the_pendulum_beside_which_responses_are_held_is_mechkins() -> None:

@@ -12,6 +12,7 @@ import pytest
 from oracle import assemble, mp, read
 
 from mechkin_cli.benchmark.stress.block import drawn
+from mechkin_cli.benchmark.stress.draws import scaled
 from mechkin_cli.benchmark.stress.families.table import FAMILIES
 from mechkin_cli.benchmark.stress.linkages.writing import ACCELERATION, RATE
 from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
@@ -90,3 +91,9 @@ def _written(text: str) -> tuple[list[Any], list[tuple[Any, Any]], list[Any]]:
     dampers = [mp.mpf(load["damping"]) for load in loads if load["type"] == "damper"]
     starts = [mp.mpf(x) for x in data["responses"]["let_go"]["start"].values()]
     return masses, list(zip(springs, dampers, strict=True)), starts
+
+
+@pytest.mark.parametrize("number", [1.5, -9.999999999998899e-05, 3e-7, 0.0])
+def test_powers_of_ten_are_taken_of_the_decimals(number: float) -> None:
+    assert scaled(number, 3) == float(Decimal(repr(number)) * 1000)
+    assert scaled(number, 0) == number

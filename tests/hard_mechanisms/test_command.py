@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -75,9 +76,19 @@ def test_json() -> None:
         (["--family", "doubel modes"], "did you mean double modes?"),
         (["--only", "3"], "name it with --family"),
         (["--check"], "name it with --page"),
+        (["--page", "page.md", "--family", "leads"], "leave --family out"),
     ],
 )
 def test_what_is_not_understood(asked: list[str], said: str) -> None:
     result = CliRunner().invoke(app, ["bench", "--stress", *asked])
     assert result.exit_code != 0
     assert said in str(result.exception)
+
+
+def test_a_process_ends_where_its_input_ends() -> None:
+    """Also in the middle of a task: nobody waits for it."""
+    process = subprocess.Popen(workers.COMMAND, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL)
+    assert process.stdin is not None
+    process.stdin.write(json.dumps(["many loops", 1, list(range(1000))]).encode() + b"\n")
+    process.stdin.close()
+    assert process.wait(timeout=60) == 0

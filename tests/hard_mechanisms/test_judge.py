@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from mechkin_cli.benchmark.stress.block import drawn, run_block
+from mechkin_cli.benchmark.stress.certify import contradicted
 from mechkin_cli.benchmark.stress.families.table import FAMILIES
 from mechkin_cli.benchmark.stress.judge import Found, Judged, Verdict, judge
 from mechkin_cli.benchmark.stress.numbers.double_double import DEGREE
 from mechkin_cli.benchmark.stress.quantity import Truth
 from mechkin_cli.benchmark.stress.solve import solve
 from mechkin_cli.benchmark.stress.tally import Tally, of_record
+from mechkin_cli.proof import Proof
 from mechkin_cli.status import Status
 
 ROW = 7
@@ -24,7 +26,7 @@ def solved() -> tuple[Found, Truth]:
     """One R S S R, whose first rows all exist."""
     block = drawn(FAMILIES["sizes"], 1, [0])
     truth = block.truth(block.places)
-    found, refused = solve(block.texts, block.places.shape[1], truth.quantities)
+    found, _, refused = solve(block.texts, block.places.shape[1], truth.quantities)
     assert not refused
     assert truth.exists[0, : ROW + 1].all()
     return found, truth
@@ -93,9 +95,41 @@ def test_what_a_run_says_it_takes_as_drawn_is_no_fault(solved: tuple[Found, Trut
     assert verdict(judge(noted, truth)) == Verdict.taken_as_drawn
 
 
+def test_an_enclosure_beside_the_closed_form() -> None:
+    block = drawn(FAMILIES["sizes"], 1, [0])
+    truth = block.truth(block.places)
+    found, proofs, _ = solve(block.texts, block.places.shape[1], truth.quantities, proven=[0])
+    assert (proofs.codes[0, : ROW + 1] == Proof.proven).all()
+    assert not contradicted(proofs, found, truth).any()
+    for side in (proofs.low, proofs.high):
+        side["D.theta"][0, ROW] += 1e-9
+    assert np.flatnonzero(contradicted(proofs, found, truth)[0]).tolist() == [ROW]
+
+
+def test_a_proof_of_a_row_that_cannot_be() -> None:
+    block = drawn(FAMILIES["sizes"], 1, [0])
+    truth = block.truth(block.places)
+    found, proofs, _ = solve(block.texts, block.places.shape[1], truth.quantities, proven=[0])
+    exists = truth.exists.copy()
+    exists[0, ROW] = False
+    wrong = contradicted(proofs, found, replace(truth, exists=exists))
+    assert np.flatnonzero(wrong[0]).tolist() == [ROW]
+
+
 def test_parts_of_a_family_add_up_to_the_whole() -> None:
     whole = run_block("many turns", 3, [0, 3, 6])
     parts = Tally("many turns")
     for number in (6, 0, 3):
         parts.merge(of_record(run_block("many turns", 3, [number]).record()))
     assert parts.in_order().record() == whole.in_order().record()
+
+
+def test_a_file_that_is_refused_ends_no_other() -> None:
+    block = drawn(FAMILIES["sizes"], 1, [0])
+    truth = block.truth(block.places)
+    texts = ["format: 2\n", block.texts[0]]
+    found, _, refused = solve(texts, block.places.shape[1], truth.quantities)
+    assert list(refused) == [0]
+    assert "InvalidFile" in refused[0]
+    assert (found.codes[0] == Status.not_assembled).all()
+    assert (found.codes[1, : ROW + 1] == Status.ok).all()

@@ -6,13 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mechkin_cli.benchmark.stress.certify import EACH, contradicted
 from mechkin_cli.benchmark.stress.draws import generator
 from mechkin_cli.benchmark.stress.families.table import FAMILIES
 from mechkin_cli.benchmark.stress.family import Block, Family
 from mechkin_cli.benchmark.stress.judge import FAULTS, Found, Judged, Verdict, judge
 from mechkin_cli.benchmark.stress.quantity import Truth
 from mechkin_cli.benchmark.stress.solve import solve
-from mechkin_cli.benchmark.stress.tally import REFUSED, Fault, Tally
+from mechkin_cli.benchmark.stress.tally import CONTRADICTED, REFUSED, Fault, Tally
 from mechkin_cli.status import Status
 
 CHUNK = 50_000
@@ -40,13 +41,24 @@ def run_block(name: str, seed: int, numbers: Sequence[int]) -> Tally:
     with np.errstate(all="ignore"):
         known = block.truth(block.places[:, :1]).quantities
         count = block.places.shape[1]
-        found, refused = solve(block.texts, count, known, response=family.response)
+        makes = len(family.makes)
+        asked = [k for k, n in enumerate(numbers) if family.certified and n // makes % EACH == 0]
+        found, proofs, refused = solve(
+            block.texts, count, known, response=family.response, proven=asked
+        )
         for first in range(0, count, CHUNK):
             rows = slice(first, first + CHUNK)
             truth = block.truth(block.places[:, rows])
             part = _rows(found, rows)
             judged = judge(part, truth, response=family.response)
             tally.add(judged, response=family.response)
+            own = proofs.columns(rows)
+            wrong = contradicted(own, part, truth)
+            tally.add_proofs(own, wrong)
+            for k in np.flatnonzero(wrong.any(axis=1)).tolist():
+                row = int(np.argmax(wrong[k]))
+                words = _words(part, truth, k, row)
+                tally.tell(Fault(CONTRADICTED, numbers[k], first + row, words))
             for fault in _faults(numbers, first, judged, part, truth):
                 tally.tell(fault)
     for k, words in refused.items():

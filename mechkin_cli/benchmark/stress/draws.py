@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
+from decimal import Decimal
 
 import numpy as np
 
@@ -30,7 +31,7 @@ def magnitude(rng: random.Random, low: int, high: int) -> float:
 
 def scaled(value: float, power: int) -> float:
     """A decimal times a power of ten, rounded once."""
-    return float(f"{value!r}e{power}")
+    return float(Decimal(repr(value)).scaleb(power))
 
 
 def point(rng: random.Random, size: float = 1.0) -> list[float]:

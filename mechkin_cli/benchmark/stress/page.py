@@ -40,6 +40,8 @@ as a file. Numbers depend on rows and seed alone, not on the machine.
   {wrong} u k^2 and 1e-9 of the row's largest. A rod that is short beside the mechanism has its
   direction to u over its length only, which `row.condition`, a measure of places, does not see. A
   documented limit.
+- *Proven*: every tenth mechanism is proven by `--certify`, too, and the closed forms lie within its
+  enclosures.
 - *Wrong, warned*: another place, with a warning. *False alarm*: there is a row, and it stays empty.
   *False ok*: a wrong place, or one that cannot be, that says ok.
 """
@@ -92,7 +94,15 @@ def is_current(text: str, small: Sequence[Tally]) -> bool:
     inner = SECTION.search(fresh)
     assert inner is not None
     form = _without_numbers(found["text"]) == _without_numbers(inner["text"])
-    return form and fresh.replace(inner["text"], found["text"], 1) == text
+    same = fresh.replace(inner["text"], found["text"], 1)
+    return form and _without_bounds(same) == _without_bounds(text)
+
+
+def _without_bounds(text: str) -> str:
+    """A page without the last column of errors: bounds may get better with no row changed."""
+    return re.sub(
+        r"^(\| .* \| (?:u k|tolerances) \|.*)\|[^|]*\|$", r"\1|", text, flags=re.MULTILINE
+    )
 
 
 def _without_numbers(text: str) -> list[str]:

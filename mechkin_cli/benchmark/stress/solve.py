@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
+from mechkin_cli.benchmark.stress.certify import Proofs, prove, unasked
 from mechkin_cli.benchmark.stress.judge import Found
 from mechkin_cli.benchmark.stress.numbers.series import Series
 from mechkin_cli.benchmark.stress.quantity import Quantity
-from mechkin_cli.diagnostics import MechkinError
 from mechkin_cli.interface import Analysis, loads
 from mechkin_cli.status import Status
+
+
+class Solved(NamedTuple):
+    """The answers, what is proven of them, and what was said of refused files, by their number."""
+
+    found: Found
+    proofs: Proofs
+    refused: dict[int, str]
+
 
 CONDITION, BOUND = "row.condition", "row.error_bound"
 TAKEN = ("conventional", "hold-ends", "undriven-freedom", "input-locked", "input-dependent")
@@ -20,9 +30,14 @@ is not driven, or an input does not move anything."""
 
 
 def solve(
-    texts: Sequence[str], rows: int, quantities: Sequence[Quantity], *, response: bool = False
-) -> tuple[Found, dict[int, str]]:
-    """Runs every file; with what was said of those that were refused, by their number."""
+    texts: Sequence[str],
+    rows: int,
+    quantities: Sequence[Quantity],
+    *,
+    response: bool = False,
+    proven: Collection[int] = (),
+) -> Solved:
+    """Runs every file, and proves the rows of those whose numbers are among `proven`."""
     names = []
     for quantity in quantities:
         rates = ("_dot", "_ddot") if isinstance(quantity.value, Series) else ()
@@ -32,12 +47,14 @@ def solve(
     condition, bound = np.full(shape, np.nan), np.full(shape, np.nan)
     values = {name: np.full(shape, np.nan) for name in names}
     noted = np.zeros((len(texts), 1), bool)
+    proofs = unasked(*shape, [quantity.name for quantity in quantities])
     refused = {}
     for k, text in enumerate(texts):
         try:
             analysis = _run(text, names, response=response)
-        except MechkinError as error:
-            refused[k] = str(error)
+        # whatever a file brings about is a finding, and no end of the others
+        except Exception as error:
+            refused[k] = f"{type(error).__name__}: {error}"
             continue
         codes[k] = analysis.result.status
         condition[k] = analysis[CONDITION]
@@ -46,7 +63,9 @@ def solve(
         for name in names:
             values[name][k] = analysis[name]
         noted[k] = any(note.code in TAKEN for note in analysis.diagnostics)
-    return Found(codes, condition, bound, values, noted), refused
+        if k in proven:
+            prove(proofs, k, analysis)
+    return Solved(Found(codes, condition, bound, values, noted), proofs, refused)
 
 
 def _run(text: str, names: Sequence[str], *, response: bool) -> Analysis:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from mechkin_cli.benchmark.report import Cell, Column, Table
+from mechkin_cli.benchmark.stress.certify import EACH
 from mechkin_cli.benchmark.stress.families.table import FAMILIES
 from mechkin_cli.benchmark.stress.histogram import Histogram
 from mechkin_cli.benchmark.stress.judge import Verdict
-from mechkin_cli.benchmark.stress.tally import REFUSED, Tally
+from mechkin_cli.benchmark.stress.tally import CONTRADICTED, REFUSED, Tally
+from mechkin_cli.proof import Proof
 
 MOST = 0.999
 """The part of the rows that the tables call nearly all."""
@@ -29,7 +31,32 @@ _COUNTS = (
 
 def tables(tallies: Sequence[Tally]) -> tuple[Table, ...]:
     """Verdicts, errors, and errors by condition."""
-    return _verdicts(tallies), _errors(tallies), _by_condition(tallies)
+    return _verdicts(tallies), _errors(tallies), _proofs(tallies), _by_condition(tallies)
+
+
+def _proofs(tallies: Sequence[Tally]) -> Table:
+    columns = (
+        Column("family", "family"),
+        Column("rows", "rows\nasked", "number"),
+        Column("proven", "proven", "number"),
+        Column("closure", "proven\nto closure", "number"),
+        Column("contradicted", "proven\nelsewhere", "number"),
+    )
+    asked = [tally for tally in tallies if FAMILIES[tally.family].certified]
+    rows: list[dict[str, Cell]] = [
+        {
+            "family": tally.family,
+            "rows": sum(tally.proofs[proof.name] for proof in Proof),
+            "proven": tally.proofs[Proof.proven.name],
+            "closure": tally.proofs[Proof.proven_to_closure.name],
+            "contradicted": tally.proofs[CONTRADICTED],
+        }
+        for tally in asked
+    ]
+    notes = (
+        f"Of every {EACH}th mechanism; elsewhere: the closed form lies outside of the enclosure.",
+    )
+    return Table("proofs", "What --certify proves", columns, rows, notes)
 
 
 def _verdicts(tallies: Sequence[Tally]) -> Table:

@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from mechkin_cli.benchmark.stress.certify import Proofs
 from mechkin_cli.benchmark.stress.histogram import Histogram
 from mechkin_cli.benchmark.stress.judge import ROUNDING, TOLERANCE, Judged, Verdict
-from mechkin_cli.benchmark.stress.quantity import Rows
+from mechkin_cli.benchmark.stress.quantity import Mask, Rows
+from mechkin_cli.proof import Proof
 
 SHOWN = 5
 """Faults of each kind that a family keeps."""
@@ -19,6 +21,7 @@ NOTHING = ROUNDING / 1024.0
 """Errors below this are luck, and say nothing of a bound."""
 LEVELS = ("position", "rate", "acceleration")
 REFUSED = "refused"
+CONTRADICTED = "proven elsewhere"
 
 
 @dataclass(frozen=True)
@@ -46,7 +49,17 @@ class Tally:
     bounded: int = 0
     bounds_kept: int = 0
     bounds: Histogram = field(default_factory=Histogram)
+    proofs: Counter[str] = field(default_factory=Counter)
     faults: list[Fault] = field(default_factory=list)
+
+    def add_proofs(self, proofs: Proofs, wrong: Mask) -> None:
+        """Rows of which a proof was asked, by what was proven; and those that are elsewhere."""
+        for proof in Proof:
+            count = int((proofs.codes == proof).sum())
+            if count:
+                self.proofs[proof.name] += count
+        if wrong.any():
+            self.proofs[CONTRADICTED] += int(wrong.sum())
 
     def add(self, judged: Judged, *, response: bool = False) -> None:
         """Rows of a block; mechanisms are counted apart."""
@@ -105,6 +118,7 @@ class Tally:
         self.bounded += other.bounded
         self.bounds_kept += other.bounds_kept
         self.bounds.merge(other.bounds)
+        self.proofs.update(other.proofs)
         for fault in other.faults:
             self.tell(fault)
 
@@ -120,6 +134,7 @@ class Tally:
             "bounded": self.bounded,
             "bounds_kept": self.bounds_kept,
             "bounds": _plain(self.bounds),
+            "proofs": dict(self.proofs),
             "faults": [asdict(fault) for fault in self.faults],
         }
 
@@ -140,6 +155,7 @@ def of_record(record: Mapping[str, Any]) -> Tally:
         record["bounded"],
         record["bounds_kept"],
         _histogram(record["bounds"]),
+        Counter(record["proofs"]),
         [Fault(**fault) for fault in record["faults"]],
     )
 

@@ -22,7 +22,7 @@ struct Closure {
 // Motion of the two links and how many derivatives of a coordinate are wanted.
 struct PairMotion {
   MotionToJerk a, b;
-  int order;
+  int from, order;  // the least derivative wanted, for a value is dearer than they are, and the highest
   MECHKIN_INLINE Vec3 relative_omega() const { return b.velocity.angular - a.velocity.angular; }
   MECHKIN_INLINE Vec3 relative_alpha() const { return b.acceleration.angular - a.acceleration.angular; }
   MECHKIN_INLINE Vec3 relative_jerk() const { return b.jerk.angular - a.jerk.angular; }
@@ -39,7 +39,7 @@ MECHKIN_APART Vec3 third_of_d(const Closure& k, const MotionToJerk& a, const Mot
   return b.point_jerk(k.B.o) - a.point_jerk(k.A.o);
 }
 // Second derivative of axis.d for an axis carried by a link with motion m.
-MECHKIN_INLINE Pack second_along(const Vec3& axis, const Motion& m, const Closure& k, const Motion& a, const Motion& b) {
+MECHKIN_APART Pack second_along(const Vec3& axis, const Motion& m, const Closure& k, const Motion& a, const Motion& b) {
   return dot(axis, second_of_d(k, a, b)) + Pack(2.0) * dot(m.rate(axis), first_of_d(k, a, b)) +
          dot(m.second_rate(axis), k.d);
 }

@@ -60,7 +60,7 @@ MECHKIN_INLINE BlockVerdict judge_block(const Plan& p, Workspace& w, int index, 
                                         F&& keep_jacobian) {
   const BlockMatrices at = matrices_of(p, w, index);
   const bool square = at.m == at.n, rounding = r.demand & DEMAND_SINGULAR;
-  const bool by_newton = square && r.demand == DEMAND_CONDITION && !r.side && !r.pivot && !r.jacobian;
+  const bool by_newton = square && r.demand == DEMAND_CONDITION && !r.pivot && !r.jacobian;
   BlockVerdict verdict = {Pack(1.0), Pack(0.0)};
   if (by_newton) {
     verdict = {determinant_sign(at.lu()), estimated_condition(p, w, index)};

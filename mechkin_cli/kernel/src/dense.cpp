@@ -3,6 +3,58 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <type_traits>
+
+namespace {
+
+// Calls f with a size known to the compiler up to 6, else with 0.
+template <class F>
+void with_size(int n, F&& f) {
+  switch (n) {
+    case 1: return f(std::integral_constant<int, 1>());
+    case 2: return f(std::integral_constant<int, 2>());
+    case 3: return f(std::integral_constant<int, 3>());
+    case 4: return f(std::integral_constant<int, 4>());
+    case 5: return f(std::integral_constant<int, 5>());
+    case 6: return f(std::integral_constant<int, 6>());
+    default: return f(std::integral_constant<int, 0>());
+  }
+}
+
+// LeastSquares::solve for all columns of x at once, N x N or, with 0, of any size; the first rows are the solution.
+template <int N>
+void solve_columns(const Matrix& matrix, const Entries& pivots, const Entries& betas, Matrix* solution) {
+  const int m = N ? N : matrix.rows, n = N ? N : matrix.columns, columns = N ? N : solution->columns;
+  const double *const a = matrix.a.begin(), *const pivot = pivots.begin(), *const beta = betas.begin();
+  double* const x = solution->a.begin();
+  Entries sums(columns);
+  double* const sum = sums.begin();
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < columns; ++j) sum[j] = 0.0;
+    for (int i = k; i < m; ++i)
+      for (int j = 0; j < columns; ++j) sum[j] += a[i * n + k] * x[i * columns + j];
+    for (int j = 0; j < columns; ++j) sum[j] *= beta[k];
+    for (int i = k; i < m; ++i)
+      for (int j = 0; j < columns; ++j) x[i * columns + j] -= sum[j] * a[i * n + k];
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    for (int i = k + 1; i < n; ++i)
+      for (int j = 0; j < columns; ++j) x[k * columns + j] -= a[k * n + i] * x[i * columns + j];
+    for (int j = 0; j < columns; ++j) x[k * columns + j] /= pivot[k];
+  }
+}
+
+template <int N>
+void square_into(const Matrix& e, Matrix* product) {
+  const int n = N ? N : e.rows;
+  const double* const a = e.a.begin();
+  double* const out = product->a.begin();
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < n; ++j) out[i * n + j] += a[i * n + k] * a[k * n + j];
+}
+
+}  // namespace
 
 LeastSquares::LeastSquares(Matrix matrix) : a_(std::move(matrix)), pivot_(a_.columns), beta_(a_.columns) {
   const int m = a_.rows, n = a_.columns;
@@ -40,19 +92,20 @@ std::vector<double> LeastSquares::solve(std::vector<double> b) const {
 }
 
 Matrix LeastSquares::solve(const Matrix& b) const {
-  Matrix x(a_.columns, b.columns);
-  std::vector<double> column(b.rows);
-  for (int j = 0; j < b.columns; ++j) {
-    column.resize(b.rows);
-    for (int i = 0; i < b.rows; ++i) column[i] = b(i, j);
-    column = solve(std::move(column));
-    for (int i = 0; i < x.rows; ++i) x(i, j) = column[i];
+  const int n = a_.columns;
+  Matrix x = b;
+  if (a_.rows == n && b.columns == n) {
+    with_size(n, [&](auto size) { solve_columns<size()>(a_, pivot_, beta_, &x); });
+    return x;
   }
-  return x;
+  solve_columns<0>(a_, pivot_, beta_, &x);
+  Matrix solution(n, b.columns);
+  std::copy(x.a.begin(), x.a.begin() + solution.a.size(), solution.a.begin());
+  return solution;
 }
 
 double LeastSquares::least_pivot() const {
-  double least = pivot_.empty() ? 1.0 : std::fabs(pivot_[0]);
+  double least = pivot_.size() == 0 ? 1.0 : std::fabs(pivot_[0]);
   for (double p : pivot_) least = std::fmin(least, std::fabs(p));
   return least;
 }
@@ -83,13 +136,8 @@ double norm(const Matrix& e) {
 }
 
 Matrix squared(const Matrix& e) {
-  const int n = e.rows;
-  Matrix product(n, n);
-  for (int i = 0; i < n; ++i)
-    for (int k = 0; k < n; ++k) {
-      const double x = e(i, k);
-      for (int j = 0; j < n; ++j) product(i, j) += x * e(k, j);
-    }
+  Matrix product(e.rows, e.rows);
+  with_size(e.rows, [&](auto size) { square_into<size()>(e, &product); });
   return product;
 }
 

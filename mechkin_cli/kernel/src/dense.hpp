@@ -2,11 +2,43 @@
 // singular vectors. Row-major; sums in fixed order.
 #pragma once
 
+#include <cstddef>
 #include <vector>
+
+// Numbers of a matrix or of a column of one: in place up to those of 6 x 6, which is what most blocks have, since the
+// matrices of every step come and go.
+class Entries {
+ public:
+  Entries() = default;
+  explicit Entries(std::size_t size, double value = 0.0) : size_(size) {
+    if (size > MOST_IN_PLACE) more_.resize(size);
+    for (double& x : *this) x = value;
+  }
+  Entries(const Entries& other) { *this = other; }
+  Entries& operator=(const Entries& other) {
+    size_ = other.size_, more_ = other.more_;
+    if (size_ <= MOST_IN_PLACE)
+      for (std::size_t k = 0; k < size_; ++k) place_[k] = other.place_[k];
+    return *this;
+  }
+  std::size_t size() const { return size_; }
+  double* begin() { return size_ > MOST_IN_PLACE ? more_.data() : place_; }
+  const double* begin() const { return size_ > MOST_IN_PLACE ? more_.data() : place_; }
+  double* end() { return begin() + size_; }
+  const double* end() const { return begin() + size_; }
+  double& operator[](std::size_t k) { return begin()[k]; }
+  double operator[](std::size_t k) const { return begin()[k]; }
+
+ private:
+  static constexpr std::size_t MOST_IN_PLACE = 36;
+  std::size_t size_ = 0;
+  double place_[MOST_IN_PLACE];
+  std::vector<double> more_;
+};
 
 struct Matrix {
   int rows = 0, columns = 0;
-  std::vector<double> a;
+  Entries a;
   Matrix() = default;
   Matrix(int m, int n) : rows(m), columns(n), a((std::size_t)m * n, 0.0) {}
   double& operator()(int i, int j) { return a[(std::size_t)i * columns + j]; }
@@ -28,7 +60,7 @@ class LeastSquares {
 
  private:
   Matrix a_;
-  std::vector<double> pivot_, beta_;
+  Entries pivot_, beta_;
 };
 
 // Whether a bound of the spectral radius of E is at most `limit`: |E^k|^(1/k) in Frobenius' norm for k = 1, 2, 4 ... 32.

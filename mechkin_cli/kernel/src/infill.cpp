@@ -6,36 +6,45 @@
 
 namespace {
 
-// Weights of the values and derivatives at both ends (0: from, 1: to) at a part t of a step of length 1.
-struct Hermite {
-  double value0, value1, first0, first1, second0, second1;
-  explicit Hermite(double t) {
-    const double t2 = t * t, t3 = t2 * t;
-    value0 = 1 - t3 * (10 - t * (15 - 6 * t)), first0 = t - t3 * (6 - t * (8 - 3 * t));
-    second0 = 0.5 * t2 * (1 - t * (3 - t * (3 - t))), value1 = 1 - value0;
-    first1 = -t3 * (4 - t * (7 - 3 * t)), second1 = 0.5 * t3 * (1 - t * (2 - t));
-  }
-};
-
-// A value with its first and second derivative at both ends of a step h, for all rows between.
+// A value with its first and second derivative at both ends of a step h.
 struct Ends {
   double from[3], to[3];
 };
-void interpolate(const std::vector<Hermite>& weights, double h, const Ends& e, double* out) {
-  const std::size_t count = weights.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Hermite& w = weights[i];
-    out[i] = w.value0 * e.from[0] + w.value1 * e.to[0] + h * (w.first0 * e.from[1] + w.first1 * e.to[1]) +
-             h * h * (w.second0 * e.from[2] + w.second1 * e.to[2]);
-  }
-}
 
-std::vector<Hermite> weights_of(const Node& a, const Node& b, const double* place, long count) {
-  std::vector<Hermite> weights;
-  weights.reserve(count);
-  for (long i = 0; i < count; ++i) weights.emplace_back((place[i] - a.place) / (b.place - a.place));
-  return weights;
-}
+// Weights of the values and derivatives at both ends (0: from, 1: to) at parts t of a step of length 1, one row after the
+// other for each weight.
+class Hermite {
+ public:
+  Hermite(const Node& a, const Node& b, const double* place, long count) : count_(count), weight_(6 * count) {
+    const double begin = a.place, step = b.place - a.place;
+    double *const value0 = part(0), *const value1 = part(1), *const first0 = part(2), *const first1 = part(3),
+           *const second0 = part(4), *const second1 = part(5);
+#pragma GCC ivdep
+    for (long i = 0; i < count; ++i) {
+      const double t = (place[i] - begin) / step, t2 = t * t, t3 = t2 * t;
+      value0[i] = 1 - t3 * (10 - t * (15 - 6 * t)), first0[i] = t - t3 * (6 - t * (8 - 3 * t));
+      second0[i] = 0.5 * t2 * (1 - t * (3 - t * (3 - t))), value1[i] = 1 - value0[i];
+      first1[i] = -t3 * (4 - t * (7 - 3 * t)), second1[i] = 0.5 * t3 * (1 - t * (2 - t));
+    }
+  }
+  void interpolate(double h, const Ends& e, double* out) const {
+    const double *const value0 = part(0), *const value1 = part(1), *const first0 = part(2), *const first1 = part(3),
+                 *const second0 = part(4), *const second1 = part(5);
+    const Ends ends = e;
+#pragma GCC ivdep
+    for (long i = 0; i < count_; ++i)
+      out[i] = value0[i] * ends.from[0] + value1[i] * ends.to[0] +
+               h * (first0[i] * ends.from[1] + first1[i] * ends.to[1]) +
+               h * h * (second0[i] * ends.from[2] + second1[i] * ends.to[2]);
+  }
+
+ private:
+  double* part(int k) { return weight_.data() + k * count_; }
+  const double* part(int k) const { return weight_.data() + k * count_; }
+
+  long count_;
+  std::vector<double> weight_;
+};
 
 // The same orientation by the opposite quaternion.
 void negate(Node* node, int slot) {
@@ -54,20 +63,20 @@ void infill(const Stepper& stepper, const Node& a, const Node& b, const double* 
   // a row nearer to a singular place than eight times its correction may have crossed it
   const double limit = std::fmin(stepper.limits().infill * distance, 0.125 * std::fmin(a.least, b.least));
   for (long row = begin; row < end; ++row) out.limit[row] = limit;
-  const std::vector<Hermite> weights = weights_of(a, b, place, end - begin);
+  const Hermite rows(a, b, place, end - begin);
   for (int s = 0; s < states; ++s)
     if (!chosen || chosen->state[s])
-      interpolate(weights, h, {{a.state[s], a.state_first[s], a.state_second[s]},
-                               {b.state[s], b.state_first[s], b.state_second[s]}},
-                  out.guess + s * out.rows + begin);
-  for (long row = begin; row < end; ++row) stepper.normalise_quaternions(out.guess + row, out.rows);
+      rows.interpolate(h, {{a.state[s], a.state_first[s], a.state_second[s]},
+                           {b.state[s], b.state_first[s], b.state_second[s]}},
+                       out.guess + s * out.rows + begin);
+  stepper.normalise_quaternions(out.guess + begin, out.rows, end - begin);
   if (!out.turn) return;
   for (const ClosingTurn& t : stepper.turns())
     for (int s = t.slot; s < t.slot + t.width; ++s)
       if (!chosen || chosen->slot[s])
-        interpolate(weights, h, {{a.turn[s], a.turn_first[s], a.turn_second[s]},
-                                 {b.turn[s], b.turn_first[s], b.turn_second[s]}},
-                    out.turn + s * out.rows + begin);
+        rows.interpolate(h, {{a.turn[s], a.turn_first[s], a.turn_second[s]},
+                             {b.turn[s], b.turn_first[s], b.turn_second[s]}},
+                         out.turn + s * out.rows + begin);
   for (const TreeTurn& t : stepper.tree_turns()) {
     if (chosen && !chosen->slot[t.slot]) continue;
     for (long row = begin; row < end; ++row) {
@@ -82,13 +91,13 @@ void infill(const Stepper& stepper, const Node& a, const Node& b, const double* 
 double stray(const Stepper& stepper, const Node& a, const Node& b, const double* place, long count,
              const double* inputs, long stride) {
   const Plan& plan = stepper.plan();
-  const std::vector<Hermite> weights = weights_of(a, b, place, count);
+  const Hermite rows(a, b, place, count);
   std::vector<double> along(count);
   double worst = 0.0;
   for (int i = 0; i < plan.inputs; ++i) {
     const int c = plan.input_column[i];
-    interpolate(weights, b.place - a.place,
-                {{a.inputs[i], a.first[c], a.second[c]}, {b.inputs[i], b.first[c], b.second[c]}}, along.data());
+    rows.interpolate(b.place - a.place,
+                     {{a.inputs[i], a.first[c], a.second[c]}, {b.inputs[i], b.first[c], b.second[c]}}, along.data());
     for (long k = 0; k < count; ++k) worst = std::fmax(worst, std::fabs(along[k] - inputs[i * stride + k]));
   }
   return worst;

@@ -63,9 +63,10 @@ inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* righ
 inline void second_of_equations(const Plan& p, Workspace& w, const Block& b) {
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
+    const Motion first = motion_of(w, j.first), other = motion_of(w, j.second);
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       Pack r[MAX_CLOSING_ROWS];
-      entry.second(w.closure[c], motion_of(w, j.first), motion_of(w, j.second), r);
+      entry.second(w.closure[c], first, other, r);
       for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];
     });
     if (j.slide >= 0) w.right[j.row] += Pack(j.slide_sign) * w.acceleration[p.joints[j.slide].column];

@@ -75,7 +75,7 @@ inline Vec3 output_friction(const Workspace& w, int type, int index) {
 template <class Number>
 inline Pack output_closing(const Plan& p, const Workspace& w, const OutputOf<Number>& o) {
   Pack k[4];
-  closing_coordinate(p, w, o.index, o.freedom, o.order, k);
+  closing_coordinate(p, w, o.index, o.freedom, o.order, o.order, k);
   return k[o.order];
 }
 

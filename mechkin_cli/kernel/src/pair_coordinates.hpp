@@ -1,4 +1,5 @@
-// Coordinates of closing pairs with their derivatives up to PairMotion::order, read off the frames A and B.
+// Coordinates of closing pairs with their derivatives from PairMotion::from to PairMotion::order, read off the frames A
+// and B.
 #pragma once
 
 #include "closing_equations.hpp"
@@ -17,7 +18,7 @@ MECHKIN_APART void along(const Vec3& axis, const MotionToJerk& m, const Closure&
 }
 // Angle of B.X against A.X about the common axis, and its derivatives.
 MECHKIN_APART void about(const Closure& k, const PairMotion& p, Pack* out) {
-  out[0] = atan2(dot(k.A.Y, k.B.X), dot(k.A.X, k.B.X));
+  if (p.from < 1) out[0] = atan2(dot(k.A.Y, k.B.X), dot(k.A.X, k.B.X));
   if (p.order < 1) return;
   out[1] = dot(k.A.Z, p.relative_omega());
   if (p.order < 2) return;
@@ -32,7 +33,10 @@ MECHKIN_APART void about(const Closure& k, const PairMotion& p, Pack* out) {
 MECHKIN_APART void of_two_turns(const Closure& k, Pack c, const PairMotion& p, int turn, Pack* out) {
   const Pack scale = Pack(1.0) / (Pack(1.0) - c * c);
   const Pose &A = k.A, &B = k.B;
-  out[0] = turn == 0 ? atan2(dot(A.X, B.Z), -dot(A.Y, B.Z)) : atan2(dot(B.X, A.Z), dot(B.Y, A.Z));
+  if (p.from < 1) {
+    const Pack sine = turn == 0 ? dot(A.X, B.Z) : dot(B.X, A.Z);
+    out[0] = atan2(sine, turn == 0 ? -dot(A.Y, B.Z) : dot(B.Y, A.Z));
+  }
   if (p.order < 1) return;
   const Vec3 one = turn == 0 ? A.Z : B.Z, other = turn == 0 ? B.Z : A.Z;
   const Motion &m = turn == 0 ? p.a : p.b, &n = turn == 0 ? p.b : p.a;

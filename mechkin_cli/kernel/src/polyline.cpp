@@ -142,6 +142,7 @@ class RowFollower {
     if (orbit_ && !stays_on_orbit(first, last)) orbit_.reset();
     if (orbit_ && !alone) return go_round(first, last);
     std::vector<double> x0 = origin, sigma;
+    sigma.reserve(places.size());
     long row = first + 1;
     for (long turn = 0;; ++turn) {
       long stop = row;

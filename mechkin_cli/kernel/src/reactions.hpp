@@ -16,7 +16,7 @@ namespace {
 inline void closing_turn(const Plan& p, const Workspace& w, const ClosingTurn& turn, int order, Pack (*out)[4]) {
   if (turn.freedom >= 0) {
     Pack k[4];
-    closing_coordinate(p, w, turn.closing, turn.freedom, order, k);
+    closing_coordinate(p, w, turn.closing, turn.freedom, 0, order, k);
     for (int n = 0; n <= order; ++n) out[n][0] = k[n];
     return;
   }

@@ -186,13 +186,15 @@ void Stepper::reduce(Node* n) const {
   }
 }
 
-void Stepper::normalise_quaternions(double* state, long stride) const {
+void Stepper::normalise_quaternions(double* state, long stride, long rows) const {
   for (int k = 0; k < plan_.links; ++k) {
     if (plan_.joints[k].type != TREE_S) continue;
     double* q = state + plan_.joints[k].state * stride;
-    const double n = std::sqrt(q[0] * q[0] + q[stride] * q[stride] + q[2 * stride] * q[2 * stride] +
-                               q[3 * stride] * q[3 * stride]);
-    for (int i = 0; i < 4; ++i) q[i * stride] /= n;
+    for (const double* const end = q + rows; q < end; ++q) {
+      const double n = std::sqrt(q[0] * q[0] + q[stride] * q[stride] + q[2 * stride] * q[2 * stride] +
+                                 q[3 * stride] * q[3 * stride]);
+      for (int i = 0; i < 4; ++i) q[i * stride] /= n;
+    }
   }
 }
 

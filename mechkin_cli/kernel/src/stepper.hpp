@@ -130,7 +130,8 @@ class Stepper {
   int turn_slots() const { return turn_slots_; }
   // Numbers of a node's Jacobians.
   long jacobian_entries() const { return entries_; }
-  void normalise_quaternions(double* state, long stride) const;
+  // Of some rows of states, column after column; a row's numbers are `stride` apart.
+  void normalise_quaternions(double* state, long stride, long rows = 1) const;
 
  protected:
   // The states half way between two nodes, by quintic Hermite interpolation.

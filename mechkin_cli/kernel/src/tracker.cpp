@@ -78,7 +78,8 @@ class Tracker {
     const double h = last ? end_ - node_.sigma : step_;
     if (!last && h < least) return stop(TrackEnd::stalled, h);
     if (h * speed() < limits_.narrow && !last && looks()) return look();
-    Node next;
+    Node& next = next_;
+    next.least = HUGE_VAL;
     if (stepper_.step(node_, h, last ? end_ : node_.sigma + h, &next) &&
         (continue_turns(stepper_, node_, &next) || h <= limits_.angle_step) &&
         sees_between(path_, stepper_, node_, next)) {
@@ -226,6 +227,7 @@ class Tracker {
   Progress progress_;
   Track track_;
   Node node_;
+  Node next_;  // the one before `node_`, or one that was refused: its room is used again
   long row_ = 0;
   double end_ = 0.0, step_ = 0.0;
   std::vector<Limit> seen_;  // ends that were seen ahead

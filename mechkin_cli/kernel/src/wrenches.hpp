@@ -68,15 +68,15 @@ inline Wrench along_coordinate(const Plan& p, const Workspace& w, int axis, Pack
   return force_at(carried_point(w, j.point_on, j.point), value * direction);
 }
 
-// A coordinate of a closing joint and its derivatives up to `order`.
-inline void closing_coordinate(const Plan& p, const Workspace& w, int c, int freedom, int order, Pack* out) {
+// A coordinate of a closing joint and its derivatives, those from `from` to `order`.
+inline void closing_coordinate(const Plan& p, const Workspace& w, int c, int freedom, int from, int order, Pack* out) {
   const ClosingJoint& j = p.closing[c];
-  PairMotion motion = {};
-  motion.order = order;
+  PairMotion motion;
+  motion.from = from, motion.order = order;
   if (order > 2)
     motion.a = motion_to_jerk(w, j.first), motion.b = motion_to_jerk(w, j.second);
   else if (order > 0)
-    motion.a = {motion_of(w, j.first), zero_twist()}, motion.b = {motion_of(w, j.second), zero_twist()};
+    static_cast<Motion&>(motion.a) = motion_of(w, j.first), static_cast<Motion&>(motion.b) = motion_of(w, j.second);
   with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
     entry.coordinate(w.closure[c], motion, freedom, out);
   });
@@ -88,7 +88,7 @@ inline void joint_coordinate(const Plan& p, const Workspace& w, int axis, int re
   *rate = 0.0;
   if (reference < 0) {
     Pack k[4];
-    closing_coordinate(p, w, -1 - reference, freedom, moving ? 1 : 0, k);
+    closing_coordinate(p, w, -1 - reference, freedom, 0, moving ? 1 : 0, k);
     *value = k[0];
     if (moving) *rate = k[1];
     return;

@@ -38,4 +38,5 @@ FAMILY = Family(
     0,
     tuple(partial(_make, rows) for rows in ROWS),
     lengths=ROWS,
+    certified=False,
 )

@@ -52,4 +52,5 @@ FAMILY = Family(
     ROWS,
     (_make,),
     response=True,
+    certified=False,
 )
