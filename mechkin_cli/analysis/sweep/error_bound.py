@@ -111,7 +111,7 @@ def _constants(session: Session) -> tuple[Floats, NDArray[np.bool_]]:
 
 def _off(constants: Floats, placing: NDArray[np.bool_], stream: RandomStarts) -> Floats:
     found = constants.copy()
-    found[placing] *= 1.0 + _signed(stream, int(placing.sum())) * tolerances.ERROR_PROBE
+    found[placing] *= 1.0 + _signed(stream, int(np.count_nonzero(placing))) * tolerances.ERROR_PROBE
     return found
 
 
