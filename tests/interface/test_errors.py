@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from references import MECHANISMS, RCSR
@@ -139,3 +141,20 @@ def test_derived_quantities_are_repeated(name):
     error, value = r.errors[words[name]], r[words[name]]
     assert np.nanmax(error) < 1e-12 * np.nanmax(np.abs(value))
     assert np.nanmax(error) > 0.0
+
+
+def test_time_is_what_the_text_says() -> None:
+    model = mk.loads(
+        "format: 1\nlinks: {one: {}}\n"
+        "joints: {A: {type: R, links: [ground, one], point: [0, 0, 0], axis: [0, 0, 1]}}\n"
+        "motion:\n  time: {from: 0, to: 1, step: 0.1}\n"
+        "  inputs: {A.theta: {law: constant-rate, at: 0, rate: 1 rad/s}}\n"
+    )
+    found = model.analyze(errors=True)
+    for name in ("time", "time*time"):
+        times = np.asarray(found[name], dtype=float)
+        power = name.count("time")
+        exact = [Fraction(x) - Fraction(k, 10) ** power for k, x in enumerate(times)]
+        assert np.abs(found.errors[name]) == pytest.approx(
+            [abs(float(e)) for e in exact], abs=1e-30
+        )

@@ -17,11 +17,12 @@ from mechkin_cli.analysis.errors.reasons import reason_of
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.mechanism.joint_table import is_angle
+from mechkin_cli.mechanism.quantities import TIME_OF_ROW
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.status import Status
 from mechkin_cli.tape.double_doubles import DoubleDoubles
-from mechkin_cli.units import UnitSystem
+from mechkin_cli.units import TIME, UnitSystem
 from mechkin_cli.units.table import PI
 
 if TYPE_CHECKING:
@@ -54,6 +55,11 @@ class WideRun(Protocol):
     def written(self) -> Mapping[str, DoubleDoubles]:
         """Time and inputs with their rates, by the names of their quantities, in the file's
         units."""
+        ...
+
+    @property
+    def time(self) -> DoubleDoubles | None:
+        """Time of the rows in s (rows,); None of a run without time."""
         ...
 
     @property
@@ -127,6 +133,9 @@ class Repeated:
         """
         if name in self.problem.parameters:
             return self.wide.parameters[name]
+        time: Any = self.wide.time
+        if name == TIME_OF_ROW.name and time is not None:
+            return Quantity(time, TIME)
         wanted = self.problem.quantities().get(name)
         if wanted is None:
             raise UnknownName(name, (), None)
@@ -146,7 +155,8 @@ class Repeated:
         Raises:
             NotRepeated: one is not repeated.
         """
-        new = [q for q in dict.fromkeys(wanted) if q.name not in self._columns]
+        known = self._columns.keys() | {TIME_OF_ROW.name}
+        new = [q for q in dict.fromkeys(wanted) if q.name not in known]
         for quantity in new:
             reason = reason_of(self.problem, quantity)
             if reason:

@@ -78,6 +78,12 @@ class KernelRows:
         """Time and inputs with their rates, in the file's units."""
         return {name: DoubleDoubles(*parts) for name, parts in self.given.written.items()}
 
+    @property
+    def time(self) -> DoubleDoubles | None:
+        """Time of the rows in s (rows,); None of a run without time."""
+        time = self.given.time
+        return None if time is None else DoubleDoubles(*time)
+
     @cached_property
     def states(self) -> DoubleDoubles:
         """The states of the plan (states, rows)."""
