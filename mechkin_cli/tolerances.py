@@ -507,6 +507,14 @@ BRIDGE_NODES: Final = 120
 """Places between two rows at which a mechanism is closed to join them by tubes: towards a dead
 centre four or five a decade are needed, and there are eight decades above rounding."""
 
+BRIDGE_PART: Final = 0.5
+"""How far an input goes (rad, length units) between places of a way that is proven, at first: about
+what one tube holds, so that few are cut again."""
+
+BRIDGE_PARTS: Final = 2000
+"""Most such parts of a way between two rows: 160 turns, a second of work; who wants more proven can
+ask for rows between."""
+
 BRIDGE_STEP: Final = 1e-13
 """Distance of inputs (rad, length units) below which places are not told apart: they are rounded to
 1e-16."""

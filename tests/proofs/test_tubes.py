@@ -169,6 +169,41 @@ def test_turns_of_the_input() -> None:
     assert proofs.certify().is_one_branch
 
 
+CRANK_ROCKER = """
+format: 1
+units: {length: m, angle: deg}
+links: {crank: {}, coupler: {}, rocker: {}}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: R, links: [crank, coupler], point: [1, 0, 0], axis: [0, 0, 1]}
+  D: {type: R, links: [ground, rocker], point: [3, 0, 0], axis: [0, 0, 1]}
+  C:
+    type: R
+    links: [coupler, rocker]
+    point: {coupler: [4, 0, 0], rocker: [5.5, 0, 0]}
+    axis: [0, 0, 1]
+motion: {inputs: {A.theta: {values: ROWS}}}
+assembly: {near: {D.theta: 90}}
+"""
+
+
+@pytest.mark.parametrize("rows", ["[0, 1080]", "[10, 36000, -350]", "[0, 350, 10, 700]"])
+def test_rows_that_are_turns_apart(rows: str) -> None:
+    model = mk.loads(CRANK_ROCKER.replace("ROWS", rows))
+    assert model.certify().is_one_branch
+    # the last row on the other branch
+    one, other = (model.analyze(tables=[], mode=mode.name).result for mode in model.modes().modes)
+    states = one.row_states.states
+    states[:, -1] = other.row_states.states[:, -1]
+    assert list(proofs_of(one).on_branch) == [True] * (one.rows - 1) + [False]
+
+
+def test_rows_too_far_apart_for_a_proof_are_told_at_once() -> None:
+    certificate = mk.loads(CRANK_ROCKER.replace("ROWS", "[0, 1e9]")).certify()
+    assert not certificate.is_one_branch
+    assert [str(x) for x in certificate.status] == ["proven", "not proven"]
+
+
 def test_a_row_alone_and_rows_that_stand_still() -> None:
     text = (MECHANISMS / "rcsr.yaml").read_text()
     one = mk.loads(text.replace("from: 150, to: 202, step: 2", "values: [160]")).certify()

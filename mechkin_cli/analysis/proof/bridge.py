@@ -19,10 +19,13 @@ def bridge(enclosed: Enclosed, ends: Nodes) -> int:
     """The tubes that join two nodes; 0 where the branch is not proven to lead from one to the
     other.
 
-    Where a tube is missing its middle is closed, and both halves are tried: near a dead centre the
-    places go there by halves of what is left.
+    A long way is cut into parts at once. Where a tube is missing its middle is closed, and both
+    halves are tried: near a dead centre the places go there by halves of what is left.
     """
-    nodes = ends
+    nodes = _cut(enclosed.session, ends)
+    if nodes is None:
+        return 0
+    most = nodes.states.shape[1] + tolerances.BRIDGE_NODES
     while True:
         boxes = prove_boxes(enclosed, nodes)
         tubes = prove_tubes(enclosed, nodes, boxes)
@@ -32,7 +35,7 @@ def bridge(enclosed: Enclosed, ends: Nodes) -> int:
         length = np.abs(np.diff(nodes.values, axis=1)).max(axis=0, initial=0.0)
         is_hopeless = (
             not boxes.proven.all()
-            or nodes.states.shape[1] + missing.size > tolerances.BRIDGE_NODES
+            or nodes.states.shape[1] + missing.size > most
             or bool((length[missing] < tolerances.BRIDGE_STEP).any())
         )
         middle = None if is_hopeless else _middles(enclosed.session, nodes, missing)
@@ -44,6 +47,30 @@ def bridge(enclosed: Enclosed, ends: Nodes) -> int:
                 for old, new in zip(nodes, middle, strict=True)
             )
         )
+
+
+def _cut(session: Session, ends: Nodes) -> Nodes | None:
+    """Two nodes and closed places between them, so that no input goes farther than `BRIDGE_PART`
+    from one to the next; None where these would be more than `BRIDGE_PARTS`, or the branch ends."""
+    length = float(np.abs(np.diff(ends.values, axis=1)).max(initial=0.0))
+    parts = int(min(length / tolerances.BRIDGE_PART, tolerances.BRIDGE_PARTS)) + 1
+    if parts == 1:
+        return ends
+    if parts > tolerances.BRIDGE_PARTS:
+        return None
+    way = np.arange(parts + 1) / parts
+    values = ends.values[:, :1] + way * (ends.values[:, 1:] - ends.values[:, :1])
+    reduced = ends.reduced[:, :1] + (values - values[:, :1])
+    found = session.follow(reduced, ends.states[:, 0], every_row=True)
+    if found.reached < parts + 1:
+        return None
+    closed = session.close(reduced, found.guess)
+    if not closed.good.all():
+        return None
+    states = closed.states
+    states[:, [0, -1]] = ends.states
+    values[:, -1], reduced[:, -1] = ends.values[:, -1], ends.reduced[:, -1]
+    return Nodes(values, reduced, states)
 
 
 def _middles(session: Session, nodes: Nodes, before: NDArray[np.intp]) -> Nodes | None:
