@@ -63,14 +63,21 @@ def analysis_record(
     """One run as plain data and `Cells`; values are in file units, each column names its own;
     `errors` of all columns, where they were asked for."""
     measured = {} if errors is None else {"errors": _errors_record(errors)}
+    proven = _proof_record(source) if run == SWEEP and source.is_certified else {}
     return {
         "name": name,
         "row_count": source.rows,
         "tables": [table_record(table, threads) for table in tables],
         "rows": _column_records(rows_table(source, run), threads),
+        **proven,
         **measured,
         "diagnostics": [diagnostic.record() for diagnostic in diagnostics],
     }
+
+
+def _proof_record(source: Source) -> Plain:
+    is_one_branch, tubes = source.proven_way
+    return {"proof": {"one_branch": is_one_branch, "tubes": tubes}}
 
 
 def runs_record(runs: Sequence[Results]) -> Plain:

@@ -67,6 +67,11 @@ class Source(Protocol):
         ...
 
     @property
+    def proven_way(self) -> tuple[bool, int]:
+        """Whether all rows are proven to lie on one branch, and how many tubes join them."""
+        ...
+
+    @property
     def proof(self) -> StatusArray:
         """Codes of `mechkin_cli.proof.Proof`, found now if they were not."""
         ...

@@ -37,6 +37,8 @@ def test_json(tmp_path: Path) -> None:
     answer = json.loads(analyze(RCSR, tmp_path, "--certify", "--json").stdout)
     (column,) = [column for column in answer["rows"] if column["label"] == "proof"]
     assert column["values"] == ["proven"] * 27
+    assert answer["proof"] == {"one_branch": True, "tubes": 5}
+    assert "proof" not in json.loads(analyze(RCSR, tmp_path, "--json").stdout)
 
 
 def test_strict_wants_all_rows_proven(tmp_path: Path) -> None:

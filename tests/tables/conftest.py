@@ -32,6 +32,7 @@ class HandWritten:
     condition: np.ndarray = field(default_factory=lambda: np.array([2.0, 2.5, 1e7, NAN]))
     power_error: np.ndarray = field(default_factory=lambda: np.array([NAN, NAN, NAN, NAN]))
     alternatives: tuple = ()
+    is_certified: bool = False
     disturbed: tuple = ()
 
     def quantity(self, name: str) -> Quantity:

@@ -39,6 +39,11 @@ class Proven:
         return "certificate" in self.__dict__
 
     @property
+    def proven_way(self) -> tuple[bool, int]:
+        """Whether all rows are proven to lie on one branch, and how many tubes join them."""
+        return bool(self.certificate.is_complete), int(self.certificate.tubes)
+
+    @property
     def proof(self) -> NDArray[np.int8]:
         """What is proven of every row, codes of `Proof` (rows,)."""
         return self.certificate.status
