@@ -23,7 +23,7 @@ ROOT = Path(__file__).parents[2]
 SOURCE = "mechkin_cli/kernel/src/wrenches.hpp"
 FAULT = (
     "balance.apply_outside(k, force_at(w.pose[k].point(m.centre), Pack(m.mass) * g));",
-    "balance.apply_outside(k, force_at(w.pose[k].point(m.centre), Pack(0.5 * m.mass) * g));",
+    "balance.apply_outside(k, force_at(w.pose[k].point(m.centre), Pack(0.5) * Pack(m.mass) * g));",
 )
 """Half the gravity in the balance of forces."""
 
