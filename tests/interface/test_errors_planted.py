@@ -47,6 +47,7 @@ class Planted:
         self.inputs = result.session.inputs
         self.parameters = {"a": Quantity(exactly(0.02), result.problem.parameters["a"].dimension)}
         self.written = {name: exactly(v) for name, v in result.inputs.items()}
+        self.time = None
         self.calls = []
 
     def run(self, wanted, session, inputs, demand):
