@@ -74,12 +74,6 @@ def towards(found: Reach, generators: Sequence[random.Random]) -> tuple[Rows, Ro
     return sense, ends.high[:, 0]
 
 
-def full_turns(train: Train, name: str, degrees: Rows) -> Block:
-    """Drag links, which turn with their crank, at these rows."""
-    texts = [train.text(k, name, row) for k, row in enumerate(degrees)]
-    return Block(texts, degrees, turning_truth(train))
-
-
 def turning_truth(train: Train) -> Callable[[Rows], Truth]:
     """What is true of drag links at places in degrees."""
     exists, decided = train.turns_fully()

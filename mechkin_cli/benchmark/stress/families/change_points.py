@@ -6,24 +6,19 @@ import random
 from collections.abc import Sequence
 from functools import partial
 
-import numpy as np
-
-from mechkin_cli.benchmark.stress.draws import magnitude, uniform
-from mechkin_cli.benchmark.stress.families.shapes import drag_links
+from mechkin_cli.benchmark.stress.draws import magnitude
+from mechkin_cli.benchmark.stress.families.whole_turns import whole_turns
 from mechkin_cli.benchmark.stress.family import Block, Family
-from mechkin_cli.benchmark.stress.sweeps import full_turns
 
 ROWS = 40
 POWERS = (-12, -1)
-TURNS = 400.0
+DEGREES = 400.0
 
 
 def _make(count: int, generators: Sequence[random.Random]) -> Block:
-    gaps = [[magnitude(rng, *POWERS) for _ in range(count)] for rng in generators]
-    train = drag_links(generators, count, gaps)
-    last = [[rng.choice((-1.0, 1.0)) * uniform(rng, 0.5, 1.0) * TURNS] for rng in generators]
-    degrees = np.array(last) * (np.arange(ROWS) / (ROWS - 1))
-    return full_turns(train, "change points", degrees)
+    return whole_turns(
+        generators, "change points", count, lambda rng: magnitude(rng, *POWERS), 0.5, DEGREES, ROWS
+    )
 
 
 FAMILY = Family(

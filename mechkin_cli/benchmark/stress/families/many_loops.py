@@ -5,25 +5,20 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 
-import numpy as np
-
 from mechkin_cli.benchmark.stress.draws import uniform
-from mechkin_cli.benchmark.stress.families.shapes import drag_links
+from mechkin_cli.benchmark.stress.families.whole_turns import whole_turns
 from mechkin_cli.benchmark.stress.family import Block, Family
-from mechkin_cli.benchmark.stress.sweeps import full_turns
 
 ROWS = 100
 LOOPS = 40
-TURNS = 400.0
+DEGREES = 400.0
 GAPS = (0.1, 0.2)
 
 
 def _make(generators: Sequence[random.Random]) -> Block:
-    gaps = [[uniform(rng, *GAPS) for _ in range(LOOPS)] for rng in generators]
-    train = drag_links(generators, LOOPS, gaps)
-    last = [[rng.choice((-1.0, 1.0)) * uniform(rng, 0.2, 1.0) * TURNS] for rng in generators]
-    degrees = np.array(last) * (np.arange(ROWS) / (ROWS - 1))
-    return full_turns(train, "many loops", degrees)
+    return whole_turns(
+        generators, "many loops", LOOPS, lambda rng: uniform(rng, *GAPS), 0.2, DEGREES, ROWS
+    )
 
 
 FAMILY = Family("many loops", "forty planar drag links in a row", ROWS, (_make,))
