@@ -1,12 +1,15 @@
-"""Thresholds stand in `tolerances.py`, where each has a name, a unit and a reason."""
+"""Thresholds stand in `tolerances/`, where each has one name, a unit and a reason."""
 
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from pathlib import Path
 
 import pytest
-from architecture.package import FILES, ROOT, tree
+from architecture.package import FILES, ROOT, room, tree
+
+from mechkin_cli import tolerances
 
 SMALL, LARGE = 1e-3, 1e6
 """Floats nearer to zero, or larger, are limits of something; others are numbers of a formula."""
@@ -30,7 +33,7 @@ ACCEPTED = {
 }
 """(file, number) -> what it is."""
 
-DEFINED = ROOT / "tolerances.py"
+DEFINED = [path for path in FILES if room(path) == "tolerances"]
 
 
 def extreme_numbers(source: ast.AST) -> set[float]:
@@ -45,7 +48,7 @@ def extreme_numbers(source: ast.AST) -> set[float]:
 
 @pytest.mark.parametrize("path", FILES, ids=[str(path.relative_to(ROOT)) for path in FILES])
 def test_no_threshold_stands_alone(path: Path) -> None:
-    if path != DEFINED:
+    if path not in DEFINED:
         name = str(path.relative_to(ROOT))
         assert {x for x in extreme_numbers(tree(path)) if (name, x) not in ACCEPTED} == set()
 
@@ -62,10 +65,22 @@ def test_a_threshold_is_seen(source: str) -> None:
     assert extreme_numbers(ast.parse(source))
 
 
-def test_every_limit_has_a_reason() -> None:
-    body = tree(DEFINED).body
+@pytest.mark.parametrize("path", DEFINED, ids=[path.stem for path in DEFINED])
+def test_every_limit_has_a_reason(path: Path) -> None:
+    body = tree(path).body
     for node, after in zip(body, [*body[1:], None], strict=True):
         if isinstance(node, ast.AnnAssign):
             text = after.value if isinstance(after, ast.Expr) else None
             assert isinstance(text, ast.Constant), f"line {node.lineno} has no reason"
             assert len(text.value) > 20, f"line {node.lineno}"
+
+
+def test_every_limit_stands_once_and_is_found_in_the_room() -> None:
+    limits = Counter(
+        node.target.id
+        for path in DEFINED
+        for node in tree(path).body
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name)
+    )
+    assert {name for name, count in limits.items() if count > 1} == set()
+    assert limits.keys() == {name for name in dir(tolerances) if name.isupper()}

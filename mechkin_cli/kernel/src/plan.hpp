@@ -319,7 +319,7 @@ struct Request {
   unsigned demand;
   int shift;                    // 0, or 1 and 2: parts of the null space added to reactions
   int iterations;               // at most
-  double tight, coarse, accept;  // residual, step, residual: see tolerances.py
+  double tight, coarse, accept;  // residual, step, residual: see tolerances/closing.py
   const Held* held;             // null: every block is solved
   const double* chart;          // charts x columns x rows: the chart's directions, see chart.hpp; null without charts
   const double* chart_origin;   // states x rows; null: the guess

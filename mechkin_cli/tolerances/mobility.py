@@ -1,0 +1,146 @@
+"""Mobility by rank; lengths in parts of the size."""
+
+from __future__ import annotations
+
+from typing import Final
+
+# --- ranks ---------------------------------------------------------------------------------------
+
+RANK_GAP: Final = 1e3
+"""Least ratio of neighbouring singular values at which a rank is accepted."""
+
+RANK_ZERO: Final = 1e-8
+"""Singular values below this part of the largest count as zero: what is redundant is 1e-15 in an
+exact drawing, 1e-10 in one written with ten digits."""
+
+RANK_ROUNDING: Final = 1e-14
+"""Singular values below this part of the largest are rounding, and no measure of a gap."""
+
+# --- closing -------------------------------------------------------------------------------------
+
+MOBILITY_CLOSED: Final = 1e-9
+"""Largest equation of a configuration that counts as assembled: written numbers with ten digits
+reach it."""
+
+MOBILITY_TIGHT: Final = 1e-14
+"""Newton ends here: some roundings of the equations."""
+
+MOBILITY_NEAR: Final = 1e-12
+"""Loops open by less are closed but for rounding: they are left where a step gains no tenth."""
+
+MOBILITY_ITERATIONS: Final = 80
+"""Newton halves the distance to a configuration that is singular; 80 halvings leave nothing."""
+
+MOBILITY_DAMPING: Final = 1e-7
+"""Least damping of a step, in parts of a unit rate: far below singular values that count, far above
+those of redundant constraints in a drawing with ten digits. Measured at 1e-10: steps along these
+led astray by a tenth of a move."""
+
+MOBILITY_RANK: Final = 1e-11
+"""Singular values below this part of the largest are left out of a Newton step: above rounding, far
+below those of a regular configuration, so that the step stays bounded next to a singular one."""
+
+MOBILITY_STRIDE: Final = 0.3
+"""Longest Newton step (largest turn in rad or length in parts of the size), so that a poor start
+does not leave the neighbourhood in which linear terms tell the way."""
+
+MOBILITY_STUCK: Final = 8
+"""Steps without a tenth of progress after which Newton gives up."""
+
+MOBILITY_STARTS: Final = 40
+"""Random poses tried where the drawing itself leads to no assembly."""
+
+# --- motions -------------------------------------------------------------------------------------
+
+MOBILITY_NO_TWIST: Final = 1e-9
+"""Parts of a unit twist below which it does not turn, or does not advance: written numbers have
+nine digits and more."""
+
+MOBILITY_NO_WRENCH: Final = 1e-6
+"""Parts of a unit stress or wrench that count as none: a null vector is known to rounding over the
+gap of the singular values, at least 1e3 above 1e-10 for a drawing with ten digits."""
+
+MOBILITY_MOVES: Final = ((0.1, 1e-9), (0.025, 4e-12))
+"""Moves from the first configuration by their largest step (rad, parts of the size), and how far
+loops may be open after them: what touches in fourth order leaves 1e-4 and 4e-7 times its curvature,
+which must not pass for a motion. The second is tried where the first is too long to tell."""
+
+MOBILITY_FAR_MOVE: Final = (0.3, 1e-9)
+"""The move that is tried where the first leaves loops all but closed: what touches in fourth order
+is open by a hundred times more."""
+
+MOBILITY_CHORDS: Final = (0.3, 0.1)
+"""Chords that tell the dimension, in parts of the move that led there: 0.03 and 0.01 (rad, parts of
+the size) leave curvature small and touching of high order visible."""
+
+MOBILITY_CHORD_RANK: Final = (0.3, 0.7)
+"""Singular values of chords along an orthonormal frame are 1 along the component and 0 across, but
+for its curvature; between these two they tell nothing."""
+
+MOBILITY_CHORD_DOUBT: Final = 1e-4
+"""Rates read from chords below which a coordinate stands still: closing where equations are squared
+is sure to the root of a rounding, 1e-7, over a chord of 0.01."""
+
+MOBILITY_STRAYED: Final = 0.4
+"""How far a move may be closed from where it was meant to end, in parts of its length: by its
+curvature, a tenth, and not by half a right angle as from one component to another."""
+
+MOBILITY_RANK_REACHED: Final = 1e-5
+"""Singular values below this part of the largest count as zero at a configuration that was reached:
+where equations are squared its place is sure to 1e-7 only, and a regular one 0.1 from a singular
+one has 1e-3 at least."""
+
+MOBILITY_OPEN: Final = 1e-7
+"""Loops that a move leaves open by less, but do not close, are no clear answer: a motion of fourth
+order leaves 1e-4 times its curvature, written dimensions of eight digits 1e-8."""
+
+MOBILITY_GROWTH: Final = 16.0
+"""Growth of what loops are open by from the first move to the far one, three times as long, below
+which written dimensions may be the cause: what touches in third order grows 27 times, dimensions
+that are off by a little less than 9 times."""
+
+MOBILITY_SPHERE: Final = 1e-3
+"""How far (rad, parts of the size) from its sphere a move may end."""
+
+MOBILITY_DIFFERENCE: Final = 1e-4
+"""Step of the central differences of Jacobians: errors 1e-8 by its square, 1e-12 by rounding."""
+
+MOBILITY_FORM: Final = 1e-6
+"""Bifurcation equations with smaller coefficients say nothing: a hundred errors of the
+differences."""
+
+MOBILITY_DIRECTIONS: Final = 64
+"""Random starts for the directions that solve the bifurcation equations; eight lines, what three
+forms in four unknowns have, are all met but for one case in a thousand."""
+
+MOBILITY_HEADINGS: Final = 16
+"""Directions, far from each other, that are followed either way."""
+
+MOBILITY_FREE_HEADINGS: Final = 32
+"""Headings of which the bifurcation equations say nothing that are followed either way. Measured on
+platforms whose screw motion meets their translations in third order: one in ten to one in three
+leads to it, so that all miss it in one case of 800."""
+
+MOBILITY_LONE_HEADINGS: Final = 4
+"""Headings in which single links move, too: spins as a rule, which change nothing."""
+
+MOBILITY_PLACES: Final = (4, 16)
+"""Least and largest number of places reached, far from each other, whose dimension is told."""
+
+MOBILITY_OTHERS: Final = 8
+"""Configurations at which what seems idle at one must be idle, too."""
+
+MOBILITY_WORK: Final = 200
+"""Motions of first order at all these places together: between least and largest, they are fewer
+where there are many motions to try at each."""
+
+MOBILITY_SAME_DIRECTION: Final = 5e-3
+"""Two unit vectors whose cosine is nearer to 1 are one direction (6 degrees)."""
+
+MOBILITY_TRIES: Final = 6
+"""Places of falling rank that are tried one after the other for a general one."""
+
+# --- cures ---------------------------------------------------------------------------------------
+
+MOST_CHANGES: Final = 3
+"""Joints changed by one cure of redundant constraints: nobody rebuilds more at once."""

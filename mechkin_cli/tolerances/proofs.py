@@ -1,0 +1,42 @@
+"""Proofs of rows, and of the ways between them."""
+
+from __future__ import annotations
+
+from typing import Final
+
+# --- inputs and enclosures -----------------------------------------------------------------------
+
+INPUT_ROUNDING: Final = 2.0**-50
+"""Inputs are at most this part of the rows' largest value off what the file says, in the kernel's
+units: a multiple of a step, a unit and a whole number of turns taken off are less than eight
+roundings."""
+
+ENCLOSURE_ROUNDING: Final = 2.0**-50
+"""Part of a quantity, its whole turns and its radius that is added to the radius: all are converted
+to the file's units, by six roundings at most."""
+
+SAME_BOX: Final = 2.0**-44
+"""Distance (rad, length units, parts of either) added to the radii of two boxes before they are
+told apart: what is compared is rounded some twenty times."""
+
+# --- ways between rows ---------------------------------------------------------------------------
+
+STRAIGHT_WAY: Final = 1e-9
+"""Change of the direction of the inputs' way (unit vectors of rad and lengths) at a row from which
+on no tube goes through: what remains is rounding of the inputs, and added to the tubes' inputs."""
+
+BRIDGE_NODES: Final = 120
+"""Places between two rows at which a mechanism is closed to join them by tubes: towards a dead
+centre four or five a decade are needed, and there are eight decades above rounding."""
+
+BRIDGE_PART: Final = 0.5
+"""How far an input goes (rad, length units) between places of a way that is proven, at first: about
+what one tube holds, so that few are cut again."""
+
+BRIDGE_PARTS: Final = 2000
+"""Most such parts of a way between two rows: 160 turns, a second of work; who wants more proven can
+ask for rows between."""
+
+BRIDGE_STEP: Final = 1e-13
+"""Distance of inputs (rad, length units) below which places are not told apart: they are rounded to
+1e-16."""

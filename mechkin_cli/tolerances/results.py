@@ -1,0 +1,84 @@
+"""What is told of a row: verdicts, reactions, derived quantities, balances, the dense system."""
+
+from __future__ import annotations
+
+from typing import Final
+
+# --- condition -----------------------------------------------------------------------------------
+
+CONDITION_NEAR_SINGULAR: Final = 1e7
+"""1 / smallest singular value of the scaled block: above it a row keeps fewer than nine digits."""
+
+CONDITION_DIGITS: Final = 0.01
+"""Parts by which a row's condition may be wrong: it comes from a fixed number of inverse
+iterations."""
+
+CONDITION_RANK_UNCLEAR: Final = 1e12
+"""Above it rates and reactions of a row have no digit that means anything; its position still
+has."""
+
+# --- reactions and actuators ---------------------------------------------------------------------
+
+REACTION_ROUNDING: Final = 1e-12
+"""Rounding of reactions in parts of the largest in the mechanism, in whatever joint it is met: a
+cell that moves no more than with this keeps its value. Measured: 1e-15 to 1e-13; what depends on
+the null space moves by about the largest reaction itself."""
+
+UNIQUE_CELL: Final = 1e-9
+"""Change of a cell, in parts of its column's largest value, when a part of the null space is added
+to the reactions: above it the cell is not unique. Rounding leaves 1e-13, a cell that moves moves by
+about its own size."""
+
+ACTUATORS_AT_REST: Final = 1e-10
+"""Rate of the actuators, all together, in parts of the motion (rad, sizes), below which some motion
+leaves them at rest: rounding leaves 1e-16 by the condition of the loops, a position written with
+ten digits 1e-10. The kernel has the same (actuation.hpp)."""
+
+# --- derived quantities --------------------------------------------------------------------------
+
+POSE_LOCKED: Final = 1e-6
+"""Cosine of the middle turn of a pose below which the other two go about one axis."""
+
+HALF_TURN: Final = 1e-14
+"""Scalar part of a unit quaternion up to which a turn counts as half a turn, where either sense of
+its axis is right and one must be chosen: forty roundings, an angle of 2e-14 rad."""
+
+NO_TURN: Final = 1e-12
+"""Vector part of a unit quaternion up to which a link counts as not turned, and distance (length
+units) up to which it counts as not moved: rounding leaves 1e-16 times the condition of the row."""
+
+STANDS_STILL: Final = 1e-12
+"""Rate (rad and length units) in parts of the inputs' rates up to which something counts as
+standing still: rounding leaves 1e-16 times the condition of the row. Measured on a coupler that
+only shifts: 5e-17."""
+
+# --- powers and balances -------------------------------------------------------------------------
+
+POWER_INTEGRAL: Final = 1e-13
+"""Error of the integral of a power between two rows, in parts of the largest power by their
+distance: a few hundred roundings of a power, the difference of efforts with friction and without.
+"""
+
+NEXT_TO_END: Final = 1.0 - 1e-4
+"""Where the ends of a piece of an integral are sampled, in parts of its half: off the end, since a
+zero that parts pieces, and what is next to it, is known to rounding only."""
+
+NEXT_TO_ZERO: Final = 1e-13
+"""Distance of a zero from the end of a piece, in parts of all pieces, below which it is the end."""
+
+TURNS_NOT: Final = 1e-12
+"""Size of a rate in parts of its largest below which its sign is rounding."""
+
+REPEATS: Final = 1e-9
+"""Parts of its largest value by which what repeats may differ between the first row of a cycle and
+the last: rounding leaves 1e-12, what is open is open by far more."""
+
+# --- the dense system ----------------------------------------------------------------------------
+
+DENSE_ROUNDING: Final = 1e-13
+"""Size of an unknown of the dense system, in parts of the largest of its kind, up to which it is
+rounding of the elimination and told as zero: fifty equations leave 1e-15 to 1e-14."""
+
+DENSE_PIVOT: Final = 1e-12
+"""Pivot of the dense system (equations scaled to a largest coefficient of 1) below which reactions
+are not told apart: rounding of fifty equations leaves 1e-14, mechanisms that stand apart 1e-3."""
