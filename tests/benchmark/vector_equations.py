@@ -1,4 +1,4 @@
-"""Gaussian elimination in any numbers that numpy can hold, rows of a batch at once."""
+"""Vector equations in any numbers that numpy can hold, rows of a batch at once."""
 
 from __future__ import annotations
 
@@ -7,20 +7,7 @@ from typing import Any
 import numpy as np
 from benchmark.matrices import Vector
 
-
-def eliminate(matrix: Any, right: Any) -> Any:
-    """Solutions (rows, n) of systems (rows, n, n) by Gaussian elimination with partial pivoting."""
-    a = np.concatenate([matrix, right[:, :, None]], axis=2)
-    rows, n = right.shape
-    every = np.arange(rows)
-    for k in range(n):
-        pivot = k + np.argmax(np.abs(a[:, k:, k]), axis=1)
-        a[every, pivot], a[:, k] = a[:, k].copy(), a[every, pivot]
-        a[:, k] /= a[:, k, k][:, None]
-        factors = a[:, :, k].copy()
-        factors[:, k] = 0
-        a -= factors[:, :, None] * a[:, k][:, None, :]
-    return a[:, :, n]
+from mechkin_cli.benchmark.elimination import eliminate
 
 
 def solve_columns(columns: list[Vector], right: Vector, dtype: Any) -> Vector:
