@@ -121,7 +121,7 @@ class Certificate:
             raise UsageError(f"{name[:LONGEST_NAME]} is no quantity that is enclosed")
         rows = result.row_states
         found = enclosures(result.session, self._found, [wanted], rows.states, rows.turns)
-        middle, radius = found[name]
+        middle, radius = found[name].high, found[name].about_high
         known = np.asarray(result.units.to_si(self.analysis[name], wanted.dimension))
         scale = np.abs(middle)
         if wanted.kind == "coordinate" and not wanted.order and is_angle(wanted.coordinate):

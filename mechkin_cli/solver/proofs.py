@@ -6,6 +6,7 @@ of the way (docs/numerics.md, Proofs).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,19 +22,28 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.session import Session
 
 
+def about_high(parts: Iterable[Floats]) -> Floats:
+    """Radii about high parts, of numbers given as high parts, low parts and radii about both."""
+    _, low, radius = parts
+    widened: Floats = np.nextafter(np.abs(low) + radius, np.inf)
+    return np.where((low == 0.0) & (radius == 0.0), 0.0, widened)
+
+
 class Enclosed(NamedTuple):
     """A session's mechanism with its constants enclosed.
 
     Attributes:
         session: the mechanism in doubles.
-        plan: its plan at the constants' midpoints.
-        radii: their radii in the same places; None where the doubles are taken as they are.
+        plan: its plan at the constants' high parts.
+        radii: a plan of their radii about these; None where the doubles are taken as they are.
+        constants: high and low parts and radii about their sums (constants, 3); None likewise.
         of_text: whether these constants enclose the numbers of the file's text.
     """
 
     session: Session
     plan: Plan
     radii: Plan | None
+    constants: Floats | None
     of_text: bool
 
     @classmethod
@@ -41,14 +51,14 @@ class Enclosed(NamedTuple):
         """As the file's text says it; where the text cannot be followed to all constants, the
         mechanism that the doubles are."""
         try:
-            middle, radius = session.precise.enclosed_constants(session).T
+            constants = session.precise.enclosed_constants(session)
         except (LookupError, ValueError, TraceLost):
-            return cls(session, session.plan, None, False)
+            return cls(session, session.plan, None, None, False)
         scale = [_kernel.CONSTANT_LENGTH, _kernel.CONSTANT_SIZE]
-        radius = radius.copy()
+        middle, radius = constants[:, 0].copy(), about_high(constants.T)
         radius[scale] = middle[scale]  # of units, which are conventions
-        plan = session.plan.with_constants(np.ascontiguousarray(middle))
-        return cls(session, plan, plan.with_constants(radius), True)
+        plan = session.plan.with_constants(middle)
+        return cls(session, plan, plan.with_constants(radius), constants, True)
 
 
 class Boxes(NamedTuple):

@@ -10,7 +10,7 @@ from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.enclosures import Enclosure, Given, Positions, enclose
-from mechkin_cli.solver.proofs import Enclosed, input_rounding
+from mechkin_cli.solver.proofs import Enclosed, about_high, input_rounding
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -49,19 +49,19 @@ def enclosures(
     """
     enclosed = session.once("enclosed", lambda: Enclosed.of(session))
     given = Given.of(session) if enclosed.of_text else Given.of_doubles(session)
-    positions = Positions(enclosed.plan, enclosed.radii, states, certificate.boxes.radius)
+    positions = Positions(enclosed.plan, enclosed.constants, states, certificate.boxes.radius)
     found = enclose(session, positions, given, wanted, turned=turned)
     known = certificate.on_branch & _are_inside(session, given)
     return {
-        name: Enclosure(middle, np.where(known, radius, np.inf))
-        for name, (middle, radius) in found.items()
+        name: Enclosure(high, low, np.where(known, radius, np.inf))
+        for name, (high, low, radius) in found.items()
     }
 
 
 def _are_inside(session: Session, given: Given) -> Bools:
     """Rows whose inputs are among those that the boxes were proven for."""
     reduced = session.inputs.reduced
-    off = np.abs(given.inputs.middle - reduced) + given.inputs.radius
+    off = np.abs(given.inputs[:, 0] - reduced) + about_high(given.inputs.transpose(1, 0, 2))
     inside = off <= input_rounding(session, reduced)
     found: Bools = np.asarray(inside.all(axis=0), dtype=np.bool_)
     return found
