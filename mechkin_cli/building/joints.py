@@ -172,7 +172,8 @@ def _zero_directions(
     """
     if section.zero is None:
         x = perpendicular(axes[0])
-        return x, turned_shortest(axes[0], axes[1], x)
+        one_axis = axes[1] is axes[0]
+        return x, x if one_axis else turned_shortest(axes[0], axes[1], x)
     given = directions_of(fields, path, section, "zero")
     first, second = (
         _square(fields, (*path, "zero", link), axis, vector, "this direction", "axis", errors)
