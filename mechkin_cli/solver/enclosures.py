@@ -157,6 +157,41 @@ def enclose(
     return found
 
 
+def enclose_derivatives(
+    positions: Positions, inputs: Floats, number: int
+) -> tuple[Enclosure, Enclosure]:
+    """First and second derivatives of the columns (columns, places) by one of the inputs, all over
+    the boxes.
+
+    Args:
+        positions: where the mechanism is.
+        inputs: as in `Given` (inputs, 3, places).
+        number: of the input that moves.
+    """
+    columns, places = positions.radius.shape
+    rates = np.zeros((inputs.shape[0], places))
+    rates[number] = 1.0
+    first, second = np.empty((3 * columns, places)), np.empty((3 * columns, places))
+    _kernel.enclose(
+        positions.plan,
+        low=_part(positions.constants, 1),
+        radii=_part(positions.constants, 2),
+        states=np.ascontiguousarray(positions.states),
+        inputs=_rows(inputs),
+        radius=np.ascontiguousarray(positions.radius),
+        contract=1,
+        rates=_rows(_point(rates)),
+        accelerations=_rows(_point(np.zeros_like(rates))),
+        first=first,
+        second=second,
+    )
+    one, other = (
+        Enclosure(*found.reshape(columns, 3, places).transpose(1, 0, 2))
+        for found in (first, second)
+    )
+    return one, other
+
+
 def _point(values: Floats) -> Floats:
     """Doubles that are exact (numbers, rows)."""
     return np.stack([values, np.zeros_like(values), np.zeros_like(values)], axis=1)

@@ -18,6 +18,8 @@ from mechkin_cli.solver.redundancy import equations_that_follow
 from mechkin_cli.tape.traced import TraceLost
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.solver.session import Session
@@ -95,15 +97,48 @@ _MEASURED = 1.0 + 1.0 / 1024.0
 
 class Nodes(NamedTuple):
     """Places along a way of the inputs in the kernel's units, which goes straight from each to the
-    next: inputs with whole turns and without (inputs, nodes), states (states, nodes)."""
+    next; arrays over the places.
+
+    Attributes:
+        values: of the inputs with their whole turns (inputs, nodes).
+        reduced: without them, likewise.
+        states: (states, nodes).
+        off: how far the inputs may be from what is meant (inputs, nodes).
+        least: boxes are at least so wide (columns, nodes).
+    """
 
     values: Floats
     reduced: Floats
     states: Floats
+    off: Floats
+    least: Floats
+
+    @classmethod
+    def of(cls, session: Session, values: Floats, reduced: Floats, states: Floats) -> Nodes:
+        """Places whose inputs are as near to the file's as rounding leaves them, with boxes as
+        narrow as can be proven."""
+        least = np.zeros((session.plan.columns, values.shape[1]))
+        return cls(values, reduced, states, input_rounding(session, values), least)
 
     def part(self, nodes: slice) -> Nodes:
         """Some of the places."""
         return Nodes(*(array[:, nodes] for array in self))
+
+    def between(self, before: NDArray[np.intp], values: Floats, states: Floats) -> Nodes:
+        """Other places, each between one of these and the next, whose inputs are as far off as
+        those of both; values with whole turns (inputs, places)."""
+        return Nodes(
+            values,
+            self.reduced[:, before] + (values - self.values[:, before]),
+            states,
+            np.maximum(self.off[:, before], self.off[:, before + 1]),
+            np.zeros((len(self.least), before.size)),
+        )
+
+    def inserted(self, before: NDArray[np.intp], places: Nodes) -> Nodes:
+        """These and other places behind some of them."""
+        pairs = zip(self, places, strict=True)
+        return Nodes(*(np.insert(own, before + 1, more, axis=1) for own, more in pairs))
 
 
 class Tubes(NamedTuple):
@@ -150,7 +185,8 @@ def prove_boxes(enclosed: Enclosed, nodes: Nodes) -> Boxes:
     _kernel.prove_boxes(
         plan,
         states=np.ascontiguousarray(nodes.states),
-        off=np.ascontiguousarray(input_rounding(enclosed.session, nodes.reduced)),
+        off=np.ascontiguousarray(nodes.off),
+        least=np.ascontiguousarray(nodes.least),
         radii=enclosed.radii,
         follows=enclosed.follows,
         radius=radius,
@@ -178,7 +214,7 @@ def prove_tubes(enclosed: Enclosed, nodes: Nodes, boxes: Boxes) -> Tubes:
         follows=enclosed.follows,
         place=np.concatenate([[0.0], np.cumsum(length)]),
         inputs=np.ascontiguousarray(nodes.values),
-        off=np.ascontiguousarray(input_rounding(session, nodes.values)),
+        off=np.ascontiguousarray(nodes.off),
         states=np.ascontiguousarray(nodes.states),
         after=first,
         before=_derivatives(session, nodes, before) if bends.any() else first,

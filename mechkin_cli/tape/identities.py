@@ -284,8 +284,8 @@ class Identities:
 
 
 def _gauss(prime: int) -> Sum:
-    """The root of a small prime, or of 1, by Gauss's sum over e(k k / p), which is i root(p) where p
-    is 3 more than a multiple of 4."""
+    """The root of a small prime, or of 1, by Gauss's sum over e(k k / p): i root(p) where p is 3
+    more than a multiple of 4."""
     if prime == 1:
         return ONE
     if prime == 2:
