@@ -16,12 +16,15 @@ from mechkin_cli.proof import Proof
 from mechkin_cli.runs import SWEEP
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from mechkin_cli.analysis.proof import Certificate as Found
     from mechkin_cli.analysis.proof.certificate import Gap
     from mechkin_cli.arrays import Floats
     from mechkin_cli.interface.analysis import Analysis
+    from mechkin_cli.mechanism.quantities import Wanted
 
 FULL_TURN = 2.0 * np.pi
 GAPS_TOLD = 4
@@ -114,22 +117,32 @@ class Certificate:
         Raises:
             UsageError: no such quantity, or one that is not enclosed: derived ones, jerks.
         """
-        a_text("quantity", name, '"O4.theta_dot"')
+        return self.enclosures([name])[name]
+
+    def enclosures(self, names: Sequence[str]) -> dict[str, tuple[Floats, Floats]]:
+        """Those of several quantities by name, found together; errors as those of `enclosure`."""
         result = self.analysis.result
-        wanted = result.problem.quantities().get(name)
-        if wanted is None or not is_enclosed(result.problem.mechanism, wanted):
-            raise UsageError(f"{name[:LONGEST_NAME]} is no quantity that is enclosed")
+        known, wanted = result.problem.quantities(), []
+        for name in names:
+            quantity = known.get(a_text("quantity", name, '"O4.theta_dot"'))
+            if quantity is None or not is_enclosed(result.problem.mechanism, quantity):
+                raise UsageError(f"{name[:LONGEST_NAME]} is no quantity that is enclosed")
+            wanted.append(quantity)
         rows = result.row_states
-        found = enclosures(result.session, self._found, [wanted], rows.states, rows.turns)
-        middle, radius = found[name]
-        known = np.asarray(result.units.to_si(self.analysis[name], wanted.dimension))
+        found = enclosures(result.session, self._found, wanted, rows.states, rows.turns)
+        return {quantity.name: self._bounds(quantity, *found[quantity.name]) for quantity in wanted}
+
+    def _bounds(self, wanted: Wanted, middle: Floats, radius: Floats) -> tuple[Floats, Floats]:
+        """Of an enclosure in SI (width, rows), in the file's units and with the rows' whole
+        turns."""
+        units = self.analysis.result.units
+        known = np.asarray(units.to_si(self.analysis[wanted.name], wanted.dimension))
         scale = np.abs(middle)
         if wanted.kind == "coordinate" and not wanted.order and is_angle(wanted.coordinate):
             turns = FULL_TURN * np.rint((known - middle) / FULL_TURN)
             middle, scale = middle + turns, scale + np.abs(turns)
         middle, radius, scale = (
-            np.asarray(result.units.from_si(part, wanted.dimension))
-            for part in (middle, radius, scale)
+            np.asarray(units.from_si(part, wanted.dimension)) for part in (middle, radius, scale)
         )
         off = radius + tolerances.ENCLOSURE_ROUNDING * (radius + scale)
         off = np.where(np.isfinite(off) & np.isfinite(np.atleast_2d(known.T)), off, np.nan)

@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 import mechkin_cli as mk
 from mechkin_cli.benchmark.stress import page, workers
 from mechkin_cli.benchmark.stress.families.table import FAMILIES
+from mechkin_cli.benchmark.stress.forecast import Forecast
 from mechkin_cli.benchmark.stress.plan import tasks
 from mechkin_cli.benchmark.stress.run import stress
 from mechkin_cli.benchmark.stress.tally import Tally
@@ -45,14 +46,28 @@ def test_the_page_is_what_would_be_written_now(small: list[Tally]) -> None:
 
 def test_processes_give_the_same(small: list[Tally]) -> None:
     family = "double modes"
-    blocks = list(tasks(400, [family]))
+    blocks = tasks(400, [family])
     known = Tally(family)
-    for tally in workers.results([*blocks, *blocks], 1, 2):
-        known.merge(tally)
+    for done in workers.results([*blocks, *blocks], 1, 2):
+        known.merge(done.tally)
     once = Tally(family)
-    for tally in workers.results([*blocks, *blocks], 1, 1):
-        once.merge(tally)
+    for done in workers.results([*blocks, *blocks], 1, 1):
+        once.merge(done.tally)
     assert known.in_order().record() == once.in_order().record()
+
+
+def test_what_is_left_follows_from_what_is_done() -> None:
+    blocks = tasks(40_000, ["sizes", "many loops"])
+    forecast = Forecast(blocks, 2)
+    assert forecast.seconds is None
+    for task in blocks[:-1]:
+        rows = sum(FAMILIES[task.family].rows_of(n) for n in task.numbers)
+        forecast.done(task, rows * 0.25)
+    last = blocks[-1]
+    rows = sum(FAMILIES[last.family].rows_of(n) for n in last.numbers)
+    assert forecast.seconds == pytest.approx(rows * 0.25 / 2)
+    forecast.done(last, 1.0)
+    assert forecast.seconds == 0.0
 
 
 def test_one_mechanism_is_printed_as_a_file() -> None:

@@ -20,9 +20,11 @@ HEAD = """\
 
 Written by `mechkin bench --stress --rows {rows} --seed {seed} --page docs/stress.md`; `--check`
 computes the small set again and compares the page. Families of random mechanisms, each hard in one
-way. Every row is decided by a closed form in double-double arithmetic (about 31 digits) of which no
-line is the solver's. `mechkin bench --stress --family NAME --only K` writes mechanism K of a family
-as a file. Numbers depend on rows and seed alone, not on the machine.
+way. Every row is decided in double-double arithmetic (about 31 digits) by code of which no line is
+the solver's: a closed form, or for loops that have none the closing equations, followed from the
+drawing. `mechkin bench --stress --family NAME --only K` writes mechanism K of a family
+as a file. Families share the rows evenly, but for loops that take long: spatial loops have a
+quarter of that, many loops a tenth; long sweeps come on top. Numbers depend on rows and seed alone, not on the machine.
 
 {families}
 
@@ -36,12 +38,15 @@ as a file. Numbers depend on rows and seed alone, not on the machine.
   `undriven-freedom`, `input-locked`) that axes or points which differ by less than 1e-7, or loops
   that are dependent but for 1e-6, are taken for coinciding (`COMMON_MOTION`, `LOOP_RANK`): numbers
   of nine digits leave that much. The row is one of such a mechanism. A documented limit.
-- *Rates lost*: the place is right and says ok, a rate or an acceleration is off by more than
-  {wrong} u k^2 and 1e-9 of the row's largest. A rod that is short beside the mechanism has its
-  direction to u over its length only, which `row.condition`, a measure of places, does not see. A
-  documented limit.
-- *Proven*: every tenth mechanism is proven by `--certify`, too, and the closed forms lie within its
-  enclosures.
+- *Rates lost*: the place is right and says ok, a rate is off by more than {wrong} u k^2, an
+  acceleration or a force by more than {wrong} u k^3, and by more than 1e-9 of the row's largest. A
+  rod that is short beside the mechanism has its direction to u over its length only, which
+  `row.condition`, a measure of places, does not see. A documented limit.
+- *Proven*: rows are proven by `--certify`, too, and enclosures of places, rates, accelerations and
+  forces must contain what is true of the numbers that the file says. *Not proven*: there is a row,
+  of which nothing is claimed. *Elsewhere*: an enclosure that is proven, and does not contain it.
+  Every row of most families; one mechanism of some where the way between two rows is many turns,
+  which take up to 25 000 tubes; none of responses, of which there are no proofs.
 - *Wrong, warned*: another place, with a warning. *False alarm*: there is a row, and it stays empty.
   *False ok*: a wrong place, or one that cannot be, that says ok.
 """
