@@ -15,7 +15,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.sweep import analyze
-from mechkin_cli.analysis.sweep.sweep import at_once
+from mechkin_cli.analysis.sweep.question import at_once
 from mechkin_cli.benchmark.chain import Chain, chain_of
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism.legs import find_legs

@@ -13,6 +13,7 @@ import numpy as np
 
 from mechkin_cli.benchmark.chain import EQUATIONS, Chain, CommonFrame
 from mechkin_cli.benchmark.closure import Entries, Placing, Turned
+from mechkin_cli.benchmark.elimination import eliminate
 from mechkin_cli.benchmark.jets import Jet, jet
 from mechkin_cli.benchmark.scene import Scene, Values
 
@@ -176,22 +177,11 @@ def named_values(chain: Chain, state: State) -> Values:
 
 
 def solved(matrix: Any, right: Any) -> Any:
-    """Solutions (rows, n) of systems (rows, m, n), of more equations the least squares, by
-    elimination with row pivots."""
+    """Solutions (rows, n) of systems (rows, m, n), of more equations the least squares."""
     if matrix.shape[1] != matrix.shape[2]:
         right = np.einsum("rij,ri->rj", matrix, right)
         matrix = np.einsum("rij,rik->rjk", matrix, matrix)
-    a = np.concatenate([matrix, right[:, :, None]], axis=2)
-    rows, n = right.shape
-    every = np.arange(rows)
-    for k in range(n):
-        pivot = k + np.argmax(np.abs(a[:, k:, k]), axis=1)
-        a[every, pivot], a[:, k] = a[:, k].copy(), a[every, pivot]
-        a[:, k] /= a[:, k, k][:, None]
-        factors = a[:, :, k].copy()
-        factors[:, k] = 0
-        a -= factors[:, :, None] * a[:, k][:, None, :]
-    return a[:, :, n]
+    return eliminate(matrix, right)
 
 
 def _orders(entry: Jet) -> tuple[Any, Any, Any]:

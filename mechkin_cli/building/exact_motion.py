@@ -17,28 +17,13 @@ import numpy as np
 from mechkin_cli.building.coordinates import dimension_of
 from mechkin_cli.building.curves import read_rows
 from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.building.laws import (
-    Clock,
-    _of_constant_acceleration,
-    _of_constant_rate,
-    _of_polynomial,
-    _over_time,
-    _span,
-)
+from mechkin_cli.building.law_numbers import Clock, PowerLaw, coefficients, over_time, span
 from mechkin_cli.exact import PI, TURN, Exact
 from mechkin_cli.expressions import Expression, Quantity, literal, parse
 from mechkin_cli.expressions.fields import scalar
 from mechkin_cli.mechanism.curve import smooth_curve
 from mechkin_cli.mechanism.exact_motion import ExactMotion
-from mechkin_cli.schema.laws import (
-    ConstantAcceleration,
-    ConstantRate,
-    Cycloidal,
-    Harmonic,
-    Law,
-    Polynomial,
-    TableLaw,
-)
+from mechkin_cli.schema.laws import Cycloidal, Harmonic, Law, TableLaw
 from mechkin_cli.schema.motion import (
     FollowingInput,
     HeldInput,
@@ -148,7 +133,7 @@ class _Reading:
             self._put(name, self._rise(path, item, coordinate))
         elif isinstance(item, TableLaw):
             self._put(name, self._table(path, item, coordinate))
-        elif isinstance(item, ConstantRate | ConstantAcceleration | Polynomial):
+        elif isinstance(item, PowerLaw):
             self._put(name, self._power_series(path, item, coordinate))
 
     def follow(self, sections: Mapping[str, FollowingInput]) -> None:
@@ -231,25 +216,18 @@ class _Reading:
         step: Any = abs(self.fields.written((*path, "step"), section.step, dimension))
         return first + number * (step if last >= first else -step)
 
-    def _power_series(
-        self, path: Path, law: ConstantRate | ConstantAcceleration | Polynomial, coordinate: str
-    ) -> Orders:
-        if isinstance(law, ConstantRate):
-            coefficients = _of_constant_rate(self.fields, path, law, coordinate)
-        elif isinstance(law, ConstantAcceleration):
-            coefficients = _of_constant_acceleration(self.fields, path, law, coordinate)
-        else:
-            coefficients = _of_polynomial(self.fields, path, law, coordinate)
+    def _power_series(self, path: Path, law: PowerLaw, coordinate: str) -> Orders:
+        written = coefficients(self.fields, path, law, coordinate)
         assert self.clock is not None
         t = self.moment - self.clock.first
         orders: list[Any] = []
         for order in range(4):
             total: Any = 0.0
-            for k in range(len(coefficients) - 1, order - 1, -1):
+            for k in range(len(written) - 1, order - 1, -1):
                 factor = float(prod(range(k - order + 1, k + 1)))
-                conversion = _over_time(self.fields.units, coordinate, k, order)
-                term = conversion.apply(coefficients[k] * factor)
-                total = term if k == len(coefficients) - 1 else total * t + term
+                conversion = over_time(self.fields.units, coordinate, k, order)
+                term = conversion.apply(written[k] * factor)
+                total = term if k == len(written) - 1 else total * t + term
             orders.append(total)
         return orders[0], orders[1], orders[2], orders[3]
 
@@ -258,7 +236,7 @@ class _Reading:
         assert clock is not None
         first: Any = self.fields.written((*path, "from"), law.first, dimension)
         last: Any = self.fields.written((*path, "to"), law.last, dimension)
-        start, duration = _span(self.fields, path, law, clock)
+        start, duration = span(self.fields, path, law, clock)
         at = (clock.moments - as_recorded(start)) / as_recorded(duration)
         rising = self._where((at >= 0.0) & (at <= 1.0))
         risen = self._where(at >= 1.0)
@@ -268,7 +246,7 @@ class _Reading:
         orders: list[Any] = [rising.choose(first + rise * shape[0], risen.choose(last, first))]
         for order in (1, 2, 3):
             rise = rise / duration
-            conversion = _over_time(self.fields.units, coordinate, 0, order)
+            conversion = over_time(self.fields.units, coordinate, 0, order)
             orders.append(rising.choose(conversion.apply(rise * shape[order]), 0.0))
         return orders[0], orders[1], orders[2], orders[3]
 
@@ -292,7 +270,7 @@ class _Reading:
             2.0 * c + u * (6.0 * d),
             6.0 * d,
         )
-        conversions = (_over_time(self.fields.units, coordinate, 0, k) for k in range(4))
+        conversions = (over_time(self.fields.units, coordinate, 0, k) for k in range(4))
         one, two, three, four = (c.apply(f) for c, f in zip(conversions, found, strict=True))
         return one, two, three, four
 

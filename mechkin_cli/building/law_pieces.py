@@ -15,24 +15,9 @@ import numpy as np
 from mechkin_cli.building.coordinates import dimension_of
 from mechkin_cli.building.curves import read_rows
 from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.building.laws import (
-    Clock,
-    _of_constant_acceleration,
-    _of_constant_rate,
-    _of_polynomial,
-    _over_time,
-    _span,
-)
+from mechkin_cli.building.law_numbers import Clock, PowerLaw, coefficients, over_time, span
 from mechkin_cli.mechanism.curve import smooth_curve
-from mechkin_cli.schema.laws import (
-    ConstantAcceleration,
-    ConstantRate,
-    Cycloidal,
-    Harmonic,
-    Law,
-    Polynomial,
-    TableLaw,
-)
+from mechkin_cli.schema.laws import Cycloidal, Harmonic, Law, TableLaw
 from mechkin_cli.tape.scalars import cos, sin
 from mechkin_cli.units import TIME
 
@@ -61,20 +46,11 @@ def law_pieces(fields: Fields, path: Path, law: Law, coordinate: str, clock: Clo
 
 
 def _power_series(
-    fields: Fields,
-    path: Path,
-    law: ConstantRate | ConstantAcceleration | Polynomial,
-    coordinate: str,
-    clock: Clock,
+    fields: Fields, path: Path, law: PowerLaw, coordinate: str, clock: Clock
 ) -> LawPieces:
-    if isinstance(law, ConstantRate):
-        written = _of_constant_rate(fields, path, law, coordinate)
-    elif isinstance(law, ConstantAcceleration):
-        written = _of_constant_acceleration(fields, path, law, coordinate)
-    else:
-        written = _of_polynomial(fields, path, law, coordinate)
+    written = coefficients(fields, path, law, coordinate)
     terms = [
-        _over_time(fields.units, coordinate, k, 0).apply(number) for k, number in enumerate(written)
+        over_time(fields.units, coordinate, k, 0).apply(number) for k, number in enumerate(written)
     ]
 
     def value(moment: Any, _: Sequence[Any]) -> Any:
@@ -93,7 +69,7 @@ def _rise(
     """u = a t + b, where a = 0 before and after the rise."""
     first = fields.written((*path, "from"), law.first, dimension_of(coordinate))
     last = fields.written((*path, "to"), law.last, dimension_of(coordinate))
-    start, duration = _span(fields, path, law, clock)
+    start, duration = span(fields, path, law, clock)
     end = start + duration
 
     def constants(moment: float) -> list[float]:

@@ -15,32 +15,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import pi, prod
-from typing import NamedTuple
 
 import numpy as np
 
 from mechkin_cli.arrays import Floats
 from mechkin_cli.building.coordinates import dimension_of
 from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.building.law_numbers import Clock, PowerLaw, coefficients, over_time, span
 from mechkin_cli.expressions import literal
-from mechkin_cli.schema.laws import (
-    ConstantAcceleration,
-    ConstantRate,
-    Cycloidal,
-    Harmonic,
-    Law,
-    Polynomial,
-    TableLaw,
-)
-from mechkin_cli.units import TIME, Conversion, UnitSystem, conversion
-
-
-class Clock(NamedTuple):
-    """The moments of the rows, and `from` and `to` of `time`, in the file's units."""
-
-    moments: Floats
-    first: float
-    last: float
+from mechkin_cli.schema.laws import Cycloidal, Harmonic, Law, Polynomial, TableLaw
+from mechkin_cli.units import TIME, UnitSystem
 
 
 def law_values(fields: Fields, path: Path, law: Law, coordinate: str, clock: Clock) -> Floats:
@@ -51,51 +35,11 @@ def law_values(fields: Fields, path: Path, law: Law, coordinate: str, clock: Clo
     return _LAWS[law.law](fields, path, law, coordinate, clock)
 
 
-def _constant_rate(
-    fields: Fields, path: Path, law: ConstantRate, coordinate: str, clock: Clock
-) -> Floats:
-    coefficients = _of_constant_rate(fields, path, law, coordinate)
-    return _power_series(fields.units, coordinate, coefficients, clock)
-
-
-def _of_constant_rate(
-    fields: Fields, path: Path, law: ConstantRate, coordinate: str
-) -> list[float]:
-    at = fields.written((*path, "at"), law.at, dimension_of(coordinate))
-    return [at, fields.written((*path, "rate"), law.rate, dimension_of(coordinate, 1))]
-
-
-def _constant_acceleration(
-    fields: Fields, path: Path, law: ConstantAcceleration, coordinate: str, clock: Clock
-) -> Floats:
-    coefficients = _of_constant_acceleration(fields, path, law, coordinate)
-    return _power_series(fields.units, coordinate, coefficients, clock)
-
-
-def _of_constant_acceleration(
-    fields: Fields, path: Path, law: ConstantAcceleration, coordinate: str
-) -> list[float]:
-    texts = (law.at, law.rate, law.acceleration)
-    at, rate, acceleration = (
-        fields.written((*path, key), text, dimension_of(coordinate, order))
-        for order, (key, text) in enumerate(zip(("at", "rate", "acceleration"), texts, strict=True))
-    )
-    return [at, rate, acceleration / 2.0]
-
-
-def _polynomial(
-    fields: Fields, path: Path, law: Polynomial, coordinate: str, clock: Clock
-) -> Floats:
-    coefficients = _of_polynomial(fields, path, law, coordinate)
-    _check_units(fields, (*path, "coefficients"), law, coordinate)
-    return _power_series(fields.units, coordinate, coefficients, clock)
-
-
-def _of_polynomial(fields: Fields, path: Path, law: Polynomial, coordinate: str) -> list[float]:
-    return [
-        fields.written((*path, "coefficients", k), text, dimension_of(coordinate, k))
-        for k, text in enumerate(law.coefficients)
-    ]
+def _of_powers(fields: Fields, path: Path, law: PowerLaw, coordinate: str, clock: Clock) -> Floats:
+    found = coefficients(fields, path, law, coordinate)
+    if isinstance(law, Polynomial):
+        _check_units(fields, (*path, "coefficients"), law, coordinate)
+    return _power_series(fields.units, coordinate, found, clock)
 
 
 def _check_units(fields: Fields, path: Path, law: Polynomial, coordinate: str) -> None:
@@ -125,7 +69,7 @@ def _power_series(
     for order in range(4):
         for k in range(len(coefficients) - 1, order - 1, -1):
             factor = float(prod(range(k - order + 1, k + 1)))
-            term = _over_time(units, coordinate, k, order).apply(coefficients[k] * factor)
+            term = over_time(units, coordinate, k, order).apply(coefficients[k] * factor)
             orders[order] = orders[order] * t + term
     return orders
 
@@ -169,7 +113,7 @@ def _rise(
     """A rise of the given shape over u from 0 to 1, at rest before and after."""
     first = fields.written((*path, "from"), law.first, dimension_of(coordinate))
     last = fields.written((*path, "to"), law.last, dimension_of(coordinate))
-    start, duration = _span(fields, path, law, clock)
+    start, duration = span(fields, path, law, clock)
     u = (clock.moments - start) / duration
     rising = (u >= 0.0) & (u <= 1.0)
     rise = last - first
@@ -177,35 +121,9 @@ def _rise(
     orders[0] = np.where(u >= 1.0, last, first + rise * orders[0])
     for order in (1, 2, 3):
         rise = rise / duration
-        scaled = _over_time(fields.units, coordinate, 0, order).apply(rise * orders[order])
+        scaled = over_time(fields.units, coordinate, 0, order).apply(rise * orders[order])
         orders[order] = np.where(rising, scaled, 0.0)
     return orders
-
-
-def _span(
-    fields: Fields, path: Path, law: Harmonic | Cycloidal, clock: Clock
-) -> tuple[float, float]:
-    """Start and duration of a rise."""
-    errors = fields.error_count
-    start = clock.first
-    if law.start is not None:
-        start = fields.written((*path, "start"), law.start, TIME)
-    if law.duration is not None:
-        duration = fields.written((*path, "duration"), law.duration, TIME)
-        place: Path = (*path, "duration")
-    else:
-        duration, place = clock.last - start, (*path, "start") if law.start is not None else path
-    if duration > 0.0:
-        return start, duration
-    if fields.error_count == errors:
-        fields.error(
-            "no-duration",
-            place,
-            "a rise takes a positive time",
-            "give start and duration so that there is time for it",
-            measured=f"{duration:g} {fields.units.label(TIME)}",
-        )
-    return start, 1.0
 
 
 def _table(fields: Fields, path: Path, law: TableLaw, coordinate: str, clock: Clock) -> Floats:
@@ -231,21 +149,14 @@ def _table(fields: Fields, path: Path, law: TableLaw, coordinate: str, clock: Cl
             return orders
     found = curve.evaluate(clock.moments)
     for order in range(4):
-        orders[order] = _over_time(fields.units, coordinate, 0, order).apply(found[order])
+        orders[order] = over_time(fields.units, coordinate, 0, order).apply(found[order])
     return orders
 
 
-def _over_time(units: UnitSystem, coordinate: str, have: int, want: int) -> Conversion:
-    """From the unit of order `have` times the unit of time to have - want, to that of order
-    `want`."""
-    before = units.unit(dimension_of(coordinate, have)) * units.unit(TIME ** (have - want))
-    return conversion(before.factor / units.unit(dimension_of(coordinate, want)).factor)
-
-
 _LAWS: dict[str, Callable[..., Floats]] = {
-    "constant-rate": _constant_rate,
-    "constant-acceleration": _constant_acceleration,
-    "polynomial": _polynomial,
+    "constant-rate": _of_powers,
+    "constant-acceleration": _of_powers,
+    "polynomial": _of_powers,
     "harmonic": _harmonic,
     "cycloidal": _cycloidal,
     "table": _table,

@@ -31,7 +31,7 @@ from mechkin_cli.tolerances import LARGEST_NUMBER
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
-    from mechkin_cli.building.laws import Clock
+    from mechkin_cli.building.law_numbers import Clock
 
 
 class Written(NamedTuple):
@@ -132,7 +132,7 @@ def _timed(
     fields: Fields, written: Written, path: Path, section: TimeSection, limit: RowLimit
 ) -> Written:
     """With the moments of a section at `path`."""
-    from mechkin_cli.building.laws import Clock
+    from mechkin_cli.building.law_numbers import Clock
 
     moments = spaced_moments(fields, path, section, limit)
     last = fields.written((*path, "to"), section.last, TIME)

@@ -11,7 +11,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.building.assembly import near_values
 from mechkin_cli.building.coordinates import is_coordinate
-from mechkin_cli.building.laws import Clock
+from mechkin_cli.building.law_numbers import Clock
 from mechkin_cli.building.motion import Written, build_inputs, spaced_moments
 from mechkin_cli.building.start import build_start
 from mechkin_cli.building.stops import StopBuilder

@@ -70,7 +70,10 @@ def texts(name: str, value: object, example: str) -> tuple[str, ...]:
         raise _refusal(name, wanted, value) from None
     if len(found) > MOST_NAMES:
         raise UsageError(f"{name}: more than {MOST_NAMES} names; give a list of those that count")
-    return tuple(a_text(f"{name}[{i}]", item, example.strip("[]")) for i, item in enumerate(found))
+    for i, item in enumerate(found):
+        if not isinstance(item, str):
+            raise _refusal(f"{name}[{i}]", f"a text such as {example.strip('[]')}", item)
+    return found
 
 
 def a_path(name: str, value: object) -> Path:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from mechkin_cli.building.columns import used_quantities
@@ -12,13 +12,12 @@ from mechkin_cli.kernel.width import check_threads, check_width
 from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.runs import SWEEP
-from mechkin_cli.solver.session import Packing
+from mechkin_cli.solver.session import Packing, Session
 from mechkin_cli.tables.layout import TableLayout, row_texts
 
 if TYPE_CHECKING:
     from mechkin_cli.building.build import Built
     from mechkin_cli.interface.analysis import Analysis
-    from mechkin_cli.mechanism.quantities import Wanted
 
 QUANTITIES = (
     "quantities are such as J.theta, J.force of a joint J, or p.position of a point p; components "
@@ -78,13 +77,13 @@ def chosen_tables(built: Built, names: Sequence[str] | None, run: str) -> tuple[
 
 
 def wanted_names(
+    session: Session,
+    run: str,
     layouts: Sequence[TableLayout],
     quantities: Iterable[str] | None,
-    quantities_of_run: Callable[[], Mapping[str, Wanted]],
-    run: str,
 ) -> list[str]:
-    """The quantities that tables of a run read, then those asked for; what there is, is asked only
-    where something is wanted.
+    """The quantities that tables of a run read, then those asked for; `session` is the run's. What
+    there is, is asked only where something is wanted.
 
     Raises:
         UsageError: an unknown quantity.
@@ -92,14 +91,15 @@ def wanted_names(
     asked = () if quantities is None else texts("quantities", quantities, '["O4.theta"]')
     if not layouts and not asked:
         return []
-    always, known = row_texts(run), quantities_of_run()
-    used = used_quantities(layouts, known) if layouts else []
-    names = [*used, *(name for name in asked if name not in always)]
+    always, known = row_texts(run), session.problem.quantities()
+    key = ("read by", run, tuple(layout.name for layout in layouts))
+    used = session.once(key, lambda: used_quantities(layouts, known))
+    names = [name for name in asked if name not in always]
     for name in names:
         if name not in known:
             hint = hint_of(name) or nearest_hint(name, known) or QUANTITIES
             raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
-    return names
+    return [*used, *names]
 
 
 def known_mode(analysis: Analysis) -> Analysis:

@@ -38,7 +38,7 @@ def respond(
         response = replace(response, assembly=assembly)
         session = session.assembled(assembly)
     layouts = chosen_tables(model.built, tables, run)
-    names = wanted_names(layouts, quantities, session.problem.quantities, run)
+    names = wanted_names(session, run, layouts, quantities)
     result = run_response(problem, response, names, packing, session)
     analysis = Analysis(model, layouts, result, run)
     return analysis if mode is None else known_mode(analysis)

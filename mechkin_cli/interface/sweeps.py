@@ -49,9 +49,9 @@ def run_sweep(
         session = session.assembled(replace(problem.assembly, mode=mode))
     layouts = chosen_tables(model.built, tables, SWEEP)
     balances = chosen(model.built.balances, tables)
-    names = wanted_names(layouts, quantities, problem.quantities, SWEEP)
+    names = wanted_names(session, SWEEP, layouts, quantities)
     names += read_by(balances, problem)
-    _refuse_loaded_spin(problem, names)
+    _refuse_loaded_spin(session, names)
     result = analyze(session.packed(packing), names)
     systems = chosen(model.built.coefficients, tables)
     analysis = Analysis(model, layouts, result, SWEEP, systems, balances)
@@ -79,13 +79,14 @@ def _closed_at(problem: Problem, names: Sequence[str]) -> Session:
         raise UsageError(f"{why}; {cure}") from None
 
 
-def _refuse_loaded_spin(problem: Problem, names: Sequence[str]) -> None:
+def _refuse_loaded_spin(session: Session, names: Sequence[str]) -> None:
     """Forces and energies need what spins freely to have no cause to spin."""
-    if not (find_legs(problem.mechanism) or problem.held):
+    problem = session.problem
+    if not names or not (find_legs(problem.mechanism) or problem.held):
         return
-    known = problem.quantities() if names else {}
-    if needs_all_links(problem.mechanism, [known[name] for name in names]):
-        from mechkin_cli.mechanism.spins import spin_errors
+    from mechkin_cli.mechanism.spins import spin_errors
 
-        for _, diagnostic in spin_errors(problem):
+    for _, diagnostic in session.own("causes of spin", lambda: list(spin_errors(problem))):
+        known = problem.quantities()
+        if needs_all_links(problem.mechanism, [known[name] for name in names]):
             raise UsageError(str(diagnostic))

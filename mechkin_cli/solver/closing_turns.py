@@ -10,7 +10,7 @@ turn, where their rounding stays that of a turn, and their whole turns are count
 from __future__ import annotations
 
 from math import pi, sqrt
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.mechanism.frames import Frame
     from mechkin_cli.mechanism.model import Joint
+    from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.demand import Slot
+    from mechkin_cli.solver.layout import Layout
     from mechkin_cli.solver.session import Session
 
 ORIENTATION = -1
@@ -32,38 +34,51 @@ ORIENTATION = -1
 Four = tuple["Floats", "Floats", "Floats", "Floats"]
 
 
-def turn_slots(plan: Plan) -> dict[tuple[int, int], int]:
-    """First row of `Followed.turns` of each (closing joint, freedom); freedom `ORIENTATION` of a
-    joint that has no angles."""
-    return {(joint, freedom): slot for joint, freedom, slot, _ in _kernel.closing_turns(plan)}
+class TurnSlots(NamedTuple):
+    """Rows of `Followed.turns`.
 
+    Attributes:
+        closing: the first row of each (closing joint, freedom); freedom `ORIENTATION` of a joint
+            that has no angles.
+        tree: the row with the whole turns of each state that is an angle of the tree.
+    """
 
-def tree_slots(plan: Plan) -> dict[int, int]:
-    """Row of `Followed.turns` with the whole turns of each state that is an angle of the tree."""
-    return dict(_kernel.tree_turns(plan))
+    closing: Mapping[tuple[int, int], int]
+    tree: Mapping[int, int]
+
+    @classmethod
+    def of(cls, plan: Plan) -> TurnSlots:
+        """Those of a plan."""
+        turns = _kernel.closing_turns(plan)
+        closing = {(joint, freedom): slot for joint, freedom, slot, _ in turns}
+        return cls(closing, dict(_kernel.tree_turns(plan)))
+
+    def of_angle(self, layout: Layout, quantity: Wanted) -> int | None:
+        """The row of a joint's angle, None where it has no turns."""
+        reference = layout.joint_reference[quantity.owner]
+        freedom = layout.mechanism.joints[quantity.owner].type.freedom_of[quantity.coordinate]
+        if reference < 0:
+            return self.closing.get((-1 - reference, freedom))
+        return self.tree.get(layout.state(layout.edge_number[quantity.owner], freedom))
 
 
 def angle_slots(session: Session, names: Mapping[str, Slot]) -> list[tuple[int, int, bool]]:
     """Outputs that are angles, as native runs take them: (output slot, row of `Followed.turns`,
     whether of a closing joint); of an input -2 - its number."""
     known, layout = session.problem.quantities(), session.layout
-    closing, tree = turn_slots(session.plan), tree_slots(session.plan)
     inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
     found = []
     for name, slot in names.items():
         quantity = known.get(name)
         if quantity is None or quantity.kind != "coordinate" or quantity.order:
             continue
-        freedom = layout.mechanism.joints[quantity.owner].type.freedom_of[quantity.coordinate]
-        place = layout.joint_reference[quantity.owner]
-        if place < 0:
-            turn = closing.get((-1 - place, freedom))
-        elif name in inputs:
-            turn = -2 - inputs[name]
+        of_closing = layout.joint_reference[quantity.owner] < 0
+        if name in inputs and not of_closing:
+            turn: int | None = -2 - inputs[name]
         else:
-            turn = tree.get(layout.state(layout.edge_number[quantity.owner], freedom))
+            turn = session.turn_slots.of_angle(layout, quantity)
         if turn is not None:
-            found.append((slot.first, turn, place < 0))
+            found.append((slot.first, turn, of_closing))
     return found
 
 

@@ -7,7 +7,7 @@ where something is damped or a load reads rates; an effort needs no joint reacti
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.kernel import _kernel
@@ -100,6 +100,14 @@ class Slot(NamedTuple):
 
     first: int
     width: int
+
+
+class Readout(NamedTuple):
+    """Outputs of a plan: where each quantity stands, and the first columns of points."""
+
+    outputs: Outputs
+    slots: Mapping[str, Slot]
+    points: Sequence[int]
 
 
 class OutputPlan:

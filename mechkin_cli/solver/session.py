@@ -1,47 +1,47 @@
 """A session: one problem's solver graph, layout, frozen plan and inputs, and its verbs.
 
 Everything that is asked of a mechanism goes through the four verbs *close*, *follow*, *search* and
-*run*. What a session has found it keeps: a question asked twice does its work once.
+*run*. What a session has found it keeps: `once` for all sessions of its structure, whatever their
+rows, first assembly, size or packing; `own` for itself alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.solver.batch import RESIDUAL_TESTS, Batch, Chart
 from mechkin_cli.solver.batch import run as run_kernel
+from mechkin_cli.solver.closing_turns import TurnSlots
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import OutputPlan
+from mechkin_cli.solver.demand import OutputPlan, Readout
 from mechkin_cli.solver.follow import Followed
 from mechkin_cli.solver.follow import follow as follow_path
 from mechkin_cli.solver.follow import follow_way as follow_along
 from mechkin_cli.solver.graph import SolverGraph, build_graph, is_redundant
 from mechkin_cli.solver.inputs import KernelInputs, input_unit, kernel_inputs
+from mechkin_cli.solver.keeping import Keeping
 from mechkin_cli.solver.layout import Layout
 
 if TYPE_CHECKING:
     from typing import Self
 
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.kernel._kernel import Outputs, Plan
+    from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.mechanism.model import Attached
     from mechkin_cli.mechanism.motion import Assembly
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
-    from mechkin_cli.solver.demand import Slot
     from mechkin_cli.solver.precise import Precise
     from mechkin_cli.solver.precise_run import PreciseBatch
     from mechkin_cli.solver.route import Route, Way
     from mechkin_cli.solver.search import Found, Within
     from mechkin_cli.solver.tie import Tie
-
-T = TypeVar("T")
 
 Coordinate = tuple[str, str]
 """(joint, coordinate)."""
@@ -56,14 +56,6 @@ class Packing:
     threads: int = 0
 
 
-class Readout(NamedTuple):
-    """Outputs of a plan: where each quantity stands, and the first columns of points."""
-
-    outputs: Outputs
-    slots: Mapping[str, Slot]
-    points: Sequence[int]
-
-
 class Continued(NamedTuple):
     """A first assembly that is not to be chosen: continued from that of another variant. Without
     states (states,) the branch was lost on the way; `row` is the one where it stands."""
@@ -72,7 +64,7 @@ class Continued(NamedTuple):
     row: int
 
 
-class Session:
+class Session(Keeping):
     """A problem in the kernel.
 
     Args:
@@ -97,6 +89,7 @@ class Session:
         closed_at: Sequence[str] | None = None,
         packing: Packing = Packing(),
     ) -> None:
+        super().__init__()
         self.problem = problem
         self.driven = list(problem.driven if driven is None else driven)
         self.closed_at = closed_at
@@ -106,7 +99,6 @@ class Session:
         self.text: Callable[[], Precise] | None = None
         self.graph = graph or build_graph(problem.solved_mechanism, self.driven, closed_at)
         self._readouts: dict[object, Readout] = {}
-        self._kept: dict[object, object] = {}
 
     @cached_property
     def layout(self) -> Layout:
@@ -117,6 +109,11 @@ class Session:
     def plan(self) -> Plan:
         """The frozen plan; residual and condition in parts of `size` (m; None: the drawing's)."""
         return self.layout.build()
+
+    @cached_property
+    def turn_slots(self) -> TurnSlots:
+        """Where the turns of angles stand among `Followed.turns`."""
+        return TurnSlots.of(self.plan)
 
     @cached_property
     def inputs(self) -> KernelInputs:
@@ -200,7 +197,9 @@ class Session:
 
     def packed(self, packing: Packing) -> Session:
         """The same session with rows packed otherwise."""
-        return self if packing == self.packing else self._changed(packing=packing)
+        if packing == self.packing:
+            return self
+        return self.own(("packed", packing), lambda: self._changed(packing=packing))
 
     def sized(self, size: float) -> Session:
         """The same session with residual and condition in parts of another size (m)."""
@@ -208,6 +207,12 @@ class Session:
             return self
         other = self._changed(size=size)
         other.__dict__["plan"] = self.plan.with_size(size)
+        return other
+
+    def with_constants(self, constants: Floats) -> Session:
+        """The same session with other constants of its plan."""
+        other = self._changed()
+        other.__dict__["plan"] = self.plan.with_constants(constants)
         return other
 
     def assembled(self, assembly: Assembly) -> Session:
@@ -228,6 +233,7 @@ class Session:
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         other.__dict__.update(changes)
+        other._own = {}
         return other
 
     def readout(self, wanted: Iterable[Wanted], points: Iterable[Attached] = ()) -> Readout:
@@ -241,12 +247,6 @@ class Session:
             slots = [outputs.add_point(at, 0) for at in points]
             self._readouts[key] = Readout(outputs.outputs, outputs.slots, slots)
         return self._readouts[key]
-
-    def once(self, key: object, find: Callable[[], T]) -> T:
-        """What `find` gives, found once for each key."""
-        if key not in self._kept:
-            self._kept[key] = find()
-        return cast("T", self._kept[key])
 
     def close(self, inputs: Floats, guess: Floats, demand: Demand = Demand.POSITION) -> Batch:
         """Closes the loops at some inputs (inputs, places) from guesses (states, places)."""
@@ -286,7 +286,8 @@ class Session:
             path, whole = inputs.reduced[:, rows], inputs.whole[:, rows]
             return self.follow(path, start, every_row=every_row, turns=True, whole=whole)
         straight = self.problem.assembly.straight
-        way = self.route.way(row, step)
+        route = self.route
+        way = self.own(("way", row, step), lambda: route.way(row, step))
         return follow_along(self.plan, way, start, every_row=every_row, straight=straight)
 
     def follow_way(self, way: Way, start: Floats) -> Followed:

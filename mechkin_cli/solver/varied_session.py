@@ -9,9 +9,10 @@ import numpy as np
 
 from mechkin_cli.kernel._kernel import VariantEnd
 from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.demand import Readout
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.same_structure import graph_of
-from mechkin_cli.solver.session import Continued, Readout, Session
+from mechkin_cli.solver.session import Continued, Session
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
@@ -42,7 +43,7 @@ class VariedSession(Session):
         self.graph = graph_of(problem.solved_mechanism, base.graph)
         for found in ("plan", "layout", "inputs", "route"):
             self.__dict__.pop(found, None)
-        self._readouts, self._kept = {}, {}
+        self._readouts, self._kept, self._own = {}, {}, {}
         end, size, state = variation.reading(()).runs(Demand.POSITION, start).start(values)
         lost = end != VariantEnd.COMPLETE
         self.continued = Continued(None if lost else np.asarray(state), start.row)

@@ -72,7 +72,7 @@ ACCEPTED = {
     ("analysis/response/moments.py", "TIME ** order"): FRACTIONS,
     ("building/coordinates.py", "TIME ** order"): FRACTIONS,
     ("solver/precise_inputs.py", "TIME ** order"): FRACTIONS,
-    ("building/laws.py", "TIME ** (have - want)"): FRACTIONS,
+    ("building/law_numbers.py", "TIME ** (have - want)"): FRACTIONS,
     ("building/laws.py", "units.unit(TIME) ** (-k)"): FRACTIONS,
     ("building/unit_system.py", "units.time ** (-2)"): FRACTIONS,
     ("expressions/arithmetic.py", "base.dimension ** count"): FRACTIONS,

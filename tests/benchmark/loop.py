@@ -13,7 +13,6 @@ from typing import Any
 
 from benchmark.arithmetic import Arithmetic
 from benchmark.closure import Motion, moved
-from benchmark.elimination import solve_columns
 from benchmark.matrices import (
     Matrix,
     Vector,
@@ -24,6 +23,7 @@ from benchmark.matrices import (
     times,
     turning,
 )
+from benchmark.vector_equations import solve_columns
 
 from mechkin_cli.benchmark.sevenr import ACCELERATION, RATE, Loop
 

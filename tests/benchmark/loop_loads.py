@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from benchmark.arithmetic import Arithmetic, extended
 from benchmark.dense_forces import inertia_wrench
-from benchmark.elimination import eliminate
 from benchmark.loop import Lines, LoopKinematics, lines_of, loop_kinematics
 from benchmark.matrices import Matrix, Vector, cross, dot, image, rotation
 
+from mechkin_cli.benchmark.elimination import eliminate
 from mechkin_cli.benchmark.sevenr import GRAVITY, JOINTS, Body, Loop
 
 

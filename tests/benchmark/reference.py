@@ -12,8 +12,8 @@ import numpy as np
 from benchmark.arithmetic import Arithmetic, extended
 from benchmark.closure import Drawing, Kinematics, drawing, kinematics
 from benchmark.dense_forces import equations, wrenches
-from benchmark.elimination import eliminate
 
+from mechkin_cli.benchmark.elimination import eliminate
 from mechkin_cli.benchmark.rcsr import COORDINATES, Dimensions
 
 POSITIONS = COORDINATES

@@ -37,7 +37,8 @@ from references import exact
 
 import mechkin_cli as mk
 from mechkin_cli.analysis.response.respond import Prepared, prepare, read, rows_of
-from mechkin_cli.analysis.sweep.sweep import analyze, at_once
+from mechkin_cli.analysis.sweep.question import at_once
+from mechkin_cli.analysis.sweep.sweep import analyze
 from mechkin_cli.arrays import Floats
 from mechkin_cli.benchmark import sevenr
 from mechkin_cli.benchmark.machine import machine

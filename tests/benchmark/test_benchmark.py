@@ -9,7 +9,6 @@ from benchmark.accuracy import errors
 from benchmark.arithmetic import Arithmetic, extended
 from benchmark.closure import dead_centre, drawing, kinematics
 from benchmark.dense_forces import equations
-from benchmark.elimination import eliminate
 from benchmark.exact import rcsr_specimen, sevenr_specimen
 from benchmark.kernel_case import KernelCase, PlannedRun, degree_rows
 from benchmark.peers import Closure, dense_loads, differences, fsolve_positions
@@ -24,6 +23,7 @@ from benchmark.stress import NEAR_DEAD_CENTRE, SIZES, dead_centre_table, size_ta
 from benchmark.yardstick_kernel import load
 from oracle import fold, mp, read
 
+from mechkin_cli.benchmark.elimination import eliminate
 from mechkin_cli.benchmark.rcsr import COORDINATES, dimensions
 from mechkin_cli.benchmark.report import Column, Table, cell_text, plain_text, width
 from mechkin_cli.benchmark.timing import SHORTEST, Timing, in_turns

@@ -14,10 +14,10 @@ import mechkin_cli as mk
 from mechkin_cli.solver.batch import run
 from mechkin_cli.solver.closing_turns import (
     ORIENTATION,
+    TurnSlots,
     continuous_angle,
     continuous_signs,
     drawn_quaternion,
-    turn_slots,
 )
 from mechkin_cli.solver.codes import OutputCode
 from mechkin_cli.solver.follow import Followed, TrackEnd, follow
@@ -182,7 +182,9 @@ def test_angles_against_small_steps(name: str, coarse: int) -> None:
     setup = closing_case(name)
     path = np.ascontiguousarray(longer_way(setup)[:, ::coarse])
     plan = setup.layout.build()
-    slots = {place: slot for place, slot in turn_slots(plan).items() if place[1] != ORIENTATION}
+    slots = {
+        place: slot for place, slot in TurnSlots.of(plan).closing.items() if place[1] != ORIENTATION
+    }
     assert slots
     code = int(OutputCode.CLOSING)
     records = [Output(code, *place, 0, (0.0, 0.0, 0.0), 1.0) for place in slots]
@@ -206,7 +208,7 @@ def test_signs_against_small_steps(name: str) -> None:
     setup = closing_case(name)
     (closing,) = setup.layout.graph.closings
     joint, plan = closing.joint, setup.layout.build()
-    slot = turn_slots(plan)[0, ORIENTATION]
+    slot = TurnSlots.of(plan).closing[0, ORIENTATION]
     path = np.ascontiguousarray(longer_way(setup))
     fine = dense(path, 100)
     coarse = follow(plan, path, setup.start.state, turns=True)

@@ -23,7 +23,6 @@ from mechkin_cli.solver.closing_turns import (
     ORIENTATION,
     continuous_signs,
     drawn_quaternion,
-    turn_slots,
 )
 
 if TYPE_CHECKING:
@@ -67,7 +66,7 @@ def _followed(run: Reading, name: str, reached: NDArray[np.intp]) -> Quaternion 
     joint = layout.mechanism.joints[name]
     reference = layout.joint_reference[name]
     if reference < 0:
-        slot = turn_slots(run.session.plan).get((-1 - reference, ORIENTATION))
+        slot = run.session.turn_slots.closing.get((-1 - reference, ORIENTATION))
         if slot is None:
             return None
         return drawn_quaternion(joint, rows.turns[slot : slot + 4, reached])

@@ -11,7 +11,6 @@ from mechkin_cli.analysis.sweep.result import Result
 from mechkin_cli.analysis.sweep.rows import Rows
 from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.motion import ORDERS, DrivenInput, Motion
-from mechkin_cli.solver.closing_turns import tree_slots
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
@@ -28,8 +27,8 @@ def driven_rows(response: ResponseResult) -> Result:
     rows = Rows.without_guesses(own.states.shape[0], 0, moving.rows)
     rows.states, rows.reached, rows.status = own.states, own.reached, own.status
     # closing joints have the same turns; the tree's angles have theirs in the states
-    closing = own.turns[: own.turns.shape[0] - len(tree_slots(response.session.plan))]
-    still = np.zeros((len(tree_slots(session.plan)), moving.rows))
+    closing = own.turns[: own.turns.shape[0] - len(response.session.turn_slots.tree)]
+    still = np.zeros((len(session.turn_slots.tree), moving.rows))
     rows.turns = np.concatenate([closing, still])
     return Result(session, response.start, rows)
 

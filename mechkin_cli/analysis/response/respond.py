@@ -15,12 +15,13 @@ from mechkin_cli.analysis.response.endings import ending
 from mechkin_cli.analysis.response.moments import rows_problem, watched_stop
 from mechkin_cli.analysis.response.result import ENERGIES, ResponseResult
 from mechkin_cli.analysis.sweep.friction import unfounded_in_motion
+from mechkin_cli.analysis.sweep.question import at_once, rest_on_reactions
 from mechkin_cli.analysis.sweep.rows import Rows
-from mechkin_cli.analysis.sweep.sweep import at_once, first_assembly, judge_condition, row_notes
+from mechkin_cli.analysis.sweep.sweep import first_assembly, judge_condition, row_notes
 from mechkin_cli.mechanism.motion import Motion
 from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.solver.batch import Chart
-from mechkin_cli.solver.closing_turns import tree_slots, turn_count
+from mechkin_cli.solver.closing_turns import turn_count
 from mechkin_cli.solver.driven_laws import driven_laws
 from mechkin_cli.solver.free_motion import (
     MotionEnd,
@@ -236,7 +237,7 @@ def _nothing(one: Prepared) -> ResponseResult:
 
 def _all_turns(free: Session, closing: Floats) -> Floats:
     """Turns of closing joints, and no whole turns of the tree's angles, whose states have them."""
-    tree = np.zeros((len(tree_slots(free.plan)), closing.shape[1]))
+    tree = np.zeros((len(free.turn_slots.tree), closing.shape[1]))
     return np.concatenate([closing, tree])
 
 
@@ -259,4 +260,6 @@ def read(result: ResponseResult, quantities: Iterable[str]) -> None:
         judge_condition(rows, batch)
         result.keep(batch, wanted, demand)
         result.read(asked)
-    result.row_states.diagnostics += row_notes(result, asked)
+    result.row_states.diagnostics += row_notes(
+        result, asked, rests_on_reactions=rest_on_reactions(result.problem, asked)
+    )

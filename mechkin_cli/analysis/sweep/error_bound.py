@@ -64,7 +64,7 @@ def largest_move(result: Result) -> Floats:
     sizes = _input_sizes(session)
     constants, placing = _constants(session)
     for _ in range(tolerances.ERROR_PROBES):
-        other = _with_constants(session, _off(constants, placing, stream))
+        other = session.with_constants(_off(constants, placing, stream))
         inputs = session.inputs
         off = _signed(stream, len(sizes))[:, None] * tolerances.ERROR_PROBE * sizes
         batch = result.run(
@@ -90,15 +90,6 @@ def _input_sizes(session: Session) -> Floats:
         full = np.maximum(np.abs(inputs.values[number]), sizes[number])
         sizes[number] = np.where(rounded, full, sizes[number])
     return sizes
-
-
-def _with_constants(session: Session, constants: Floats) -> Session:
-    """The same session with other constants of its plan."""
-    other = session.packed(session.packing)
-    changed = object.__new__(type(session))
-    changed.__dict__.update(other.__dict__)
-    changed.__dict__["plan"] = session.plan.with_constants(constants)
-    return changed
 
 
 def _constants(session: Session) -> tuple[Floats, NDArray[np.bool_]]:

@@ -9,12 +9,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.sweep.rows import Rows
-from mechkin_cli.solver.closing_turns import (
-    ORIENTATION,
-    tree_slots,
-    turn_count,
-    turn_slots,
-)
+from mechkin_cli.solver.closing_turns import ORIENTATION, turn_count
 from mechkin_cli.solver.follow import TrackEnd
 
 if TYPE_CHECKING:
@@ -83,11 +78,14 @@ def _count_from_first(session: Session, rows: Rows) -> None:
         return
     first = int(np.argmax(rows.reached))
     # half a turn is +180, whichever side of it rounding has
-    for state, slot in tree_slots(session.plan).items():
+    for state, slot in session.turn_slots.tree.items():
         below = rows.states[state, first] <= tolerances.HALF_TURN_SIDE - pi
-        rows.turns[slot] -= rows.turns[slot, first] - (1.0 if below else 0.0)
-    for (_, freedom), slot in turn_slots(session.plan).items():
+        turns = rows.turns[slot, first] - (1.0 if below else 0.0)
+        if turns:
+            rows.turns[slot] -= turns
+    for (_, freedom), slot in session.turn_slots.closing.items():
         if freedom != ORIENTATION:
             beyond = rows.turns[slot, first] - pi - tolerances.HALF_TURN_SIDE
-            turns = np.ceil(beyond / (2.0 * pi))
-            rows.turns[slot] -= turns * (2.0 * pi)
+            turns = float(np.ceil(beyond / (2.0 * pi)))
+            if turns:
+                rows.turns[slot] -= turns * (2.0 * pi)

@@ -18,6 +18,16 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.quantities import Wanted
 
 
+def judged_by(problem: Problem, wanted: Iterable[Wanted], demand: Demand) -> list[Wanted]:
+    """What forces with friction are judged by, to be read in the run of `wanted`."""
+    if not (demand & Demand.FORCES and problem.mechanism.frictions):
+        return []
+    from mechkin_cli.analysis.sweep.friction import verdict_quantities
+
+    known = {quantity.name for quantity in wanted}
+    return [q for q in verdict_quantities(problem) if q.name not in known]
+
+
 class FrictionRows:
     """What friction makes of the rows of one result."""
 
@@ -30,14 +40,8 @@ class FrictionRows:
         return self.verdict is not None and bool(self.verdict.lost.any())
 
     def beside(self, problem: Problem, wanted: Iterable[Wanted], demand: Demand) -> list[Wanted]:
-        """What forces with friction are judged by, to be read in the run of `wanted`."""
-        forces = demand & Demand.FORCES and problem.mechanism.frictions
-        if not forces or self.verdict is not None:
-            return []
-        from mechkin_cli.analysis.sweep.friction import verdict_quantities
-
-        known = {quantity.name for quantity in wanted}
-        return [q for q in verdict_quantities(problem) if q.name not in known]
+        """What `judged_by` names, until the rows are judged."""
+        return [] if self.verdict is not None else judged_by(problem, wanted, demand)
 
     def judge(self, result: Result, wanted: Iterable[Wanted], demand: Demand) -> None:
         """Judges the rows once; empties forces, new and known, that have no ground."""

@@ -44,8 +44,7 @@ def locked_in(result: Result, rows: Bools) -> str | None:
 
 def locked_pose_notes(result: Result) -> list[Diagnostic]:
     """Says of poses whose turns are not given that rows may be lost through them alone."""
-    trouble = np.isin(result.status, [int(status) for status in _TROUBLE])
-    if not trouble.any():
+    if result.sound or not np.isin(result.status, [int(status) for status in _TROUBLE]).any():
         return []
     driven = {f"{joint}.{coordinate}" for joint, coordinate in result.problem.driven}
     found = []

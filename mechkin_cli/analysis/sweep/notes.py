@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -20,37 +20,49 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.session import Session
 
 
+class _Turn(NamedTuple):
+    """A row that is some whole turns of an input away from the first."""
+
+    name: str
+    row: int
+    turns: int
+
+
 def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnostic | None:
     """Rows a full turn of the one moving input apart at which the mechanism is not the same.
 
     A thread that advances with the turn, and what moves with it, is not meant to be. `states`
     (states, rows) in kernel units.
     """
-    inputs = session.inputs.values
-    moving = np.flatnonzero(np.ptp(inputs, axis=1) > 0.0)
-    if moving.size != 1:
+    turns = session.own("turns", lambda: _whole_turns(session))
+    turn = next((turn for turn in turns if reached[turn.row]), None)
+    if turn is None or not reached[0] or not stands_elsewhere(session, states[:, [0, turn.row]]):
         return None
-    number = int(moving[0])
-    item = session.problem.motion.inputs[number]
-    if not is_cyclic(session.problem.mechanism, item.name):
-        return None
-    turns = session.inputs.whole[number] - session.inputs.whole[number, 0]
-    rest = (session.inputs.reduced[number] - session.inputs.reduced[number, 0]) / (2.0 * np.pi)
-    whole = (turns != 0.0) & (np.abs(rest) <= tolerances.SAME_TURN)
-    rows = np.flatnonzero(whole & reached)
-    if not rows.size or not reached[0]:
-        return None
-    row = int(rows[0])
-    if not stands_elsewhere(session, states[:, [0, row]]):
-        return None
-    count = round(abs(float(turns[row])))
     return Diagnostic(
         "turn-not-closed",
         "note",
-        f"after {count} full turn{'s' * (count > 1)} of {item.name}, in row {row + 1}, the "
-        "mechanism is not back at its first row's position: it has gone on to another assembly",
+        f"after {turn.turns} full turn{'s' * (turn.turns > 1)} of {turn.name}, in row "
+        f"{turn.row + 1}, the mechanism is not back at its first row's position: it has gone on to "
+        "another assembly",
         hint="mechkin ranges shows the circuit",
     )
+
+
+def _whole_turns(session: Session) -> list[_Turn]:
+    """The rows that are whole turns of the one moving input away from the first, in order."""
+    inputs = session.inputs.values
+    moving = np.flatnonzero(np.ptp(inputs, axis=1) > 0.0)
+    if moving.size != 1:
+        return []
+    number = int(moving[0])
+    item = session.problem.motion.inputs[number]
+    if not is_cyclic(session.problem.mechanism, item.name):
+        return []
+    turns = session.inputs.whole[number] - session.inputs.whole[number, 0]
+    rest = (session.inputs.reduced[number] - session.inputs.reduced[number, 0]) / (2.0 * np.pi)
+    whole = (turns != 0.0) & (np.abs(rest) <= tolerances.SAME_TURN)
+    rows = np.flatnonzero(whole).tolist()
+    return [_Turn(item.name, row, round(abs(float(turns[row])))) for row in rows]
 
 
 def stands_elsewhere(session: Session, both: Floats) -> bool:

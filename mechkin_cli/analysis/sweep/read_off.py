@@ -32,11 +32,12 @@ def read_off(
     if not rows.reached.all():
         values[:, ~rows.reached] = np.nan
     unclear = rows.status == Status.rank_unclear
+    some_unclear = bool(unclear.any())
     columns = {}
     for quantity in wanted:
         slot = slots[quantity.name]
         column = values[slot.first : slot.first + slot.width]
-        if unclear.any() and demand_of(mechanism, [quantity]):
+        if some_unclear and demand_of(mechanism, [quantity]):
             column[:, unclear] = np.nan
         columns[quantity.name] = column
     return columns

@@ -267,7 +267,7 @@ class Result(Proven):
 
     def read(self, wanted: Iterable[Wanted]) -> None:
         """Evaluates the quantities that have not been read yet."""
-        wanted = list(dict.fromkeys(wanted))
+        wanted = list({quantity.name: quantity for quantity in wanted}.values())
         for name in (ROW_NUMBERS[q.name] for q in wanted if q.name in ROW_NUMBERS):
             self._verdict(name)
         new = [q for q in wanted if q.name not in self._columns and q.owner != "row"]
@@ -294,18 +294,20 @@ class Result(Proven):
             demand |= Demand.POWER
         self._keep_read(self._evaluated(demand, wanted), wanted, demand)
 
-    def keep(self, batch: Batch, wanted: list[Wanted], demand: Demand) -> None:
+    def keep(self, batch: Batch, wanted: Sequence[Wanted], demand: Demand) -> None:
         """Keeps what the run that closed the rows found."""
         self.residual = np.where(self.row_states.reached, batch.residual, np.nan)
         self._keep_read(batch, wanted, demand)
 
-    def _keep_read(self, batch: Batch, wanted: list[Wanted], demand: Demand) -> None:
+    def _keep_read(self, batch: Batch, wanted: Sequence[Wanted], demand: Demand) -> None:
         self.demand |= demand
         self._store_verdicts(batch)
         if not wanted:
             return
-        columns = self._split(wanted, batch, self.session)
-        self._rests |= make_continuous(self, wanted, columns)
+        columns, outputs = self._split(wanted, batch, self.session), batch.outputs
+        assert outputs is not None
+        slots = self.session.readout(wanted).slots
+        self._rests |= make_continuous(self, wanted, slots, outputs)
         self._columns |= columns
         self.friction.judge(self, wanted, demand)
         reactions = [quantity for quantity in wanted if quantity.kind in WRENCH_KINDS]

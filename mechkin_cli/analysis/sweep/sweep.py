@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.start import choose_start
-from mechkin_cli.analysis.sweep.actuation import actuation_notes, watched
+from mechkin_cli.analysis.sweep.actuation import actuation_notes
 from mechkin_cli.analysis.sweep.following import follow_rows
 from mechkin_cli.analysis.sweep.locked_poses import locked_pose_notes
 from mechkin_cli.analysis.sweep.notes import (
@@ -19,17 +19,11 @@ from mechkin_cli.analysis.sweep.notes import (
     open_turn_note,
     redundancy_note,
 )
+from mechkin_cli.analysis.sweep.question import Question, question
 from mechkin_cli.analysis.sweep.result import Result
-from mechkin_cli.mechanism.coefficient_quantities import (
-    COEFFICIENT_KINDS,
-    base_name,
-    base_quantity,
-)
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, TRANSMISSION_KINDS
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.solver.batch import assembly_size
 from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of
 from mechkin_cli.solver.free_inputs import moves_freely
 from mechkin_cli.status import Status
 
@@ -38,13 +32,9 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis.sweep.rows import Rows
     from mechkin_cli.arrays import Bools
     from mechkin_cli.diagnostics import Diagnostic
-    from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.batch import Batch
     from mechkin_cli.solver.session import Session
-
-
-HOLDING = {"holding_moment", "holding_force"}
 
 
 def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool = True) -> Result:
@@ -67,24 +57,19 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
         from mechkin_cli.analysis.sweep.branch_end import input_faults
 
         start = replace(start, diagnostics=input_faults(session) or start.diagnostics)
-    asked += held_moments(session.problem, asked)
-    asked += watched(session.problem, asked)
-    result = _closed(session, start, asked, verdicts=verdicts)
-    if result.row_states.has_failed:
-        # a filled-in row ended away from its guess: take every row as a careful step
-        result = _closed(session, start, asked, verdicts=verdicts, every_row=True)
-    result.read(asked)
-    result.row_states.diagnostics += row_notes(result, asked)
+    wanted = question(session, asked, verdicts=verdicts)
+    result = _closed(session, start, wanted)
+    result.read(wanted.asked)
+    result.row_states.diagnostics += row_notes(
+        result, wanted.asked, rests_on_reactions=wanted.rests_on_reactions
+    )
     result.row_states.diagnostics += [*actuation_notes(result), *locked_pose_notes(result)]
     return result
 
 
 def closed_rows(session: Session, start: Start) -> Result:
     """The rows of a session on the branch through the start, of which nothing is read yet."""
-    result = _closed(session, start, [], verdicts=False)
-    if result.row_states.has_failed:
-        result = _closed(session, start, [], verdicts=False, every_row=True)
-    return result
+    return _closed(session, start, question(session, (), verdicts=False))
 
 
 def first_assembly(session: Session) -> tuple[Session, Start]:
@@ -92,8 +77,11 @@ def first_assembly(session: Session) -> tuple[Session, Start]:
     start = choose_start(session)
     if start.state is None or session.size is not None:
         return session, start
-    inputs = session.inputs.reduced[:, start.row]
-    return session.sized(assembly_size(session.plan, inputs, start.state)), start
+    inputs, state = session.inputs.reduced[:, start.row], start.state
+    return session.own(
+        "in parts of its size",
+        lambda: session.sized(assembly_size(session.plan, inputs, state)),
+    ), start
 
 
 def _followed_part(session: Session, asked: list[Wanted]) -> Session:
@@ -105,34 +93,23 @@ def _followed_part(session: Session, asked: list[Wanted]) -> Session:
     return followed_session(session, asked)
 
 
-def held_moments(problem: Problem, asked: list[Wanted]) -> list[Wanted]:
-    """The moments that hold idle legs, where forces are computed and they are not asked for."""
-    if not (problem.hold_idle and demand_of(problem.mechanism, asked) & Demand.FORCES):
-        return []
-    from mechkin_cli.mechanism.idle import idle_freedoms
-
-    known = problem.quantities()
-    moments = {known[idle.holding] for idle in idle_freedoms(problem)}
-    return sorted(moments.difference(asked))
+def _closed(session: Session, start: Start, asked: Question) -> Result:
+    """Follows and closes all rows and reads what can be read at once."""
+    result = _closed_once(session, start, asked, every_row=False)
+    if result.row_states.has_failed:
+        # a filled-in row ended away from its guess: take every row as a careful step
+        result = _closed_once(session, start, asked, every_row=True)
+    return result
 
 
-def _closed(
-    session: Session,
-    start: Start,
-    asked: list[Wanted],
-    *,
-    verdicts: bool,
-    every_row: bool = False,
-) -> Result:
-    """Follows and closes all rows and reads what can be read at once; rows that do not close lose
-    their place among the reached."""
+def _closed_once(session: Session, start: Start, asked: Question, *, every_row: bool) -> Result:
+    """The same by one way of following; rows that do not close lose their place among the
+    reached."""
     rows = follow_rows(session, start, every_row=every_row)
     result = Result(session, start, rows)
     if not rows.reached.any():
         return result
-    wanted, demand = at_once(session, asked, verdicts)
-    wanted += result.friction.beside(result.problem, wanted, demand)
-    batch = result.run(wanted, demand, iterations=tolerances.NEWTON_ITERATIONS)
+    batch = result.run(asked.wanted, asked.demand, iterations=tolerances.NEWTON_ITERATIONS)
     failed = _failed(batch, rows)
     if failed.any():
         rows.status[failed] = Status.not_converged
@@ -145,20 +122,8 @@ def _closed(
             rows.states[:, rows.reached] = batch.states[:, rows.reached]
         judge_condition(rows, batch)
         _judge_inputs(session, rows)
-    result.keep(batch, wanted, demand)
+    result.keep(batch, asked.wanted, asked.demand)
     return result
-
-
-def at_once(session: Session, asked: list[Wanted], verdicts: bool) -> tuple[list[Wanted], Demand]:
-    """What the run that closes the rows reads off, and its demand: no derived quantities."""
-    mechanism = session.problem.mechanism
-    wanted = [q for q in asked if q.kind not in DERIVED_KINDS and q.owner != "row"]
-    demand = demand_of(mechanism, wanted)
-    if verdicts and session.graph.blocks:
-        demand |= Demand.CONDITION
-    if verdicts and demand & Demand.FORCES and demand & Demand.VELOCITY:
-        demand |= Demand.POWER
-    return wanted, demand
 
 
 def _failed(batch: Batch, rows: Rows) -> Bools:
@@ -166,6 +131,9 @@ def _failed(batch: Batch, rows: Rows) -> Bools:
 
     Sides are there where the run demanded more than positions.
     """
+    failed: Bools = rows.reached & ~(batch.good & (batch.correction <= rows.limit))
+    if not (batch.side != batch.side[:, :1]).any():
+        return failed
     # on a branch point a sign is rounding
     told = rows.reached.copy()
     if batch.condition is not None:
@@ -175,14 +143,13 @@ def _failed(batch: Batch, rows: Rows) -> Bools:
     for section in set(rows.section[told].tolist()):
         own = np.flatnonzero(told & (rows.section == section))
         turned[own] = (batch.side[:, own] != batch.side[:, own[:1]]).any(axis=0)
-    failed: Bools = ~batch.good | turned | ~(batch.correction <= rows.limit)
-    return rows.reached & failed
+    return failed | rows.reached & turned
 
 
 def judge_condition(rows: Rows, batch: Batch) -> None:
     """Verdicts by condition."""
     condition = batch.condition
-    if condition is None:
+    if condition is None or (condition <= tolerances.CONDITION_NEAR_SINGULAR).all():
         return
     singular = rows.reached & ~(condition <= tolerances.CONDITION_NEAR_SINGULAR)
     unclear = rows.reached & ~(condition <= tolerances.CONDITION_RANK_UNCLEAR)
@@ -217,21 +184,18 @@ def _read_by_loads(result: Result) -> list[Wanted]:
     return [known[name] for name in quantities_read(result.problem)]
 
 
-def _rests_on_reactions(problem: Problem, quantity: Wanted) -> bool:
-    """Whether a quantity is not unique where reactions are not."""
-    if quantity.kind in COEFFICIENT_KINDS:
-        quantity = base_quantity(problem.quantities(), base_name(quantity))
-    return quantity.kind in WRENCH_KINDS or quantity.kind in TRANSMISSION_KINDS
-
-
-def row_notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
+def row_notes(
+    result: Result, asked: Sequence[Wanted], *, rests_on_reactions: bool
+) -> list[Diagnostic]:
     """What is conventional, left open by a full turn, held, or not unique."""
     problem, session, rows = result.problem, result.session, result.row_states
     notes: list[Diagnostic] = []
     if find_legs(problem.mechanism) or problem.held:
         from mechkin_cli.mechanism.idle import conventional_notes, holding_notes, idle_freedoms
 
-        notes += conventional_notes(problem, [*asked, *_read_by_loads(result)])
+        read = [*asked, *_read_by_loads(result)]
+        key = ("conventional", tuple(quantity.name for quantity in read))
+        notes += session.own(key, lambda: conventional_notes(problem, read))
         if problem.hold_idle:
             named = {idle.holding for idle in idle_freedoms(problem)}
             found = {q.name: result.columns[q.name] for q in asked if q.name in named}
@@ -248,10 +212,6 @@ def row_notes(result: Result, asked: list[Wanted]) -> list[Diagnostic]:
         notes += uncounted_notes(result)
     note = open_turn_note(session, rows.states, rows.reached)
     notes += [note] if note else []
-    if (
-        any(_rests_on_reactions(problem, q) for q in asked)
-        and session.is_redundant
-        and rows.reached.any()
-    ):
+    if rests_on_reactions and session.is_redundant and rows.reached.any():
         notes.append(redundancy_note(session.graph))
     return notes

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from benchmark.matrices import Vector
 
 
 def eliminate(matrix: Any, right: Any) -> Any:
-    """Solutions (rows, n) of systems (rows, n, n) by Gaussian elimination with partial pivoting."""
+    """Solutions (rows, n) of systems (rows, n, n) by elimination with partial pivoting."""
     a = np.concatenate([matrix, right[:, :, None]], axis=2)
     rows, n = right.shape
     every = np.arange(rows)
@@ -21,11 +20,3 @@ def eliminate(matrix: Any, right: Any) -> Any:
         factors[:, k] = 0
         a -= factors[:, :, None] * a[:, k][:, None, :]
     return a[:, :, n]
-
-
-def solve_columns(columns: list[Vector], right: Vector, dtype: Any) -> Vector:
-    """x with x0 columns[0] + x1 columns[1] + ... = right; entries are numbers or arrays (rows)."""
-    entries = [[np.atleast_1d(x) for x in column] for column in columns]
-    matrix = np.array(entries, dtype=dtype).transpose(2, 1, 0)
-    found = eliminate(matrix, np.array([np.atleast_1d(x) for x in right], dtype=dtype).T)
-    return list(found.T) if np.ndim(right[0]) else list(found[0])
