@@ -22,9 +22,10 @@ Written by `mechkin bench --stress --rows {rows} --seed {seed} --page docs/stres
 computes the small set again and compares the page. Families of random mechanisms, each hard in one
 way. Every row is decided in double-double arithmetic (about 31 digits) by code of which no line is
 the solver's: a closed form, or for loops that have none the closing equations, followed from the
-drawing. `mechkin bench --stress --family NAME --only K` writes mechanism K of a family
-as a file. Families share the rows evenly, but for loops that take long: spatial loops have a
-quarter of that, many loops a tenth; long sweeps come on top. Numbers depend on rows and seed alone, not on the machine.
+drawing. `mechkin bench --stress --family NAME --only K` writes mechanism K of a family as a file.
+Families share the rows evenly, but for loops that take long: spatial loops have a quarter of that,
+many loops a tenth; long sweeps come on top. Numbers depend on rows and seed alone, not on the
+machine.
 
 {families}
 
@@ -34,7 +35,7 @@ quarter of that, many loops a tenth; long sweeps come on top. Numbers depend on 
 - *Rightly none*: the branch has ended before, and the row is empty and says so.
 - *Undecided*: rounding of the file's numbers, 64 units in the last place, decides whether there is
   a row.
-- *As drawn*: a fault of the next kinds in a run whose notes say (`conventional`,
+- *As drawn*: a fault of the next kinds in a run whose notes say (`nearly-common`,
   `undriven-freedom`, `input-locked`) that axes or points which differ by less than 1e-7, or loops
   that are dependent but for 1e-6, are taken for coinciding (`COMMON_MOTION`, `LOOP_RANK`): numbers
   of nine digits leave that much. The row is one of such a mechanism. A documented limit.
