@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
-from mechkin_cli.analysis.proof.enclosures import enclosures, is_enclosed
+from mechkin_cli.analysis.proof.enclosures import bounds, enclosures, is_enclosed
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number, UsageError
 from mechkin_cli.interface.arguments import a_text
-from mechkin_cli.mechanism.joint_table import is_angle
+from mechkin_cli.interface.dead_centre import DeadCentre, counted_tubes
 from mechkin_cli.proof import Proof
 from mechkin_cli.runs import SWEEP
 
@@ -25,8 +24,8 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.interface.analysis import Analysis
     from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.solver.enclosures import Enclosure
 
-FULL_TURN = 2.0 * np.pi
 GAPS_TOLD = 4
 """Gaps that are told one by one."""
 
@@ -73,6 +72,12 @@ class Certificate:
         """How many tubes join the rows."""
         return self._found.tubes
 
+    @cached_property
+    def dead_centres(self) -> tuple[DeadCentre, ...]:
+        """The dead centres beyond which rows are missing, one for each way along the rows that ends
+        at one."""
+        return tuple(DeadCentre(self.analysis, found) for found in self._found.dead_centres)
+
     @property
     def closure(self) -> Floats:
         """At most the size of the closing equations beyond those solved for, anywhere in the
@@ -91,6 +96,7 @@ class Certificate:
                 "numbers could not be followed back to the file's text"
             )
             told.append(Diagnostic("proof-of-doubles", "note", text))
+        told += [one.diagnostic for one in self.dead_centres if not one.is_proven]
         if len(gaps) > GAPS_TOLD:
             text = f"{len(gaps) - GAPS_TOLD} more stretches of rows are not proven"
             told.append(Diagnostic("not-proven", "warning", text))
@@ -102,10 +108,10 @@ class Certificate:
         found = self._found
         counts = [(int((found.status == proof).sum()), proof.label) for proof in reversed(Proof)]
         rows = ", ".join(f"{count} {label}" for count, label in counts if count)
-        if not self.is_one_branch or found.rows < 2:
-            return rows
-        tubes = "tube" if found.tubes == 1 else "tubes"
-        return f"{rows}; one branch from end to end ({found.tubes} {tubes})"
+        words = [rows, *(one.words for one in self.dead_centres if one.is_proven)]
+        if self.is_one_branch and found.rows > 1:
+            words.append(f"one branch from end to end ({counted_tubes(found.tubes)})")
+        return "; ".join(words)
 
     def enclosure(self, name: str) -> tuple[Floats, Floats]:
         """Bounds of a quantity in the file's units: two arrays (rows,), of a vector (rows, 3).
@@ -130,23 +136,13 @@ class Certificate:
             wanted.append(quantity)
         rows = result.row_states
         found = enclosures(result.session, self._found, wanted, rows.states, rows.turns)
-        return {quantity.name: self._bounds(quantity, *found[quantity.name]) for quantity in wanted}
+        return {quantity.name: self._bounds(quantity, found[quantity.name]) for quantity in wanted}
 
-    def _bounds(self, wanted: Wanted, middle: Floats, radius: Floats) -> tuple[Floats, Floats]:
-        """Of an enclosure in SI (width, rows), in the file's units and with the rows' whole
-        turns."""
+    def _bounds(self, wanted: Wanted, found: Enclosure) -> tuple[Floats, Floats]:
+        """Of an enclosure in SI (width, rows), in the file's units."""
         units = self.analysis.result.units
         known = np.asarray(units.to_si(self.analysis[wanted.name], wanted.dimension))
-        scale = np.abs(middle)
-        if wanted.kind == "coordinate" and not wanted.order and is_angle(wanted.coordinate):
-            turns = FULL_TURN * np.rint((known - middle) / FULL_TURN)
-            middle, scale = middle + turns, scale + np.abs(turns)
-        middle, radius, scale = (
-            np.asarray(units.from_si(part, wanted.dimension)) for part in (middle, radius, scale)
-        )
-        off = radius + tolerances.ENCLOSURE_ROUNDING * (radius + scale)
-        off = np.where(np.isfinite(off) & np.isfinite(np.atleast_2d(known.T)), off, np.nan)
-        low, high = (middle - off).T, (middle + off).T
+        low, high = (part.T for part in bounds(units, wanted, found, known.T))
         return (low, high) if wanted.vector else (low[:, 0], high[:, 0])
 
     def _told(self, gap: Gap) -> Diagnostic:

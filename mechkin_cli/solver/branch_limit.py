@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from mechkin_cli.solver.follow import Followed, PassageEnd
+from mechkin_cli.solver.follow import Ending, Followed, PassageEnd
 from mechkin_cli.solver.runaway import Runaway, find_runaway
 
 if TYPE_CHECKING:
@@ -25,6 +25,14 @@ class DeadCentre(NamedTuple):
     state: Floats
     inputs_beyond: Floats
     beyond: Floats
+
+
+class EndOfRows(NamedTuple):
+    """A dead centre at which a way along rows ends: the last row before it, counted from 0, and
+    what following found."""
+
+    row: int
+    ending: Ending
 
 
 class BranchPoint(NamedTuple):

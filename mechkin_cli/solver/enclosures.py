@@ -11,6 +11,7 @@ import numpy as np
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
+from mechkin_cli.solver.proofs import about_high
 from mechkin_cli.tape.traced import TraceLost
 
 if TYPE_CHECKING:
@@ -24,29 +25,35 @@ ENCLOSED = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
 
 
 class Enclosure(NamedTuple):
-    """Numbers between middle - radius and middle + radius; nothing is known where the radius is
-    infinite. Both of the same shape."""
+    """Numbers that are off high + low by no more than a radius; nothing is known where it is
+    infinite. All of the same shape."""
 
-    middle: Floats
+    high: Floats
+    low: Floats
     radius: Floats
+
+    @property
+    def about_high(self) -> Floats:
+        """Radius about the high parts alone."""
+        return about_high(self)
 
 
 class Given(NamedTuple):
-    """The inputs of rows, enclosed.
+    """The inputs of rows, enclosed: high and low parts, and radii about their sums.
 
     Attributes:
-        inputs, rates, accelerations: (inputs, rows), values without whole turns.
+        inputs, rates, accelerations: (inputs, 3, rows), values without whole turns.
         whole: those turns (inputs, rows).
-        ties: rates of tied inputs by those of their leaders (ties, rows).
-        time: what laws of loads read as time, s (1, rows).
+        ties: rates of tied inputs by those of their leaders (ties, 3, rows).
+        time: what laws of loads read as time, s (1, 3, rows).
     """
 
-    inputs: Enclosure
-    rates: Enclosure
-    accelerations: Enclosure
+    inputs: Floats
+    rates: Floats
+    accelerations: Floats
     whole: Floats
-    ties: Enclosure | None
-    time: Enclosure | None
+    ties: Floats | None
+    time: Floats | None
 
     @classmethod
     def of(cls, session: Session) -> Given:
@@ -55,15 +62,9 @@ class Given(NamedTuple):
             precise = session.precise.enclosed_inputs(session)
         except (LookupError, ValueError, TraceLost):
             return cls.of_doubles(session)
-        ties, time = precise.tie_rates, precise.time
-        return cls(
-            _both(precise.reduced),
-            _both(precise.rates),
-            _both(precise.accelerations),
-            precise.whole,
-            None if ties is None else _both(ties),
-            None if time is None else _both(time[None]),
-        )
+        time = None if precise.time is None else precise.time[None]
+        orders = precise.reduced, precise.rates, precise.accelerations
+        return cls(*orders, precise.whole, precise.tie_rates, time)
 
     @classmethod
     def of_doubles(cls, session: Session) -> Given:
@@ -84,15 +85,16 @@ class Positions(NamedTuple):
     """Where the rows' positions are.
 
     Attributes:
-        plan, radii: the mechanism's plan at its constants' midpoints, and a plan of their radii
-            (None: the constants are exact).
+        plan: the mechanism's plan at its constants' high parts.
+        constants: high and low parts and radii about their sums (constants, 3); None: those of the
+            plan are exact.
         states: the boxes' middles (states, rows).
         radius: their radii (columns, rows), rad and the kernel's lengths; of orientations those of
             the increments that turn them.
     """
 
     plan: Plan
-    radii: Plan | None
+    constants: Floats | None
     states: Floats
     radius: Floats
 
@@ -120,63 +122,97 @@ def enclose(
     if demand & ~ENCLOSED:
         raise ValueError("third derivatives are not enclosed")
     readout = session.readout(wanted)
-    outputs, output_radii = _outputs(session, readout.outputs, wanted)
+    outputs, constants = _outputs(session, readout.outputs, wanted)
     rows = positions.states.shape[1]
     moving, forces = bool(demand & Demand.VELOCITY), bool(demand & Demand.FORCES)
     accelerating = bool(demand & Demand.ACCELERATION)
-    values = np.full((2 * outputs.slots, rows), np.nan)
+    values = np.full((3 * outputs.slots, rows), np.nan)
     _kernel.enclose(
         positions.plan,
-        radii=positions.radii,
+        low=_part(positions.constants, 1),
+        radii=_part(positions.constants, 2),
         states=np.ascontiguousarray(positions.states),
-        inputs=_parts(given.inputs),
+        inputs=_rows(given.inputs),
         radius=positions.radius,
-        rates=_parts(given.rates) if moving else None,
-        accelerations=_parts(given.accelerations) if accelerating else None,
-        ties=None if given.ties is None else _parts(given.ties),
-        time=None if given.time is None else _parts(given.time),
+        contract=1,
+        rates=_rows(given.rates) if moving else None,
+        accelerations=_rows(given.accelerations) if accelerating else None,
+        ties=None if given.ties is None else _rows(given.ties),
+        time=None if given.time is None else _rows(given.time),
         turned=turned,
         whole=given.whole,
         forces=int(forces),
         outputs=outputs,
-        output_radii=output_radii,
+        output_low=_part(constants, 1),
+        output_radii=_part(constants, 2),
         values=values,
     )
     found = {}
     for quantity in wanted:
         slot = readout.slots[quantity.name]
-        parts = values.reshape(-1, 2, rows)[slot.first : slot.first + slot.width]
-        middle, radius = parts[:, 0], parts[:, 1]
-        known = np.isfinite(middle) & np.isfinite(radius)
-        found[quantity.name] = Enclosure(middle, np.where(known, radius, np.inf))
+        parts = values.reshape(-1, 3, rows)[slot.first : slot.first + slot.width]
+        known = np.isfinite(parts).all(axis=1)
+        radius = np.where(known, parts[:, 2], np.inf)
+        found[quantity.name] = Enclosure(parts[:, 0], parts[:, 1], radius)
     return found
 
 
-def _both(parts: Floats) -> Enclosure:
-    """Of (numbers, 2, rows)."""
-    return Enclosure(parts[:, 0], parts[:, 1])
+def enclose_derivatives(
+    positions: Positions, inputs: Floats, number: int
+) -> tuple[Enclosure, Enclosure]:
+    """First and second derivatives of the columns (columns, places) by one of the inputs, all over
+    the boxes.
+
+    Args:
+        positions: where the mechanism is.
+        inputs: as in `Given` (inputs, 3, places).
+        number: of the input that moves.
+    """
+    columns, places = positions.radius.shape
+    rates = np.zeros((inputs.shape[0], places))
+    rates[number] = 1.0
+    first, second = np.empty((3 * columns, places)), np.empty((3 * columns, places))
+    _kernel.enclose(
+        positions.plan,
+        low=_part(positions.constants, 1),
+        radii=_part(positions.constants, 2),
+        states=np.ascontiguousarray(positions.states),
+        inputs=_rows(inputs),
+        radius=np.ascontiguousarray(positions.radius),
+        contract=1,
+        rates=_rows(_point(rates)),
+        accelerations=_rows(_point(np.zeros_like(rates))),
+        first=first,
+        second=second,
+    )
+    one, other = (
+        Enclosure(*found.reshape(columns, 3, places).transpose(1, 0, 2))
+        for found in (first, second)
+    )
+    return one, other
 
 
-def _point(values: Floats) -> Enclosure:
-    return Enclosure(values, np.zeros_like(values))
+def _point(values: Floats) -> Floats:
+    """Doubles that are exact (numbers, rows)."""
+    return np.stack([values, np.zeros_like(values), np.zeros_like(values)], axis=1)
 
 
-def _parts(enclosure: Enclosure) -> Floats:
-    """Midpoint and radius of each number, one row below the other."""
-    both = np.stack(enclosure, axis=1)
-    return np.ascontiguousarray(both.reshape(-1, both.shape[2]))
+def _rows(parts: Floats) -> Floats:
+    """The parts of each number, one row below the other."""
+    return np.ascontiguousarray(parts.reshape(-1, parts.shape[2]))
+
+
+def _part(constants: Floats | None, number: int) -> Floats | None:
+    return None if constants is None else np.ascontiguousarray(constants[:, number])
 
 
 def _outputs(
     session: Session, outputs: Outputs, wanted: tuple[Wanted, ...]
-) -> tuple[Outputs, Outputs | None]:
-    """The outputs with the numbers of the file's text, and with their radii; as they are where the
-    text cannot be followed to them."""
+) -> tuple[Outputs, Floats | None]:
+    """The outputs with the numbers of the file's text, and all parts of these (constants, 3); as
+    they are, and None, where the text cannot be followed to them."""
     try:
-        middle, radius = session.precise.enclosed_outputs(session, wanted).T
+        constants = session.precise.enclosed_outputs(session, wanted)
     except (LookupError, ValueError, TraceLost):
         return outputs, None
-    return (
-        outputs.with_constants(np.ascontiguousarray(middle)),
-        outputs.with_constants(np.ascontiguousarray(radius)),
-    )
+    return outputs.with_constants(np.ascontiguousarray(constants[:, 0])), constants

@@ -63,7 +63,7 @@ class Precise:
         return double_doubles(self.tape(self._constants(session)))
 
     def enclosed_constants(self, session: Session) -> Floats:
-        """The same enclosed (constants, 2): midpoints, which are the high parts, and radii.
+        """The same enclosed (constants, 3): high and low parts, and radii about their sums.
 
         Raises:
             TraceLost: loads are read from tables (`rounds_tables`).
@@ -88,7 +88,7 @@ class Precise:
     def enclosed_outputs(
         self, session: Session, wanted: Iterable[Wanted], points: Iterable[Attached] = ()
     ) -> Floats:
-        """The same enclosed (constants, 2): midpoints and radii."""
+        """The same enclosed (constants, 3)."""
         return enclosures(self.tape(self._outputs(session, wanted, points)))
 
     def inputs(self, session: Session) -> PreciseInputs:
@@ -103,7 +103,7 @@ class Precise:
         return self._inputs[id(problem)][1]
 
     def enclosed_inputs(self, session: Session) -> PreciseInputs:
-        """The same enclosed: midpoints and radii in place of high and low parts."""
+        """The same enclosed: a third part is the radius about the two."""
         return enclosed_inputs(self, session)
 
     @cached_property

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 
 class PreciseInputs(NamedTuple):
-    """Inputs over the rows, high and low parts, in the order of `Session.inputs`.
+    """Inputs over the rows, high and low parts, in the order of `Session.inputs`; enclosed they
+    have a third part, a radius.
 
     Attributes:
         values: (inputs, 2, rows) in kernel units; what holds idle freedoms stands behind.
@@ -72,7 +73,7 @@ def precise_inputs(precise: Precise, session: Session) -> PreciseInputs:
 
 
 def enclosed_inputs(precise: Precise, session: Session) -> PreciseInputs:
-    """The same enclosed: midpoints and radii in place of high and low parts."""
+    """The same enclosed: a third part is the radius about the two."""
     recorded = _recorded(precise, session)
     return _put_together(session, recorded, recorded.rows.enclosures(recorded.listed))
 

@@ -6,6 +6,7 @@ of the way (docs/numerics.md, Proofs).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -16,9 +17,18 @@ from mechkin_cli.solver.codes import Demand
 from mechkin_cli.tape.traced import TraceLost
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.solver.session import Session
+
+
+def about_high(parts: Iterable[Floats]) -> Floats:
+    """Radii about high parts, of numbers given as high parts, low parts and radii about both."""
+    _, low, radius = parts
+    widened: Floats = np.nextafter(np.abs(low) + radius, np.inf)
+    return np.where((low == 0.0) & (radius == 0.0), 0.0, widened)
 
 
 class Enclosed(NamedTuple):
@@ -26,14 +36,16 @@ class Enclosed(NamedTuple):
 
     Attributes:
         session: the mechanism in doubles.
-        plan: its plan at the constants' midpoints.
-        radii: their radii in the same places; None where the doubles are taken as they are.
+        plan: its plan at the constants' high parts.
+        radii: a plan of their radii about these; None where the doubles are taken as they are.
+        constants: high and low parts and radii about their sums (constants, 3); None likewise.
         of_text: whether these constants enclose the numbers of the file's text.
     """
 
     session: Session
     plan: Plan
     radii: Plan | None
+    constants: Floats | None
     of_text: bool
 
     @classmethod
@@ -41,14 +53,14 @@ class Enclosed(NamedTuple):
         """As the file's text says it; where the text cannot be followed to all constants, the
         mechanism that the doubles are."""
         try:
-            middle, radius = session.precise.enclosed_constants(session).T
+            constants = session.precise.enclosed_constants(session)
         except (LookupError, ValueError, TraceLost):
-            return cls(session, session.plan, None, False)
+            return cls(session, session.plan, None, None, False)
         scale = [_kernel.CONSTANT_LENGTH, _kernel.CONSTANT_SIZE]
-        radius = radius.copy()
+        middle, radius = constants[:, 0].copy(), about_high(constants.T)
         radius[scale] = middle[scale]  # of units, which are conventions
-        plan = session.plan.with_constants(np.ascontiguousarray(middle))
-        return cls(session, plan, plan.with_constants(radius), True)
+        plan = session.plan.with_constants(middle)
+        return cls(session, plan, plan.with_constants(radius), constants, True)
 
 
 class Boxes(NamedTuple):
@@ -80,15 +92,48 @@ _MEASURED = 1.0 + 1.0 / 1024.0
 
 class Nodes(NamedTuple):
     """Places along a way of the inputs in the kernel's units, which goes straight from each to the
-    next: inputs with whole turns and without (inputs, nodes), states (states, nodes)."""
+    next; arrays over the places.
+
+    Attributes:
+        values: of the inputs with their whole turns (inputs, nodes).
+        reduced: without them, likewise.
+        states: (states, nodes).
+        off: how far the inputs may be from what is meant (inputs, nodes).
+        least: boxes are at least so wide (columns, nodes).
+    """
 
     values: Floats
     reduced: Floats
     states: Floats
+    off: Floats
+    least: Floats
+
+    @classmethod
+    def of(cls, session: Session, values: Floats, reduced: Floats, states: Floats) -> Nodes:
+        """Places whose inputs are as near to the file's as rounding leaves them, with boxes as
+        narrow as can be proven."""
+        least = np.zeros((session.plan.columns, values.shape[1]))
+        return cls(values, reduced, states, input_rounding(session, values), least)
 
     def part(self, nodes: slice) -> Nodes:
         """Some of the places."""
         return Nodes(*(array[:, nodes] for array in self))
+
+    def between(self, before: NDArray[np.intp], values: Floats, states: Floats) -> Nodes:
+        """Other places, each between one of these and the next, whose inputs are as far off as
+        those of both; values with whole turns (inputs, places)."""
+        return Nodes(
+            values,
+            self.reduced[:, before] + (values - self.values[:, before]),
+            states,
+            np.maximum(self.off[:, before], self.off[:, before + 1]),
+            np.zeros((len(self.least), before.size)),
+        )
+
+    def inserted(self, before: NDArray[np.intp], places: Nodes) -> Nodes:
+        """These and other places behind some of them."""
+        pairs = zip(self, places, strict=True)
+        return Nodes(*(np.insert(own, before + 1, more, axis=1) for own, more in pairs))
 
 
 class Tubes(NamedTuple):
@@ -135,7 +180,8 @@ def prove_boxes(enclosed: Enclosed, nodes: Nodes) -> Boxes:
     _kernel.prove_boxes(
         plan,
         states=np.ascontiguousarray(nodes.states),
-        off=np.ascontiguousarray(input_rounding(enclosed.session, nodes.reduced)),
+        off=np.ascontiguousarray(nodes.off),
+        least=np.ascontiguousarray(nodes.least),
         radii=enclosed.radii,
         radius=radius,
         contraction=contraction,
@@ -161,7 +207,7 @@ def prove_tubes(enclosed: Enclosed, nodes: Nodes, boxes: Boxes) -> Tubes:
         radii=enclosed.radii,
         place=np.concatenate([[0.0], np.cumsum(length)]),
         inputs=np.ascontiguousarray(nodes.values),
-        off=np.ascontiguousarray(input_rounding(session, nodes.values)),
+        off=np.ascontiguousarray(nodes.off),
         states=np.ascontiguousarray(nodes.states),
         after=first,
         before=_derivatives(session, nodes, before) if bends.any() else first,

@@ -77,7 +77,8 @@ def analysis_record(
 
 def _proof_record(source: Source) -> Plain:
     is_one_branch, tubes = source.proven_way
-    return {"proof": {"one_branch": is_one_branch, "tubes": tubes}}
+    dead_centres = [dict(found) for found in source.proven_dead_centres]
+    return {"proof": {"one_branch": is_one_branch, "tubes": tubes, "dead_centres": dead_centres}}
 
 
 def runs_record(runs: Sequence[Results]) -> Plain:

@@ -72,6 +72,11 @@ class Source(Protocol):
         ...
 
     @property
+    def proven_dead_centres(self) -> Sequence[Mapping[str, object]]:
+        """What is proven of the dead centres beyond which rows are missing, as plain data."""
+        ...
+
+    @property
     def proof(self) -> StatusArray:
         """Codes of `mechkin_cli.proof.Proof`, found now if they were not."""
         ...

@@ -56,14 +56,13 @@ def double_doubles(tape: ExactTape) -> Floats:
 
 
 def enclosures(tape: ExactTape) -> Floats:
-    """The outputs enclosed (outputs, 2): the nearest double, and a radius that holds the true
-    number.
+    """The outputs enclosed (outputs, 3): high and low as in double-double, and how far their sum is
+    from the true number at most.
 
     Raises:
         NotEnclosed: an output is not defined.
     """
-    found = [(high, radius) for high, _, radius in map(parts, replay(tape))]
-    return np.array(found, dtype=np.float64).reshape(-1, 2)
+    return np.array([parts(one) for one in replay(tape)], dtype=np.float64).reshape(-1, 3)
 
 
 def replay(tape: ExactTape) -> list[Near]:
@@ -112,15 +111,15 @@ def of_fraction(number: Fraction) -> Near:
 
 
 def parts(near: Near) -> tuple[float, float, float]:
-    """High, low and the radius about high."""
+    """High, low and the radius about their sum."""
     with localcontext() as context:
         context.prec = DIGITS
         high = float(near.value)
         rest = near.value - Decimal(high)
         low = float(rest)
-    radius = abs(low) + near.off
-    exact = not rest and not near.off
-    return high, low, 0.0 if exact else nextafter(radius * _MARGIN, inf)
+        rest -= Decimal(low)
+    radius = abs(float(rest)) + near.off
+    return high, low, 0.0 if not radius else nextafter(radius * _MARGIN, inf)
 
 
 def _near(value: Decimal, off: float) -> Near:

@@ -7,7 +7,7 @@ recorded numbers. Unlike constants, rows are chosen by the double-doubles themse
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from math import nan
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -99,25 +99,23 @@ class ExactRows(RowRecorder):
         return np.ascontiguousarray(found.transpose(1, 2, 0))
 
     def enclosures(self, numbers: Sequence[Any]) -> Floats:
-        """Some numbers enclosed (numbers, 2, rows): midpoints and radii.
+        """Some numbers enclosed (numbers, 3, rows): as in double-double, and radii about that.
 
         Raises:
             NotEnclosed: one is not defined in some row.
         """
-        return self._by_decimals(numbers, lambda high, low, radius: (high, radius))
+        return self._by_decimals(numbers)
 
     def rounded(self, numbers: Sequence[Any]) -> Floats:
         """As `double_doubles`, by decimals: slower, and both parts the nearest."""
-        return self._by_decimals(numbers, lambda high, low, radius: (high, low))
+        return np.ascontiguousarray(self._by_decimals(numbers)[:, :2])
 
-    def _by_decimals(
-        self, numbers: Sequence[Any], take: Callable[[float, float, float], tuple[float, float]]
-    ) -> Floats:
+    def _by_decimals(self, numbers: Sequence[Any]) -> Floats:
         made = self._tape(numbers)
         rows = (
             [*(given.at(row) for given in made.given), *made.constants] for row in range(self.rows)
         )
-        found = [[take(*parts(near)) for near in row] for row in run(made.tape, rows)]
+        found = [[parts(near) for near in row] for row in run(made.tape, rows)]
         return np.ascontiguousarray(np.array(found).transpose(1, 2, 0))
 
     def _tape(self, numbers: Sequence[Any]) -> RowsTape:

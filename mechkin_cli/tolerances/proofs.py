@@ -40,3 +40,21 @@ ask for rows between."""
 BRIDGE_STEP: Final = 1e-13
 """Distance of inputs (rad, length units) below which places are not told apart: they are rounded to
 1e-16."""
+
+# --- dead centres --------------------------------------------------------------------------------
+
+DEAD_CENTRE_INTERVALS: Final = (4.0, 32.0, 256.0)
+"""Half the interval of a joint coordinate in which one dead centre is to be proven, in parts of how
+far from its middle the dead centre may lie: the first does unless the input bends over so small an
+interval."""
+
+DEAD_CENTRE_LEAST: Final = 1e-15
+"""Step (rad, length units) of a joint coordinate that moves no dead centre: a few roundings."""
+
+DEAD_CENTRE_MISS: Final = 1e-3
+"""Longest step (rad, length units) from where following locates a dead centre: it does so to
+rounding, so that a longer one leads to another place."""
+
+DEAD_CENTRE_APPROACH: Final = (0.25, 0.06, 0.015, 0.004, 0.001)
+"""Distances of a joint coordinate (rad, length units) from a dead centre at which it takes over
+from the input as the parameter of tubes: as far as one holds, and nearer where that does not do."""

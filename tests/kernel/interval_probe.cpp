@@ -6,15 +6,17 @@ namespace {
 template <class F>
 void each(const double* x, const double* y, double* out, long n, const F& f) {
   for (long row = 0; row < n; row += LANES) {
-    const auto at = [&](const double* from) { return Interval(load(from + row), load(from + n + row)); };
+    const auto at = [&](const double* from) {
+      return Interval(DoubleDouble(load(from + row), load(from + n + row)), load(from + 2 * n + row));
+    };
     const Interval z = f(at(x), at(y));
-    store(out + row, z.midpoint), store(out + n + row, z.radius);
+    store(out + row, z.midpoint.high), store(out + n + row, z.midpoint.low), store(out + 2 * n + row, z.radius);
   }
 }
 
 }  // namespace
 
-// x, y, out: midpoints (n), then radii (n); n a multiple of the lanes.
+// x, y, out: high parts of midpoints (n), low parts (n), then radii (n); n a multiple of the lanes.
 extern "C" __attribute__((visibility("default"))) void enclose(int operation, const double* x, const double* y,
                                                                double* out, long n) {
   switch (operation) {
@@ -35,5 +37,11 @@ extern "C" __attribute__((visibility("default"))) void enclose(int operation, co
     case 14: return each(x, y, out, n, [](Interval a, Interval) { return log(a); });
     case 15: return each(x, y, out, n, [](Interval a, Interval b) { return pow(a, b); });
     case 16: return each(x, y, out, n, [](Interval a, Interval b) { return hull(a, b); });
+    case 17: return each(x, y, out, n, [](Interval a, Interval b) {
+      add_product(a, a, b);
+      return a;
+    });
+    case 18: return each(x, y, out, n, [](Interval a, Interval b) { return sum_of_products(a, b, b, b, -a, a); });
+    case 19: return each(x, y, out, n, [](Interval a, Interval b) { return difference_of_products(a, b, b, b); });
   }
 }

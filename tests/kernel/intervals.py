@@ -73,6 +73,9 @@ OPERATIONS = {
     "log": Operation(lambda x, _: mp.log(x), lambda x, _: x > 0, (0.0, 1.0)),
     "power": Operation(power, lambda x, y: power(x, y) is not None, (0.0, 1.0, 2.0), 1e60),
     "hull": Operation(lambda x, _: x),
+    "add_product": Operation(lambda x, y: x + x * y, largest=1e140),
+    "sum_of_products": Operation(lambda x, y: x * y + y * y - x * x, largest=1e140),
+    "difference_of_products": Operation(lambda x, y: x * y - y * y, largest=1e140),
 }
 
 
@@ -85,7 +88,8 @@ class Intervals:
         self.library = ctypes.CDLL(str(compile_with(source, folder / "intervals.so", *options)))
 
     def __call__(self, operation: str, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Midpoints and radii (2, n) of an operation on those of x and y; n is even."""
+        """Enclosures (3, n), as high and low parts of midpoints and radii, of an operation on those
+        of x and y; n is even."""
         x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
         out = np.empty_like(x)
         pointers = (ctypes.c_void_p(each.ctypes.data) for each in (x, y, out))
@@ -108,13 +112,21 @@ def midpoints(operation: Operation, random: np.random.Generator, count: int) -> 
 
 
 def radii(x: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    """Zero, of the size of rounding, parts of the midpoint, and wide ones."""
+    """Zero, from the size of rounding to parts of the midpoint, and wide ones."""
     count = len(x)
-    relative = np.abs(x) * 10.0 ** random.uniform(-17, 1, count)
+    relative = np.abs(x) * 10.0 ** random.uniform(-33, 1, count)
     absolute = 10.0 ** random.uniform(-300, 2, count)
-    moderate = 10.0 ** random.uniform(-12, 0.5, count)
+    moderate = 10.0 ** random.uniform(-30, 0.5, count)
     kinds = [np.zeros(count), relative, absolute, moderate]
     drawn: np.ndarray = np.choose(random.integers(0, 4, count), kinds)
+    return drawn
+
+
+def low_parts(x: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """None, or of any size below half a place of x."""
+    count = len(x)
+    part = random.uniform(-1, 1, count) * 2.0 ** -random.integers(0, 40, count)
+    drawn: np.ndarray = np.where(random.uniform(size=count) < 0.3, 0.0, part * np.spacing(x) / 2)
     return drawn
 
 
@@ -124,14 +136,18 @@ def arguments(name: str, random: np.random.Generator, count: int) -> tuple[np.nd
     if name == "power":
         whole = random.integers(-6, 7, count).astype(float)
         y = np.choose(random.integers(0, 2, count), [whole, np.clip(y, -4, 4)])
-    result = np.stack([x, radii(x, random)]), np.stack([y, radii(y, random)])
+    low = low_parts(x, random), low_parts(y, random)
     if name == "power":
-        result[1][1, : count // 2] = 0.0
+        low[1][whole == y] = 0.0
+    result = np.stack([x, low[0], radii(x, random)]), np.stack([y, low[1], radii(y, random)])
+    if name == "power":
+        result[1][2, : count // 2] = 0.0
     return result
 
 
-def points(interval: tuple[float, float], random: np.random.Generator) -> list[Any]:
-    middle, radius = map(mpf, map(float, interval))
+def points(interval: np.ndarray, random: np.random.Generator) -> list[Any]:
+    high, low, radius = map(mpf, map(float, interval))
+    middle = high + low
     parts = (-1.0, 1.0, random.uniform(-1, 1))
     return [middle + radius * mpf(part) for part in parts] if radius else [middle]
 
@@ -159,17 +175,17 @@ def check(enclose: Intervals, name: str, count: int, seed: int) -> tuple[int, li
     found = enclose(name, x, y)
     known, outside = 0, []
     for i in range(count):
-        middle, radius = map(float, found[:, i])
-        if not (math.isfinite(middle) and math.isfinite(radius)):
+        high, low, radius = map(float, found[:, i])
+        if not (math.isfinite(high) and math.isfinite(low) and math.isfinite(radius)):
             continue
         known += 1
-        with mp.workprec(precision(*x[:, i], *y[:, i], middle, radius)):
+        with mp.workprec(precision(*x[:, i], *y[:, i], high, low, radius)):
             for value in values(name, x[:, i], y[:, i], random):
-                off = None if value is None else value - mpf(middle)
+                off = None if value is None else value - mpf(high) - mpf(low)
                 if off is not None and OPERATIONS[name].turns:
                     off -= 2 * mp.pi * mp.nint(off / (2 * mp.pi))
                 if off is None or abs(off) > mpf(radius):
-                    outside.append((x[:, i].tolist(), y[:, i].tolist(), middle, radius))
+                    outside.append((x[:, i].tolist(), y[:, i].tolist(), high, low, radius))
                     break
     return known, outside
 

@@ -21,12 +21,29 @@ import numpy as np
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[1]))
 from kernel.pairs import PAIRS, Matrix, mp, vector
-from kernel.plans import TABLE, TREE_LETTERS, Chain, TreeJoint, exactly, frame, random_pose
+from kernel.plans import TABLE, TREE_LETTERS, Chain, TreeJoint, exactly, exponential, frame
 
 from mechkin_cli.kernel import _kernel
 
 STEP = mp.mpf(10) ** -13
 """Of central differences of second order in 40 digits; off by about 1e-26."""
+
+
+def exact_pose(generator: np.random.Generator) -> Matrix:
+    """A frame with random axes, orthonormal to all digits, its origin in a box of side 1."""
+    pose = exponential(generator.standard_normal(3).tolist(), (0.0, 0.0, 0.0))
+    for i, c in enumerate(generator.uniform(-0.5, 0.5, 3).tolist()):
+        pose[i, 3] = c
+    return pose
+
+
+def parts_of_constants(plan: Any, frames: list[Matrix]) -> tuple[np.ndarray, np.ndarray]:
+    """What the plan's constants lack of the frames' numbers, of which they are the doubles, and how
+    far the sums are off at most."""
+    exact = {float(x): x for pose in frames for x in pose[:3, :]}
+    rest = [exact.get(high, high) - mp.mpf(high) for high in plan.constants.tolist()]
+    low = np.array([float(x) for x in rest])
+    return low, np.abs(low) * 2.0**-53
 
 
 def skew(m: Matrix) -> list[Any]:
@@ -69,18 +86,21 @@ class Box:
     radius: np.ndarray
 
     def enclosed(self) -> tuple[np.ndarray, np.ndarray]:
-        """Equations (equations, 2) and derivatives (equations, columns, 2)."""
+        """Equations (equations, 3) and derivatives (equations, columns, 3)."""
         count = len(residual(self.letter, mp.eye(4))) + 6
         columns = self.chain.plan.columns
-        equations, derivatives = np.empty((2 * count, 1)), np.empty((2 * count * columns, 1))
-        radius, inputs = self.radius.copy(), np.empty((2 * len(self.driven), 1))
+        equations, derivatives = np.empty((3 * count, 1)), np.empty((3 * count * columns, 1))
+        radius, inputs = self.radius.copy(), np.zeros((3 * len(self.driven), 1))
         for number, column in enumerate(self.driven):
-            inputs[2 * number] = self.states[self.state_of(column)]
-            inputs[2 * number + 1] = radius[column]
+            inputs[3 * number] = self.states[self.state_of(column)]
+            inputs[3 * number + 2] = radius[column]
             radius[column] = 0.0
-        given = {"states": self.states, "inputs": inputs, "radius": radius}
+        frames = [*self.frames, *(joint.at for joint in self.chain.joints)]
+        low, radii = parts_of_constants(self.chain.plan, frames)
+        given: dict[str, Any] = {"states": self.states, "inputs": inputs, "radius": radius}
+        given |= {"low": low, "radii": radii}
         _kernel.enclose(self.chain.plan, **given, equations=equations, derivatives=derivatives)
-        return equations.reshape(count, 2), derivatives.reshape(count, columns, 2)
+        return equations.reshape(count, 3), derivatives.reshape(count, columns, 3)
 
     def place(self, parts: np.ndarray) -> list[Any]:
         """Increments of the columns at a point of the box, `parts` of its radii."""
@@ -126,10 +146,10 @@ def product(a: list[Any], b: list[Any]) -> list[Any]:
 
 def random_box(letter: str, trees: tuple[str, str], generator: np.random.Generator) -> Box:
     """Links 0 and 1 hang on the two tree joints one after the other, link 2 on an R of its own."""
-    joints = [TreeJoint(trees[0], -1, random_pose(generator))]
-    joints += [TreeJoint(trees[1], 0, random_pose(generator))]
-    chain = Chain.of([*joints, TreeJoint("R", -1, random_pose(generator))])
-    frames = [random_pose(generator) for _ in range(4)]
+    joints = [TreeJoint(trees[0], -1, exact_pose(generator))]
+    joints += [TreeJoint(trees[1], 0, exact_pose(generator))]
+    chain = Chain.of([*joints, TreeJoint("R", -1, exact_pose(generator))])
+    frames = [exact_pose(generator) for _ in range(4)]
     loop = [(0, 1.0), (1, 1.0), (2, -1.0)]
     for code, parameter, k in (
         (TABLE[letter]["code"], PAIRS[letter].parameter, 0),
@@ -174,8 +194,8 @@ def outside(box: Box, generator: np.random.Generator) -> int:
 
 
 def _is_outside(value: Any, enclosure: np.ndarray) -> bool:
-    middle, radius = map(exactly, enclosure)
-    return bool(abs(value - middle) > radius + mp.mpf(10) ** -24)
+    high, low, radius = map(exactly, enclosure)
+    return bool(abs(value - high - low) > radius + mp.mpf(10) ** -24)
 
 
 def combinations() -> Iterator[tuple[str, tuple[str, str]]]:

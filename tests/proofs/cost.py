@@ -36,7 +36,7 @@ def tell(name: str, model: mk.Model) -> None:
     first = time.process_time()
     found = certify(session, states, result.solved)
     first = 1e3 * (time.process_time() - first)
-    nodes = Nodes(session.inputs.values, session.inputs.reduced, states)
+    nodes = Nodes.of(session, session.inputs.values, session.inputs.reduced, states)
     enclosed = session.once("enclosed", lambda: Enclosed.of(session))
     rows = least_time(lambda: prove_boxes(enclosed, nodes))
     both = least_time(lambda: certify(session, states, result.solved))

@@ -35,7 +35,7 @@ def moved(result: Result, by: float, seed: int) -> Moved:
     true = result.row_states.states[:, solved]
     inputs = session.inputs.values[:, solved], session.inputs.reduced[:, solved]
     enclosed = Enclosed.of(session)
-    unknown = prove_boxes(enclosed, Nodes(*inputs, true)).radius.max(axis=1) > 0.0
+    unknown = prove_boxes(enclosed, Nodes.of(session, *inputs, true)).radius.max(axis=1) > 0.0
     states, off = true.copy(), np.zeros((len(unknown), true.shape[1]))
     for carrier in session.layout.carriers:
         for number in range(len(carrier.part.type.freedoms)):
@@ -51,4 +51,4 @@ def moved(result: Result, by: float, seed: int) -> Moved:
             states[own] /= np.sqrt((states[own] ** 2).sum(axis=0))
         else:
             states[own] -= off[columns]
-    return Moved(prove_boxes(enclosed, Nodes(*inputs, states)), off)
+    return Moved(prove_boxes(enclosed, Nodes.of(session, *inputs, states)), off)

@@ -37,8 +37,22 @@ def test_json(tmp_path: Path) -> None:
     answer = json.loads(analyze(RCSR, tmp_path, "--certify", "--json").stdout)
     (column,) = [column for column in answer["rows"] if column["label"] == "proof"]
     assert column["values"] == ["proven"] * 27
-    assert answer["proof"] == {"one_branch": True, "tubes": 5}
+    assert answer["proof"] == {"one_branch": True, "tubes": 5, "dead_centres": []}
     assert "proof" not in json.loads(analyze(RCSR, tmp_path, "--json").stdout)
+
+
+def test_a_dead_centre_at_the_end(tmp_path: Path) -> None:
+    file = tmp_path / "beyond.yaml"
+    text = RCSR.read_text(encoding="utf-8")
+    file.write_text(text.replace("from: 150, to: 202, step: 2", "from: 150, to: 210, step: 2"))
+    run = analyze(file, tmp_path / "out", "--certify", "--json")
+    assert run.returncode == analyze(file, tmp_path / "out").returncode
+    (found,) = json.loads(run.stdout)["proof"]["dead_centres"]
+    assert found["low"] < found["value"] < found["high"]
+    assert [found[key] for key in ("name", "unit", "last_row", "tubes", "proof")] == [
+        *("O1.theta", "deg", 28, 2),
+        "proven",
+    ]
 
 
 def test_strict_wants_all_rows_proven(tmp_path: Path) -> None:

@@ -8,23 +8,15 @@ from typing import Any
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.solver.enclosures import Enclosure, Given, Positions
-
-
-def interleaved(enclosure: Enclosure) -> np.ndarray:
-    both = np.stack(enclosure, axis=1)
-    return np.ascontiguousarray(both.reshape(-1, both.shape[2]))
+from mechkin_cli.solver.enclosures import Given, Positions
 
 
 def boxes_of(session: Any, given: Given, states: np.ndarray) -> Positions:
     """Of the session's rows with their inputs and states (states, rows)."""
-    middle, radius = session.precise.enclosed_constants(session).T
-    radius = radius.copy()
-    radius[[0, 4]] = 1.0  # length unit and size, which are conventions
-    plan = session.plan.with_constants(np.ascontiguousarray(middle))
-    radii = plan.with_constants(np.ascontiguousarray(radius))
+    constants = session.precise.enclosed_constants(session)
+    plan = session.plan.with_constants(np.ascontiguousarray(constants[:, 0]))
     rows = states.shape[1]
-    boxes = Positions(plan, radii, np.ascontiguousarray(states), np.zeros((plan.columns, rows)))
+    boxes = Positions(plan, constants, np.ascontiguousarray(states), np.zeros((plan.columns, rows)))
     unknown = [session.layout.column(k, f) for b in session.graph.blocks for k, f in b.unknowns]
     radius = np.stack([_radius(boxes, given, row, unknown) for row in range(rows)], axis=1)
     return boxes._replace(radius=np.ascontiguousarray(radius))
@@ -35,13 +27,15 @@ def _radius(boxes: Positions, given: Given, row: int, unknown: list[int]) -> np.
     point = np.zeros(boxes.plan.columns)
     equations, derivatives = evaluated(boxes, given, row, point)
     inverse = np.linalg.pinv(derivatives[:, unknown, 0])
-    image = np.abs(inverse) @ (np.abs(equations[:, 0]) + equations[:, 1])
+    image = np.abs(inverse) @ np.abs(equations).sum(axis=1)
     radius = 2.0 * image + 1e-22
     for _ in range(8):
         point[unknown] = radius
         _, derivatives = evaluated(boxes, given, row, point)
-        middle, width = derivatives[:, unknown, 0], derivatives[:, unknown, 1]
-        rest = np.abs(np.eye(len(unknown)) - inverse @ middle) + np.abs(inverse) @ width
+        middle, *width = derivatives[:, unknown].transpose(2, 0, 1)
+        rest = np.abs(np.eye(len(unknown)) - inverse @ middle) + np.abs(inverse) @ np.abs(
+            width
+        ).sum(axis=0)
         found = image + rest @ radius
         if (found < radius).all():
             return point
@@ -52,18 +46,19 @@ def _radius(boxes: Positions, given: Given, row: int, unknown: list[int]) -> np.
 def evaluated(
     boxes: Positions, given: Given, row: int, radius: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Equations (equations, 2) and derivatives (equations, columns, 2) over a row's box."""
+    """Equations (equations, 3) and derivatives (equations, columns, 3) over a row's box."""
     count = boxes.plan.equations
-    equations = np.empty((2 * count, 1))
-    derivatives = np.empty((2 * count * boxes.plan.columns, 1))
-    part = Enclosure(given.inputs.middle[:, [row]], given.inputs.radius[:, [row]])
+    equations = np.empty((3 * count, 1))
+    derivatives = np.empty((3 * count * boxes.plan.columns, 1))
+    low, radii = (np.ascontiguousarray(boxes.constants[:, part]) for part in (1, 2))
     _kernel.enclose(
         boxes.plan,
-        radii=boxes.radii,
+        low=low,
+        radii=radii,
         states=np.ascontiguousarray(boxes.states[:, [row]]),
-        inputs=interleaved(part),
+        inputs=np.ascontiguousarray(given.inputs[:, :, [row]].reshape(-1, 1)),
         radius=np.ascontiguousarray(radius[:, None]),
         equations=equations,
         derivatives=derivatives,
     )
-    return equations.reshape(count, 2), derivatives.reshape(count, -1, 2)
+    return equations.reshape(count, 3), derivatives.reshape(count, -1, 3)

@@ -15,6 +15,7 @@ import numpy as np
 
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[1]))
+from oracle.numerics import mp
 from properties.answers import kind
 from properties.cases import CASES, case
 from properties.expected import expected
@@ -32,8 +33,10 @@ def widths(name: str) -> dict[str, tuple[float, float]]:
         family = kind(quantity).family
         scale = its.size ** kind(quantity).lengths
         sums = largest.setdefault(family, [0.0, 0.0, 0.0])
-        for value, m, r in zip(values, *(p[:, its.row] for p in found[quantity]), strict=True):
-            new = abs(float(value)) / scale, abs(float(value - m)) / scale, r / scale
+        parts = (part[:, its.row] for part in found[quantity])
+        for value, high, low, r in zip(values, *parts, strict=True):
+            off = value - mp.mpf(float(high)) - mp.mpf(float(low))
+            new = abs(float(value)) / scale, abs(float(off)) / scale, r / scale
             sums[:] = [max(old, each) for old, each in zip(sums, new, strict=True)]
     return {f: (error / value, r / value) for f, (value, error, r) in largest.items() if value}
 
@@ -43,7 +46,7 @@ def main() -> int:
     all_widths = [widths(name) for name in CASES[::every]]
     for family in ("order 0", "order 1", "order 2", "load"):
         error, radius = np.array([w[family] for w in all_widths if family in w]).T
-        ratio = radius / np.maximum(error, 2.0**-53)
+        ratio = radius / np.maximum(error, 2.0**-106)
         print(
             f"{family}: {len(ratio)} rows, radius {np.median(radius):.1e} (at most "
             f"{radius.max():.1e}), over the true error {np.median(ratio):.0f} in the median, at "

@@ -51,10 +51,10 @@ def test_all_quantities_are_enclosed(name: str) -> None:
     for quantity, values in expected(its.mechanism, its.solution, its.reactions).items():
         if quantity not in found:
             continue
-        middle, radius = (part[:, its.row] for part in found[quantity])
+        parts = (part[:, its.row] for part in found[quantity])
         angle = quantity.endswith((".theta", ".theta1", ".theta2"))
-        for value, m, r in zip(values, middle, radius, strict=True):
-            off = value - mp.mpf(float(m))
+        for value, high, low, r in zip(values, *parts, strict=True):
+            off = value - mp.mpf(float(high)) - mp.mpf(float(low))
             if angle:
                 off -= 2 * mp.pi * mp.nint(off / (2 * mp.pi))
             assert abs(off) <= r + DIGITS, (quantity, float(off), r)

@@ -41,12 +41,7 @@ def bridge(enclosed: Enclosed, ends: Nodes) -> int:
         middle = None if is_hopeless else _middles(enclosed.session, nodes, missing)
         if middle is None:
             return 0
-        nodes = Nodes(
-            *(
-                np.insert(old, missing + 1, new, axis=1)
-                for old, new in zip(nodes, middle, strict=True)
-            )
-        )
+        nodes = nodes.inserted(missing, middle)
 
 
 def _cut(session: Session, ends: Nodes) -> Nodes | None:
@@ -58,33 +53,30 @@ def _cut(session: Session, ends: Nodes) -> Nodes | None:
         return ends
     if parts > tolerances.BRIDGE_PARTS:
         return None
-    way = np.arange(parts + 1) / parts
+    way = np.arange(1, parts) / parts
     values = ends.values[:, :1] + way * (ends.values[:, 1:] - ends.values[:, :1])
-    reduced = ends.reduced[:, :1] + (values - values[:, :1])
+    places = ends.between(np.zeros(parts - 1, dtype=np.intp), values, ends.states[:, :1])
+    reduced = np.concatenate([ends.reduced[:, :1], places.reduced], axis=1)
     found = session.follow(reduced, ends.states[:, 0], every_row=True)
-    if found.reached < parts + 1:
+    if found.reached < parts:
         return None
-    closed = session.close(reduced, found.guess)
+    closed = session.close(places.reduced, found.guess[:, 1:])
     if not closed.good.all():
         return None
-    states = closed.states
-    states[:, [0, -1]] = ends.states
-    values[:, -1], reduced[:, -1] = ends.values[:, -1], ends.reduced[:, -1]
-    return Nodes(values, reduced, states)
+    return ends.inserted(np.zeros(parts - 1, dtype=np.intp), places._replace(states=closed.states))
 
 
 def _middles(session: Session, nodes: Nodes, before: NDArray[np.intp]) -> Nodes | None:
     """The closed places half way between nodes and the next, followed from there; None where the
     branch does not lead so far."""
-    after = before + 1
-    values = 0.5 * (nodes.values[:, before] + nodes.values[:, after])
-    reduced = nodes.reduced[:, before] + (values - nodes.values[:, before])
-    guess = np.empty((nodes.states.shape[0], before.size))
+    values = 0.5 * (nodes.values[:, before] + nodes.values[:, before + 1])
+    places = nodes.between(before, values, nodes.states[:, before])
+    guess = np.empty_like(places.states)
     for k, node in enumerate(before):
-        way = np.stack([nodes.reduced[:, node], reduced[:, k]], axis=1)
+        way = np.stack([nodes.reduced[:, node], places.reduced[:, k]], axis=1)
         found = session.follow(way, nodes.states[:, node], every_row=True)
         if found.reached < 2:
             return None
         guess[:, k] = found.guess[:, 1]
-    closed = session.close(reduced, guess)
-    return Nodes(values, reduced, closed.states) if closed.good.all() else None
+    closed = session.close(places.reduced, guess)
+    return places._replace(states=closed.states) if closed.good.all() else None

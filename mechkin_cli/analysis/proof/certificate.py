@@ -12,6 +12,7 @@ from mechkin_cli.proof import Proof
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.analysis.proof.dead_centre import DeadCentre
     from mechkin_cli.arrays import Bools
     from mechkin_cli.solver.proofs import Boxes
 
@@ -41,6 +42,7 @@ class Certificate:
         anchor: the first row whose box is proven, whose branch all others are held against.
         of_text: whether it is proven of the numbers that the file's text says; else of the doubles
             that the kernel holds.
+        dead_centres: those at which ways along the rows end.
     """
 
     boxes: Boxes
@@ -49,6 +51,7 @@ class Certificate:
     tubes: int
     anchor: int
     of_text: bool
+    dead_centres: tuple[DeadCentre, ...] = ()
 
     @property
     def rows(self) -> int:

@@ -6,21 +6,27 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
+from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.enclosures import Enclosure, Given, Positions, enclose
-from mechkin_cli.solver.proofs import Enclosed, input_rounding
+from mechkin_cli.solver.inputs import input_unit
+from mechkin_cli.solver.proofs import Enclosed, about_high, input_rounding
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from mechkin_cli.analysis.proof.certificate import Certificate
+    from mechkin_cli.analysis.proof.dead_centre import DeadCentre
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.mechanism.model import Mechanism
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.session import Session
+    from mechkin_cli.units import UnitSystem
 
+FULL_TURN = 2.0 * np.pi
 _OF_ROWS = {"kinetic_energy", "potential_energy"}
 
 
@@ -49,19 +55,63 @@ def enclosures(
     """
     enclosed = session.once("enclosed", lambda: Enclosed.of(session))
     given = Given.of(session) if enclosed.of_text else Given.of_doubles(session)
-    positions = Positions(enclosed.plan, enclosed.radii, states, certificate.boxes.radius)
+    positions = Positions(enclosed.plan, enclosed.constants, states, certificate.boxes.radius)
     found = enclose(session, positions, given, wanted, turned=turned)
     known = certificate.on_branch & _are_inside(session, given)
     return {
-        name: Enclosure(middle, np.where(known, radius, np.inf))
-        for name, (middle, radius) in found.items()
+        name: Enclosure(high, low, np.where(known, radius, np.inf))
+        for name, (high, low, radius) in found.items()
     }
+
+
+def dead_centre_enclosure(session: Session, found: DeadCentre, wanted: Wanted) -> Enclosure:
+    """Enclosure of a quantity of the position at a dead centre in SI (width, 1); nothing is known
+    where no dead centre is proven. Angles up to whole turns."""
+    fold = found.fold
+    if fold is None:
+        unknown = np.full((3 if wanted.vector else 1, 1), np.nan)
+        return Enclosure(unknown, unknown, np.full_like(unknown, np.inf))
+    node, enclosed, exchanged = fold.node, fold.enclosed, fold.exchanged
+    inputs = np.stack([node.values, np.zeros_like(node.values), node.off], axis=1)
+    inputs[exchanged.number, 2] = fold.reach
+    still = np.zeros_like(inputs)
+    given = Given(inputs, still, still, np.zeros_like(node.values), None, None)
+    positions = Positions(enclosed.plan, enclosed.constants, node.states, fold.boxes.radius)
+    return enclose(exchanged.session, positions, given, [wanted])[wanted.name]
+
+
+def input_bounds(session: Session, found: DeadCentre) -> tuple[float, float]:
+    """Bounds of the input at its dead centre in the file's units; nan where none is proven."""
+    problem, item = session.problem, session.problem.motion.inputs[found.number]
+    known = found.place[found.number] * input_unit(session.layout, item)
+    wanted = problem.quantities()[item.name]
+    enclosure = dead_centre_enclosure(session, found, wanted)
+    low, high = bounds(problem.units, wanted, enclosure, np.array([[known]]))
+    return float(low[0, 0]), float(high[0, 0])
+
+
+def bounds(
+    units: UnitSystem, wanted: Wanted, enclosure: Enclosure, known: Floats
+) -> tuple[Floats, Floats]:
+    """Bounds of a quantity in the file's units, two arrays (width, places); nan where nothing is
+    known. Angles are those next to what is `known` in SI, of the same shape."""
+    middle, radius = enclosure.high, enclosure.about_high
+    scale = np.abs(middle)
+    if wanted.kind == "coordinate" and not wanted.order and is_angle(wanted.coordinate):
+        turns = FULL_TURN * np.rint((known - middle) / FULL_TURN)
+        middle, scale = middle + turns, scale + np.abs(turns)
+    middle, radius, scale = (
+        np.asarray(units.from_si(part, wanted.dimension)) for part in (middle, radius, scale)
+    )
+    off = radius + tolerances.ENCLOSURE_ROUNDING * (radius + scale)
+    off = np.where(np.isfinite(off) & np.isfinite(np.atleast_2d(known)), off, np.nan)
+    return middle - off, middle + off
 
 
 def _are_inside(session: Session, given: Given) -> Bools:
     """Rows whose inputs are among those that the boxes were proven for."""
     reduced = session.inputs.reduced
-    off = np.abs(given.inputs.middle - reduced) + given.inputs.radius
+    off = np.abs(given.inputs[:, 0] - reduced) + about_high(given.inputs.transpose(1, 0, 2))
     inside = off <= input_rounding(session, reduced)
     found: Bools = np.asarray(inside.all(axis=0), dtype=np.bool_)
     return found

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.analysis.proof.enclosures import FULL_TURN
 from mechkin_cli.proof import Proof
 from mechkin_cli.solver.proofs import Boxes, Enclosed, Nodes, prove_boxes
 
@@ -16,9 +17,6 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.solver.layout import Layout
     from mechkin_cli.solver.session import Session
-
-
-FULL_TURN = 2.0 * np.pi
 
 
 class ModeProofs(NamedTuple):
@@ -51,7 +49,7 @@ def prove_modes(session: Session, place: Floats, states: Floats) -> ModeProofs:
     count = states.shape[1]
     inputs = np.repeat(place[:, None], count, axis=1)
     enclosed = session.once("enclosed", lambda: Enclosed.of(session))
-    boxes = prove_boxes(enclosed, Nodes(inputs, inputs, states))
+    boxes = prove_boxes(enclosed, Nodes.of(session, inputs, inputs, states))
     proven = np.flatnonzero(boxes.proven)
     different = all(
         _apart(session.layout, states, boxes, int(one), proven[k + 1 :]).all()

@@ -12,7 +12,7 @@ from mechkin_cli.analysis.assembly.start import MAY_BE_RIGID
 from mechkin_cli.analysis.sweep.rows import Rows
 from mechkin_cli.diagnostics import Diagnostic, Number, Place
 from mechkin_cli.kernel._kernel import MOST_PATH_STEPS
-from mechkin_cli.solver.branch_limit import BranchPoint, DeadCentre, find_limit
+from mechkin_cli.solver.branch_limit import BranchPoint, DeadCentre, EndOfRows, find_limit
 from mechkin_cli.solver.circuit import Passage, Walker
 from mechkin_cli.solver.follow import Followed, TrackEnd
 from mechkin_cli.solver.inputs import input_number, input_numbers, input_text
@@ -50,6 +50,8 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: Rows) 
     if session.problem.held and (held := _lost_hold_note(session, followed, limit, rows)):
         rows.diagnostics.append(held)
     elif isinstance(limit, DeadCentre):
+        assert followed.ending is not None
+        rows.ends.append(EndOfRows(int(rows.numbers[rows.reached][-1]), followed.ending))
         rows.diagnostics.append(_dead_centre_note(session, followed, limit, path, rows))
     elif isinstance(limit, Runaway):
         rows.diagnostics.append(_runaway_note(session, followed, limit, rows))

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.solver.branch_limit import EndOfRows
     from mechkin_cli.solver.follow import Followed
 
 
@@ -32,7 +33,7 @@ class Rows:
     from 0 as the file does, `nodes` the steps with which they were followed. `turns` (turn slots,
     rows) are angles and quaternions of closing joints as following carried them along
     (`solver.closing_turns`). `section` (rows,) tells rows apart between which a branch point was
-    passed; numbers say nothing but that.
+    passed; numbers say nothing but that. `ends` are the dead centres beyond which rows are missing.
     """
 
     states: Floats
@@ -44,6 +45,7 @@ class Rows:
     numbers: NDArray[np.int64]
     turns: Floats
     section: NDArray[np.int64]
+    ends: list[EndOfRows]
 
     @classmethod
     def without_guesses(cls, states: int, turns: int, rows: int) -> Rows:
@@ -58,6 +60,7 @@ class Rows:
             numbers=np.arange(rows),
             turns=np.full((turns, rows), np.nan),
             section=np.zeros(rows, dtype=np.int64),
+            ends=[],
         )
 
     @classmethod
@@ -75,6 +78,7 @@ class Rows:
             numbers=np.arange(count),
             turns=turns,
             section=sections(found, count),
+            ends=[],
         )
 
     def take(self, found: Followed, first: int) -> None:
@@ -91,7 +95,7 @@ class Rows:
         """Some of the rows, in the slice's order: views of the same arrays."""
         arrays = (self.states[:, rows], self.limit[rows], self.reached[rows], self.status[rows])
         more = (self.nodes, self.diagnostics, self.numbers[rows], self.turns[:, rows])
-        return Rows(*arrays, *more, self.section[rows])
+        return Rows(*arrays, *more, self.section[rows], self.ends)
 
     @property
     def has_failed(self) -> bool:

@@ -1,6 +1,6 @@
 // The copy of the kernel that computes in double-double, with MECHKIN_LANES and MECHKIN_UNIT set by the build.
 #define MECHKIN_WIDE_PLAN
-#include "two_part_plan.hpp"
+#include "parted_plan.hpp"
 
 #include "double_double_unit.hpp"
 

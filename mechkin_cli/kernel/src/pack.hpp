@@ -6,7 +6,7 @@
 //
 //   MECHKIN_DOUBLES        Real: + - * / sqrt of IEEE (arithmetic/doubles.hpp)
 //   MECHKIN_DOUBLE_DOUBLE  DoubleDouble: high and low (arithmetic/double_double.hpp)
-//   MECHKIN_INTERVALS      Interval: midpoint and radius (arithmetic/interval.hpp)
+//   MECHKIN_INTERVALS      Interval: midpoint in double-double and radius (arithmetic/interval.hpp)
 //   MECHKIN_TAYLOR         Taylor: coefficients by a parameter and radius (arithmetic/taylor.hpp)
 //
 // HALF_PLACE is half the last place of 1. A number of PARTS parts takes PARTS consecutive rows of an array: part i of number k of a row stands at
@@ -49,9 +49,11 @@ MECHKIN_INLINE Pack from_parts(const Real* part) { return {part[0], part[1]}; }
 MECHKIN_INLINE Real part_of(Pack a, int i) { return i ? a.low : a.high; }
 #elif MECHKIN_ARITHMETIC == MECHKIN_INTERVALS
 using Pack = Interval;
-constexpr int PARTS = 2;
-MECHKIN_INLINE Pack from_parts(const Real* part) { return {part[0], part[1]}; }
-MECHKIN_INLINE Real part_of(Pack a, int i) { return i ? a.radius : a.midpoint; }
+constexpr int PARTS = 3;
+// 2 pi
+constexpr ThreeParts FULL_TURN = {0x1.921fb54442d18p+2, 0x1.1a62633145c07p-52, 0x1p-104};
+MECHKIN_INLINE Pack from_parts(const Real* part) { return {DoubleDouble(part[0], part[1]), part[2]}; }
+MECHKIN_INLINE Real part_of(const Pack& a, int i) { return i > 1 ? a.radius : i ? a.midpoint.low : a.midpoint.high; }
 #elif MECHKIN_ARITHMETIC == MECHKIN_TAYLOR
 using Pack = Taylor;
 constexpr int PARTS = ORDER + 2;
@@ -71,7 +73,7 @@ MECHKIN_INLINE Pack from_parts(const Real* part) { return part[0]; }
 MECHKIN_INLINE Real part_of(Pack a, int) { return a; }
 #endif
 
-#if MECHKIN_ARITHMETIC != MECHKIN_DOUBLE_DOUBLE  // which sums products at less cost
+#if MECHKIN_ARITHMETIC == MECHKIN_DOUBLES || MECHKIN_ARITHMETIC == MECHKIN_TAYLOR  // the others sum products at less cost
 MECHKIN_INLINE void add_product(Pack& x, const Pack& a, const Pack& b) { x += a * b; }
 MECHKIN_INLINE void subtract_product(Pack& x, const Pack& a, const Pack& b) { x -= a * b; }
 MECHKIN_INLINE Pack sum_of_products(const Pack& a, const Pack& b, const Pack& c, const Pack& d, const Pack& e,

@@ -1,4 +1,4 @@
-// Plans whose constants are no doubles: of all lanes side by side (wide_plan.hpp), or of two parts (two_part_plan.hpp).
+// Plans whose constants are no doubles: of all lanes side by side (wide_plan.hpp), or of parts (parted_plan.hpp).
 //
 // What is structure is read where a plan of doubles has it, which must outlive the copy. A unit that runs such plans
 // defines MECHKIN_WIDE_PLAN and includes one of the two headers first, which says what a `PlanNumber` is, and how the

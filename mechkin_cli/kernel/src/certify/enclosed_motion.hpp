@@ -6,48 +6,17 @@
 // redundant constraints leave, and gives what all of them agree in.
 #pragma once
 
+#include "block_systems.hpp"
 #include "enclosed_position.hpp"
-#include "enclosed_solution.hpp"
-#include "inverse_lanes.hpp"
 #include "wrenches.hpp"
 
 namespace {
 
-// What the solutions of one pack of rows need beside a workspace, block after block.
-struct Solving {
-  Real* inverse;  // blocks' size x rows
-  Real* error;    // blocks' size x size
-  Real* across;   // largest block: rows x rows
-  Pack* room;
-  double* scalar;
-};
-
-// Offsets of a block in arrays that hold all blocks'.
-struct BlockPlace {
-  long rows, inverse, error;
-};
-inline BlockPlace place_of_block(const Plan& p, int index) {
-  BlockPlace at = {0, 0, 0};
-  for (int b = 0; b < index; ++b) {
-    const long m = p.block[b].rows, n = p.block[b].size;
-    at.rows += m, at.inverse += m * n, at.error += n * n;
-  }
-  return at;
-}
-
-inline EnclosedMatrix matrix_of(const Plan& p, const Workspace& w, const Solving& s, int index) {
-  const BlockPlace at = place_of_block(p, index);
-  return {w.jacobian + at.inverse, s.inverse + at.inverse, s.error + at.error, p.block[index].rows, p.block[index].size};
-}
-
 // The block's Jacobian by rates over the box, and what solves with it; poses and closures are there.
 inline void prepare_block(const Plan& p, Workspace& w, const Solving& s, int index) {
-  const EnclosedMatrix f = matrix_of(p, w, s, index);
-  Pack* const a = w.jacobian + place_of_block(p, index).inverse;
-  block_jacobian(p, w, index, a);
-  const auto midpoint = [&](int i, int u) { return a[i * f.n + u].midpoint; };
-  invert_lanes(f.n, f.m, midpoint, midpoint, s.scalar, s.inverse + place_of_block(p, index).inverse);
-  find_error(f);
+  const BlockPlace at = place_of_block(p, index);
+  block_jacobian(p, w, index, w.jacobian + at.inverse);
+  invert_block(matrix_of(p, w, s, index), s, s.inverse + at.inverse);
 }
 
 inline void enclose_rates(const Plan& p, Workspace& w, const Solving& s, int index) {

@@ -9,9 +9,10 @@
 
 namespace {
 
-// What a box adds to a workspace: the increments of its columns, zero for scalar ones, which their states have.
+// What a box adds to a workspace.
 struct Box {
-  Pack* turn;  // columns
+  Pack* turn;    // columns: their increments, zero for scalar ones, which their states have
+  Real* radius;  // columns: of the box as it was given
 };
 
 MECHKIN_INLINE Pack cayley_scale(Vec3 x) { return Pack(1.0) / (Pack(1.0) + Pack(0.25) * (square(x.x) + square(x.y) + square(x.z))); }
@@ -44,6 +45,12 @@ inline void place_enclosed(const Plan& p, Workspace& w, const Box& box, int k) {
 inline void place_enclosed_block(const Plan& p, Workspace& w, const Box& box, int index) {
   const Block& b = p.block[index];
   for (int o = b.joint_begin; o < b.joint_end; ++o) place_enclosed(p, w, box, p.order[o]);
+}
+
+// Places of a block's links, and its closing equations into w.right.
+inline void close_enclosed_block(const Plan& p, Workspace& w, const Box& box, int index) {
+  place_enclosed_block(p, w, box, index);
+  closing_equations(p, w, p.block[index], [](auto, const Pack*) {});
 }
 
 // Columns of rotations about an orientation's axes into those of increments, one equation's three entries.

@@ -7,8 +7,11 @@
 namespace {
 
 // Zero, or no number where nothing is known: added to what is found of an interval otherwise than by arithmetic.
-MECHKIN_INLINE Real knowledge(Interval a) { return (a.midpoint - a.midpoint) + (a.radius - a.radius); }
-MECHKIN_INLINE Interval if_known(Interval found, Interval a, Interval b) {
+MECHKIN_INLINE Real knowledge(const Interval& a) {
+  const Real low = a.midpoint.low, rest = a.radius - a.radius;
+  return (a.midpoint.high - a.midpoint.high) + (low - low) + rest;
+}
+MECHKIN_INLINE Interval if_known(const Interval& found, const Interval& a, const Interval& b) {
   return {found.midpoint, found.radius + knowledge(a) + knowledge(b)};
 }
 // An interval for each lane: 1 where it must be, 0 where it cannot, else both.
@@ -17,8 +20,13 @@ MECHKIN_INLINE Interval truth(Mask must, Mask cannot) {
   return {select(must, one, select(cannot, none, half)), select(must | cannot, none, half)};
 }
 
+MECHKIN_INLINE Interval chosen(Mask first, const Interval& a, const Interval& b) {
+  return {select(first, a.midpoint, b.midpoint), select(first, a.radius, b.radius)};
+}
 MECHKIN_INLINE Interval larger(Interval a, Interval b) {
-  return if_known(between(max(lower(a), lower(b)), max(upper(a), upper(b))), a, b);
+  const Real la = lower(a), lb = lower(b), ua = upper(a), ub = upper(b);
+  const Interval either = chosen(la > ub, a, between(max(la, lb), max(ua, ub)));
+  return if_known(chosen(lb > ua, b, either), a, b);
 }
 MECHKIN_INLINE Interval less(Interval a, Interval b) {
   return if_known(truth(upper(a) < lower(b), lower(a) >= upper(b)), a, b);
@@ -37,9 +45,8 @@ MECHKIN_INLINE Interval sign(Interval a) {
 // b where a is not zero, else c.
 MECHKIN_INLINE Interval choose(Interval a, Interval b, Interval c) {
   const Interval is_zero = equal(a, Interval(0.0)), either = hull(b, c);
-  const Mask zero = is_zero.midpoint == Real(1.0), other = is_zero.midpoint == Real(0.0);
-  const auto part = [&](Real x, Real y, Real z) { return select(zero, y, select(other, x, z)); };
-  return if_known({part(b.midpoint, c.midpoint, either.midpoint), part(b.radius, c.radius, either.radius)}, a, a);
+  const Mask zero = is_zero.midpoint.high == Real(1.0), other = is_zero.midpoint.high == Real(0.0);
+  return if_known(chosen(zero, c, chosen(other, b, either)), a, a);
 }
 MECHKIN_INLINE Interval whole(Interval a) {
   return if_known(between(nearest_integer(lower(a)), nearest_integer(upper(a))), a, a);

@@ -2,6 +2,8 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "arguments.hpp"
@@ -17,20 +19,27 @@ namespace nb = nanobind;
 
 namespace {
 
-// A plan of the same structure with radii instead of constants, or null.
-const FrozenPlan* radii_of(Arguments& given, const FrozenPlan& plan) {
-  const nb::object object = given.other("radii");
-  if (object.is_none()) return nullptr;
-  const FrozenPlan* const radii = nb::cast<const FrozenPlan*>(object);
-  if (radii->structure() != plan.structure()) throw nb::value_error("radii: of a plan with another structure");
-  return radii;
+// A plan with other parts of its constants in their place; nothing where these are zero.
+std::optional<FrozenPlan> part_of(Arguments& given, const char* name, const FrozenPlan& plan) {
+  const double* const numbers = given.numbers(name, plan.constants());
+  if (!numbers) return {};
+  if (!all_finite(numbers, plan.constants())) throw nb::value_error((std::string(name) + ": not finite").c_str());
+  return plan.with_numbers(numbers);
 }
 
-const OutputList* outputs_of(Arguments& given, const char* name, const FrozenPlan& plan) {
-  const nb::object object = given.other(name);
+std::optional<OutputList> part_of(Arguments& given, const char* name, const OutputList* outputs) {
+  const double* const numbers = given.numbers(name, outputs ? outputs->constants() : 0);
+  if (!numbers || !outputs) return {};
+  std::optional<OutputList> part(*outputs);
+  if (!part->assign(numbers)) throw nb::value_error((std::string(name) + ": not finite").c_str());
+  return part;
+}
+
+const OutputList* outputs_of(Arguments& given, const FrozenPlan& plan) {
+  const nb::object object = given.other("outputs");
   if (object.is_none()) return nullptr;
   const OutputList* const outputs = nb::cast<const OutputList*>(object);
-  if (!outputs->fits(plan)) throw nb::value_error((std::string(name) + ": of a plan with another structure").c_str());
+  if (!outputs->fits(plan)) throw nb::value_error("outputs: of a plan with another structure");
   return outputs;
 }
 
@@ -60,30 +69,32 @@ void enclose(const FrozenPlan& plan, const nb::kwargs& keywords) {
   Arguments given(keywords);
   EnclosingRequest r = {};
   r.states = given.read_required("states", p.states);
-  r.inputs = given.read_required("inputs", 2L * p.inputs);
+  r.inputs = given.read_required("inputs", 3L * p.inputs);
   r.radius = given.read("radius", p.columns);
-  r.rates = given.read("rates", 2L * p.inputs);
-  r.accelerations = given.read("accelerations", 2L * p.inputs);
-  r.ties = given.read("ties", 2L * p.ties);
+  r.rates = given.read("rates", 3L * p.inputs);
+  r.accelerations = given.read("accelerations", 3L * p.inputs);
+  r.ties = given.read("ties", 3L * p.ties);
   r.turned = given.read("turned", turn_slots(p, *kernel_unit(2)));
   r.whole = given.read("whole", p.inputs);
-  r.time = given.read("time", 2);
-  r.velocities = given.write("first", 2L * p.columns);
-  r.second = given.write("second", 2L * p.columns);
-  r.equations = given.write("equations", 2 * equations);
-  r.derivatives = given.write("derivatives", 2 * equations * p.columns);
-  r.sides = given.write("sides", 2L * p.closings);
+  r.time = given.read("time", 3);
+  r.velocities = given.write("first", 3L * p.columns);
+  r.second = given.write("second", 3L * p.columns);
+  r.equations = given.write("equations", 3 * equations);
+  r.derivatives = given.write("derivatives", 3 * equations * p.columns);
+  r.sides = given.write("sides", 3L * p.closings);
   r.forces = given.integer("forces", 0, 1, 0);
-  const OutputList* const outputs = outputs_of(given, "outputs", plan);
-  const OutputList* const output_radii = outputs_of(given, "output_radii", plan);
-  if (output_radii && (!outputs || outputs->constants() != output_radii->constants()))
-    throw nb::value_error("output_radii: of other outputs");
+  r.contract = given.integer("contract", 0, 1, 0);
+  const OutputList* const outputs = outputs_of(given, plan);
+  const std::optional<OutputList> output_low = part_of(given, "output_low", outputs);
+  const std::optional<OutputList> output_radii = part_of(given, "output_radii", outputs);
   const OutputsView wanted = outputs ? outputs->view() : OutputsView{};
+  const OutputsView wanted_low = output_low ? output_low->view() : OutputsView{};
   const OutputsView wanted_radii = output_radii ? output_radii->view() : OutputsView{};
-  r.outputs = given.write("values", 2L * wanted.slots);
-  const FrozenPlan* const radii = radii_of(given, plan);
+  r.outputs = given.write("values", 3L * wanted.slots);
+  const std::optional<FrozenPlan> low = part_of(given, "low", plan), radii = part_of(given, "radii", plan);
   given.finish();
   r.wanted = outputs ? &wanted : nullptr;
+  r.wanted_low = output_low ? &wanted_low : nullptr;
   r.wanted_radii = output_radii ? &wanted_radii : nullptr;
   r.rows = given.rows();
   check(r, outputs, p);
@@ -91,7 +102,7 @@ void enclose(const FrozenPlan& plan, const nb::kwargs& keywords) {
   std::vector<char> memory((std::size_t)unit.workspace_size(p));
   nb::gil_scoped_release released;
   FloatingPointState state;
-  unit.enclose(p, radii ? &radii->view() : nullptr, r, memory.data());
+  unit.enclose(p, low ? &low->view() : nullptr, radii ? &radii->view() : nullptr, r, memory.data());
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
-// Enclosures of rates, accelerations, forces and outputs in intervals, and of equations and their derivatives over boxes.
+// Enclosures of positions, rates, accelerations, forces and outputs in intervals, and of equations and their derivatives over
+// boxes.
 #define MECHKIN_WIDE_PLAN
-#include "two_part_plan.hpp"
+#include "parted_plan.hpp"
 
+#include "contracted_position.hpp"
 #include "enclosed_motion.hpp"
 #include "enclosed_program.hpp"
 #include "enclosing_unit.hpp"
@@ -13,7 +15,6 @@ struct Memory {
   Workspace w;
   Box box;
   Solving solving;
-  Pack* derivatives;  // largest block x columns
 };
 
 inline long lay_out_solving(const Plan& p, Room& room, Memory* m) {
@@ -24,7 +25,8 @@ inline long lay_out_solving(const Plan& p, Room& room, Memory* m) {
   }
   const long largest = p.largest_block;
   m->box.turn = room.take<Pack>(p.columns);
-  m->derivatives = room.take<Pack>((int)(largest * p.columns));
+  m->box.radius = room.take<Real>(p.columns);
+  m->solving.derivatives = room.take<Pack>((int)(largest * p.columns));
   m->solving.inverse = room.take<Real>((int)inverse);
   m->solving.error = room.take<Real>((int)error);
   m->solving.across = room.take<Real>((int)(largest * largest));
@@ -41,12 +43,13 @@ struct Lookup {
     for (int i = 0; i < LANES; ++i) lanes[i] = base[number * rows + row + (i < count ? i : count - 1)];
     return load(lanes);
   }
-  Pack get(const double* base, long number) const { return {real(base, 2 * number), real(base, 2 * number + 1)}; }
+  Pack get(const double* base, long number) const {
+    const Real part[] = {real(base, PARTS * number), real(base, PARTS * number + 1), real(base, PARTS * number + 2)};
+    return from_parts(part);
+  }
 };
 
 const Pack UNKNOWN_NUMBER = __builtin_nan("");
-// 2 pi
-constexpr TwoParts FULL_TURN = {0x1.921fb54442d18p+2, 0x1p-51};
 
 // What loads read of a row beside the workspace, see quantity_program.hpp.
 struct RowValues {
@@ -58,7 +61,7 @@ struct RowValues {
     if (turn < -1) return angle + Pack(FULL_TURN) * Pack(in.real(r.whole, -2 - turn));
     const Real known = in.real(r.turned, turn);
     // how many turns is known from following; of two that are as near either is a value of the angle
-    const Real turns = closing ? nearest_integer((known - angle.midpoint) / Real(FULL_TURN.first)) : known;
+    const Real turns = closing ? nearest_integer((known - angle.midpoint.high) / Real(FULL_TURN.first)) : known;
     return angle + Pack(FULL_TURN) * Pack(turns);
   }
   Pack input(int number, Pack, Pack angle) const { return turned(-2 - number, false, angle); }
@@ -70,9 +73,11 @@ void read_box(const Plan& p, const EnclosingRequest& r, Memory& m, const Lookup&
   for (int s = 0; s < p.states; ++s) w.q[s] = Pack(in.real(r.states, s));
   for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
   for (int c = 0; c < p.columns; ++c) {
-    const Pack radius = {Real(0.0), r.radius ? in.real(r.radius, c) : Real(0.0)};
-    m.box.turn[c] = p.column_state[c] < 0 ? radius : Pack(0.0);
-    if (p.column_state[c] >= 0) w.q[p.column_state[c]] += radius;
+    m.box.turn[c] = 0.0;
+    m.box.radius[c] = r.radius ? in.real(r.radius, c) : Real(0.0);
+    const int state = p.column_state[c];
+    if (state >= 0) w.q[state].radius = widened(w.q[state].radius + m.box.radius[c]);
+    else m.box.turn[c].radius = m.box.radius[c];
   }
 }
 
@@ -103,11 +108,12 @@ Balance enclose_forces(const Plan& p, Memory& m, const RowValues& row_values, co
   return balance;
 }
 
-OutputOf<TwoParts> enclosed_output(const EnclosingRequest& r, int number) {
+OutputOf<ThreeParts> enclosed_output(const EnclosingRequest& r, int number) {
   const Output& o = r.wanted->output[number];
-  const Output* const radii = r.wanted_radii ? &r.wanted_radii->output[number] : nullptr;
-  OutputOf<TwoParts> out = {o.type, o.index, o.order, o.freedom, o.slot, {}, {o.factor, radii ? radii->factor : 0.0}};
-  for (int k = 0; k < 3; ++k) out.data[k] = {o.data[k], radii ? radii->data[k] : 0.0};
+  const auto part = [&](const OutputsView* outputs, auto&& at) { return outputs ? at(outputs->output[number]) : 0.0; };
+  const auto all = [&](auto&& at) -> ThreeParts { return {at(o), part(r.wanted_low, at), part(r.wanted_radii, at)}; };
+  OutputOf<ThreeParts> out = {o.type, o.index, o.order, o.freedom, o.slot, {}, all([](const Output& x) { return x.factor; })};
+  for (int k = 0; k < 3; ++k) out.data[k] = all([k](const Output& x) { return x.data[k]; });
   return out;
 }
 
@@ -124,13 +130,14 @@ void enclose_positions(const Plan& p, const EnclosingRequest& r, Memory& m, cons
   Workspace& w = m.w;
   read_box(p, r, m, in);
   for (int b = 0; b < p.blocks; ++b) {
-    place_enclosed_block(p, w, m.box, b);
-    closing_equations(p, w, p.block[b], [](auto, const Pack*) {});
+    // of more equations than unknowns the box holds those of the proof, which are not told
+    if (r.contract && p.block[b].rows == p.block[b].size) contract_block(p, w, m.box, m.solving, b);
+    close_enclosed_block(p, w, m.box, b);
     put_position(p, r, m, b, out);
     if (!r.derivatives) continue;
-    enclosed_derivatives(p, w, m.box, b, m.derivatives);
+    enclosed_derivatives(p, w, m.box, b, m.solving.derivatives);
     const long first = place_of_block(p, b).rows * p.columns;
-    for (long e = 0; e < (long)p.block[b].rows * p.columns; ++e) out.to(r.derivatives).put(first + e, m.derivatives[e]);
+    for (long e = 0; e < (long)p.block[b].rows * p.columns; ++e) out.to(r.derivatives).put(first + e, m.solving.derivatives[e]);
   }
   for (int k = 0; k < p.rest_count; ++k) place_enclosed(p, w, m.box, p.rest[k]);
 }
@@ -167,7 +174,7 @@ void enclose_pack(const Plan& p, const EnclosingRequest& r, Memory& m, const Loo
   }
   if (!r.wanted) return;
   for (int o = 0; o < r.wanted->count; ++o) {
-    const OutputOf<TwoParts> wanted = enclosed_output(r, o);
+    const OutputOf<ThreeParts> wanted = enclosed_output(r, o);
     Pack value[3];
     const int width = output_value(p, w, &balance, row_values, wanted, value);
     for (int k = 0; k < width; ++k) out.to(r.outputs).put(wanted.slot + k, value[k]);
@@ -189,15 +196,16 @@ long workspace_size(const LanePlan& given) {
   const Plan p = structure_of(given);
   Memory m;
   Room room = {nullptr};
-  return join_parts(given, nullptr, nullptr) + lay_out(p, nullptr, &m.w) + lay_out_solving(p, room, &m) + 256;
+  return join_all_parts(given, nullptr, nullptr, nullptr) + lay_out(p, nullptr, &m.w) + lay_out_solving(p, room, &m) + 256;
 }
 
-void enclose(const LanePlan& given, const LanePlan* radii, const EnclosingRequest& r, char* memory) {
+void enclose(const LanePlan& given, const LanePlan* low, const LanePlan* radii, const EnclosingRequest& r, char* memory) {
   char* at = aligned(memory);
-  const long used = join_parts(given, radii, at);
+  const long used = join_all_parts(given, low, radii, at);
   Plan& p = *reinterpret_cast<Plan*>(at);
   // conventions, not measures
-  p.length.second = p.size.second = p.row_weight.second = 0.0;
+  PlanNumber* const conventions[] = {&p.length, &p.size, &p.row_weight};
+  for (PlanNumber* of : conventions) of->second = of->radius = 0.0;
   at = aligned(at + used);
   Memory m;
   at = aligned(at + lay_out(p, at, &m.w));

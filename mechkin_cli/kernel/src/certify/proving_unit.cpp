@@ -1,6 +1,6 @@
 // One arithmetic's copy of the proofs; the build sets MECHKIN_ORDER and MECHKIN_PROVING.
 #define MECHKIN_WIDE_PLAN
-#include "two_part_plan.hpp"
+#include "parted_plan.hpp"
 
 #include "krawczyk.hpp"
 #include "orientation_boxes.hpp"

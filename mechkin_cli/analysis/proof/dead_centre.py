@@ -1,0 +1,138 @@
+"""Dead centres at which a sweep ends: proven where they are, with the branch of the rows that leads
+to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.proof.bridge import bridge
+from mechkin_cli.analysis.proof.enclosures import FULL_TURN
+from mechkin_cli.analysis.proof.fold import Fold, prove_fold
+from mechkin_cli.solver.exchanged import exchange
+from mechkin_cli.solver.proofs import Boxes, Enclosed, Nodes, prove_boxes
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.solver.branch_limit import EndOfRows
+    from mechkin_cli.solver.session import Session
+
+WhyNot = Literal["inputs", "balls", "box", "closure", "branch"]
+"""Why a dead centre is not proven: several inputs move there together; no joint coordinate leads
+through it; no box could be proven to hold exactly one; its loops are only proven to closure; it is
+proven to exist, but not that the branch of the rows leads to it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DeadCentre:
+    """What is proven of a dead centre at which a way along the rows ends.
+
+    Attributes:
+        row: the last row before it, counted from 0.
+        number: of the input that has it.
+        place: the inputs there in doubles, with their whole turns (inputs,), kernel units.
+        fold: what is proven to exist; None where nothing is.
+        tubes: how many tubes lead there from the row.
+        why: why it is not proven; None where it is.
+    """
+
+    row: int
+    number: int
+    place: Floats
+    fold: Fold | None
+    tubes: int
+    why: WhyNot | None
+
+
+def prove_dead_centre(enclosed: Enclosed, row: Nodes, box: Boxes, end: EndOfRows) -> DeadCentre:
+    """What is proven of a dead centre.
+
+    Args:
+        enclosed: the mechanism as it is driven.
+        row: the last row before the dead centre.
+        box: of that row.
+        end: what following found.
+    """
+    session, ending = enclosed.session, end.ending
+    way = ending.inputs - row.values[:, 0]
+    moved = np.flatnonzero(np.abs(way) > row.off[:, 0])
+    number = int(np.abs(way).argmax())
+
+    def found(fold: Fold | None, tubes: int, why: WhyNot | None) -> DeadCentre:
+        return DeadCentre(end.row, number, ending.inputs, fold, tubes, why)
+
+    if moved.size > 1:
+        return found(None, 0, "inputs")
+    exchanged = exchange(session, number, ending.block, ending.first)
+    if exchanged is None:
+        return found(None, 0, "balls")
+    inputs = row.reduced[:, 0].copy()
+    inputs[number] += way[number]
+    fold = prove_fold(exchanged, inputs, row.off[:, 0], ending.state)
+    if fold is None:
+        return found(None, 0, "box")
+    if fold.boxes.beyond[0] > 0.0:
+        return found(None, 0, "closure")
+    tubes = _lead(enclosed, row, box, fold) if box.proven[0] else 0
+    return found(fold, tubes, None if tubes else "branch")
+
+
+def _lead(enclosed: Enclosed, row: Nodes, box: Boxes, fold: Fold) -> int:
+    """The tubes from a row to a dead centre, 0 where the branch is not proven to lead there: with
+    the input as parameter to a place before it, and from there with the exchanged coordinate."""
+    number = fold.exchanged.number
+    gap = fold.value - float(row.reduced[number, 0])
+    for far in tolerances.DEAD_CENTRE_APPROACH:
+        ahead = 0.5 * abs(fold.bend) * far * far
+        if ahead < abs(gap):
+            inputs = row.reduced.copy()
+            inputs[number] += gap - np.copysign(ahead, gap)
+            place = _place_on_way(enclosed.session, row, inputs)
+            if place is None:
+                continue
+            way = Nodes(*(np.concatenate(pair, axis=1) for pair in zip(row, place, strict=True)))
+            near = prove_boxes(enclosed, place)
+            before = bridge(enclosed, way._replace(values=way.reduced)) if near.proven[0] else 0
+        else:
+            place, near, before = row, box, 1
+        behind = _lead_exchanged(place, near, fold) if before else 0
+        if behind:
+            return before * (place is not row) + behind
+    return 0
+
+
+def _place_on_way(session: Session, row: Nodes, inputs: Floats) -> Nodes | None:
+    """The closed place at some inputs (inputs, 1) to which the branch leads from a row."""
+    path = np.concatenate([row.reduced, inputs], axis=1)
+    followed = session.follow(path, row.states[:, 0], every_row=True)
+    if followed.reached < 2:
+        return None
+    closed = session.close(inputs, followed.guess[:, 1:])
+    return Nodes.of(session, inputs, inputs, closed.states) if closed.good[0] else None
+
+
+def _lead_exchanged(place: Nodes, box: Boxes, fold: Fold) -> int:
+    """The tubes from a place before a dead centre to it, with the exchanged coordinate as
+    parameter.
+
+    The place's position has that coordinate only as near as its box says: the first node is all of
+    the box, in which each value of the coordinate has one position; that of the place is among
+    them.
+    """
+    exchanged = fold.exchanged
+    number, driven, freed = exchanged.number, exchanged.driven, exchanged.freed
+    value = float(place.states[driven.state, 0])
+    if driven.is_cyclic:
+        value += FULL_TURN * np.rint((fold.node.values[number, 0] - value) / FULL_TURN)
+    values, states, off = place.reduced.copy(), place.states.copy(), place.off.copy()
+    least = box.radius.copy()
+    rounding = tolerances.INPUT_ROUNDING * (FULL_TURN + abs(value))
+    values[number], off[number] = value, box.radius[driven.column] + rounding
+    states[freed.state], states[driven.state] = place.reduced[number], value
+    least[freed.column], least[driven.column] = place.off[number], 0.0
+    start = Nodes(values, values, states, off, least)
+    ends = Nodes(*(np.concatenate(pair, axis=1) for pair in zip(start, fold.node, strict=True)))
+    return bridge(fold.enclosed, ends)

@@ -1,0 +1,248 @@
+"""Dead centres at which a sweep ends: proven where they are, with the way to them, and never where
+two branches cross or come nearer than rounding tells."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from oracle import (
+    document,
+    fold,
+    in_other_units,
+    mp,
+    read,
+    renamed,
+    reordered,
+    rotation_matrix,
+    to_text,
+)
+from oracle import moved as turned_about
+from proofs.test_boxes import COHERENT, DEGREE
+from random_families.dead_centres.case import plane_four_bar
+from references import MECHANISMS, RCSR
+
+import mechkin_cli as mk
+from mechkin_cli.analysis.proof.dead_centre import prove_dead_centre
+from mechkin_cli.interface.dead_centre import DeadCentre
+from mechkin_cli.solver.branch_limit import EndOfRows
+from mechkin_cli.solver.codes import PassageEnd
+from mechkin_cli.solver.follow import Ending
+from mechkin_cli.solver.proofs import Enclosed, Nodes, prove_boxes
+
+SWEEP = "from: 150, to: 202, step: 2"
+
+
+def rcsr(rows: str = "from: 150, to: 210, step: 2") -> str:
+    return RCSR.read_text(encoding="utf-8").replace(SWEEP, rows)
+
+
+def only(text: str) -> DeadCentre:
+    (found,) = mk.loads(text).certify().dead_centres
+    return found
+
+
+@cache
+def true_fold() -> tuple[Any, dict[str, Any]]:
+    """At 60 digits, in degrees and inches."""
+    data = document(RCSR) | {"units": COHERENT}
+    data.pop("tables", None)
+    guess = {"O1.theta": 205.14, "O2.theta": -133.56, "O2.s": -8.8243, "O4.theta": -70.89}
+    near = {n: v * (DEGREE if n.endswith("theta") else 1) for n, v in guess.items()}
+    u, found = fold(read(to_text(data)), "O1.theta", near)
+    return u / DEGREE, {n: found[n] / DEGREE for n in guess if n.endswith("theta")}
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        "from: 150, to: 210, step: 2",
+        "values: [160, 300]",
+        "values: [-200, -100]",
+        "values: [870, 1000]",
+        "values: [200, 205.143965944, 206]",
+    ],
+)
+def test_the_true_dead_centre_is_enclosed(rows: str) -> None:
+    found = only(rcsr(rows))
+    assert found.is_proven
+    assert found.tubes > 0
+    low, high = found.bounds
+    value, coordinates = true_fold()
+    turns = 360 * round((low - float(value)) / 360)
+    assert low <= value + turns <= high
+    assert high - low < 1e-11
+    for name, true in coordinates.items():
+        low, high = found.enclosure(name)
+        turns = 360 * round((float(low) - float(true)) / 360)
+        assert low <= true + turns <= high
+        assert high - low < 1e-10
+
+
+def test_words_and_record() -> None:
+    certificate = mk.loads(rcsr()).certify()
+    (found,) = certificate.dead_centres
+    assert (found.input, found.row, found.status, found.why) == ("O1.theta", 27, "proven", None)
+    assert certificate.words == (
+        "28 proven, 3 not proven; one branch to a proven dead centre, "
+        "O1.theta = 205.143965945 deg (2 tubes)"
+    )
+    (record,) = certificate.analysis.result.proven_dead_centres
+    assert (record["low"], record["high"]) == found.bounds
+    assert (record["name"], record["unit"], record["proof"]) == ("O1.theta", "deg", "proven")
+    assert (record["last_row"], record["tubes"]) == (28, 2)
+    assert mk.load(RCSR).certify().dead_centres == ()
+
+
+def test_rates_have_no_value_there() -> None:
+    found = only(rcsr())
+    for name in ("O4.theta_dot", "O2.force", "row.condition", "nothing"):
+        with pytest.raises(mk.UsageError, match="no position"):
+            found.enclosure(name)
+
+
+def test_points_are_enclosed() -> None:
+    """The pin of coupler and rocker, on its circle about (2, 0) where the closed form turns it."""
+    case = plane_four_bar(("0.5", "0.8", "0"), ("1.7", "1.1", "0"), ("2", "0", "0"))
+    points = "points: {pin: {link: rocker, at: [1.7, 1.1, 0]}}\nmotion:"
+    found = only(case.swept("values: [0, -6]").replace("motion:", points))
+    assert found.is_proven
+    low, high = found.enclosure("pin.position")
+    assert low.shape == (3,)
+    assert (high - low < 1e-11).all()
+    with mp.workdps(40):
+        turn = case.output_at(case.dead_centre(found.number.value))
+        x, y = mp.mpf("1.7") - 2, mp.mpf("1.1")
+        true = 2 + x * mp.cos(turn) - y * mp.sin(turn), x * mp.sin(turn) + y * mp.cos(turn), 0
+        assert all(a <= b <= c for a, b, c in zip(low, true, high, strict=True))
+
+
+def test_both_ends_of_a_branch() -> None:
+    """A sweep followed to both sides of the row whose assembly is named."""
+    one, other = only(rcsr("values: [150, 120]")), only(rcsr("values: [150, 210]"))
+    assert one.is_proven
+    assert other.is_proven
+    assert one.bounds[1] < 134 < 205 < other.bounds[0]
+
+
+OTHERWISE = {
+    "turned": lambda d: turned_about(d, rotation_matrix(3, 1, -2, 5), [3, -1, 2]),
+    "in other units": lambda d: in_other_units(
+        d, {"length": "mm", "angle": "rad", "mass": "kg", "force": "N"}
+    ),
+    "renamed": lambda d: renamed(d, {"O1": "Crank", "rocker": "lever", "crank": "wheel"}),
+    "reordered": lambda d: reordered(d, 7),
+}
+
+
+@pytest.mark.parametrize("otherwise", OTHERWISE)
+def test_written_otherwise(otherwise: str) -> None:
+    data = document(MECHANISMS / "rcsr.yaml")
+    data.pop("tables", None)
+    (name,) = data["motion"]["inputs"]
+    data["motion"]["inputs"][name] |= {"to": "210"}
+    there = only(to_text(data)).bounds
+    found = only(to_text(OTHERWISE[otherwise](data)))
+    assert found.is_proven
+    scale = 180 / np.pi if otherwise == "in other units" else 1.0
+    low, high = (scale * bound for bound in found.bounds)
+    assert max(low, there[0]) <= min(high, there[1]) + 1e-13
+
+
+def test_from_the_other_side() -> None:
+    """The other assembly ends at the same dead centre."""
+    here = only(rcsr("values: [200, 210]"))
+    model = mk.loads(rcsr("values: [200, 210]"))
+    modes = [mode.name for mode in model.modes().modes]
+    ends = [model.certify(mode=mode).dead_centres for mode in modes]
+    same = [
+        found
+        for (found,) in ends
+        if max(found.bounds[0], here.bounds[0]) <= min(found.bounds[1], here.bounds[1])
+    ]
+    assert len(same) == 2
+    assert all(found.is_proven for found in same)
+
+
+def near_change_point(gap: str) -> Any:
+    """A parallelogram whose frame is too short by `gap`: its crank cannot come to point along the
+    frame, by about the root of it on either side."""
+    case = plane_four_bar(("0", "1", "0"), ("2", "1", "0"), ("2", "0", "0"))
+    point = f"point: {{ground: [2 m - {gap} m, 0, 0], rocker: [2, 0, 0]}}"
+    return case._replace(text=case.text.replace("point: [2, 0, 0]", point))
+
+
+@pytest.mark.parametrize("gap", ["1e-2", "1e-6", "1e-10", "1e-12", "1e-14", "1e-18"])
+def test_dead_centres_on_both_sides_of_a_gap_are_not_one(gap: str) -> None:
+    case = near_change_point(gap)
+    for way, side in (("from: 0, to: -3, count: 4", 1), ("from: -2.9, to: -0.1, count: 4", -1)):
+        model = mk.loads(case.swept(way))
+        for mode in model.modes().modes:
+            proofs = model.certify(mode=mode.name)
+            assert not proofs.is_one_branch
+            for found in proofs.dead_centres:
+                if gap in ("1e-2", "1e-6"):
+                    assert found.is_proven
+                if not found.is_proven:
+                    assert np.isnan(found.bounds).all()
+                    continue
+                with mp.workdps(40):
+                    half = mp.acos((2 - mp.mpf(gap)) / 2)
+                    low, high = found.bounds
+                    assert low <= side * half - mp.pi / 2 <= high
+
+
+@pytest.mark.parametrize("bars", [("0", "1", "2"), ("0.6", "0.8", "2"), ("-0.28", "0.96", "3")])
+def test_a_branch_point_is_no_dead_centre(bars: tuple[str, str, str]) -> None:
+    """A parallelogram where its bars are in line, said to have a dead centre there; at the place,
+    and where following would put it."""
+    x, y, width = bars
+    case = plane_four_bar((x, y, "0"), (f"{float(x) + float(width)!r}", y, "0"), (width, "0", "0"))
+    model = mk.loads(case.swept("values: [0, 0.5]"))
+    result = model.analyze(tables=[]).result
+    session, states = result.session, result.row_states.states[:, :1]
+    inputs = session.inputs
+    row = Nodes.of(session, inputs.values, inputs.reduced, result.row_states.states)
+    enclosed = Enclosed.of(session)
+    box = prove_boxes(enclosed, row.part(slice(0, 1)))
+    assert box.proven[0]
+    turn = -float(mp.atan2(mp.mpf(y), mp.mpf(x)))
+    for off in (0.0, 1e-12, 1e-9, 1e-6, 1e-4):
+        place = np.array([turn + off])
+        closed = session.close(
+            place[:, None],
+            session.follow(np.array([[0.0, turn * 0.999]]), states[:, 0], every_row=True).guess[
+                :, 1:
+            ],
+        )
+        state = closed.states[:, 0]
+        for first in np.eye(session.plan.columns):
+            ending = Ending(
+                PassageEnd.DEAD_CENTRE, 0, place, state, first, first, 1.0, place, state
+            )
+            found = prove_dead_centre(enclosed, row.part(slice(0, 1)), box, EndOfRows(0, ending))
+            assert found.why is not None
+            assert found.fold is None
+
+
+def test_several_inputs_that_move_together() -> None:
+    text = """
+format: 1
+units: {length: m, angle: deg}
+links: {one: {}, two: {}, three: {}, four: {}}
+joints:
+  A: {type: R, links: [ground, one], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: R, links: [one, two], point: [1, 1, 0], axis: [0, 0, 1]}
+  C: {type: R, links: [two, three], point: [2, 1.5, 0], axis: [0, 0, 1]}
+  D: {type: R, links: [three, four], point: [3, 1, 0], axis: [0, 0, 1]}
+  E: {type: R, links: [ground, four], point: [4, 0, 0], axis: [0, 0, 1]}
+motion: {inputs: {A.theta: {from: 0, to: ONE, count: 20}, E.theta: {from: 0, to: OTHER, count: 20}}}
+"""
+    both = only(text.replace("ONE", "60").replace("OTHER", "-60"))
+    assert not both.is_proven
+    assert "several inputs" in both.words
+    alone = only(text.replace("ONE", "120").replace("OTHER", "0"))
+    assert alone.is_proven
+    assert alone.input == "A.theta"
