@@ -131,7 +131,9 @@ def test_a_proof_of_a_row_that_cannot_be() -> None:
     found, proofs, _ = solve(block.texts, block.places.shape[1], truth.cells(), proven=[0])
     exists = truth.exists.copy()
     exists[0, ROW] = False
-    wrong = contradicted(proofs, found, replace(truth, exists=exists), truth)
+    assert block.written is not None
+    written = block.written(block.places)
+    wrong = contradicted(proofs, found, replace(truth, exists=exists), written)
     assert np.flatnonzero(wrong[0]).tolist() == [ROW]
 
 
