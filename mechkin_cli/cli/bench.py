@@ -53,7 +53,7 @@ def bench(
 
     Without files: eight mechanisms, variants and a response. Other methods are those whose
     libraries are installed (pip install 'mechkin[bench]'). With --stress: hard mechanisms by the
-    thousand, every row decided by a closed form.
+    thousand, every row decided in double-double.
     """
     if stress:
         from mechkin_cli.cli.bench_stress import Stress, stress_command

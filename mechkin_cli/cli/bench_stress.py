@@ -1,4 +1,4 @@
-"""`mechkin bench --stress`: families of hard mechanisms, every row decided by a closed form."""
+"""`mechkin bench --stress`: families of hard mechanisms, every row decided in double-double."""
 
 from __future__ import annotations
 

@@ -50,8 +50,9 @@ class Told(Loop, Protocol):
 def _rcsr(generators: Generators, powers: Sequence[int]) -> Rcsr:
     drawn, axes = [], []
     for rng, power in zip(generators, powers, strict=True):
-        places = [point(rng, 0.3), point(rng), [1.5 + x for x in point(rng)], point(rng)]
-        places[3] = [2.0 + x for x in places[3]]
+        near = [point(rng, 0.3), point(rng)]
+        far = [[away + x for x in point(rng)] for away in (1.5, 2.0)]
+        places = [*near, *far]
         drawn.append([[scaled(round(x, 4), power) for x in place] for place in places])
         axes.append([direction(rng) for _ in range(3)])
     a, b, c, d = transposed(drawn)
