@@ -13,6 +13,7 @@ from mechkin_cli.analysis.proof.enclosures import (
     input_bounds,
     is_enclosed,
 )
+from mechkin_cli.analysis.proof.fold import are_one
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number, UsageError
 from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.proof import Proof
@@ -115,6 +116,15 @@ class DeadCentre:
             found = dead_centre_enclosure(result.session, self._found, wanted)
             low, high = bounds(result.units, wanted, found, known)
         return (low[:, 0], high[:, 0]) if wanted.vector else (low[0, 0], high[0, 0])
+
+    def is_same_as(self, other: DeadCentre) -> bool:
+        """Whether two that are proven, of sweeps of one model, are proven to be the same: then the
+        branches of both sweeps are one, which passes it, as those on its two sides.
+        """
+        one, two = self._found, other._found
+        if one.fold is None or two.fold is None or one.why or two.why:
+            return False
+        return are_one(one.fold, two.fold)
 
     @property
     def words(self) -> str:

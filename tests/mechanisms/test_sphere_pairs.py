@@ -1,23 +1,13 @@
-"""P-Sp-P, C-Sp-C and C-Sg-C against the closed forms of the paper on three-link mechanisms.
-
-Body one turns about and slides along A through P, body two along B through Q; R is the sphere's
-centre on body one, N the plane's normal or the groove's direction on body two. With D = R_j - Q -
-s_B u_B, a plane requires D . N_j = (R - Q) . N, a groove D - s_G N_j = (R - Q)_j. Both lead to
-C1 cos(theta_B) + C2 sin(theta_B) = C0; the root is the one that contains home.
-"""
+"""P-Sp-P, C-Sp-C and C-Sg-C against the closed forms of the paper on three-link mechanisms."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from mechanisms.precise import (
     DEGREE,
     Number,
-    Vector,
     course,
-    cross,
     dot,
     mp,
     plus,
@@ -27,29 +17,17 @@ from mechanisms.precise import (
     vector,
 )
 from mechanisms.runs import run, worst, worst_angle
+from mechanisms.three_links import (
+    Pair,
+    groove_slides,
+    groove_turn,
+    home_sign,
+    plane_turn,
+    root,
+)
 
 LIMIT = 1e-13
 RATES = ("", "_dot", "_ddot")
-
-
-@dataclass(frozen=True)
-class Pair:
-    """The drawing: axes A and B, points P and Q on them, sphere R, normal or groove N."""
-
-    a: Vector
-    b: Vector
-    p: Vector
-    q: Vector
-    r: Vector
-    n: Vector
-
-    def sphere(self, theta_a: Number, s_a: Number) -> Vector:
-        arm = turned(plus(self.r, self.p, -1), self.a, theta_a)
-        return plus(plus(self.p, arm), self.a, s_a)
-
-    @property
-    def arm(self) -> Vector:
-        return plus(self.r, self.q, -1)
 
 
 PSPP = Pair(
@@ -76,39 +54,6 @@ CSGC = Pair(
     vector(3, 3, 3),
     unit(vector(1, 1, 2)),
 )
-
-
-def root(c0: Number, c1: Number, c2: Number, sign: int) -> Number:
-    return mp.atan2(c2, c1) + sign * mp.acos(c0 / mp.hypot(c1, c2))
-
-
-def home_sign(c0: Number, c1: Number, c2: Number) -> int:
-    """The sign whose root is zero in the drawing."""
-    return min((1, -1), key=lambda sign: abs(root(c0, c1, c2, sign)))
-
-
-def plane_turn(pair: Pair, sphere: Vector, s_b: Number) -> tuple[Number, Number, Number]:
-    d = plus(plus(sphere, pair.q, -1), pair.b, -s_b)
-    along = dot(pair.n, pair.b)
-    square = plus(pair.n, pair.b, -along)
-    c0 = dot(pair.arm, pair.n) - along * dot(d, pair.b)
-    return c0, dot(d, square), dot(d, cross(pair.b, pair.n))
-
-
-def groove_turn(pair: Pair, sphere: Vector) -> tuple[Number, Number, Number]:
-    d = plus(sphere, pair.q, -1)
-    across = cross(pair.b, pair.n)
-    return dot(pair.arm, across), dot(d, across), dot(d, cross(pair.b, across))
-
-
-def groove_slides(pair: Pair, sphere: Vector, theta_b: Number) -> tuple[Number, Number]:
-    """s_G and s_B once theta_B is known."""
-    along = dot(pair.n, pair.b)
-    square = plus(pair.n, pair.b, -along)
-    back = turned(plus(sphere, pair.q, -1), pair.b, -theta_b)
-    gap = plus(back, pair.arm, -1)
-    s_g = dot(gap, square) / dot(square, square)
-    return s_g, dot(gap, pair.b) - s_g * along
 
 
 def agrees(name: str, quantity: str, functions: list, degrees: bool = False) -> None:

@@ -22,6 +22,7 @@ from oracle.random_mechanisms import random_loop
 from oracle.random_structures import SHAPES, random_structure
 from oracle.reader import read
 from oracle.transforms import (
+    beside_itself,
     in_other_units,
     mirrored,
     moved,
@@ -30,6 +31,7 @@ from oracle.transforms import (
     rotation_matrix,
     scaled,
     swapped_links,
+    with_links,
 )
 
 __all__ = [
@@ -40,6 +42,7 @@ __all__ = [
     "UnsolvableError",
     "assemble",
     "assemble_rows",
+    "beside_itself",
     "condition",
     "condition_of",
     "document",
@@ -60,4 +63,5 @@ __all__ = [
     "swapped_links",
     "sweep",
     "to_text",
+    "with_links",
 ]

@@ -138,6 +138,30 @@ def reordered(data: Document, seed: int) -> Document:
     return data
 
 
+def beside_itself(data: Document, mark: str = "_again") -> Document:
+    """The mechanism and a copy of it in one file, driven alike: the copy's links, joints, points
+    and directions bear a mark behind their names, and all answers are there twice."""
+    data = document(data)
+    sections = ("links", "joints", "points", "directions")
+    names = {name for key in sections for name in data.get(key, {})}
+    copy = renamed(data, {name: name + mark for name in names})
+    for key in sections:
+        data[key] = data.get(key, {}) | copy.get(key, {})
+    data["motion"]["inputs"] |= copy["motion"]["inputs"]
+    data["loads"] = data.get("loads", []) + [
+        load for load in copy.get("loads", []) if load["type"] != "gravity"
+    ]
+    if "assembly" in data:
+        data["assembly"]["near"] |= copy["assembly"]["near"]
+    return {key: value for key, value in data.items() if value}
+
+
+def with_links(data: Document, links: Document, joints: Document) -> Document:
+    """With more links and joints: where these leave the others alone, so are their answers."""
+    data = document(data)
+    return data | {"links": data["links"] | links, "joints": data["joints"] | joints}
+
+
 def scaled(data: Document, factor: str) -> Document:
     """All lengths times a number, masses and times the same.
 

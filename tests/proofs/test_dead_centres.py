@@ -21,11 +21,12 @@ from oracle import (
 )
 from oracle import moved as turned_about
 from proofs.test_boxes import COHERENT, DEGREE
-from random_families.dead_centres.case import plane_four_bar
+from random_families.dead_centres.case import linkage, plane_four_bar
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.analysis.proof.dead_centre import prove_dead_centre
+from mechkin_cli.analysis.proof.fold import are_one, prove_fold
 from mechkin_cli.interface.dead_centre import DeadCentre
 from mechkin_cli.solver.branch_limit import EndOfRows
 from mechkin_cli.solver.codes import PassageEnd
@@ -119,14 +120,6 @@ def test_points_are_enclosed() -> None:
         assert all(a <= b <= c for a, b, c in zip(low, true, high, strict=True))
 
 
-def test_both_ends_of_a_branch() -> None:
-    """A sweep followed to both sides of the row whose assembly is named."""
-    one, other = only(rcsr("values: [150, 120]")), only(rcsr("values: [150, 210]"))
-    assert one.is_proven
-    assert other.is_proven
-    assert one.bounds[1] < 134 < 205 < other.bounds[0]
-
-
 OTHERWISE = {
     "turned": lambda d: turned_about(d, rotation_matrix(3, 1, -2, 5), [3, -1, 2]),
     "in other units": lambda d: in_other_units(
@@ -151,19 +144,30 @@ def test_written_otherwise(otherwise: str) -> None:
     assert max(low, there[0]) <= min(high, there[1]) + 1e-13
 
 
-def test_from_the_other_side() -> None:
-    """The other assembly ends at the same dead centre."""
-    here = only(rcsr("values: [200, 210]"))
-    model = mk.loads(rcsr("values: [200, 210]"))
-    modes = [mode.name for mode in model.modes().modes]
-    ends = [model.certify(mode=mode).dead_centres for mode in modes]
-    same = [
-        found
-        for (found,) in ends
-        if max(found.bounds[0], here.bounds[0]) <= min(found.bounds[1], here.bounds[1])
-    ]
-    assert len(same) == 2
-    assert all(found.is_proven for found in same)
+def ends(text: str) -> list[DeadCentre]:
+    """The dead centres at which the branches of all assemblies end."""
+    model = mk.loads(text)
+    proofs = [model.certify(mode=mode.name) for mode in model.modes().modes]
+    return [found for proof in proofs for found in proof.dead_centres]
+
+
+def test_two_assemblies_meet() -> None:
+    """Those on both sides of a dead centre are proven to end at the same one."""
+    one, other = ends(rcsr("values: [200, 210]"))
+    assert one.is_same_as(other)
+    assert other.is_same_as(one)
+    # of a model of its own nothing is known
+    assert not one.is_same_as(only(rcsr("values: [200, 210]")))
+
+
+def test_dead_centres_at_both_ends_of_a_sweep_are_two() -> None:
+    """Followed both ways from the row in which it is drawn."""
+    case = linkage(0)
+    one, other = mk.loads(case.swept("from: -6, to: 6, count: 49")).certify().dead_centres
+    assert one.is_proven
+    assert other.is_proven
+    assert one.bounds[1] < 0 < other.bounds[0]
+    assert not one.is_same_as(other)
 
 
 def near_change_point(gap: str) -> Any:
@@ -192,6 +196,25 @@ def test_dead_centres_on_both_sides_of_a_gap_are_not_one(gap: str) -> None:
                     half = mp.acos((2 - mp.mpf(gap)) / 2)
                     low, high = found.bounds
                     assert low <= side * half - mp.pi / 2 <= high
+
+
+@pytest.mark.parametrize("gap", ["1e-1", "1e-3", "1e-6", "1e-8", "1e-10"])
+def test_dead_centres_on_both_sides_of_a_gap_are_not_the_same(gap: str) -> None:
+    """Found on both sides of the gap of one mechanism."""
+    case = near_change_point(gap)
+    ways = ("values: [0, -3]", "values: [-3, 0]")
+    folds = [end._found.fold for way in ways for end in ends(case.swept(way))]
+    one = next(fold for fold in folds if fold and fold.value > -np.pi / 2)
+    other = next(fold for fold in folds if fold and fold.value < -np.pi / 2)
+    inputs, state = np.array([other.value]), other.node.states[:, 0]
+    found = prove_fold(one.exchanged, inputs, other.node.off[:, 0], state)
+    assert found is not None
+    assert found.value < -np.pi / 2
+    assert not are_one(one, found)
+    assert not are_one(found, one)
+    again = prove_fold(one.exchanged, np.array([one.value]), inputs * 0, one.node.states[:, 0])
+    assert again is not None
+    assert are_one(one, again)
 
 
 @pytest.mark.parametrize("bars", [("0", "1", "2"), ("0.6", "0.8", "2"), ("-0.28", "0.96", "3")])

@@ -10,7 +10,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.proof.bridge import bridge
-from mechkin_cli.analysis.proof.enclosures import FULL_TURN
+from mechkin_cli.analysis.proof.distance import FULL_TURN
 from mechkin_cli.analysis.proof.fold import Fold, prove_fold
 from mechkin_cli.solver.exchanged import exchange
 from mechkin_cli.solver.proofs import Boxes, Enclosed, Nodes, prove_boxes

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.analysis.proof.distance import FULL_TURN
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.solver.codes import Demand
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.session import Session
     from mechkin_cli.units import UnitSystem
 
-FULL_TURN = 2.0 * np.pi
 _OF_ROWS = {"kinetic_energy", "potential_energy"}
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.analysis.proof.distance import differences
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.enclosures import Positions, enclose_derivatives
 from mechkin_cli.solver.proofs import Boxes, Enclosed, Nodes, prove_boxes
@@ -92,6 +93,31 @@ def prove_fold(exchanged: Exchanged, inputs: Floats, off: Floats, state: Floats)
             boxes.radius[freed.column, 0] = min(boxes.radius[freed.column, 0], radius)
             return Fold(exchanged, enclosed, over, boxes, float(reach), bend)
     return None
+
+
+def are_one(one: Fold, other: Fold) -> bool:
+    """Whether two dead centres of one mechanism are proven to be the same: all over a box that
+    holds both, each value of the coordinate has one position and the input bends the same way, so
+    that it has one dead centre there at most."""
+    exchanged = one.exchanged
+    session, number, driven = exchanged.session, exchanged.number, exchanged.driven
+    theirs = other.exchanged
+    if (
+        session.problem.mechanism is not theirs.session.problem.mechanism
+        or session.graph != theirs.session.graph
+        or number != theirs.number
+    ):
+        return False
+    between = differences(session.layout, one.node.states[:, 0], other.node.states)
+    least = 2.0 * (between + one.boxes.radius + other.boxes.radius)
+    least[driven.column] = 0.0
+    off = np.abs(one.node.values - other.node.values) + one.node.off + other.node.off
+    off[number] = (between[driven.column] + one.reach + other.reach) * ROUNDED
+    off[number] += tolerances.DEAD_CENTRE_LEAST
+    both = one.node._replace(off=off, least=least)
+    boxes = prove_boxes(one.enclosed, both)
+    _, (bend, bend_off) = _derivatives(exchanged, one.enclosed, both, boxes)
+    return bool(boxes.proven[0] and bend_off < abs(bend))
 
 
 def _closed_fold(

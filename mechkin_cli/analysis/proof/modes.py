@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.proof.enclosures import FULL_TURN
+from mechkin_cli.analysis.proof.distance import balls, differences
 from mechkin_cli.proof import Proof
 from mechkin_cli.solver.proofs import Boxes, Enclosed, Nodes, prove_boxes
 
@@ -66,33 +66,8 @@ def _apart(
     layout: Layout, states: Floats, boxes: Boxes, one: int, others: NDArray[np.intp]
 ) -> Bools:
     """Which other boxes have no place in common with one of them."""
-    apart = np.zeros(others.size, dtype=bool)
-    for carrier in layout.carriers:
-        kind, row = carrier.part.type, carrier.state
-        if kind.is_ball:
-            turn = _increments(states[row : row + 4, one], states[row : row + 4][:, others])
-            columns = slice(carrier.column, carrier.column + 3)
-            reach = boxes.radius[columns, one].max() + boxes.radius[columns][:, others].max(axis=0)
-            apart |= turn > 2.0 * reach + tolerances.SAME_BOX
-            continue
-        for number, freedom in enumerate(kind.freedoms):
-            off = states[row + number, others] - states[row + number, one]
-            if freedom.is_cyclic:
-                off -= FULL_TURN * np.rint(off / FULL_TURN)
-            column = carrier.column + number
-            reach = boxes.radius[column, one] + boxes.radius[column, others]
-            apart |= np.abs(off) > reach + tolerances.SAME_BOX * (1.0 + np.abs(off))
-    return apart
-
-
-def _increments(one: Floats, others: Floats) -> Floats:
-    """Largest of the increments x that turn an orientation by (1, x / 2) to others (modes,)."""
-    a, b = one, others
-    w = np.abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3])
-    x = a[0] * b[1] - b[0] * a[1] - a[2] * b[3] + a[3] * b[2]
-    y = a[0] * b[2] - b[0] * a[2] - a[3] * b[1] + a[1] * b[3]
-    z = a[0] * b[3] - b[0] * a[3] - a[1] * b[2] + a[2] * b[1]
-    size: Floats = 2.0 * np.maximum(np.maximum(np.abs(x), np.abs(y)), np.abs(z))
-    # half a turn has no finite increments
-    found: Floats = size / np.maximum(w, np.finfo(float).eps)
-    return found
+    off = differences(layout, states[:, one], states[:, others])
+    reach = boxes.radius[:, one, None] + boxes.radius[:, others]
+    for columns in balls(layout):
+        reach[columns] = 2.0 * reach[columns].max(axis=0)
+    return np.asarray((off > reach + tolerances.SAME_BOX * (1.0 + off)).any(axis=0))

@@ -187,14 +187,14 @@ def _same(mode: Any, known: Any) -> bool:
 def _near_change_point(rng: random.Random) -> Outcome:
     """Rows on both sides of a narrow place; a jump there is not proven whatever its width."""
     gap = Decimal(10) ** -rng.choice(GAPS)
-    linkage = near_change_point(rng, gap)
-    exact = linkage.at(("0",))
-    assert exact
-    narrow = _narrowest(linkage)
+    linkage, narrow = near_change_point(rng, gap)
+    is_end = rng.random() < 0.3
     step = rng.choice([0.5, 4.0, 11.0])
-    places = [(repr(round(narrow + step * (k - 4.3), 6)),) for k in range(9)]
+    middle = narrow + 180.0 * is_end
+    places = [(repr(round(middle + step * (k - 4.3), 6)),) for k in range(9)]
     found = judged(linkage, f"gap {gap:.0e}", places, ["1"], ["0"])
-    return replace(found, remark=f"gaps {found.remark}" if found.remark else "")
+    name = "ends side by side" if is_end else "gaps"
+    return replace(found, remark=f"{name} {found.remark}" if found.remark else "")
 
 
 def _oracle_loop(rng: random.Random) -> Outcome:
@@ -204,9 +204,3 @@ def _oracle_loop(rng: random.Random) -> Outcome:
     count = np.count_nonzero(certificate.status != "not proven")
     remark = "spatial loops" if count == len(certificate.status) else "spatial loops in part"
     return Outcome(text, fault, f"{remark} proven")
-
-
-def _narrowest(linkage: Linkage) -> float:
-    """Degrees at which the crank points along the frame."""
-    angles = np.linspace(-180.0, 180.0, 36001)
-    return float(angles[np.argmin(linkage.margin([np.radians(angles)]))])

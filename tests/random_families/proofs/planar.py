@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Sequence
 from decimal import Decimal
@@ -22,13 +23,15 @@ def four_bar(rng: random.Random) -> Linkage:
     return _four_bar(frame(rng), b, c, d, d)
 
 
-def near_change_point(rng: random.Random, gap: Decimal) -> Linkage:
-    """A parallelogram whose frame is too long by `gap`^2 of it: its branches come as near as about
-    `gap` where the crank points along the frame."""
+def near_change_point(rng: random.Random, gap: Decimal) -> tuple[Linkage, float]:
+    """A parallelogram whose frame is too long by `gap`^2 of it, and the input in degrees at which
+    the crank points along the frame: there its branches come as near as about `gap`. Half a turn
+    on they end, as near to each other."""
     b = (decimal(rng, -0.3, 0.3), decimal(rng, 0.6, 1.0))
     foot = (decimal(rng, 1.2, 2.0), Decimal(0))
     far = (foot[0] * (1 + gap * gap), Decimal(0))
-    return _four_bar(frame(rng), b, (b[0] + foot[0], b[1]), foot, far)
+    narrow = -math.degrees(math.atan2(b[1], b[0]))
+    return _four_bar(frame(rng), b, (b[0] + foot[0], b[1]), foot, far), narrow
 
 
 def _four_bar(place: Frame, b: Any, c: Any, foot: Any, far: Any) -> Linkage:
