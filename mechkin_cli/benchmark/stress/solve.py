@@ -23,7 +23,14 @@ class Solved(NamedTuple):
 
 
 CONDITION, BOUND = "row.condition", "row.error_bound"
-TAKEN = ("nearly-common", "hold-ends", "undriven-freedom", "input-locked", "input-dependent")
+TAKEN = (
+    "nearly-common",
+    "conventional",
+    "hold-ends",
+    "undriven-freedom",
+    "input-locked",
+    "input-dependent",
+)
 """Notes of a run that takes axes or points for coinciding: a freedom is held that nothing moves, or
 is not driven, or an input does not move anything."""
 
