@@ -90,6 +90,19 @@ def summary(table: Table) -> str:
     )
 
 
+def responses_summary(tables: Iterable[Table]) -> list[str]:
+    """Of each response, how many times the fastest other method takes at no smaller error."""
+    least: dict[str, float] = {}
+    for row in (row for table in tables if table.name == "responses" for row in table.rows):
+        case, ratio = str(row["case"]), row["ratio"]
+        if not str(row["method"]).startswith(FAMILY) and isinstance(ratio, float):
+            least[case] = min(ratio, least.get(case, ratio))
+    said = ", ".join(f"{case} {cell_text(ratio, 'time')}" for case, ratio in least.items())
+    if not said:
+        return []
+    return ["", f"Responses, the same, of each the fastest other method: {said} times as fast."]
+
+
 def _best(bench: Bench, level: str) -> list[dict[str, Cell]]:
     own = {m.curve: m for m in bench.measurements if m.family == FAMILY and m.setting == level}
     others = [m for m in bench.measurements if m.family != FAMILY and m.level == level]
@@ -130,7 +143,7 @@ def page(
 ) -> str:
     """The page as Markdown; `figure` is where the picture lies, `command` what made it."""
     said = ", ".join(f"{name} {value}" for name, value in machine.items())
-    best = best_table(benches)
+    best, tables = best_table(benches), list(tables)
     head = [
         "# What mechkin costs, and what it is worth",
         "",
@@ -143,6 +156,7 @@ def page(
         f"![time per position against error]({figure})",
         "",
         summary(best),
+        *responses_summary(tables),
         "",
         markdown(best),
     ]

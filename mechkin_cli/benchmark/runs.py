@@ -57,7 +57,7 @@ def tables(
                 yield process_table(subject, processes)
     yield thread_table([s for s in scenes if not whole or s.name in DEMAND_SCENES], rounds.slow)
     if whole:
-        from mechkin_cli.benchmark.response_table import response_table
+        from mechkin_cli.benchmark.responses.table import response_table
         from mechkin_cli.benchmark.variant_table import variant_table
 
         yield variant_table(rounds.slow)

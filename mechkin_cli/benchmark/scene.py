@@ -84,7 +84,7 @@ class Scene:
         if SWEEP not in model.runs:
             raise UsageError(
                 f"{name} has no sweep to measure (no motion:); bench takes files with motion:, and "
-                "has a response of its own"
+                "has responses of its own"
             )
         self.problem = model.problem
         self.quantities = model.problem.quantities()

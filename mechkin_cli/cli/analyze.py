@@ -15,7 +15,7 @@ from mechkin_cli.runs import SWEEP
 from mechkin_cli.tables.writers import USUAL_FORMATS, WRITERS, Results, written_files
 
 if TYPE_CHECKING:
-    from mechkin_cli.interface import Analysis
+    from mechkin_cli.interface import Analysis, Model
 
 FORMATS = f"{', '.join(tuple(WRITERS)[:-1])} or {tuple(WRITERS)[-1]}"
 
@@ -99,6 +99,8 @@ def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]
 
     try:
         model = load(path, request.settings)
+        if request.errors:
+            _refuse_own_errors(model, request.tables)
         with OutputFolder(folder) as output:
             analyses = run_all(model, request.tables, request.mode)
             notes = certify_sweeps(analyses) if request.certify else ()
@@ -120,6 +122,22 @@ def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]
         _report(path, analyses, folder, written, request)
     enough = all(_is_enough(analysis, request) for analysis in analyses)
     return ExitCode.OK if enough else ExitCode.ROWS_MISSING, record
+
+
+def _refuse_own_errors(model: Model, wanted: list[str] | None) -> None:
+    """Refuses a table of the file whose files `--errors` writes."""
+    from mechkin_cli.tables.errors_table import clashing
+    from mechkin_cli.tables.layout import chosen
+
+    built = model.built
+    named = [table.name for table in chosen(built.tables, wanted)]
+    named += [table.name for table in chosen((*built.coefficients, *built.balances), wanted)]
+    name = clashing(named, model.runs)
+    if name is not None:
+        raise UsageError(
+            f"--errors writes a table {name.casefold()}, and so does the file; rename the file's, "
+            "choose others with --table, or leave --errors out"
+        )
 
 
 def _is_enough(analysis: Analysis, request: _Request) -> bool:

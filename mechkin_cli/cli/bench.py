@@ -51,7 +51,7 @@ def bench(
 ) -> None:
     """Measure run time against error, mechkin's and others'.
 
-    Without files: eight mechanisms, variants and a response. Other methods are those whose
+    Without files: eight mechanisms, variants and responses. Other methods are those whose
     libraries are installed (pip install 'mechkin[bench]'). With --stress: hard mechanisms by the
     thousand, every row decided in double-double.
     """

@@ -83,7 +83,6 @@ PathOrPublishedValues = Annotated[
 
 _TAKEN = {
     "rows": "every run writes a table rows of its own",
-    "errors": "the errors of all cells are written to a table errors",
     "errata": "the comparison with printed values is written to the page errata",
     "disagreements": "printed cells that do not agree are written to a table disagreements",
 }

@@ -5,7 +5,7 @@ Both say, in the column `why`, what of a table was not repeated, or why a cell h
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +20,15 @@ if TYPE_CHECKING:
 
 def _name(run: str) -> str:
     return "errors" if run == SWEEP else f"{run}.errors"
+
+
+def clashing(names: Iterable[str], runs: Iterable[str]) -> str | None:
+    """The first of some tables whose files are those of the errors of a run; None where none is.
+
+    Files differ by more than capitals, for there are disks that do not tell these apart.
+    """
+    own = {_name(run).casefold() for run in runs}
+    return next((name for name in names if name.casefold() in own), None)
 
 
 def cells_table(columns: Sequence[ColumnErrors], run: str = SWEEP) -> Columns:

@@ -21,6 +21,7 @@ ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE.parent))
 
 from benchmark import targets
+from benchmark.script_table import script_table
 from benchmark.specimens import rcsr_specimen, sevenr_specimen
 from benchmark.yardstick_kernel import Yardstick, load
 
@@ -38,8 +39,11 @@ PINOCCHIO = HERE / "pinocchio_7r.py"
 COMMAND = "python -P tests/benchmark/page.py"
 
 
-def against() -> Iterator[Table]:
-    """The yardstick, and whole processes."""
+SCRIPT_RUNS, QUICK_RUNS = 11, 1
+
+
+def against(runs: int) -> Iterator[Table]:
+    """The yardstick, and whole processes; scripts of other libraries in so many rounds."""
     yardstick = load()
     if isinstance(yardstick, Yardstick):
         with yardstick:
@@ -52,6 +56,7 @@ def against() -> Iterator[Table]:
         yield targets.process_table(RCSR_FILE, peer)
     except CalledProcessError as error:
         print(f"left out: no whole processes, {error}", file=sys.stderr)
+    yield script_table(runs)
 
 
 def main() -> None:
@@ -66,7 +71,10 @@ def main() -> None:
         print(scene.name, file=sys.stderr, flush=True)
         benches.append(bench(scene, rounds))
     print("settings, variants, responses, yardstick, processes", file=sys.stderr, flush=True)
-    found = [*tables(known, scenes, rounds, whole=True), *against()]
+    found = [
+        *tables(known, scenes, rounds, whole=True),
+        *against(QUICK_RUNS if options.quick else SCRIPT_RUNS),
+    ]
     text = page(machine(), benches, found, "bench.svg", COMMAND)
     for name, content in {
         "validation.md": text,

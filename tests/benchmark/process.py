@@ -38,7 +38,7 @@ def process_times(
     with TemporaryDirectory(prefix="mechkin-process-") as folder:
         places = {"FILE": str(file), "DIR": folder}
         lines = [[*command(), "analyze", "FILE", "--out", "DIR"], *others]
-        run = partial(_run, environment=_environment())
+        run = partial(_run, environment=environment())
         calls = {
             number: partial(run, [places.get(word, word) for word in line])
             for number, line in enumerate(lines)
@@ -53,7 +53,7 @@ def bare_imports() -> list[str]:
     return [sys.executable, "-c", "import numpy, pydantic, yaml, typer"]
 
 
-def _environment() -> dict[str, str]:
+def environment() -> dict[str, str]:
     """The caller's, but with compiled bytecode as an installed package has it, and this package."""
     settings = ("PYTHONDONTWRITEBYTECODE", "PYTHONUNBUFFERED", "PYTHONPATH")
     kept = {name: value for name, value in os.environ.items() if name not in settings}

@@ -21,7 +21,7 @@ from mechkin_cli.benchmark.methods.kernel import ANALYZED
 from mechkin_cli.benchmark.outputs import NAMES, record, write
 from mechkin_cli.benchmark.page import best_table, summary
 from mechkin_cli.benchmark.report import Table
-from mechkin_cli.benchmark.response_table import exact_motion
+from mechkin_cli.benchmark.responses.pendulum import exact_motion
 from mechkin_cli.benchmark.runs import Rounds, bench
 from mechkin_cli.benchmark.scene import Scene
 from mechkin_cli.benchmark.tables import bench_table, csv_text, markdown
@@ -322,7 +322,7 @@ def test_tables_become_markdown() -> None:
 
 
 def test_the_pendulum_beside_which_responses_are_held_is_mechkins() -> None:
-    from mechkin_cli.benchmark.response_table import TEXT
+    from mechkin_cli.benchmark.responses.pendulum import TEXT
 
     found = mk.loads(TEXT.format(tolerance="1e-12")).respond("run")
     for name, wanted in zip(("A.theta", "B.theta"), exact_motion(), strict=True):

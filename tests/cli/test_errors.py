@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,9 @@ import pytest
 from cli.files import CRANK, TABLES
 from references import MECHANISMS, RCSR
 
+import mechkin_cli as mk
 from mechkin_cli.cli.analyze import analyze_files
+from mechkin_cli.cli.exit_codes import ExitCode
 
 ALL = ["csv", "md", "json"]
 
@@ -88,6 +91,28 @@ def test_a_response_says_that_it_is_not_repeated(
     assert line.endswith("(a response)")
     found = lines(tmp_path / "response.errors.csv")
     assert {f["why"] for f in found} <= {"a response", "words"}
+
+
+@pytest.mark.parametrize("name", ["errors", "Errors"])
+def test_a_table_of_its_name_is_refused_where_errors_are_written(
+    name: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """It is a table as any other for all commands that write no errors."""
+    path = tmp_path / "crank.yaml"
+    text = CRANK + TABLES
+    own = re.findall(r"name: (\w+)", TABLES)[0]
+    path.write_text(text.replace(f"name: {own}", f"name: {name}"), encoding="utf-8")
+    assert analyze_files([path], tmp_path / "out", ["csv"]) == ExitCode.OK
+    assert (tmp_path / "out" / f"{name}.csv").is_file()
+    capsys.readouterr()
+    assert analyze_files([path], tmp_path / "other", ["csv"], errors=True) == ExitCode.USAGE
+    assert "--errors writes a table errors, and so does the file" in capsys.readouterr().err
+    assert not (tmp_path / "other").exists() or not list((tmp_path / "other").iterdir())
+    assert mk.load(path).analyze(errors=True).errors.digits
+    others = [t.name for t in mk.load(path).tables if t.name != name]
+    for table in others[:1]:
+        code = analyze_files([path], tmp_path / "some", ["csv"], table=[table], errors=True)
+        assert code == ExitCode.OK
 
 
 @pytest.mark.parametrize("options", [{"lanes": 2}, {"threads": 2}])
