@@ -1,7 +1,8 @@
 """Laws of motion: an input as a function of time, for files with `motion: {time: ...}`."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Final, Literal
 
+from mechkin_cli.schema.alternatives import Tag
 from mechkin_cli.schema.base import Key, Section
 from mechkin_cli.schema.rules import Limits
 from mechkin_cli.schema.scalars import (
@@ -81,3 +82,29 @@ class TableLaw(Section):
 
 
 Law = ConstantRate | ConstantAcceleration | Polynomial | Harmonic | Cycloidal | TableLaw
+
+LAWS: Final = {
+    "constant-rate": ConstantRate,
+    "constant-acceleration": ConstantAcceleration,
+    "polynomial": Polynomial,
+    "harmonic": Harmonic,
+    "cycloidal": Cycloidal,
+    "table": TableLaw,
+}
+"""The laws of motion by their words."""
+
+TaggedLaw = (
+    Annotated[ConstantRate, Tag("(constant-rate)")]
+    | Annotated[ConstantAcceleration, Tag("(constant-acceleration)")]
+    | Annotated[Polynomial, Tag("(polynomial)")]
+    | Annotated[Harmonic, Tag("(harmonic)")]
+    | Annotated[Cycloidal, Tag("(cycloidal)")]
+    | Annotated[TableLaw, Tag("(table)")]
+)
+"""The laws, as parts of a union that `law_tag` decides."""
+
+
+def law_tag(mapping: dict[str, Any]) -> str | None:
+    """The tag of what has a key `law`; None where the word is no law."""
+    word = mapping["law"]
+    return f"({word})" if isinstance(word, str) and word in LAWS else None

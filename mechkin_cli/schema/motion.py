@@ -5,18 +5,11 @@ others are held (`at`), follow (`with`) or run in step through equally many valu
 moments of `time`, and inputs move by laws.
 """
 
-from typing import Annotated, Any, ClassVar, Final, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from mechkin_cli.schema.alternatives import Tag, by_word
 from mechkin_cli.schema.base import NOTHING, Key, Section, refuse
-from mechkin_cli.schema.laws import (
-    ConstantAcceleration,
-    ConstantRate,
-    Cycloidal,
-    Harmonic,
-    Polynomial,
-    TableLaw,
-)
+from mechkin_cli.schema.laws import LAWS, TaggedLaw, law_tag
 from mechkin_cli.schema.rules import Limits
 from mechkin_cli.schema.scalars import (
     AngleOrLength,
@@ -110,21 +103,9 @@ class TimeSection(Section):
             raise refuse("step-or-count", text, "give exactly one of them")
 
 
-LAWS: Final = {
-    "constant-rate": ConstantRate,
-    "constant-acceleration": ConstantAcceleration,
-    "polynomial": Polynomial,
-    "harmonic": Harmonic,
-    "cycloidal": Cycloidal,
-    "table": TableLaw,
-}
-"""The laws of motion by their words."""
-
-
 def _tag(mapping: dict[str, Any]) -> str | None:
     if "law" in mapping:
-        word = mapping["law"]
-        return f"({word})" if isinstance(word, str) and word in LAWS else None
+        return law_tag(mapping)
     if {"from", "to", "step", "count"} & mapping.keys():
         return "(swept)"
     for key, tag in (("values", "(listed)"), ("with", "(following)"), ("at", "(held)")):
@@ -138,12 +119,7 @@ InputMotion = Annotated[
     | Annotated[ListedInput, Tag("(listed)")]
     | Annotated[HeldInput, Tag("(held)")]
     | Annotated[FollowingInput, Tag("(following)")]
-    | Annotated[ConstantRate, Tag("(constant-rate)")]
-    | Annotated[ConstantAcceleration, Tag("(constant-acceleration)")]
-    | Annotated[Polynomial, Tag("(polynomial)")]
-    | Annotated[Harmonic, Tag("(harmonic)")]
-    | Annotated[Cycloidal, Tag("(cycloidal)")]
-    | Annotated[TableLaw, Tag("(table)")],
+    | TaggedLaw,
     by_word("law", _tag, ", ".join(LAWS)),
 ]
 

@@ -8,16 +8,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from mechkin_cli.schema.alternatives import Choice, Tag, by_word
 from mechkin_cli.schema.base import NOTHING, Section, refuse
-from mechkin_cli.schema.laws import (
-    ConstantAcceleration,
-    ConstantRate,
-    Cycloidal,
-    Harmonic,
-    Polynomial,
-    TableLaw,
-)
+from mechkin_cli.schema.laws import LAWS, TaggedLaw, law_tag
 from mechkin_cli.schema.loads import TableValue, expression_or_table
-from mechkin_cli.schema.motion import LAWS, FollowingInput, TimeSection
+from mechkin_cli.schema.motion import FollowingInput, TimeSection
 from mechkin_cli.schema.rules import Limits, Named, Shown
 from mechkin_cli.schema.scalars import (
     START_PATTERN,
@@ -57,20 +50,14 @@ class HeldCoordinate(Section):
 
 def _law(mapping: dict[str, Any]) -> str | None:
     if "law" in mapping:
-        word = mapping["law"]
-        return f"({word})" if isinstance(word, str) and word in LAWS else None
+        return law_tag(mapping)
     return "(following)" if "with" in mapping else "(held)"
 
 
 DrivenLaw = Annotated[
     Annotated[HeldCoordinate, Tag("(held)")]
     | Annotated[FollowingInput, Tag("(following)")]
-    | Annotated[ConstantRate, Tag("(constant-rate)")]
-    | Annotated[ConstantAcceleration, Tag("(constant-acceleration)")]
-    | Annotated[Polynomial, Tag("(polynomial)")]
-    | Annotated[Harmonic, Tag("(harmonic)")]
-    | Annotated[Cycloidal, Tag("(cycloidal)")]
-    | Annotated[TableLaw, Tag("(table)")],
+    | TaggedLaw,
     by_word("law", _law, ", ".join(LAWS)),
 ]
 

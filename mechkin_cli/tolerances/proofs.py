@@ -55,6 +55,10 @@ DEAD_CENTRE_MISS: Final = 1e-3
 """Longest step (rad, length units) from where following locates a dead centre: it does so to
 rounding, so that a longer one leads to another place."""
 
+DEAD_CENTRE_NEAR: Final = 1e-6
+"""Distance of the input (rad, length units) before a dead centre at which the unknowns are near
+enough to those at it for Newton's method: they are off by its root."""
+
 DEAD_CENTRE_APPROACH: Final = (0.25, 0.06, 0.015, 0.004, 0.001)
 """Distances of a joint coordinate (rad, length units) from a dead centre at which it takes over
 from the input as the parameter of tubes: as far as one holds, and nearer where that does not do."""

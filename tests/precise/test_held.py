@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from precise.tapes import mp
+from solver.test_idle_chains import SPHERE_PLANE_SLEEVE, TILTED
 
 import mechkin_cli as mk
 from mechkin_cli.interface.model import Model
@@ -13,16 +14,6 @@ from mechkin_cli.solver.plan import plan_records
 from mechkin_cli.solver.records import flatten
 from mechkin_cli.tape.decimal_replay import double_doubles
 
-TWO = """
-format: 1
-links: {crank: {}, L1: {}, L2: {}}
-joints:
-  A: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [1, 0, 0.2]}
-  S: {type: S, links: [crank, L1], point: [0.1, 0.5, 0.2]}
-  E: {type: E, links: [L1, L2], point: [0.5, 0.5, 0.6], normal: [0, 0, 1], x: [1, 0, 0]}
-  C: {type: C, links: [L2, ground], point: [0.8, 0.1, 0.5], axis: [0, 0, 1]}
-motion: {inputs: {A.theta: {from: 0, to: 40, step: 10, rate: 1 rad/s}}}
-"""
 CONCENTRIC = """
 format: 1
 links: {crank: {}, ball: {}, slide: {}, sleeve: {}}
@@ -36,17 +27,7 @@ motion: {inputs: {A.theta: {from: 0, to: 40, step: 10, rate: 5 rad/s}}}
 """
 
 
-SLIDING = """
-format: 1
-links: {a: {}, pad: {}, b: {}}
-joints:
-  A: {type: R, links: [ground, a], point: [0, 0, 0], axis: [0.9, 0.2, 0.3]}
-  B: {type: E, links: [a, pad], point: [0.5, -0.2, 0], normal: [1, 0, 0.2], x: [0, 1, 0]}
-  C: {type: E, links: [b, pad], point: [1, 0.1, 0.3], normal: [0.2, -0.6, 0.8], x: [1, 0, 0]}
-  D: {type: R, links: [b, ground], point: [-0.6, 0, -0.7], axis: [-0.9, 0.1, 0.4]}
-motion: {inputs: {A.theta: {from: 0, to: -48, step: 4, rate: 1 rad/s}}}
-tables: [{name: turn, columns: [D.theta]}]
-"""
+SLIDING = TILTED.replace("MASS", "").replace("ONE", "a, pad").replace("TWO", "b, pad")
 
 
 @pytest.mark.parametrize("text", [CONCENTRIC, SLIDING])
@@ -71,7 +52,7 @@ def test_made_pairs_stand_on_the_text(text: str) -> None:
 
 def test_what_is_not_conventional_is_right_to_both_parts() -> None:
     """The sleeve's height is that of the sphere's centre on the crank."""
-    made = mk.loads(TWO)
+    made = mk.loads(SPHERE_PLANE_SLEEVE)
     result = made.analyze(["C.s"], tables=[]).result
     session, given = result.session, made.session.precise.inputs(result.session)
     wanted = (session.problem.quantities()["C.s"],)

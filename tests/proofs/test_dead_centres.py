@@ -3,6 +3,7 @@ two branches cross or come nearer than rounding tells."""
 
 from __future__ import annotations
 
+from decimal import Decimal
 from functools import cache
 from typing import Any
 
@@ -269,3 +270,43 @@ motion: {inputs: {A.theta: {from: 0, to: ONE, count: 20}, E.theta: {from: 0, to:
     alone = only(text.replace("ONE", "120").replace("OTHER", "0"))
     assert alone.is_proven
     assert alone.input == "A.theta"
+
+
+def two_rockers(foot: str) -> str:
+    """A crank with two couplers and rockers, which are alike but for the second one's ground pin;
+    drawn in `linkage(0)`."""
+    start, end, first, _ = linkage(0).points
+    text = linkage(0).text.replace(
+        "  rocker: {}\n", "  rocker: {}\n  coupler2: {}\n  rocker2: {}\n"
+    )
+    more = "".join(
+        f"  {name}: {{type: R, links: [{links}], point: [{', '.join(point)}], axis: [0, 0, 1]}}\n"
+        for name, links, point in (
+            ("B2", "crank, coupler2", start),
+            ("C2", "coupler2, rocker2", end),
+            ("D2", "ground, rocker2", (foot, *first[1:])),
+        )
+    )
+    return text.replace("motion:", f"{more}motion:").replace("MOTION", "values: [0, 6.2]")
+
+
+def test_loops_that_end_at_one_place_have_no_dead_centre() -> None:
+    """Where both have one, the ways of either cross."""
+    (found,) = mk.loads(two_rockers(linkage(0).points[2][0])).certify().dead_centres
+    assert not found.is_proven
+    assert np.isnan(found.bounds).all()
+
+
+@pytest.mark.parametrize("off", ["1e-2", "1e-4", "1e-6"])
+def test_loops_that_end_one_after_the_other(off: str) -> None:
+    """The first of both dead centres, and not the second."""
+    start, end, foot, _ = linkage(0).points
+    other = str(Decimal(foot[0]) + Decimal(off))
+    found = only(two_rockers(other))
+    assert found.is_proven
+    low, high = found.bounds
+    with mp.workdps(40):
+        near = found.number.value
+        one = linkage(0).dead_centre(near)
+        two = plane_four_bar(start, end, (other, "0", "0")).dead_centre(near)
+        assert low <= one <= high < two

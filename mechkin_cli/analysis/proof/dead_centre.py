@@ -18,6 +18,7 @@ from mechkin_cli.solver.proofs import Boxes, Enclosed, Nodes, prove_boxes
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.solver.branch_limit import EndOfRows
+    from mechkin_cli.solver.follow import Ending
     from mechkin_cli.solver.session import Session
 
 WhyNot = Literal["inputs", "balls", "box", "closure", "branch"]
@@ -71,13 +72,29 @@ def prove_dead_centre(enclosed: Enclosed, row: Nodes, box: Boxes, end: EndOfRows
         return found(None, 0, "balls")
     inputs = row.reduced[:, 0].copy()
     inputs[number] += way[number]
-    fold = prove_fold(exchanged, inputs, row.off[:, 0], ending.state)
+    guess = _guess(session, row, inputs, number, ending)
+    fold = prove_fold(exchanged, inputs, row.off[:, 0], guess)
     if fold is None:
         return found(None, 0, "box")
     if fold.boxes.beyond[0] > 0.0:
         return found(None, 0, "closure")
     tubes = _lead(enclosed, row, box, fold) if box.proven[0] else 0
     return found(fold, tubes, None if tubes else "branch")
+
+
+def _guess(session: Session, row: Nodes, inputs: Floats, number: int, ending: Ending) -> Floats:
+    """States (states,) at a dead centre: of the block that has it as following found them, all
+    others at a place just before it, since the walk of one block may leave others behind."""
+    before = inputs[:, None].copy()
+    gap = float(inputs[number] - row.reduced[number, 0])
+    before[number] -= np.copysign(min(abs(gap), tolerances.DEAD_CENTRE_NEAR), gap)
+    place = _place_on_way(session, row, before)
+    state: Floats = (row if place is None else place).states[:, 0].copy()
+    for edge, freedom in session.graph.blocks[ending.block].unknowns:
+        carrier = session.layout.carriers[session.layout.carrier_of(edge, freedom)[0]]
+        own = slice(carrier.state, carrier.state + carrier.part.type.states)
+        state[own] = ending.state[own]
+    return state
 
 
 def _lead(enclosed: Enclosed, row: Nodes, box: Boxes, fold: Fold) -> int:

@@ -40,8 +40,9 @@ class Linkage(NamedTuple):
         return EQUATIONS[self.kind](self.points, u)
 
     def discriminant(self, u: Any) -> Any:
+        """In parts of its first terms."""
         a, b, c = self.equation(u)
-        return a * a + b * b - c * c
+        return 1 - c * c / (a * a + b * b)
 
     def dead_centre(self, near: float) -> Any:
         """The zero of the discriminant next to a value, at the precision that is set."""
