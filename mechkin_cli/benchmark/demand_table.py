@@ -12,7 +12,7 @@ from functools import partial
 from time import perf_counter
 
 from mechkin_cli.analysis.sweep import analyze
-from mechkin_cli.benchmark.report import Cell, Column, Table
+from mechkin_cli.benchmark.report import Cell, Column, Table, key_of
 from mechkin_cli.benchmark.scene import BATCH, Scene
 from mechkin_cli.benchmark.subject import Subject
 from mechkin_cli.benchmark.timing import Timing, in_turns
@@ -89,7 +89,7 @@ def demand_table(scene: Scene, subject: Subject, rounds: int, processes: int) ->
         "last line alone; a process has them in every line.",
         "each line computes all lines above it as well.",
     )
-    name = "demand_" + "".join(c if c.isalnum() else "_" for c in scene.name.lower())
+    name = "demand_" + key_of(scene.name)
     return Table(name, f"{scene.name}: what skipping saves", COLUMNS, rows, notes)
 
 

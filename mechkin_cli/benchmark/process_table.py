@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
 
-from mechkin_cli.benchmark.report import Cell, Column, Table
+from mechkin_cli.benchmark.report import Cell, Column, Table, key_of
 from mechkin_cli.benchmark.subject import Subject
 from mechkin_cli.benchmark.timing import in_turns
 
@@ -54,5 +54,5 @@ def process_table(subject: Subject, rounds: int) -> Table:
         for key, timing in times.items()
     ]
     notes = ("a script of another library takes at least its import, before it reads or solves.",)
-    key = "processes_" + "".join(c if c.isalnum() else "_" for c in subject.name.lower())
+    key = "processes_" + key_of(subject.name)
     return Table(key, f"{subject.name}: whole processes", COLUMNS, rows, notes)

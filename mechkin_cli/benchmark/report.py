@@ -42,6 +42,11 @@ class Table:
         return [[cell_text(row.get(c.key), c.kind) for c in self.columns] for row in self.rows]
 
 
+def key_of(name: str) -> str:
+    """A mechanism's name as part of a table's name: letters and digits, the rest as underscores."""
+    return "".join(c if c.isalnum() else "_" for c in name.lower())
+
+
 def cell_text(value: Cell, kind: Kind) -> str:
     """A cell for a person; nothing is an empty text."""
     if value is None:

@@ -9,7 +9,7 @@ from io import StringIO
 from typing import TYPE_CHECKING
 
 from mechkin_cli.benchmark.measurement import Measurement
-from mechkin_cli.benchmark.report import Cell, Column, Table
+from mechkin_cli.benchmark.report import Cell, Column, Table, key_of
 
 if TYPE_CHECKING:
     from mechkin_cli.benchmark.runs import Bench
@@ -42,7 +42,7 @@ def bench_table(bench: Bench) -> Table:
         f"{len(chain.unknowns)} unknowns"
     )
     exact = f"exact: {bench.exact}."
-    name = "bench_" + "".join(c if c.isalnum() else "_" for c in scene.name.lower())
+    name = "bench_" + key_of(scene.name)
     return Table(name, title, COLUMNS, rows, (*NOTES, exact, *skipped))
 
 

@@ -30,6 +30,7 @@ from mechkin_cli.mechanism.model import Attached, Link, Mechanism
 from mechkin_cli.mechanism.motion import Motion
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import TIME_OF_ROW, Wanted
+from mechkin_cli.mechanism.response import Response
 from mechkin_cli.reading.parser import in_order
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.schema.file import MechanismFile
@@ -120,10 +121,15 @@ def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fie
 
 
 def build_problem(
-    fields: Fields, file: MechanismFile, *, responses: bool = True, motion: Motion | None = None
+    fields: Fields,
+    file: MechanismFile,
+    *,
+    responses: bool = True,
+    motion: Motion | None = None,
+    moving: Mapping[str, Response] | None = None,
 ) -> Problem:
     """The mechanism with its loads, its motion and assembly, and the file's `responses`; a `motion`
-    that is given is not built anew."""
+    that is given is not built anew, nor is what `moving` responses do in time."""
     links, joints = build_linkage(fields, file)
     points, directions = _points(fields, file, links), _directions(fields, file, links)
     guides = point_guides(fields, file.motion, points)
@@ -144,7 +150,7 @@ def build_problem(
         return problem
     from mechkin_cli.building.responses import build_responses
 
-    found = build_responses(fields, file.responses, problem, loads, limit)
+    found = build_responses(fields, file.responses, problem, loads, limit, moving)
     return replace(problem, responses=found)
 
 

@@ -41,6 +41,8 @@ from mechkin_cli.units import TIME
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.mechanism.motion import Motion
+    from mechkin_cli.mechanism.response import Response
+    from mechkin_cli.schema.responses import ListedTime
     from mechkin_cli.tape.exact_recorder import ExactRecorder
     from mechkin_cli.units import Dimension
 
@@ -81,6 +83,39 @@ def exact_motion(
     return ExactMotion(rows, in_si, written, reading.tie_rates(motion))
 
 
+def exact_moments(
+    fields: Fields, path: Path, section: TimeSection | ListedTime, over: ExactRows
+) -> Any:
+    """The moments of a response's rows in the file's unit."""
+    if isinstance(section, TimeSection):
+        return _spaced(fields, over, path, section, TIME)
+    texts = enumerate(section.values)
+    listed = [fields.written((*path, "values", i), text, TIME) for i, text in texts]
+    return over.given(Picked(listed, np.arange(over.rows)))
+
+
+def start_motion(fields: Fields, response: Response, recorder: ExactRecorder) -> ExactMotion:
+    """The first moment of a response, as `mechanism.response.first_motion` has it in doubles.
+
+    Args:
+        fields: units and parameters, recorded.
+        response: with its start recorded and nothing driven.
+        recorder: holds the recorded numbers.
+    """
+    in_si: dict[str, Any] = {"time": float(response.moments.values[0])}
+    written: dict[str, Any] = {"time": float(response.moments.written[0])}
+    for one in response.start:
+        if one.value is None:
+            continue
+        orders = (one.value, 0.0 if one.rate is None else one.rate, 0.0, 0.0)
+        in_si[one.name] = orders
+        written[one.name] = tuple(
+            fields.units.from_si(order, dimension_of(one.coordinate, k))
+            for k, order in enumerate(orders)
+        )
+    return ExactMotion(ExactRows(recorder, 1), in_si, written)
+
+
 @dataclass
 class _Reading:
     """Inputs by name: orders in the file's units and in SI."""
@@ -98,7 +133,7 @@ class _Reading:
     def read_time(self, section: TimeSection) -> None:
         """The moments of the rows in the file's unit."""
         path: Path = ("motion", "time")
-        self.moment = self._spaced(path, section, TIME)
+        self.moment = _spaced(self.fields, self.rows, path, section, TIME)
         first = self.fields.written((*path, "from"), section.first, TIME)
         last = self.fields.written((*path, "to"), section.last, TIME)
         assert self.motion.time is not None
@@ -120,7 +155,7 @@ class _Reading:
                 which = np.arange(self.rows.rows) if len(listed) > 1 else np.zeros(1, dtype=np.intp)
                 value = self.rows.given(Picked(listed, np.resize(which, self.rows.rows)))
             else:
-                value = self._spaced(path, item, dimension)
+                value = _spaced(self.fields, self.rows, path, item, dimension)
             texts = (item.rate, item.acceleration, item.jerk)
             rates = [
                 self.fields.written((*path, key), text, dimension_of(coordinate, k))
@@ -202,20 +237,6 @@ class _Reading:
             to_si(order, dimension_of(coordinate, k)) for k, order in enumerate(orders)
         )
 
-    def _spaced(self, path: Path, section: SweptInput | TimeSection, dimension: Dimension) -> Any:
-        """first + i step, or first + i (last - first)/(count - 1)."""
-        first: Any = self.fields.written((*path, "from"), section.first, dimension)
-        last: Any = self.fields.written((*path, "to"), section.last, dimension)
-        rows = self.rows.rows
-        if rows == 1:
-            return first
-        number: Any = self.rows.given(np.arange(rows, dtype=np.float64))
-        if section.count is not None:
-            return first + number * (last - first) / float(section.count - 1)
-        assert section.step is not None
-        step: Any = abs(self.fields.written((*path, "step"), section.step, dimension))
-        return first + number * (step if last >= first else -step)
-
     def _power_series(self, path: Path, law: PowerLaw, coordinate: str) -> Orders:
         written = coefficients(self.fields, path, law, coordinate)
         assert self.clock is not None
@@ -278,6 +299,26 @@ class _Reading:
         """A condition that holds in some rows, as doubles found."""
         chosen: Floats = rows.astype(np.float64)
         return self.rows.given(chosen) == 1.0
+
+
+def _spaced(
+    fields: Fields,
+    over: ExactRows,
+    path: Path,
+    section: SweptInput | TimeSection,
+    dimension: Dimension,
+) -> Any:
+    """first + i step, or first + i (last - first)/(count - 1)."""
+    first: Any = fields.written((*path, "from"), section.first, dimension)
+    last: Any = fields.written((*path, "to"), section.last, dimension)
+    if over.rows == 1:
+        return first
+    number: Any = over.given(np.arange(over.rows, dtype=np.float64))
+    if section.count is not None:
+        return first + number * (last - first) / float(section.count - 1)
+    assert section.step is not None
+    step: Any = abs(fields.written((*path, "step"), section.step, dimension))
+    return first + number * (step if last >= first else -step)
 
 
 def _harmonic(u: Any) -> Orders:

@@ -7,29 +7,37 @@ warning in question) raises `TraceLost`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from math import pi
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from mechkin_cli.building.build import Built, build_problem, check_spins, read_fields
-from mechkin_cli.building.exact_motion import exact_motion
+from mechkin_cli.building.exact_motion import exact_moments, exact_motion, start_motion
+from mechkin_cli.building.fields import Fields
 from mechkin_cli.building.idle import settled
 from mechkin_cli.exact import PI
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.expressions.written import numbers_read_by
-from mechkin_cli.mechanism.exact_motion import ExactMotion
+from mechkin_cli.mechanism.exact_motion import ExactMoments, ExactMotion
 from mechkin_cli.mechanism.held import Held
 from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.precise import Precise
 from mechkin_cli.tape.exact_recorder import ExactRecorder
+from mechkin_cli.tape.exact_rows import ExactRows
 from mechkin_cli.tape.recorder import Recorder
 from mechkin_cli.tape.scalars import Recorded
 from mechkin_cli.tape.traced import Traced, TraceLost
+from mechkin_cli.units import TIME
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
 
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})
 
@@ -62,18 +70,8 @@ def record_exactly(built: Built, given: Mapping[str, Quantity] = _NOTHING) -> Ex
     """
     base = built.problem
     recorder = ExactRecorder()
-
-    def read(digits: str) -> Traced:
-        if digits == "pi":
-            return recorder.written(pi, PI)
-        return recorder.written(float(digits), Fraction(Decimal(digits)))
-
-    set_anew = {
-        name: Quantity(recorder.written(float(one.value), Fraction(one.value)), one.dimension)  # type: ignore[arg-type]
-        for name, one in given.items()
-    }
-    with numbers_read_by(read):
-        fields = read_fields(built.read, set_anew)
+    with _exactly(recorder):
+        fields = _fields(built, given, recorder)
         file = built.read.file
         problem = build_problem(fields, file, responses=False, motion=base.motion)
         motion = exact_motion(fields, file.motion, base.motion, recorder)
@@ -87,6 +85,67 @@ def record_exactly(built: Built, given: Mapping[str, Quantity] = _NOTHING) -> Ex
         diagnostics=base.diagnostics,
     )
     return ExactRecording(recorder, settled(problem), motion)
+
+
+@contextmanager
+def _exactly(recorder: ExactRecorder) -> Iterator[None]:
+    """Numbers that are read in this context are what their digits say."""
+
+    def read(digits: str) -> Traced:
+        if digits == "pi":
+            return recorder.written(pi, PI)
+        return recorder.written(float(digits), Fraction(Decimal(digits)))
+
+    with numbers_read_by(read):
+        yield
+
+
+def _fields(built: Built, given: Mapping[str, Quantity], recorder: ExactRecorder) -> Fields:
+    """Units and parameters of a file, those `given` as the doubles that they are."""
+    set_anew = {
+        name: Quantity(recorder.written(float(one.value), Fraction(one.value)), one.dimension)  # type: ignore[arg-type]
+        for name, one in given.items()
+    }
+    return read_fields(built.read, set_anew)
+
+
+def record_response(
+    built: Built, first: Problem, given: Mapping[str, Quantity] = _NOTHING
+) -> tuple[ExactRecording, Floats, Floats]:
+    """The problem at the first moment of a response as it follows from the exact numbers of the
+    text, and the moments of its rows in double-double (2, rows), in s and in the file's unit.
+
+    Args:
+        built: the file, which has no errors.
+        first: `response_problem` of the response.
+        given: as `record_exactly`.
+
+    Raises:
+        TraceLost: a number depends on the text in a way that no tape holds.
+    """
+    response = first.response
+    assert response is not None
+    if response.driven:
+        raise TraceLost("a coordinate that is driven by a law of time")
+    recorder = ExactRecorder()
+    file, name = built.read.file, response.name
+    with _exactly(recorder):
+        fields = _fields(built, given, recorder)
+        base = built.problem
+        problem = build_problem(fields, file, motion=base.motion, moving=base.responses)
+        recorded = replace(problem.responses[name], held=())
+        path = ("responses", name, "time")
+        over = ExactRows(recorder, response.rows)
+        moments = exact_moments(fields, path, file.responses[name].time, over)
+        motion = start_motion(fields, recorded, recorder)
+        both = [fields.units.to_si(moments, TIME), moments]
+    if fields.error_count:
+        raise TraceLost("the recording came to an error that the file does not have")
+    problem = replace(response_problem(problem, recorded, first.motion), hold_idle=first.hold_idle)
+    problem = replace(problem, held=_held(first, problem, recorder))
+    in_si, written = over.double_doubles(both)
+    recording = ExactRecording(recorder, settled(problem), motion)
+    return recording, in_si, written
 
 
 def _held(base: Problem, problem: Problem, recorder: ExactRecorder) -> tuple[Held, ...]:
@@ -107,6 +166,15 @@ def precise(built: Built, problem: Problem, given: Mapping[str, Quantity] = _NOT
     the other arguments and errors as those of `record_exactly`."""
     recording = record_exactly(built, given)
     return Precise(*recording, problem)
+
+
+def precise_response(
+    built: Built, first: Problem, given: Mapping[str, Quantity] = _NOTHING
+) -> Precise:
+    """The numbers of a response as its text says them, for the sessions of its `first` moment in
+    doubles; arguments and errors as those of `record_response`."""
+    recording, *moments = record_response(built, first, given)
+    return Precise(*recording, first, ExactMoments(*moments))
 
 
 def record(built: Built, names: Sequence[str]) -> Recording:

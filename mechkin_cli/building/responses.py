@@ -36,6 +36,7 @@ def build_responses(
     problem: Problem,
     loads: LoadBuilder,
     limit: RowLimit,
+    known: Mapping[str, Response] | None = None,
 ) -> dict[str, Response]:
     """The responses of a file; what is wrong is noted in `fields`, and something stands in.
 
@@ -45,8 +46,12 @@ def build_responses(
         problem: mechanism and assembly of the file.
         loads: has all loads of the file.
         limit: how many rows a run may have.
+        known: the same responses in doubles, where the file is recorded: moments, drives, stops and
+            tolerances are theirs.
     """
     builder = _Builder(fields, problem, loads, limit)
+    if known is not None:
+        return {name: builder.anew(name, sections[name], known[name]) for name in sections}
     return {name: builder.response(name, section) for name, section in sections.items()}
 
 
@@ -85,6 +90,20 @@ class _Builder:
             stops=stops.build(path, section.stop),
             tolerance=self._tolerance(path, section.tolerance),
             fixed_step=self._fixed_step(path, section.fixed_step, timed.time),
+            mechanism=replace(acting.on(self.problem.mechanism), drives=None),
+            load_laws=acting.laws,
+        )
+
+    def anew(self, name: str, section: written.Response, known: Response) -> Response:
+        """A known response whose start, loads and links are those of the recording."""
+        path: Path = ("responses", name)
+        efforts = self._efforts(path, section, name)
+        acting = self.loads.of_run(name)
+        return replace(
+            known,
+            start=build_start(self.fields, path, section, self.joints),
+            assembly=self._assembly(path, section),
+            efforts=efforts,
             mechanism=replace(acting.on(self.problem.mechanism), drives=None),
             load_laws=acting.laws,
         )

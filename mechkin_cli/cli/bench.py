@@ -53,7 +53,7 @@ def bench(
 
     Without files: eight mechanisms, variants and responses. Other methods are those whose
     libraries are installed (pip install 'mechkin[bench]'). With --stress: hard mechanisms by the
-    thousand, every row decided by a closed form.
+    thousand, every row decided in double-double.
     """
     if stress:
         from mechkin_cli.cli.bench_stress import Stress, stress_command
@@ -78,7 +78,10 @@ def bench(
     tables = list(_tables(subjects, scenes, rounds, whole=not files, shown=shown))
     if out is not None and scenes:
         command = " ".join(["mechkin bench", *map(str, files or [])])
-        written = write(out, described, benches, tables, command)
+        try:
+            written = write(out, described, benches, tables, command)
+        except OSError as error:
+            raise _not_written(out, error) from None
         if shown:
             put("\n" + "".join(f"{path}\n" for path in written))
     if json:
@@ -89,12 +92,20 @@ def bench(
 
 def _made(folder: Path) -> None:
     """Makes the folder of the files before anything is measured."""
+    from mechkin_cli.benchmark.outputs import NAMES
+
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        for path in filter(Path.exists, (folder / name for name in NAMES.values())):
+            # to be written to; what is there stays as it is
+            path.open("r+b").close()
     except OSError as error:
-        why = error.strerror or str(error)
-        cure = "name a folder that can be written"
-        raise UsageError(f"--out {folder}: {why}; {cure}") from None
+        raise _not_written(folder, error) from None
+
+
+def _not_written(folder: Path, error: OSError) -> UsageError:
+    why, file = error.strerror or str(error), f" ({error.filename})" if error.filename else ""
+    return UsageError(f"--out {folder}: {why}{file}; name a folder that can be written")
 
 
 def _read(files: Sequence[Path]) -> tuple[int, list[Subject], list[Scene], list[Record]]:
@@ -109,15 +120,38 @@ def _read(files: Sequence[Path]) -> tuple[int, list[Subject], list[Scene], list[
         return ExitCode.OK, known, [Scene(each.name, each.model) for each in known], []
     code, found, scenes = int(ExitCode.OK), [], []
     refused: list[Record] = []
-    for file in files:
+    for file, name in _names(files).items():
         try:
-            subject = Subject(file.stem, load(file), file)
+            subject = Subject(name, load(file), file)
             scenes.append(Scene(subject.name, subject.model))
             found.append(subject)
         except (InvalidFile, UsageError) as error:
             own, record = refusal(file, error)
             code, refused = max(code, own), [*refused, record]
     return code, found, scenes, refused
+
+
+def _names(files: Sequence[Path]) -> dict[Path, str]:
+    """What tables call the files: their stems, with a number where tables could not tell them
+    apart.
+
+    Raises:
+        UsageError: a file is given twice.
+    """
+    from mechkin_cli.benchmark.report import key_of
+
+    names: dict[Path, str] = {}
+    taken: set[str] = set()
+    for file in files:
+        if file in names:
+            raise UsageError(f"{file} is given twice; name it once")
+        name, number = file.stem, 1
+        while key_of(name) in taken:
+            number += 1
+            name = f"{file.stem} {number}"
+        names[file] = name
+        taken.add(key_of(name))
+    return names
 
 
 def _benches(scenes: Sequence[Scene], rounds: Rounds, *, shown: bool) -> Iterator[Bench]:

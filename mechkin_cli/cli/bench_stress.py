@@ -1,4 +1,4 @@
-"""`mechkin bench --stress`: families of hard mechanisms, every row decided by a closed form."""
+"""`mechkin bench --stress`: families of hard mechanisms, every row decided in double-double."""
 
 from __future__ import annotations
 
@@ -16,6 +16,10 @@ from mechkin_cli.nearest import nearest_hint
 if TYPE_CHECKING:
     from mechkin_cli.benchmark.report import Table
     from mechkin_cli.benchmark.stress.tally import Tally
+
+
+LONG = 60.0
+"""Seconds of work that are told beforehand."""
 
 
 class Stress(NamedTuple):
@@ -70,21 +74,31 @@ def stress_command(asked: Stress, show: Callable[[Table], None]) -> int:
 
 
 def _run(asked: Stress, rows: int, seed: int, names: Sequence[str]) -> list[Tally]:
-    """All blocks, with progress on a terminal."""
+    """All blocks, with progress on a terminal, and a word beforehand where it takes long."""
     from mechkin_cli.benchmark.stress.run import stress
 
-    progress: Progress | None = None
-
-    def step(done: int, count: int) -> None:
-        nonlocal progress
-        progress = progress or Progress(count, "blocks", asked.json)
-        progress.step(done)
-
     processes = asked.processes or os.cpu_count() or 1
+    progress: Progress | None = None
+    told = asked.json
+
+    def step(done: int, count: int, left: float | None) -> None:
+        nonlocal progress, told
+        progress = progress or Progress(count, "blocks", asked.json)
+        progress.step(done, "" if left is None else f", about {_span(left)} left")
+        if left is not None and not told:
+            told = True
+            if left > LONG:
+                say(f"{rows} rows: about {_span(left)} more with {processes} at once")
+
     tallies = stress(rows, seed, names, processes, step)
     if progress is not None:
         progress.end()
     return tallies
+
+
+def _span(seconds: float) -> str:
+    """In words of one or two digits."""
+    return f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.0f} min"
 
 
 def _one(asked: Stress) -> int:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mechkin_cli.analysis.errors.reasons import WORDS
 from mechkin_cli.legible import legible
 from mechkin_cli.tables.cell_errors import ALL_COLUMNS, ZERO
@@ -34,9 +36,13 @@ def errors_line(analysis: Analysis) -> str:
     zero = [c for c in errors.columns if c.why == ZERO]
     parts += [f"{ZERO}: {_named(zero)}"] if zero else []
     parts += _left_out([c for c in errors.columns if c.why and c.why not in _NO_GAP])
-    lost = sum(c.lost for c in errors.columns)
-    if lost:
-        parts.append(f"{lost} cells have no value in double-double")
+    words = [c for c in errors.columns if c.why == WORDS]
+    parts += [f"words, which have no error: {_named(words)}"] if words else []
+    bounds = sum(int(np.count_nonzero(c.is_bound)) for c in errors.columns)
+    parts += [f"{bounds} cells right to at least the digits told"] if bounds else []
+    for why in dict.fromkeys(c.lost_why for c in errors.columns if c.lost):
+        lost = sum(c.lost for c in errors.columns if c.lost_why == why)
+        parts.append(f"{lost} cells not measured ({why})")
     return "; ".join(parts)
 
 

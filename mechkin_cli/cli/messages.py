@@ -145,10 +145,10 @@ class Progress:
         self._on = not quiet and total > 1 and _on_terminal()
         self._shown = False
 
-    def step(self, done: int) -> None:
-        """Shows how far the work is."""
+    def step(self, done: int, more: str = "") -> None:
+        """Shows how far the work is, and `more` behind it."""
         if self._on and self._clock() - self._start > 1.0:
-            _say(f"\r{done} of {self._total} {self._what}", end="")
+            _say(f"\r{done} of {self._total} {self._what}{more}\x1b[K", end="")
             self._shown = True
 
     def end(self) -> None:

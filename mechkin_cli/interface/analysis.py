@@ -113,7 +113,7 @@ class Analysis:
     @cached_property
     def errors(self) -> Errors:
         """How far every cell is from its true value: the rows repeated in double-double when this
-        is first read. A response is not repeated, which `errors.why` says."""
+        is first read; a response from its start, which takes seconds."""
         from mechkin_cli.interface.errors import Errors
 
         return Errors(self)

@@ -15,12 +15,16 @@ from mechkin_cli.proof import Proof
 from mechkin_cli.runs import SWEEP
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from mechkin_cli.analysis.proof import Certificate as Found
     from mechkin_cli.analysis.proof.certificate import Gap
     from mechkin_cli.arrays import Floats
     from mechkin_cli.interface.analysis import Analysis
+    from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.solver.enclosures import Enclosure
 
 GAPS_TOLD = 4
 """Gaps that are told one by one."""
@@ -119,15 +123,26 @@ class Certificate:
         Raises:
             UsageError: no such quantity, or one that is not enclosed: derived ones, jerks.
         """
-        a_text("quantity", name, '"O4.theta_dot"')
+        return self.enclosures([name])[name]
+
+    def enclosures(self, names: Sequence[str]) -> dict[str, tuple[Floats, Floats]]:
+        """Those of several quantities by name, found together; errors as those of `enclosure`."""
         result = self.analysis.result
-        wanted = result.problem.quantities().get(name)
-        if wanted is None or not is_enclosed(result.problem.mechanism, wanted):
-            raise UsageError(f"{name[:LONGEST_NAME]} is no quantity that is enclosed")
+        known, wanted = result.problem.quantities(), []
+        for name in names:
+            quantity = known.get(a_text("quantity", name, '"O4.theta_dot"'))
+            if quantity is None or not is_enclosed(result.problem.mechanism, quantity):
+                raise UsageError(f"{name[:LONGEST_NAME]} is no quantity that is enclosed")
+            wanted.append(quantity)
         rows = result.row_states
-        found = enclosures(result.session, self._found, [wanted], rows.states, rows.turns)
-        known = np.asarray(result.units.to_si(self.analysis[name], wanted.dimension))
-        low, high = (part.T for part in bounds(result.units, wanted, found[name], known.T))
+        found = enclosures(result.session, self._found, wanted, rows.states, rows.turns)
+        return {quantity.name: self._bounds(quantity, found[quantity.name]) for quantity in wanted}
+
+    def _bounds(self, wanted: Wanted, found: Enclosure) -> tuple[Floats, Floats]:
+        """Of an enclosure in SI (width, rows), in the file's units."""
+        units = self.analysis.result.units
+        known = np.asarray(units.to_si(self.analysis[wanted.name], wanted.dimension))
+        low, high = (part.T for part in bounds(units, wanted, found, known.T))
         return (low, high) if wanted.vector else (low[:, 0], high[:, 0])
 
     def _told(self, gap: Gap) -> Diagnostic:

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.analysis.errors import Repeated
-from mechkin_cli.analysis.errors.reasons import OTHER_TABLE, RESPONSE, WORDS, reason_of
+from mechkin_cli.analysis.errors import Repeated, repetition
+from mechkin_cli.analysis.errors.reasons import BALANCE, DENSE, WORDS, reason_of
 from mechkin_cli.analysis.errors.repeated import NotRepeated
 from mechkin_cli.building.columns import used_quantities
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.expressions import parse
 from mechkin_cli.interface.arguments import a_text
-from mechkin_cli.runs import SWEEP
 from mechkin_cli.tables.cell_errors import (
     ALL_COLUMNS,
+    LOST,
     ColumnErrors,
     column_errors,
     least_digits,
@@ -26,7 +26,7 @@ from mechkin_cli.tables.cell_errors import (
 )
 from mechkin_cli.tables.columns import Words
 from mechkin_cli.tables.layout import row_texts
-from mechkin_cli.tables.true_columns import true_values
+from mechkin_cli.tables.true_columns import doubts, true_values
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.tables.columns import Column, Columns
     from mechkin_cli.tables.layout import ColumnLayout
+    from mechkin_cli.tape.double_doubles import DoubleDoubles
 
 
 class Errors:
@@ -56,17 +57,24 @@ class Errors:
             for layout, table in zip(analysis.layouts, analysis.tables, strict=True)
             for found in self._of_table(layout.columns, table)
         ) + tuple(
-            not_repeated(table.name, ALL_COLUMNS, "", 0, OTHER_TABLE)
-            for table in (*analysis.coefficients, *analysis.balance_tables)
+            not_repeated(table.name, ALL_COLUMNS, "", 0, why)
+            for tables, why in ((analysis.coefficients, DENSE), (analysis.balance_tables, BALANCE))
+            for table in tables
         )
 
     @cached_property
     def repeated(self) -> Repeated:
         """The rows in double-double."""
-        from mechkin_cli.analysis.errors import wide
+        return self._read(repetition(self._analysis.result))
 
-        result = self._analysis.result
-        repeated = Repeated(result, wide.wide_run(result))
+    @cached_property
+    def _rough(self) -> Repeated | None:
+        """The rows of a response once more, less finely: what both differ by is what the repetition
+        is known to. None of a sweep."""
+        rough = self.repeated.rough
+        return None if rough is None else self._read(rough)
+
+    def _read(self, repeated: Repeated) -> Repeated:
         # what cannot be repeated says so at its own column
         with suppress(NotRepeated):
             repeated.read(self._readable())
@@ -136,17 +144,34 @@ class Errors:
         raise UsageError(f"there is no column {label} in a table {table}")
 
     def _of_expression(self, text: str) -> NDArray[Any]:
+        if text in row_texts(self._analysis.run):
+            raise UsageError(f"{text} is words, which have no error")
         values = self._analysis[text]
         parts = values.T if values.ndim > 1 else values[None]
         try:
-            true = true_values(parse(text), self.repeated)
+            true = self._true(parse(text))
         except NotRepeated as reason:
             raise UsageError(f"{text} is not repeated in double-double: {reason}") from None
         found = [
-            column_errors("", text, "", cells, exact).error
+            column_errors("", text, "", cells, *exact).error
             for cells, exact in zip(parts, true, strict=True)
         ]
         return np.stack(found, axis=1) if len(found) > 1 else found[0]
+
+    def _true(self, expression: Expression) -> list[tuple[DoubleDoubles, NDArray[Any]]]:
+        """The true values of an expression, and how far they may be off.
+
+        Raises:
+            NotRepeated: they are not known.
+        """
+        true = true_values(expression, self.repeated)
+        doubt = doubts(expression, self.repeated, true)
+        if self._rough is not None:
+            other = true_values(expression, self._rough)
+            with np.errstate(invalid="ignore"):
+                apart = [np.abs((a - b).high) for a, b in zip(true, other, strict=True)]
+            doubt = [np.fmax(a, b) for a, b in zip(doubt, apart, strict=True)]
+        return list(zip(true, doubt, strict=True))
 
     def _of_table(self, layouts: tuple[ColumnLayout, ...], table: Columns) -> list[ColumnErrors]:
         return [
@@ -156,21 +181,15 @@ class Errors:
 
     def _of_column(self, expression: Expression, table: str, column: Column) -> ColumnErrors:
         values = column.values
-        why = self._refused(expression)
-        if why or isinstance(values, Words):
-            return not_repeated(table, column.label, column.unit, _values(column), why or WORDS)
+        is_text = expression.text.strip() in row_texts(self._analysis.run)
+        if is_text or isinstance(values, Words):
+            return not_repeated(table, column.label, column.unit, _values(column), WORDS)
         try:
-            (true,) = true_values(expression, self.repeated)
+            ((true, doubt),) = self._true(expression)
         except NotRepeated as reason:
             return not_repeated(table, column.label, column.unit, values, str(reason))
-        return column_errors(table, column.label, column.unit, values, true)
-
-    def _refused(self, expression: Expression) -> str:
-        """Why a column cannot be repeated, whatever its numbers are."""
-        text = expression.text.strip()
-        if self._analysis.run != SWEEP:
-            return WORDS if text in row_texts(self._analysis.run) else RESPONSE
-        return WORDS if text in row_texts(SWEEP) else ""
+        lost = self.repeated.lost_why or LOST
+        return column_errors(table, column.label, column.unit, values, true, doubt, lost)
 
 
 def _values(column: Column) -> Any:

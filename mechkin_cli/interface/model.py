@@ -15,7 +15,6 @@ from mechkin_cli.interface.asking import run_name
 from mechkin_cli.interface.certified import Certified
 from mechkin_cli.interface.settings import input_values
 from mechkin_cli.mechanism.problem import Problem
-from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.solver.session import Session
@@ -324,9 +323,9 @@ class Model(Certified):
         if run == SWEEP:
             return self.session
         if run not in self._sessions:
-            graph = self.response_graph(run)
-            first = response_problem(self.problem, self.problem.responses[run])
-            self._sessions[run] = Session(first, graph)
+            from mechkin_cli.interface.responses import session_at_start
+
+            self._sessions[run] = session_at_start(self, run)
         return self._sessions[run]
 
     def modes(

@@ -15,6 +15,7 @@ from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.asking import a_packing
 from mechkin_cli.interface.given import parameter_arrays
 from mechkin_cli.interface.model import Model
+from mechkin_cli.interface.reduced_values import reduced
 from mechkin_cli.interface.variants import (
     Reduce,
     Variants,
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis.response import ResponseResult
     from mechkin_cli.analysis.response.respond import Prepared
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.interface.variant_runs import Reductions
     from mechkin_cli.solver.session import Packing
 
 CHUNK = 512
@@ -66,8 +66,8 @@ def vary_response(
     study = _Study(base, names, list(asked), run, packing)
     found = study.run(values)
     reductions = reductions_of(asked, reduce)
-    reduced = {text: _reduced(text, found[text], reductions[text]) for text in asked}
-    return Variants(given, reduced, study.codes, study.errors)
+    kept = {text: reduced(text, found[text], reductions[text]) for text in asked}
+    return Variants(given, kept, study.codes, study.errors)
 
 
 class _Study:
@@ -129,9 +129,3 @@ class _Study:
             if text not in found:
                 found[text] = np.full((count, self.rows, *array.shape[1:]), np.nan)
             found[text][number, :rows] = array
-
-
-def _reduced(text: str, values: Floats, reduction: Reductions) -> Floats:
-    from mechkin_cli.interface.variant_runs import reduced
-
-    return reduced(text, values, reduction)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from mechkin_cli.analysis.response import respond as run_response
@@ -11,10 +13,18 @@ from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.interface.asking import a_packing, chosen_tables, known_mode, wanted_names
+from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.nearest import nearest_hint
+from mechkin_cli.solver.session import Session
 
 if TYPE_CHECKING:
+    from mechkin_cli.building.build import Built
+    from mechkin_cli.expressions import Quantity
     from mechkin_cli.interface.model import Model
+    from mechkin_cli.mechanism.problem import Problem
+    from mechkin_cli.solver.precise import Precise
+
+_AS_WRITTEN: Mapping[str, Quantity] = MappingProxyType({})
 
 
 def respond(
@@ -42,6 +52,24 @@ def respond(
     result = run_response(problem, response, names, packing, session)
     analysis = Analysis(model, layouts, result, run)
     return analysis if mode is None else known_mode(analysis)
+
+
+def session_at_start(model: Model, run: str) -> Session:
+    """The mechanism in the kernel at the start of a response; errors as those of
+    `Model.session_of`."""
+    graph = model.response_graph(run)
+    first = response_problem(model.problem, model.problem.responses[run])
+    return Session(first, graph).reading(exactly_read(model.built, first))
+
+
+def exactly_read(
+    built: Built, first: Problem, given: Mapping[str, Quantity] = _AS_WRITTEN
+) -> Callable[[], Precise]:
+    """What gives the numbers of a response as its text says them, read when they are first asked
+    for; `first` is its first moment, `given` are values of parameters that were set."""
+    from mechkin_cli.building.recording import precise_response
+
+    return cache(lambda: precise_response(built, first, given))
 
 
 def response_name(model: Model, name: str | None) -> str:

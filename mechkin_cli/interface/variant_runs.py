@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.reductions import Reduction
 from mechkin_cli.analysis.sweep.closing_angles import has_turns
-from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
+from mechkin_cli.diagnostics import MechkinError, UsageError
 from mechkin_cli.expressions import Expression, Quantity, UnknownName, Vector
+from mechkin_cli.interface.reduced_values import Reductions, reduced
 from mechkin_cli.interface.varied import Base, VariedModel
 from mechkin_cli.kernel._kernel import VariantEnd
 from mechkin_cli.kernel.width import threads_for
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 
 CHUNK_NUMBERS = 2_000_000
 """Numbers that a chunk of variants holds at most: memory stays flat."""
-
-Reductions = tuple[Reduction, ...] | Reduction | None
 
 
 def sample_of(problem: Problem) -> Any:
@@ -272,41 +270,6 @@ class Study:
         value = expression.evaluate(sample_of(self.problem), self.problem.units).value
         shape = (count, self.rows, 3) if isinstance(value, Vector) else (count, self.rows)
         return np.full(shape, np.nan)
-
-
-def reduced(text: str, values: Floats, reduction: Reductions) -> Floats:
-    """What is kept of (variants, rows) or (variants, rows, 3), the reductions last where there are
-    several.
-
-    Raises:
-        UsageError: a function of the caller fails, or gives something else.
-    """
-    if reduction is None:
-        return values
-    if isinstance(reduction, tuple):
-        return np.stack([_by(each, text, values) for each in reduction], axis=-1)
-    return _by(reduction, text, values)
-
-
-def _by(reduction: Reduction, text: str, values: Floats) -> Floats:
-    if values.ndim == 3:
-        parts = [_by(reduction, text, values[:, :, k]) for k in range(3)]
-        return np.stack(parts, axis=1)
-    given = values.view()
-    given.flags.writeable = False  # the next reduction reads the same
-    try:
-        found = np.asarray(reduction(given), dtype=np.float64)
-    except Exception as error:
-        raise UsageError(
-            f"the reduction of {text} failed with {type(error).__name__}: "
-            f"{str(error)[:LONGEST_NAME]}; it takes (variants, rows) = {values.shape}"
-        ) from error
-    if found.shape[:1] != values.shape[:1]:
-        raise UsageError(
-            f"the reduction of {text} gives an array of shape {found.shape}; it takes "
-            f"(variants, rows) = {values.shape} and gives one value a variant"
-        )
-    return found
 
 
 class _Resolve:

@@ -13,8 +13,9 @@ from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
 from mechkin_cli.expressions import Expression, ExpressionError, parse
 from mechkin_cli.interface.arguments import a_whole_number, shown, texts
 from mechkin_cli.interface.given import parameter_arrays
+from mechkin_cli.interface.reduced_values import Reductions
 from mechkin_cli.interface.responses import response_name
-from mechkin_cli.interface.variant_runs import Reductions, Study, sample_of
+from mechkin_cli.interface.variant_runs import Study, sample_of
 from mechkin_cli.interface.varied import Base, file_values
 from mechkin_cli.kernel.width import check_threads, check_width
 from mechkin_cli.runs import SWEEP

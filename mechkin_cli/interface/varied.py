@@ -156,9 +156,13 @@ class VariedModel(Model):
         """As `Model.precise`; values that were set are the doubles that they are."""
         from mechkin_cli.building.recording import precise
 
+        return precise(self.built, self.problem, self._given)
+
+    @property
+    def _given(self) -> dict[str, Quantity]:
+        """The values that were set, in SI."""
         known = self._base.model.problem.parameters
-        given = {name: Quantity(v, known[name].dimension) for name, v in self._values.items()}
-        return precise(self.built, self.problem, given)
+        return {name: Quantity(v, known[name].dimension) for name, v in self._values.items()}
 
     def _between(self, place: float) -> Session:
         """The session between the file's own parameters (0) and these (1), built anew."""
@@ -193,7 +197,12 @@ class VariedModel(Model):
 
     def session_of(self, run: str) -> Session:
         """As `Model.session_of`."""
-        return self.session if run == SWEEP else self._fresh.session_of(run)
+        if run == SWEEP:
+            return self.session
+        from mechkin_cli.interface.responses import exactly_read
+
+        session = self._fresh.session_of(run)
+        return session.reading(exactly_read(self._fresh.built, session.problem, self._given))
 
     def respond(
         self,

@@ -416,6 +416,7 @@ class Plan:
         power_error: Floats | None = None,
         flags: NDArray[np.uint8],
         loads: Floats | None = None,
+        chart_forces: Floats | None = None,
         undefined: NDArray[np.uint8] | None = None,
         demand: int = 0,
         shift: int = 0,

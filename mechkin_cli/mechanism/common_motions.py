@@ -69,11 +69,12 @@ STILL = Displacement(*GROUND)
 
 
 class Motion(NamedTuple):
-    """A motion of some links at one place: the rates of the freedoms that move, and the twist of
-    each link on its own drawing."""
+    """A motion of some links at one place: the rates of the freedoms that move, the twist of each
+    link on its own drawing, and by what twist the joints miss to have it in common."""
 
     rates: Mapping[Freedom, float]
     twists: Mapping[str, Screw]
+    miss: float = 0.0
 
     @property
     def fastest(self) -> float:
@@ -93,7 +94,7 @@ class Motion(NamedTuple):
                 subtract(own[0], scale(factor, angular)),
                 subtract(own[1], scale(factor, linear)),
             )
-        return Motion(rates, twists)
+        return Motion(rates, twists, self.miss + abs(factor) * other.miss)
 
 
 def common_motions(
@@ -136,14 +137,15 @@ def common_motions(
     for freedom in still:
         rows.append([1.0 if known == freedom else 0.0 for _, known, _ in columns])
     found = []
-    for motion in _null_space(rows, len(columns)):
+    for motion in _null_space([row.copy() for row in rows], len(columns)):
         v = [0.0] * 6
         for rate, (number, _, entries) in zip(motion, columns, strict=True):
             if number == 0:
                 v = [known + rate * entry for known, entry in zip(v, entries, strict=True)]
         twist: Screw = ((v[0], v[1], v[2]), (v[3], v[4], v[5]))
         rates = {freedom: rate for rate, (_, freedom, _) in zip(motion, columns, strict=True)}
-        found.append(Motion(rates, {n: pose[n].reversed().screw(twist) for n in links}))
+        twists = {n: pose[n].reversed().screw(twist) for n in links}
+        found.append(Motion(rates, twists, _miss(rows, motion)))
     return found
 
 
@@ -245,6 +247,12 @@ def _null_space(rows: list[list[float]], count: int) -> list[list[float]]:
             motion[column] = -rows[number][free]
         found.append(motion)
     return found
+
+
+def _miss(rows: list[list[float]], motion: list[float]) -> float:
+    """The largest entry of what the rows map a motion to."""
+    mapped = (sum(a * b for a, b in zip(row, motion, strict=True)) for row in rows)
+    return max((abs(entry) for entry in mapped), default=0.0)
 
 
 def same_line(one: Screw, other: Screw) -> bool:

@@ -6,7 +6,15 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
     from mechkin_cli.tape.exact_rows import ExactRows
+
+
+class ExactMoments(NamedTuple):
+    """The moments of a response's rows in double-double (2, rows): in s, and in the file's unit."""
+
+    in_si: Floats
+    written: Floats
 
 
 class ExactMotion(NamedTuple):

@@ -38,7 +38,8 @@ class Held(NamedTuple):
     that move with it; `axes` the lines about which each link turns, None where it does not turn
     about lines of its own; `slides` whether it slides without a turn; `holding` names the effort
     that holds it. `everywhere`: it is idle wherever these joints are, not only where the mechanism
-    takes them.
+    takes them. `miss`: the twist (rad, parts of the size) by which the joints have the motion in
+    common but for, where it is of speed one.
     """
 
     links: tuple[str, ...]
@@ -51,6 +52,7 @@ class Held(NamedTuple):
     told: Joint | None = None
     stop: Joint | None = None
     everywhere: bool = True
+    miss: float = 0.0
 
     @property
     def name(self) -> str:

@@ -207,7 +207,10 @@ class Holder:
             holding = f"{group.links[-1]}.holding_{kind}"
         moves = _moves(group.joints, moving.own)
         joints = tuple(joint.name for joint in group.joints)
-        held = Held(group.links, joints, coordinate, moves, axes, slides, holding, told, stop)
+        miss = moving.own.miss / (moving.own.fastest or 1.0)
+        held = Held(
+            group.links, joints, coordinate, moves, axes, slides, holding, told, stop, miss=miss
+        )
         self.held.append(held)
 
     def _tell_apart(self, first: int, centre: Line | None) -> None:

@@ -183,6 +183,23 @@ def holding_notes(problem: Problem, moments: Mapping[str, Floats]) -> list[Diagn
     return notes
 
 
+def nearly_common_notes(problem: Problem) -> list[Diagnostic]:
+    """Notes on motions that joints have in common but for more than rounding: results are those of
+    the mechanism that has them."""
+    return [
+        Diagnostic(
+            "nearly-common",
+            "note",
+            f"{held.words} but for what the drawing leaves; it is taken to do so exactly, and all "
+            "results are off by about as much",
+            measured=f"{held.miss:.2g} rad or sizes (limit {tolerances.COMMON_MOTION:g})",
+            hint="write what coincides with all its digits, and draw the rest farther apart",
+        )
+        for held in problem.held
+        if held.miss > tolerances.COMMON_MOTION_ROUNDING
+    ]
+
+
 def conventional_notes(problem: Problem, wanted: Iterable[Wanted]) -> list[Diagnostic]:
     """Notes on quantities that depend on the convention about an idle freedom."""
     wanted = list(wanted)

@@ -213,16 +213,16 @@ def _at_first(item: DrivenInput) -> DrivenInput:
     )
 
 
-def response_problem(problem: Problem, response: Response) -> Problem:
+def response_problem(problem: Problem, response: Response, motion: Motion | None = None) -> Problem:
     """The problem at the first moment of a response, with its loads, laws and quantities.
 
-    Its motion has one row, in which the start's coordinates are inputs; a solver graph of its
-    `driven` is that of the assembly at the start.
+    Its motion, or the `motion` that is given, has one row, in which the start's coordinates are
+    inputs; a solver graph of its `driven` is that of the assembly at the start.
     """
     return replace(
         problem,
         mechanism=response.mechanism,
-        motion=first_motion(response, problem.units),
+        motion=first_motion(response, problem.units) if motion is None else motion,
         assembly=response.assembly,
         load_laws=response.load_laws,
         held=response.held,

@@ -15,6 +15,7 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel.width import threads_for, width
 from mechkin_cli.solver.batch import RESIDUAL_TESTS, Chart
 from mechkin_cli.solver.graph.charted import charted
+from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.session import Coordinate, Packing, Session
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import DrivenLaws, Plan
+    from mechkin_cli.mechanism.problem import Problem
 
 
 class MotionEnd(IntEnum):
@@ -137,6 +139,20 @@ def free_session(session: Session, free: Sequence[Coordinate]) -> Session:
         closed_at=session.closed_at,
         packing=session.packing,
     )
+    return other if session.size is None else other.sized(session.size)
+
+
+def with_loads(session: Session, problem: Problem) -> Session:
+    """The session of a free motion for a problem that differs in loads alone."""
+    other = Session(
+        problem,
+        session.graph,
+        driven=session.graph.driven,
+        closed_at=session.closed_at,
+        packing=session.packing,
+    )
+    laid = Layout(problem.laid_mechanism, session.graph, session.layout.length, laws=problem.laws)
+    other.__dict__["layout"] = laid
     return other if session.size is None else other.sized(session.size)
 
 

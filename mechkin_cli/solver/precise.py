@@ -13,18 +13,20 @@ from dataclasses import fields, is_dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from mechkin_cli.solver.demand import OutputPlan
 from mechkin_cli.solver.layout import Layout
 from mechkin_cli.solver.plan import plan_records
 from mechkin_cli.solver.precise_inputs import PreciseInputs, enclosed_inputs, precise_inputs
 from mechkin_cli.solver.records import flatten
 from mechkin_cli.solver.same_structure import graph_of
-from mechkin_cli.tape.decimal_replay import double_doubles, enclosures
+from mechkin_cli.tape.decimal_replay import NotEnclosed, double_doubles, enclosures
 from mechkin_cli.tape.traced import TraceLost, register
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
-    from mechkin_cli.mechanism.exact_motion import ExactMotion
+    from mechkin_cli.mechanism.exact_motion import ExactMoments, ExactMotion
     from mechkin_cli.mechanism.model import Attached
     from mechkin_cli.mechanism.motion import Assembly
     from mechkin_cli.mechanism.problem import Problem
@@ -41,15 +43,22 @@ class Precise:
         problem: the file's problem on that recorder.
         motion: the file's motion over its rows.
         base: the same problem in doubles, of which the sessions are.
+        moments: of the rows of a response, whose first moment `problem` is.
     """
 
     def __init__(
-        self, recorder: ExactRecorder, problem: Problem, motion: ExactMotion, base: Problem
+        self,
+        recorder: ExactRecorder,
+        problem: Problem,
+        motion: ExactMotion,
+        base: Problem,
+        moments: ExactMoments | None = None,
     ) -> None:
         self.recorder = recorder
         self.problem = problem
         self.motion = motion
         self.base = base
+        self.moments = moments
         self._layouts: dict[int, tuple[Session, Layout]] = {}
         self._inputs: dict[int, tuple[Problem, PreciseInputs]] = {}
 
@@ -108,10 +117,21 @@ class Precise:
 
     @cached_property
     def parameters(self) -> Mapping[str, Floats]:
-        """The file's parameters in SI and double-double (2,), by name."""
+        """The file's parameters in SI and double-double (2,), by name; nan where the text says no
+        number, as where it divides by zero."""
         known = self.problem.parameters
-        values = double_doubles(self.tape([quantity.value for quantity in known.values()]))
+        try:
+            values = double_doubles(self.tape([quantity.value for quantity in known.values()]))
+        except NotEnclosed:
+            return {name: self._parameter(quantity.value) for name, quantity in known.items()}
         return dict(zip(known, values, strict=True))
+
+    def _parameter(self, value: Any) -> Floats:
+        try:
+            found: Floats = double_doubles(self.tape([value]))[0]
+        except NotEnclosed:
+            return np.full(2, np.nan)
+        return found
 
     def tape(self, numbers: Iterable[Any]) -> ExactTape:
         """The tape to some numbers of the recording."""

@@ -34,7 +34,9 @@ class PreciseBatch(NamedTuple):
     """What the kernel found, row by row, as `solver.batch.Batch`, in double-double.
 
     `flags` (rows,) are `RowFlag`s: a row that Newton could not bring to the rounding of
-    double-double is not converged, and its numbers are as good as its residual.
+    double-double is not converged, and its numbers are as good as its residual. `chart_forces`
+    (charts, 2, rows), in kernel units, are what would have to act along a chart's coordinates for
+    its accelerations: M u'' + r in docs/numerics.md, zero along a free motion.
     """
 
     states: Floats
@@ -47,6 +49,7 @@ class PreciseBatch(NamedTuple):
     flags: NDArray[np.uint8]
     loads: Floats | None = None
     undefined: NDArray[np.uint8] | None = None
+    chart_forces: Floats | None = None
 
     @property
     def good(self) -> NDArray[np.bool_]:
@@ -114,6 +117,7 @@ def run_precise(
     loads = empty(plan.load_values) if varying else None
     undefined = np.empty(rows, dtype=np.uint8) if varying else None
     charted = {} if chart is None else chart.arguments(demand)
+    chart_forces = empty(plan.charts) if charted and demand & Demand.FORCES else None
     plan.run_precise(
         inputs=in_parts(inputs, 1),
         guess=in_parts(guess, 1),
@@ -138,6 +142,7 @@ def run_precise(
         power_error=power_error,
         loads=loads,
         undefined=undefined,
+        chart_forces=chart_forces,
         flags=flags,
         demand=int(demand),
         shift=shift,
@@ -147,7 +152,8 @@ def run_precise(
         threads=threads_for(rows, threads),
     )
     measured = (residual, correction, power_error)
-    return PreciseBatch(states, values, first, second, *measured, flags, loads, undefined)
+    acting = (loads, undefined, chart_forces)
+    return PreciseBatch(states, values, first, second, *measured, flags, *acting)
 
 
 def in_parts(array: Floats | None, dimensions: int) -> Floats | None:

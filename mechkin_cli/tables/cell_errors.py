@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.tape.double_doubles import DoubleDoubles, difference
-from mechkin_cli.tolerances import ZERO_BUT_FOR_ROUNDING
+from mechkin_cli.tolerances import DOUBTFUL, NO_DOUBT, ZERO_BUT_FOR_ROUNDING
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,6 +27,12 @@ EMPTY = "empty"
 
 LOST = "no value in double-double"
 """Said of a cell that the repetition has no number for."""
+
+NO_VALUE = "no value, or none that double-double tells"
+"""Said of a cell whose true value hangs on a rounding of zero: the text divides by zero."""
+
+AT_LEAST = "at least so many digits: the repetition itself is known to no more"
+"""Said of a cell whose error is that of the repetition, too."""
 
 ZERO = "zero but for rounding"
 """Said of a column whose true numbers are none beside its rounding."""
@@ -52,7 +58,10 @@ class ColumnErrors:
         label: of the column.
         unit: of cells and errors.
         values: (rows,) the cells, nan where empty.
-        error: (rows,) |cell - true value|; nan where a cell is empty or was not repeated.
+        error: (rows,) |cell - true value|, with what the true value may be off by where that
+            counts; nan where a cell is empty or was not repeated.
+        is_bound: (rows,) whether it counts: the error is at most so large.
+        lost_why: what is said of a cell that the repetition has no number for.
         why: why the column was not repeated, or has no digits; "" of others.
     """
 
@@ -61,7 +70,9 @@ class ColumnErrors:
     unit: str
     values: FloatArray
     error: FloatArray
+    is_bound: NDArray[np.bool_]
     why: str = ""
+    lost_why: str = LOST
 
     @cached_property
     def largest(self) -> float:
@@ -105,20 +116,41 @@ def not_repeated(
 ) -> ColumnErrors:
     """Of a column whose cells are no numbers (`values`: how many), or that was not repeated."""
     cells = np.full(values, np.nan) if isinstance(values, int) else values
-    return ColumnErrors(table, label, unit, cells, np.full(cells.shape, np.nan), why)
+    nothing = np.full(cells.shape, np.nan)
+    return ColumnErrors(table, label, unit, cells, nothing, np.zeros(cells.shape, np.bool_), why)
 
 
 def column_errors(
-    table: str, label: str, unit: str, values: FloatArray, true: DoubleDoubles
+    table: str,
+    label: str,
+    unit: str,
+    values: FloatArray,
+    true: DoubleDoubles,
+    doubt: FloatArray | float = 0.0,
+    lost_why: str = LOST,
 ) -> ColumnErrors:
-    """Of a column with what its cells should be, both (rows,) in its unit."""
+    """Of a column with what its cells should be, and how far that may be off, (rows,) in its
+    unit."""
     with np.errstate(invalid="ignore"):
         error = np.abs(difference(values, true))
-    error = np.where(np.isfinite(values), error, np.nan)
+    error = np.where(np.isfinite(values) & np.isfinite(error), error, np.nan)
     known = np.isfinite(error)
     cells, exact = (np.abs(v[known]).max(initial=0.0) for v in (values, true.high))
     zero = cells > 0.0 and exact <= ZERO_BUT_FOR_ROUNDING * cells
-    return ColumnErrors(table, label, unit, values, error, ZERO if zero else "")
+    with np.errstate(invalid="ignore"):
+        is_bound = known & ~(doubt <= np.maximum(DOUBTFUL * error, NO_DOUBT * cells))
+        error = np.where(is_bound, error + doubt, error)
+        none = is_bound & ~(error < cells * _POWERS[0])
+    return ColumnErrors(
+        table,
+        label,
+        unit,
+        values,
+        np.where(none, np.nan, error),
+        is_bound & ~none,
+        ZERO if zero else "",
+        NO_VALUE if none.any() else lost_why,
+    )
 
 
 def least_digits(columns: Sequence[ColumnErrors]) -> int | None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.runs import SWEEP
-from mechkin_cli.tables.cell_errors import EMPTY, LOST, NO_DIGITS, ColumnErrors
+from mechkin_cli.tables.cell_errors import AT_LEAST, EMPTY, NO_DIGITS, ColumnErrors
 from mechkin_cli.tables.columns import Column, Columns, Words, words_of
 
 if TYPE_CHECKING:
@@ -81,7 +81,9 @@ def worst_table(columns: Sequence[ColumnErrors], run: str = SWEEP) -> Columns:
 
 
 def _why(column: ColumnErrors) -> str:
-    return column.why or (f"{column.lost} cells without: {LOST}" if column.lost else "")
+    if column.why or not column.lost:
+        return column.why or (AT_LEAST if column.is_bound.any() else "")
+    return f"{column.lost} cells without: {column.lost_why}"
 
 
 def _names(columns: Sequence[ColumnErrors], counts: Sequence[int]) -> tuple[Column, ...]:
@@ -110,13 +112,16 @@ def _cells(column: ColumnErrors) -> tuple[FloatArray, ...]:
 
 def _whys(columns: Sequence[ColumnErrors], counts: Sequence[int]) -> Words:
     """What is said of each line."""
-    words = tuple(dict.fromkeys(("", EMPTY, LOST, *(column.why for column in columns))))
+    lost, whys = [c.lost_why for c in columns], [c.why for c in columns]
+    words = tuple(dict.fromkeys(("", EMPTY, AT_LEAST, *lost, *whys)))
     known = [np.zeros(0, dtype=np.int32)]
     for column, count in zip(columns, counts, strict=True):
         if column.why:
             codes = np.full(count, words.index(column.why))
         else:
-            measured = np.where(np.isfinite(column.error), 0, 2)
+            measured = np.where(column.is_bound, 2, 0)
+            gone = words.index(column.lost_why)
+            measured = np.where(np.isfinite(column.error), measured, gone)
             codes = np.where(np.isfinite(column.values), measured, 1)
         known.append(codes.astype(np.int32))
     return Words(np.concatenate(known), words)

@@ -6,18 +6,19 @@ by the exact factor of its unit.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from fractions import Fraction
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from mechkin_cli.expressions import Quantity
+from mechkin_cli.expressions import Quantity, Vector
+from mechkin_cli.expressions.exact_literal import exact_literal
 from mechkin_cli.tape.double_doubles import DoubleDoubles, exactly
 
 if TYPE_CHECKING:
     from mechkin_cli.expressions import Expression
     from mechkin_cli.expressions.nodes import Number
+    from mechkin_cli.tables.source import FloatArray
     from mechkin_cli.units import Dimension, UnitSystem
 
 
@@ -49,28 +50,76 @@ def true_values(expression: Expression, source: TrueSource) -> list[DoubleDouble
     given = source.written.get(expression.text.strip())
     if given is not None:
         return [given]
-    found = expression.evaluate(source.quantity, source.units, _exact_literal)
+    return _evaluated(expression, source, exact_literal)
+
+
+def doubts(
+    expression: Expression, source: TrueSource, true: Sequence[DoubleDoubles]
+) -> list[FloatArray]:
+    """How far true values may be off (rows,) by the rounding of what they are computed of: what
+    they change by where every number is `OFF` in parts of the largest of its rows. Where the text
+    divides by zero that is as much as the value itself; what has no poles is not off by more than
+    its rounding."""
+    if not any(getattr(node, "symbol", "") in _WITH_POLES for node in expression.nodes):
+        return [np.zeros(source.rows) for _ in true]
+    off = _evaluated(expression, _Off(source), _off_literal)
+    with np.errstate(invalid="ignore"):
+        found = [np.abs((one - other).high) for one, other in zip(true, off, strict=True)]
+    return [np.where(np.isnan(doubt), 0.0, doubt) for doubt in found]
+
+
+def _evaluated(
+    expression: Expression, source: TrueSource, literal: Callable[[Number], Quantity]
+) -> list[DoubleDoubles]:
+    found = expression.evaluate(source.quantity, source.units, literal)
     value: Any = found.value
     parts = [value.x, value.y, value.z] if hasattr(value, "components") else [value]
     return [_in_file_units(part, found.dimension, source) for part in parts]
+
+
+_WITH_POLES = {"/", "^", "pow", "tan", "log"}
+"""Operations that may make any number of a rounding."""
+
+OFF = float.fromhex("0x1p-98")
+"""What numbers are changed by to tell how far a column is off: above the rounding of double-double,
+2^-105, times a condition of a hundred, and far below that of doubles."""
+
+
+class _Off:
+    """The rows with every number off, each by another part."""
+
+    def __init__(self, source: TrueSource) -> None:
+        self.source = source
+        self.rows, self.units, self.written = source.rows, source.units, source.written
+
+    def quantity(self, name: str) -> Quantity:
+        """As `TrueSource.quantity`."""
+        found = self.source.quantity(name)
+        value: Any = found.value
+        part = OFF * (1.0 + sum(name.encode()) % 7 / 7.0)
+        if hasattr(value, "components"):
+            moved: Any = Vector(*(_moved(item, part) for item in value.components))
+        else:
+            moved = _moved(value, part)
+        rest = None if found.rest is None else _moved(found.rest, part)
+        return Quantity(moved, found.dimension, rest)
+
+
+def _moved(value: Any, part: float) -> Any:
+    number = exactly(value)
+    sizes = np.abs(number.high)
+    return number + part * float(sizes[np.isfinite(sizes)].max(initial=0.0))
+
+
+def _off_literal(number: Number) -> Quantity:
+    found = exact_literal(number)
+    if number.unit is None and isinstance(found.value, float) and found.value == int(found.value):
+        return found  # whole numbers are what they are: exponents, counts
+    value: Any = exactly(found.value)
+    return Quantity(value + OFF * value, found.dimension)
 
 
 def _in_file_units(value: Any, dimension: Dimension, source: TrueSource) -> DoubleDoubles:
     factor = source.units.unit(dimension).factor
     rows = exactly(value) + np.zeros(source.rows)
     return rows if factor == 1 else rows / DoubleDoubles.of_fraction(factor)
-
-
-def _exact_literal(number: Number) -> Quantity:
-    """The number as written: a double where it is one, else double-double."""
-    if number.unit is None and number.text == "pi":
-        from mechkin_cli.units.table import PI
-
-        return Quantity(DoubleDoubles.of_fraction(PI))  # type: ignore[arg-type]
-    exact = Fraction(number.text)
-    if number.unit is None:
-        if exact == Fraction(number.value):
-            return Quantity(number.value)
-        return Quantity(DoubleDoubles.of_fraction(exact))  # type: ignore[arg-type]
-    value: Any = DoubleDoubles.of_fraction(exact * number.unit.factor)
-    return Quantity(value, number.unit.dimension)

@@ -78,6 +78,11 @@ class DoubleDoubles(Recorded):
         """As of an array."""
         return self.high.ndim
 
+    @property
+    def T(self) -> DoubleDoubles:  # noqa: N802
+        """As of an array."""
+        return DoubleDoubles.view(self.high.T, self.low.T)
+
     def __len__(self) -> int:
         return len(self.high)
 
@@ -179,6 +184,18 @@ def exactly(value: Any) -> DoubleDoubles:
     if isinstance(value, Exact):
         return DoubleDoubles.of_fraction(value.fraction)
     return value if isinstance(value, DoubleDoubles) else DoubleDoubles(value)
+
+
+def joined(parts: Sequence[DoubleDoubles], axis: int = 0) -> DoubleDoubles:
+    """Arrays one behind the other along an axis."""
+    highs, lows = [part.high for part in parts], [part.low for part in parts]
+    return DoubleDoubles.view(np.concatenate(highs, axis), np.concatenate(lows, axis))
+
+
+def stacked(parts: Sequence[DoubleDoubles], axis: int = 0) -> DoubleDoubles:
+    """Arrays of one shape beside each other along a new axis."""
+    highs, lows = [part.high for part in parts], [part.low for part in parts]
+    return DoubleDoubles.view(np.stack(highs, axis), np.stack(lows, axis))
 
 
 def difference(value: Floats, other: DoubleDoubles) -> Floats:

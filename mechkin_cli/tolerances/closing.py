@@ -19,6 +19,10 @@ RESIDUAL_ACCEPT: Final = 1e-14
 """Largest residual of a row that counts as assembled: about 50 roundings, what long chains need.
 Lengths of a loop that reaches farther than the size count in parts of its reach."""
 
+CORRECTION_ROUNDING: Final = 1e-15
+"""Times the condition, a correction that may be rounding alone: nine roundings; three were
+measured."""
+
 NEWTON_ITERATIONS: Final = 6
 """A prediction that passes the jump test is within a tenth of a step; squared four times that is
 rounding, and a sixth step allows for a large constant. More would mean that the guess was wrong."""

@@ -20,6 +20,11 @@ COMMON_MOTION: Final = 1e-7
 that is off by this, as numbers of nine digits may leave it, is off the motion held in its place by
 no more than was written."""
 
+COMMON_MOTION_ROUNDING: Final = 1e-12
+"""What two joints of a link may miss a common motion by (rad, parts of the size) and only round:
+some thousand roundings of frames, displacements and the elimination. What misses it by more is
+told, since results are off by as much."""
+
 SAME_COMMON_MOTION: Final = 1e-6
 """Difference of a common motion at two general places (rad, parts of the size) up to which a link
 carries its line along: ten times what `COMMON_MOTION` lets pass; others differ by their own

@@ -10,6 +10,7 @@ from architecture.package import FILES, NAMES, ROOT, imports, room
 BASE = {
     "arrays",
     "diagnostics",
+    "elimination",
     "exact",
     "legible",
     "nearest",
@@ -98,7 +99,7 @@ WITHIN_ANALYSIS = {
     "assembly": set(),
     "balances": {"derived", "sweep"},
     "dense": {"derived", "sweep"},
-    "errors": {"derived", "sweep"},
+    "errors": {"derived", "response", "sweep"},
     "derived": set(),
     "mobility": {"assembly"},
     "modes": {"proof", "assembly"},

@@ -15,8 +15,8 @@ from benchmark.dense_forces import inertia_wrench
 from benchmark.loop import Lines, LoopKinematics, lines_of, loop_kinematics
 from benchmark.matrices import Matrix, Vector, cross, dot, image, rotation
 
-from mechkin_cli.benchmark.elimination import eliminate
 from mechkin_cli.benchmark.sevenr import GRAVITY, JOINTS, Body, Loop
+from mechkin_cli.elimination import eliminate
 
 
 def loop_solution(loop: Loop, theta1: Any, guess: Any) -> dict[str, Any]:

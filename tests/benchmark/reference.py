@@ -13,8 +13,8 @@ from benchmark.arithmetic import Arithmetic, extended
 from benchmark.closure import Drawing, Kinematics, drawing, kinematics
 from benchmark.dense_forces import equations, wrenches
 
-from mechkin_cli.benchmark.elimination import eliminate
 from mechkin_cli.benchmark.rcsr import COORDINATES, Dimensions
+from mechkin_cli.elimination import eliminate
 
 POSITIONS = COORDINATES
 VELOCITIES = tuple(f"{name}_dot" for name in COORDINATES)

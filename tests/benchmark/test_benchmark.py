@@ -23,10 +23,10 @@ from benchmark.stress import NEAR_DEAD_CENTRE, SIZES, dead_centre_table, size_ta
 from benchmark.yardstick_kernel import load
 from oracle import fold, mp, read
 
-from mechkin_cli.benchmark.elimination import eliminate
 from mechkin_cli.benchmark.rcsr import COORDINATES, dimensions
 from mechkin_cli.benchmark.report import Column, Table, cell_text, plain_text, width
 from mechkin_cli.benchmark.timing import SHORTEST, Timing, in_turns
+from mechkin_cli.elimination import eliminate
 from mechkin_cli.kernel.width import widths
 
 DOUBLE = Arithmetic("double", 2.0**-52, np.float64, np.cos, np.sin)

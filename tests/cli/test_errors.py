@@ -53,8 +53,8 @@ def test_every_cell_has_its_line(tmp_path: Path) -> None:
             assert cells["table_18", label, str(number)] == value
     assert min(int(line["digits"]) for line in repeated if line["digits"]) >= 13
     assert {f["table"]: f["why"] for f in found if not f["row"]} == {
-        "table_14": "no table of rows",
-        "table_14_unknowns": "no table of rows",
+        "table_14": "a dense system",
+        "table_14_unknowns": "a dense system",
     }
     record = json.loads((tmp_path / "analysis.json").read_text(encoding="utf-8"))
     assert record["errors"]["digits"] >= 13
@@ -67,7 +67,7 @@ def test_the_summary_has_a_line(capsys: pytest.CaptureFixture[str], tmp_path: Pa
     analyze_files([RCSR], tmp_path, ["csv"], errors=True)
     (line,) = [x for x in capsys.readouterr().err.splitlines() if x.startswith("  errors")]
     assert "digits; worst: " in line
-    assert line.endswith("not repeated: table_14, table_14_unknowns (no table of rows)")
+    assert line.endswith("not repeated: table_14, table_14_unknowns (a dense system)")
 
 
 def test_cells_that_are_exact(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -82,15 +82,14 @@ def test_cells_that_are_exact(capsys: pytest.CaptureFixture[str], tmp_path: Path
     assert np.isclose(float(x[0]["error"]), 0.0, atol=1e-30)
 
 
-def test_a_response_says_that_it_is_not_repeated(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_a_response_is_repeated(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     path = MECHANISMS / "rcsr_response.yaml"
     analyze_files([path], tmp_path, ["csv", "md"], errors=True)
     (line,) = [x for x in capsys.readouterr().err.splitlines() if x.startswith("  errors")]
-    assert line.endswith("(a response)")
+    assert "every cell right to 12 digits" in line
     found = lines(tmp_path / "response.errors.csv")
-    assert {f["why"] for f in found} <= {"a response", "words"}
+    assert {f["table"] for f in found if f["digits"]} >= {"table_19", "table_23", "energy"}
+    assert all(int(f["digits"]) >= 12 for f in found if f["digits"])
 
 
 @pytest.mark.parametrize("name", ["errors", "Errors"])

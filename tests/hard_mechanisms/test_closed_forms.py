@@ -9,14 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracle import assemble, mp, read
+from oracle import assemble, mp, newton_euler, read
 
 from mechkin_cli.benchmark.stress.block import drawn
 from mechkin_cli.benchmark.stress.draws import scaled
 from mechkin_cli.benchmark.stress.families.table import FAMILIES
 from mechkin_cli.benchmark.stress.linkages.writing import ACCELERATION, RATE
 from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
-from mechkin_cli.benchmark.stress.numbers.series import Series
 
 AGREED = 1e-22
 """In parts of the largest of its kind: the oracle's own Newton stops at 1e-48, double-double has 31
@@ -33,6 +32,12 @@ CASES = [
     ("leads", 0, None),
     ("many turns", 0, -8.0),
     ("long sweeps", 0, 5.0),
+    ("forces", 0, None),
+    ("forces", 1, None),
+    ("forces", 2, None),
+    ("forces", 3, None),
+    ("spatial loops", 0, None),
+    ("spatial loops", 1, None),
 ]
 
 
@@ -48,7 +53,7 @@ def value(rows: DoubleDouble) -> Any:
 @pytest.mark.parametrize(("name", "number", "degrees"), CASES)
 def test_closed_forms_are_those_of_the_files(name: str, number: int, degrees: float | None) -> None:
     block = drawn(FAMILIES[name], 5, [number])
-    # spindles turn as far as their leads ask for
+    # spindles turn as far as their leads ask for, others to a dead centre or as far as is clear
     place = float(block.places[0, 1]) * 1e-3 if degrees is None else degrees
     truth = block.truth(np.array([[place]]))
     assert truth.exists.all()
@@ -57,13 +62,45 @@ def test_closed_forms_are_those_of_the_files(name: str, number: int, degrees: fl
     found = assemble(mechanism, {"A.theta": (angle, mp.mpf(RATE), mp.mpf(ACCELERATION))})
     size = float(truth.size[0, 0])
     for quantity in truth.quantities:
-        assert isinstance(quantity.value, Series)
         scale = size if quantity.kind == "length" else 1.0
-        levels = (quantity.value.value, quantity.value.rate, quantity.value.acceleration)
-        for suffix, rows in zip(("", "_dot", "_ddot"), levels, strict=True):
-            right = found[quantity.name + suffix]
+        for key, rows in zip(quantity.keys, quantity.levels, strict=True):
+            right = found[key]
             largest = max(abs(right), scale)
-            assert abs(value(rows) - right) <= AGREED * largest, quantity.name + suffix
+            assert abs(value(rows) - right) <= AGREED * largest, key
+    if truth.forces:
+        reactions = newton_euler(mechanism, found)
+        for force in truth.forces:
+            joint = force.name.partition(".")[0]
+            right = (
+                reactions.effort["A.theta"]
+                if force.component is None
+                else reactions.force[joint][force.component]
+            )
+            largest = float(truth.heaviest[0, 0]) * (size if force.is_moment else 1.0)
+            assert abs(value(force.value) - right) <= AGREED * largest, force.key
+
+
+def test_a_platform_closes_where_the_oracle_does() -> None:
+    """Its tool, its first head and their rates, beside the doubles that the legs are given."""
+    block = drawn(FAMILIES["spatial loops"], 5, [2])
+    place = float(block.places[0, 1]) * 1e-3
+    truth = block.truth(np.array([[place]]))
+    mechanism = read(as_doubles(block.texts[0]))
+    written = re.findall(r"(L\d\.s): .*?rate: ([^,]*),", block.texts[0])
+    strokes = {leg: float(rate) for leg, rate in written}
+    assert len(strokes) == 6
+    driven = {
+        leg: (mp.mpf(stroke * place), mp.mpf(stroke) * RATE, mp.mpf(stroke) * ACCELERATION)
+        for leg, stroke in strokes.items()
+    }
+    found = assemble(mechanism, driven)
+    size = float(truth.size[0, 0])
+    for quantity in truth.quantities:
+        assert quantity.component is not None
+        levels = found.point(quantity.name)
+        for rows, level, key in zip(quantity.levels, levels, quantity.keys, strict=False):
+            right = level[quantity.component]
+            assert abs(value(rows) - right) <= AGREED * max(abs(right), size), key
 
 
 def test_oscillators_are_exponentials_of_matrices() -> None:

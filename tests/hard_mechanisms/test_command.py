@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 import mechkin_cli as mk
 from mechkin_cli.benchmark.stress import page, workers
 from mechkin_cli.benchmark.stress.families.table import FAMILIES
+from mechkin_cli.benchmark.stress.forecast import Forecast
 from mechkin_cli.benchmark.stress.plan import tasks
 from mechkin_cli.benchmark.stress.run import stress
 from mechkin_cli.benchmark.stress.tally import Tally
@@ -41,18 +42,49 @@ def test_the_page_is_what_would_be_written_now(small: list[Tally]) -> None:
     assert page.is_current(text, small)
     assert not page.is_current(text.replace("| sizes | 4 ", "| sizes | 5 "), small)
     assert not page.is_current(text.replace("| leads |", "| lead |", 1), small)
+    # more that is proven leaves the page as it is; what is proven elsewhere does not
+    own = proofs_of_small_set(text, "sizes")
+    better, worse = [*own], [*own]
+    better[3], better[5] = str(int(own[3]) + 3), str(int(own[5]) + 4)
+    worse[7] = str(int(own[7]) + 1)
+    for cells, stays in ((better, True), (worse, False)):
+        changed = text.replace(" | ".join(own), " | ".join(cells))
+        assert changed != text
+        assert page.is_current(changed, small) is stays
+
+
+def proofs_of_small_set(text: str, family: str) -> list[str]:
+    """Cells of a family's row: its name, one mechanism of, rows asked, proven, to closure, not
+    proven, no position, elsewhere."""
+    table = text.split("### What --certify proves")[-1]
+    (line,) = (x for x in table.split("###")[0].splitlines() if x.startswith(f"| {family} |"))
+    return line.strip("| ").split(" | ")
 
 
 def test_processes_give_the_same(small: list[Tally]) -> None:
     family = "double modes"
-    blocks = list(tasks(400, [family]))
+    blocks = tasks(400, [family])
     known = Tally(family)
-    for tally in workers.results([*blocks, *blocks], 1, 2):
-        known.merge(tally)
+    for done in workers.results([*blocks, *blocks], 1, 2):
+        known.merge(done.tally)
     once = Tally(family)
-    for tally in workers.results([*blocks, *blocks], 1, 1):
-        once.merge(tally)
+    for done in workers.results([*blocks, *blocks], 1, 1):
+        once.merge(done.tally)
     assert known.in_order().record() == once.in_order().record()
+
+
+def test_what_is_left_follows_from_what_is_done() -> None:
+    blocks = tasks(40_000, ["sizes", "many loops"])
+    forecast = Forecast(blocks, 2)
+    assert forecast.seconds is None
+    for task in blocks[:-1]:
+        rows = sum(FAMILIES[task.family].rows_of(n) for n in task.numbers)
+        forecast.done(task, rows * 0.25)
+    last = blocks[-1]
+    rows = sum(FAMILIES[last.family].rows_of(n) for n in last.numbers)
+    assert forecast.seconds == pytest.approx(rows * 0.25 / 2)
+    forecast.done(last, 1.0)
+    assert forecast.seconds == 0.0
 
 
 def test_one_mechanism_is_printed_as_a_file() -> None:

@@ -26,7 +26,7 @@ def solved() -> tuple[Found, Truth]:
     """One R S S R, whose first rows all exist."""
     block = drawn(FAMILIES["sizes"], 1, [0])
     truth = block.truth(block.places)
-    found, _, refused = solve(block.texts, block.places.shape[1], truth.quantities)
+    found, _, refused = solve(block.texts, block.places.shape[1], truth.cells())
     assert not refused
     assert truth.exists[0, : ROW + 1].all()
     return found, truth
@@ -75,6 +75,19 @@ def test_rates_that_are_off(solved: tuple[Found, Truth]) -> None:
     assert verdict(judge(spoilt(found, "D.theta_dot", fast), truth)) == Verdict.rates_lost
 
 
+@pytest.mark.parametrize("key", ["C.force.y", "A.effort"])
+def test_forces_that_are_off(key: str) -> None:
+    block = drawn(FAMILIES["forces"], 1, [0])
+    truth = block.truth(block.places)
+    found, _, _ = solve(block.texts, block.places.shape[1], truth.cells())
+    assert verdict(judge(found, truth)) == Verdict.right
+    off = float(truth.heaviest[0, ROW] * truth.size[0, 0]) * 1e-6  # type: ignore[index]
+    assert off > 0.0
+    near = found.values[key][0, ROW] * (1.0 + 1e-5) + off
+    assert verdict(judge(spoilt(found, key, near), truth)) == Verdict.rates_lost
+    assert verdict(judge(spoilt(found, key, np.nan), truth)) == Verdict.rates_lost
+
+
 def test_a_row_that_is_lost(solved: tuple[Found, Truth]) -> None:
     found, truth = solved
     codes = found.codes.copy()
@@ -95,24 +108,32 @@ def test_what_a_run_says_it_takes_as_drawn_is_no_fault(solved: tuple[Found, Trut
     assert verdict(judge(noted, truth)) == Verdict.taken_as_drawn
 
 
-def test_an_enclosure_beside_the_closed_form() -> None:
-    block = drawn(FAMILIES["sizes"], 1, [0])
+@pytest.mark.parametrize("key", ["D.theta", "D.theta_dot", "D.theta_ddot", "C.force.y", "A.effort"])
+def test_an_enclosure_beside_the_closed_form(key: str) -> None:
+    block = drawn(FAMILIES["forces"], 1, [0])
     truth = block.truth(block.places)
-    found, proofs, _ = solve(block.texts, block.places.shape[1], truth.quantities, proven=[0])
+    found, proofs, _ = solve(block.texts, block.places.shape[1], truth.cells(), proven=[0])
     assert (proofs.codes[0, : ROW + 1] == Proof.proven).all()
-    assert not contradicted(proofs, found, truth).any()
+    assert block.written is not None
+    written = block.written(block.places)
+    assert not contradicted(proofs, found, truth, written).any()
+    cells = np.array([proofs.low[key][0, ROW], proofs.high[key][0, ROW]])
+    # beside the true value by twice the width of the enclosure, or some roundings
+    off = 2.0 * (cells[1] - cells[0]) + 4.0 * np.spacing(np.abs(cells).max())
     for side in (proofs.low, proofs.high):
-        side["D.theta"][0, ROW] += 1e-9
-    assert np.flatnonzero(contradicted(proofs, found, truth)[0]).tolist() == [ROW]
+        side[key][0, ROW] += off
+    assert np.flatnonzero(contradicted(proofs, found, truth, written)[0]).tolist() == [ROW]
 
 
 def test_a_proof_of_a_row_that_cannot_be() -> None:
     block = drawn(FAMILIES["sizes"], 1, [0])
     truth = block.truth(block.places)
-    found, proofs, _ = solve(block.texts, block.places.shape[1], truth.quantities, proven=[0])
+    found, proofs, _ = solve(block.texts, block.places.shape[1], truth.cells(), proven=[0])
     exists = truth.exists.copy()
     exists[0, ROW] = False
-    wrong = contradicted(proofs, found, replace(truth, exists=exists))
+    assert block.written is not None
+    written = block.written(block.places)
+    wrong = contradicted(proofs, found, replace(truth, exists=exists), written)
     assert np.flatnonzero(wrong[0]).tolist() == [ROW]
 
 
@@ -128,7 +149,7 @@ def test_a_file_that_is_refused_ends_no_other() -> None:
     block = drawn(FAMILIES["sizes"], 1, [0])
     truth = block.truth(block.places)
     texts = ["format: 2\n", block.texts[0]]
-    found, _, refused = solve(texts, block.places.shape[1], truth.quantities)
+    found, _, refused = solve(texts, block.places.shape[1], truth.cells())
     assert list(refused) == [0]
     assert "InvalidFile" in refused[0]
     assert (found.codes[0] == Status.not_assembled).all()

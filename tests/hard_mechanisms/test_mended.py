@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from math import acos, atan2, cos, degrees, hypot, radians, sin
 
 import pytest
 
 import mechkin_cli as mk
+from mechkin_cli.benchmark.stress.block import run_block
 
 FOUR_BAR = """\
 format: 1
@@ -65,3 +67,43 @@ def test_a_thread_comes_to_rows_a_rounding_beyond_whole_turns(turns: int, rest: 
     found = mk.loads(SPINDLE.format(last=last)).analyze(["P.s", "D.theta"])
     assert found["row.status"].tolist() == ["ok", "ok"]
     assert abs(found["P.s"][1] + 1e-4 * last / 360.0) < 1e-14
+
+
+COUPLING = """\
+format: 1
+name: coupling
+units: {{length: m, angle: deg}}
+links: {{one: {{}}, rod: {{}}, two: {{}}}}
+joints:
+  A: {{type: R, links: [ground, one], point: [0, 0, 0], axis: [0, 0, 1]}}
+  B: {{type: R, links: [one, rod], point: [0.1, 0.8, 0], axis: [0, 0, 1]}}
+  C: {{type: R, links: [rod, two], point: [0.1, {end!r}, 0], axis: [0, 0, 1]}}
+  D: {{type: R, links: [ground, two], point: [{foot!r}, 0, 0], axis: [0, 0, 1]}}
+motion: {{inputs: {{A.theta: {{values: [0]}}}}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("apart", "noted"), [(0.0, False), (2e-14, False), (2e-8, True), (5e-8, True), (1e-3, False)]
+)
+def test_joints_that_are_taken_for_coinciding_are_told(apart: float, noted: bool) -> None:
+    """Whatever is asked for: also what does not depend on where the rod is held is off by that."""
+    text = COUPLING.format(end=0.8 + apart, foot=apart / 2)
+    for columns in (["D.theta"], ["B.theta"], ["row.condition"]):
+        notes = [
+            n for n in mk.loads(text).analyze(columns).diagnostics if n.code == "nearly-common"
+        ]
+        assert len(notes) == noted
+        for note in notes:
+            (told,) = re.findall(r"[\d.e+-]+(?= rad)", note.measured or "")
+            # the diagonal of the box of the points is the size
+            size = hypot(0.1, 0.8)
+            assert 0.3 * apart / size < float(told) < 3 * apart / size
+
+
+@pytest.mark.parametrize(("seed", "number"), [(7, 70), (11, 38)])
+def test_a_correction_by_rounding_is_no_other_branch(seed: int, number: int) -> None:
+    """Couplings whose assemblies are 1e-8 apart, where rounding moves a position by as much."""
+    verdicts = run_block("coincident points", seed, [number]).verdicts
+    assert set(verdicts) <= {"right_warned", "rightly_none"}
+    assert verdicts["right_warned"] >= 38

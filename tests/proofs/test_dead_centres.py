@@ -83,6 +83,36 @@ def test_the_true_dead_centre_is_enclosed(rows: str) -> None:
         assert high - low < 1e-10
 
 
+SPACE = ("phchc", "rcrcr", "rprhrrr", "rrrrrrh", "sevenr", "rcsr_csr")
+
+
+@pytest.mark.parametrize("name", SPACE)
+def test_linkages_in_space(name: str) -> None:
+    """Driven on beyond their sweeps, against dead centres at 60 digits."""
+    data = document(MECHANISMS / f"{name}.yaml")
+    data.pop("tables", None)
+    (driver,) = data["motion"]["inputs"]
+    motion = data["motion"]["inputs"][driver]
+    motion["to"] = str(float(motion["to"]) + 400)
+    certificate = mk.loads(to_text(data)).certify()
+    (found,) = certificate.dead_centres
+    assert found.is_proven
+    guess = {}
+    for coordinate in certificate.analysis.result.coordinates:
+        try:
+            low, high = found.enclosure(coordinate)
+        except mk.UsageError:
+            continue
+        unit = DEGREE if coordinate.endswith("theta") else 1
+        guess[coordinate] = 0.5 * (float(low) + float(high)) * unit
+    # the oracle starts from a closed place before it
+    guess[driver] -= mp.mpf("1e-4")
+    value, _ = fold(read(to_text(data | {"units": COHERENT})), driver, guess)
+    low, high = found.bounds
+    assert low <= value / (DEGREE if driver.endswith("theta") else 1) <= high
+    assert high - low < 1e-11
+
+
 def test_words_and_record() -> None:
     certificate = mk.loads(rcsr()).certify()
     (found,) = certificate.dead_centres

@@ -100,6 +100,16 @@ class Repeated:
         self._rests: Wide = {}
 
     @property
+    def rough(self) -> Repeated | None:
+        """The same less finely repeated, where the repetition has errors of its own."""
+        return None
+
+    @property
+    def lost_why(self) -> str:
+        """Why rows are not repeated; "" where that is not known."""
+        return ""
+
+    @property
     def session(self) -> Session:
         """The mechanism in the kernel."""
         return self.result.session

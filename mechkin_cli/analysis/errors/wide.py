@@ -13,19 +13,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli.analysis.errors.parts import as_number, as_parts
 from mechkin_cli.analysis.errors.repeated import NotRepeated
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.inputs import KernelInputs
-from mechkin_cli.tape.double_doubles import DoubleDoubles, exactly
+from mechkin_cli.tape.double_doubles import DoubleDoubles
 from mechkin_cli.tape.traced import TraceLost
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.analysis.errors.repeated import Wide
     from mechkin_cli.analysis.sweep import Result
-    from mechkin_cli.arrays import Floats
+    from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.precise import Precise
+    from mechkin_cli.solver.precise_inputs import PreciseInputs
     from mechkin_cli.solver.session import Session
 
 
@@ -52,15 +56,24 @@ class KernelRows:
     def __init__(self, result: Result, precise: Precise) -> None:
         self.result = result
         self.precise = precise
-        self.given = precise.inputs(result.session)
         self._known: dict[int, tuple[Session, Floats]] = {}
+
+    @property
+    def given(self) -> PreciseInputs:
+        """Inputs and time over the rows, as the text says them."""
+        return self.precise.inputs(self.result.session)
+
+    @property
+    def known(self) -> Bools:
+        """Rows that are repeated (rows,)."""
+        return self.result.row_states.reached
 
     @cached_property
     def inputs(self) -> KernelInputs:
         """Of the rows, double-double."""
         given = self.given
         names = ("values", "rates", "accelerations", "jerks", "reduced")
-        numbers: dict[str, Any] = {name: _number(getattr(given, name)) for name in names}
+        numbers: dict[str, Any] = {name: as_number(getattr(given, name)) for name in names}
         return KernelInputs(**numbers, whole=given.whole)
 
     @cached_property
@@ -108,14 +121,15 @@ class KernelRows:
         self, wanted: Sequence[Wanted], session: Session, inputs: KernelInputs, demand: Demand
     ) -> tuple[DoubleDoubles, DoubleDoubles | None]:
         rows, given, forces = self.result.row_states, self.given, demand & Demand.FORCES
-        at = np.where(rows.reached, np.arange(rows.reached.size), rows.reached.argmax())
+        known = self.known
+        at = np.where(known, np.arange(known.size), known.argmax())
 
         def parts(numbers: Any) -> Floats:
-            return _parts(numbers)[..., at]
+            return as_parts(numbers)[..., at]
 
         batch = session.run_precise(
             parts(inputs.reduced),
-            np.ascontiguousarray(rows.states[:, at]),
+            **self._start(at, session),
             readout=session.readout(wanted) if wanted else None,
             constants=self._constants(session),
             output_constants=self.precise.outputs(session, wanted) if wanted else None,
@@ -131,27 +145,21 @@ class KernelRows:
         )
         # what the text does not close exactly is solved by least squares, as in doubles
         closed = batch.good | session.is_redundant
-        states = _number(batch.states)
-        states[:, ~(closed & rows.reached)] = np.nan
+        states = as_number(batch.states)
+        closed &= self.known
+        states[:, ~closed] = np.nan
         if batch.outputs is None:
             return states, None
-        values = _number(batch.outputs)
+        values = as_number(batch.outputs)
         values[:, ~closed] = np.nan
         return states, values
+
+    def _start(self, at: NDArray[np.intp], session: Session) -> dict[str, Any]:
+        """What `Session.run_precise` starts `session` from at the rows `at`."""
+        return {"guess": np.ascontiguousarray(self.result.row_states.states[:, at])}
 
     def _constants(self, session: Session) -> Floats:
         """The constants of a session's plan as the text says them (constants, 2); kept."""
         if id(session) not in self._known:
             self._known[id(session)] = (session, self.precise.constants(session))
         return self._known[id(session)][1]
-
-
-def _number(parts: Floats) -> DoubleDoubles:
-    """(numbers, 2, rows) as double-doubles (numbers, rows)."""
-    return DoubleDoubles(parts[:, 0], parts[:, 1])
-
-
-def _parts(numbers: Any) -> Floats:
-    """Double-doubles (numbers, rows) as (numbers, 2, rows)."""
-    given = exactly(numbers)
-    return np.stack([given.high, given.low], axis=1)

@@ -131,7 +131,16 @@ def _failed(batch: Batch, rows: Rows) -> Bools:
 
     Sides are there where the run demanded more than positions.
     """
-    failed: Bools = rows.reached & ~(batch.good & (batch.correction <= rows.limit))
+    limit = rows.limit
+    if batch.condition is not None:
+        # next to singular places branches may be nearer than a position is known to rounding
+        known = np.where(
+            batch.condition <= tolerances.CONDITION_RANK_UNCLEAR,
+            tolerances.CORRECTION_ROUNDING * batch.condition,
+            0.0,
+        )
+        limit = np.maximum(limit, known)
+    failed: Bools = rows.reached & ~(batch.good & (batch.correction <= limit))
     if not (batch.side != batch.side[:, :1]).any():
         return failed
     # on a branch point a sign is rounding
@@ -191,8 +200,14 @@ def row_notes(
     problem, session, rows = result.problem, result.session, result.row_states
     notes: list[Diagnostic] = []
     if find_legs(problem.mechanism) or problem.held:
-        from mechkin_cli.mechanism.idle import conventional_notes, holding_notes, idle_freedoms
+        from mechkin_cli.mechanism.idle import (
+            conventional_notes,
+            holding_notes,
+            idle_freedoms,
+            nearly_common_notes,
+        )
 
+        notes += nearly_common_notes(problem)
         read = [*asked, *_read_by_loads(result)]
         key = ("conventional", tuple(quantity.name for quantity in read))
         notes += session.own(key, lambda: conventional_notes(problem, read))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mechkin_cli.benchmark.stress.certify import EACH, contradicted
+from mechkin_cli.benchmark.stress.certify import contradicted
 from mechkin_cli.benchmark.stress.draws import generator
 from mechkin_cli.benchmark.stress.families.table import FAMILIES
 from mechkin_cli.benchmark.stress.family import Block, Family
@@ -14,7 +14,7 @@ from mechkin_cli.benchmark.stress.judge import FAULTS, Found, Judged, Verdict, j
 from mechkin_cli.benchmark.stress.quantity import Truth
 from mechkin_cli.benchmark.stress.solve import solve
 from mechkin_cli.benchmark.stress.tally import CONTRADICTED, REFUSED, Fault, Tally
-from mechkin_cli.status import Status
+from mechkin_cli.status import Status, has_solution
 
 CHUNK = 50_000
 """Rows of a mechanism that are judged at once: double-double rows and their rates take a kilobyte
@@ -39,10 +39,11 @@ def run_block(name: str, seed: int, numbers: Sequence[int]) -> Tally:
     block = drawn(family, seed, numbers)
     tally = Tally(name, mechanisms=len(numbers))
     with np.errstate(all="ignore"):
-        known = block.truth(block.places[:, :1]).quantities
+        known = block.truth(block.places[:, :1]).cells()
         count = block.places.shape[1]
         makes = len(family.makes)
-        asked = [k for k, n in enumerate(numbers) if family.certified and n // makes % EACH == 0]
+        each = family.proven
+        asked = [k for k, n in enumerate(numbers) if each and n // makes % each == 0]
         found, proofs, refused = solve(
             block.texts, count, known, response=family.response, proven=asked
         )
@@ -52,13 +53,15 @@ def run_block(name: str, seed: int, numbers: Sequence[int]) -> Tally:
             part = _rows(found, rows)
             judged = judge(part, truth, response=family.response)
             tally.add(judged, response=family.response)
-            own = proofs.columns(rows)
-            wrong = contradicted(own, part, truth)
-            tally.add_proofs(own, wrong)
-            for k in np.flatnonzero(wrong.any(axis=1)).tolist():
-                row = int(np.argmax(wrong[k]))
-                words = _words(part, truth, k, row)
-                tally.tell(Fault(CONTRADICTED, numbers[k], first + row, words))
+            if asked:
+                assert block.written is not None
+                own, written = proofs.columns(rows), block.written(block.places[:, rows])
+                wrong = contradicted(own, part, truth, written)
+                tally.add_proofs(own, has_solution(part.codes), wrong)
+                for k in np.flatnonzero(wrong.any(axis=1)).tolist():
+                    row = int(np.argmax(wrong[k]))
+                    words = _words(part, truth, k, row)
+                    tally.tell(Fault(CONTRADICTED, numbers[k], first + row, words))
             for fault in _faults(numbers, first, judged, part, truth):
                 tally.tell(fault)
     for k, words in refused.items():
@@ -94,7 +97,8 @@ def _words(found: Found, truth: Truth, k: int, row: int) -> str:
     for quantity in truth.quantities:
         right = np.broadcast_to(quantity.value.number.high, found.codes.shape)[k, row]
         unit = " rad" if quantity.kind != "length" else " m"
-        given = found.values[quantity.name][k, row]
+        key = quantity.keys[0]
+        given = found.values[key][k, row]
         shown = "none" if np.isnan(given) else f"{given:.17g}{' deg' if unit == ' rad' else ' m'}"
-        said.append(f"{quantity.name} {shown} for {right:.17g}{unit}")
+        said.append(f"{key} {shown} for {right:.17g}{unit}")
     return ", ".join(said)

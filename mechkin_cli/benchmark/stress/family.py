@@ -12,11 +12,13 @@ from mechkin_cli.benchmark.stress.quantity import Rows, Truth
 @dataclass(frozen=True)
 class Block:
     """Mechanisms of one make: their files, the places of their rows (mechanisms, rows) as written
-    (degrees of the input, or moments in s), and what is true at places."""
+    (degrees of the input, or moments in s), and what is true at places of the doubles nearest to
+    the numbers of the files; `written` of these numbers themselves, where rows are proven."""
 
     texts: Sequence[str]
     places: Rows
     truth: Callable[[Rows], Truth]
+    written: Callable[[Rows], Truth] | None = None
 
 
 Make = Callable[[Sequence[random.Random]], Block]
@@ -38,8 +40,11 @@ class Family:
     response: bool = False
     """Whether its files have a response, whose errors count in parts of its tolerance."""
     lengths: tuple[int, ...] = ()
-    certified: bool = True
-    """Whether every tenth mechanism is proven: not where its way is thousands of turns or rows."""
+    proven: int = 1
+    """Every how-many-th mechanism of a make is proven, too: a proof may take as long as a hundred
+    solutions. 0: none, as there are no proofs of responses."""
+    weight: float = 1.0
+    """Its rows in parts of other families' rows: forty loops take as long as forty mechanisms."""
 
     def rows_of(self, number: int) -> int:
         """Of a mechanism."""

@@ -15,9 +15,9 @@ from mechkin_cli.status import Status, has_solution
 
 ROUNDING = 2.0**-53
 WRONG = 100.0
-"""Errors above this many roundings times the condition (of rates its square) are no rounding but
-another place, unless nine digits are right, which is what `ok` promises
-(`CONDITION_NEAR_SINGULAR`)."""
+"""Errors above this many roundings times the condition (of rates its square, of accelerations and
+forces its cube) are no rounding but another place, unless nine digits are right, which is what
+`ok` promises (`CONDITION_NEAR_SINGULAR`)."""
 NINE_DIGITS = 1e-9
 WRONG_TOLERANCES = 1000.0
 """The same of responses, in their tolerances: errors of steps add up."""
@@ -45,8 +45,8 @@ class Verdict(IntEnum):
     false_ok = 6
     """Wrong, or there is none, and the row says ok."""
     rates_lost = 7
-    """The place is right and says ok, rates or accelerations are not right to nine digits: a
-    documented limit of rods that are short beside the mechanism."""
+    """The place is right and says ok, rates, accelerations or forces are not right to nine digits:
+    a documented limit of rods that are short beside the mechanism."""
     taken_as_drawn = 8
     """One of these faults where the run itself says that the mechanism is taken for one whose axes
     or points coincide (`COMMON_MOTION`, `LOOP_RANK`): a documented limit."""
@@ -76,8 +76,8 @@ class Judged:
     """(mechanisms, rows) each; errors and bounds are nan where there is nothing to compare.
 
     Positions in rad and parts of the size, or of the value where that is larger; `miss` without
-    these parts, nan where a value is so large that its cell rounds by more than a state. Rates and
-    accelerations in parts of the row's largest.
+    these parts, nan where a value is so large that its cell rounds by more than a state. Rates,
+    accelerations and forces in parts of the row's largest.
     """
 
     verdict: NDArray[np.int8]
@@ -87,6 +87,7 @@ class Judged:
     miss: Rows
     rate: Rows
     acceleration: Rows
+    force: Rows
 
 
 def judge(found: Found, truth: Truth, *, response: bool = False) -> Judged:
@@ -95,6 +96,7 @@ def judge(found: Found, truth: Truth, *, response: bool = False) -> Judged:
     with np.errstate(all="ignore"):
         position, miss, elsewhere = _positions(found, truth)
         rate, acceleration = _rates(found, truth)
+        force = _forces(found, truth)
         condition = np.fmax(found.condition, 1.0)
         wrong, well = elsewhere < position, np.ones(position.shape, bool)
         if response:
@@ -102,8 +104,9 @@ def judge(found: Found, truth: Truth, *, response: bool = False) -> Judged:
         else:
             rounding = WRONG * ROUNDING * condition
             wrong |= ~(position <= np.maximum(rounding, NINE_DIGITS))
-            rates = np.fmax(rate, acceleration)
-            well = ~(rates > np.maximum(rounding * condition, NINE_DIGITS))
+            well = ~(rate > np.maximum(rounding * condition, NINE_DIGITS))
+            second = np.fmax(acceleration, force)
+            well &= ~(second > np.maximum(rounding * condition * condition, NINE_DIGITS))
     # what a held freedom keeps is a convention, and no error
     blank = np.where(solved & truth.decided & ~found.noted, 0.0, np.nan)
     return Judged(
@@ -114,11 +117,12 @@ def judge(found: Found, truth: Truth, *, response: bool = False) -> Judged:
         miss + blank,
         rate + blank,
         acceleration + blank,
+        force + blank,
     )
 
 
 def _verdicts(found: Found, truth: Truth, wrong: Mask, well: Mask) -> NDArray[np.int8]:
-    """`well`: whose rates are right, too."""
+    """`well`: whose rates and forces are right, too."""
     solved = has_solution(found.codes)
     certain = found.codes == Status.ok
     good = solved & truth.exists & ~wrong
@@ -137,8 +141,7 @@ def _positions(found: Found, truth: Truth) -> tuple[Rows, Rows, Rows]:
     shape = found.codes.shape
     error, bare, elsewhere = np.zeros(shape), np.zeros(shape), np.full(shape, np.inf)
     for quantity in truth.quantities:
-        value = quantity.value
-        right = value.value if isinstance(value, Series) else value
+        right = quantity.levels[0]
         scale = truth.size if quantity.kind == "length" else 1.0
         miss = _apart(found, quantity, right) / scale
         far = np.abs(right.high) / scale
@@ -151,7 +154,7 @@ def _positions(found: Found, truth: Truth) -> tuple[Rows, Rows, Rows]:
 
 def _apart(found: Found, quantity: Quantity, right: DoubleDouble) -> Rows:
     """How far a coordinate is from a value, in m or rad."""
-    given = found.values[quantity.name]
+    given = found.values[quantity.keys[0]]
     if quantity.kind == "length":
         return np.abs((right - given).high)
     miss = radians(given) - right
@@ -170,11 +173,24 @@ def _rates(found: Found, truth: Truth) -> tuple[Rows, Rows]:
         if not isinstance(quantity.value, Series):
             continue
         scale = truth.size if quantity.kind == "length" else 1.0
-        rate, bend = quantity.value.rate, quantity.value.acceleration
+        _, rate, bend = quantity.levels
         fastest = np.maximum(fastest, np.abs(rate.high) / scale)
         strongest = np.maximum(strongest, np.abs(bend.high) / scale)
-        for k, (right, suffix) in enumerate(((rate, "_dot"), (bend, "_ddot"))):
-            miss = np.abs((right - found.values[quantity.name + suffix]).high) / scale
+        for k, (right, key) in enumerate(zip((rate, bend), quantity.keys[1:], strict=True)):
+            miss = np.abs((right - found.values[key]).high) / scale
             errors[k] = np.fmax(errors[k], miss)
     strongest = np.maximum(strongest, fastest * fastest)
     return errors[0] / fastest, errors[1] / strongest
+
+
+def _forces(found: Found, truth: Truth) -> Rows:
+    """Errors in parts of the row's largest force or load; of moments over the size."""
+    shape = found.codes.shape
+    error, largest = np.full(shape, np.nan), np.zeros(shape) + truth.heaviest
+    for force in truth.forces:
+        scale = truth.size if force.is_moment else 1.0
+        largest = np.fmax(largest, np.abs(force.value.high) / scale)
+        # a force that is not given is as far off as can be
+        miss = np.abs((force.value - found.values[force.key]).high) / scale
+        error = np.fmax(error, np.where(np.isnan(miss), np.inf, miss))
+    return error / largest

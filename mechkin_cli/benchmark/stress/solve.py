@@ -9,8 +9,7 @@ import numpy as np
 
 from mechkin_cli.benchmark.stress.certify import Proofs, prove, unasked
 from mechkin_cli.benchmark.stress.judge import Found
-from mechkin_cli.benchmark.stress.numbers.series import Series
-from mechkin_cli.benchmark.stress.quantity import Quantity
+from mechkin_cli.benchmark.stress.quantity import Cell
 from mechkin_cli.interface import Analysis, loads
 from mechkin_cli.status import Status
 
@@ -24,7 +23,14 @@ class Solved(NamedTuple):
 
 
 CONDITION, BOUND = "row.condition", "row.error_bound"
-TAKEN = ("conventional", "hold-ends", "undriven-freedom", "input-locked", "input-dependent")
+TAKEN = (
+    "nearly-common",
+    "conventional",
+    "hold-ends",
+    "undriven-freedom",
+    "input-locked",
+    "input-dependent",
+)
 """Notes of a run that takes axes or points for coinciding: a freedom is held that nothing moves, or
 is not driven, or an input does not move anything."""
 
@@ -32,22 +38,19 @@ is not driven, or an input does not move anything."""
 def solve(
     texts: Sequence[str],
     rows: int,
-    quantities: Sequence[Quantity],
+    cells: Sequence[Cell],
     *,
     response: bool = False,
     proven: Collection[int] = (),
 ) -> Solved:
     """Runs every file, and proves the rows of those whose numbers are among `proven`."""
-    names = []
-    for quantity in quantities:
-        rates = ("_dot", "_ddot") if isinstance(quantity.value, Series) else ()
-        names += [quantity.name + suffix for suffix in ("", *rates)]
+    names = list(dict.fromkeys(cell.quantity for cell in cells))
     shape = len(texts), rows
     codes = np.full(shape, Status.not_assembled, np.int8)
     condition, bound = np.full(shape, np.nan), np.full(shape, np.nan)
-    values = {name: np.full(shape, np.nan) for name in names}
+    values = {cell.key: np.full(shape, np.nan) for cell in cells}
     noted = np.zeros((len(texts), 1), bool)
-    proofs = unasked(*shape, [quantity.name for quantity in quantities])
+    proofs = unasked(*shape, [cell.key for cell in cells])
     refused = {}
     for k, text in enumerate(texts):
         try:
@@ -60,11 +63,11 @@ def solve(
         condition[k] = analysis[CONDITION]
         if not response:
             bound[k] = analysis[BOUND]
-        for name in names:
-            values[name][k] = analysis[name]
+        for cell in cells:
+            values[cell.key][k] = cell.column(analysis[cell.quantity])
         noted[k] = any(note.code in TAKEN for note in analysis.diagnostics)
         if k in proven:
-            prove(proofs, k, analysis)
+            prove(proofs, k, analysis, cells)
     return Solved(Found(codes, condition, bound, values, noted), proofs, refused)
 
 

@@ -12,6 +12,7 @@ from mechkin_cli.benchmark.stress.draws import uniform
 from mechkin_cli.benchmark.stress.family import Block
 from mechkin_cli.benchmark.stress.linkages.moving import turning
 from mechkin_cli.benchmark.stress.linkages.train import Train
+from mechkin_cli.benchmark.stress.linkages.writing import decimals
 from mechkin_cli.benchmark.stress.numbers.double_double import DEGREE, radians
 from mechkin_cli.benchmark.stress.numbers.series import Number
 from mechkin_cli.benchmark.stress.quantity import Quantity, Rows, Truth
@@ -23,19 +24,27 @@ FULL = 400.0
 """Degrees that are swept where there is no dead centre."""
 
 
-class Linkage(Protocol):
-    """One with a single discriminant, driven at A.theta."""
-
-    def margin(self, angle: Number) -> Margin:
-        """The discriminant at the crank's angle in rad."""
-        ...
+class Driven(Protocol):
+    """A linkage that is driven at A.theta."""
 
     def quantities(self, angle: Number) -> tuple[Quantity, ...]:
-        """The coordinates there."""
+        """The coordinates at the crank's angle in rad."""
+        ...
+
+    def as_written(self) -> Driven:
+        """The same of the numbers that its files say, in place of their doubles."""
         ...
 
     def size(self) -> Rows:
         """What lengths are taken by, in m."""
+        ...
+
+
+class Linkage(Driven, Protocol):
+    """One with a single discriminant."""
+
+    def margin(self, angle: Number) -> Margin:
+        """The discriminant at the crank's angle in rad."""
         ...
 
     def text(self, k: int, name: str, degrees: Rows) -> str:
@@ -51,11 +60,28 @@ def block(linkage: Linkage, name: str, found: Reach, degrees: Rows) -> Block:
         exists, decided = found.decide(radians(places))
         return Truth(linkage.quantities(turning(places)), exists, decided, linkage.size())
 
-    return Block(texts, degrees, truth)
+    return Block(texts, degrees, truth, written_truth(linkage))
+
+
+def written_truth(linkage: Driven) -> Callable[[Rows], Truth]:
+    """What is true at places in degrees that exist, of the numbers that the files say."""
+    exact = linkage.as_written()
+
+    def truth(places: Rows) -> Truth:
+        every = np.ones(places.shape, bool)
+        return Truth(exact.quantities(turning(decimals(places))), every, every, linkage.size())
+
+    return truth
 
 
 def through(linkage: Linkage, name: str, generators: Sequence[random.Random], count: int) -> Block:
-    """Rows from the drawing towards an end of the branch, some beyond it, or a full turn."""
+    """Rows of `swept`."""
+    return block(linkage, name, *swept(linkage, generators, count))
+
+
+def swept(linkage: Linkage, generators: Sequence[random.Random], count: int) -> tuple[Reach, Rows]:
+    """How far the branches go, and rows (mechanisms, count) in degrees from the drawing towards an
+    end of the branch, some beyond it, or a full turn."""
     found = reach(linkage.margin, len(generators))
     sense, ends = towards(found, generators)
     last = []
@@ -63,7 +89,7 @@ def through(linkage: Linkage, name: str, generators: Sequence[random.Random], co
         part = uniform(rng, 0.2, PAST_END)
         last.append([end * part if np.isfinite(end) else s * FULL * part])
     steps = np.arange(count) / (count - 1)
-    return block(linkage, name, found, np.array(last) * steps)
+    return found, np.array(last) * steps
 
 
 def towards(found: Reach, generators: Sequence[random.Random]) -> tuple[Rows, Rows]:

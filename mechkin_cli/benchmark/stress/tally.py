@@ -19,8 +19,9 @@ SHOWN = 5
 """Faults of each kind that a family keeps."""
 NOTHING = ROUNDING / 1024.0
 """Errors below this are luck, and say nothing of a bound."""
-LEVELS = ("position", "rate", "acceleration")
+LEVELS = ("position", "rate", "acceleration", "force")
 REFUSED = "refused"
+NO_POSITION = "no position"
 CONTRADICTED = "proven elsewhere"
 
 
@@ -36,9 +37,9 @@ class Fault:
 
 @dataclass
 class Tally:
-    """Of one family. Errors are in roundings times the condition, of rates and accelerations times
-    its square; of responses in tolerances. `by_condition` holds positions by the condition's power
-    of ten; `bounds` are bounds over errors."""
+    """Of one family. Errors are in roundings times the condition, of rates times its square, of
+    accelerations and forces times its cube; of responses in tolerances. `by_condition` holds
+    positions by the condition's power of ten; `bounds` are bounds over errors."""
 
     family: str
     mechanisms: int = 0
@@ -52,14 +53,19 @@ class Tally:
     proofs: Counter[str] = field(default_factory=Counter)
     faults: list[Fault] = field(default_factory=list)
 
-    def add_proofs(self, proofs: Proofs, wrong: Mask) -> None:
-        """Rows of which a proof was asked, by what was proven; and those that are elsewhere."""
+    def add_proofs(self, proofs: Proofs, solved: Mask, wrong: Mask) -> None:
+        """Rows of which a proof was asked, by what was proven; those that are not `solved`, where
+        there is nothing to prove; and those that are elsewhere."""
         for proof in Proof:
             count = int((proofs.codes == proof).sum())
             if count:
                 self.proofs[proof.name] += count
-        if wrong.any():
-            self.proofs[CONTRADICTED] += int(wrong.sum())
+        for name, rows in (
+            (NO_POSITION, (proofs.codes == Proof.not_proven) & ~solved),
+            (CONTRADICTED, wrong),
+        ):
+            if rows.any():
+                self.proofs[name] += int(rows.sum())
 
     def add(self, judged: Judged, *, response: bool = False) -> None:
         """Rows of a block; mechanisms are counted apart."""
@@ -83,7 +89,9 @@ class Tally:
         self.errors["position"].add(position)
         square = ROUNDING * condition * condition
         self.errors["rate"].add((judged.rate + blank) / square)
-        self.errors["acceleration"].add((judged.acceleration + blank) / square)
+        cube = square * condition
+        self.errors["acceleration"].add((judged.acceleration + blank) / cube)
+        self.errors["force"].add((judged.force + blank) / cube)
         decades = _decades(condition)
         for decade in np.unique(decades[~np.isnan(position)]):
             own = self.by_condition.setdefault(int(decade), Histogram())

@@ -12,19 +12,32 @@ import sys
 from collections.abc import Iterable, Iterator
 from queue import SimpleQueue
 from threading import Thread
-from typing import IO
+from time import monotonic
+from typing import IO, NamedTuple
 
 from mechkin_cli.benchmark.stress.block import run_block
 from mechkin_cli.benchmark.stress.plan import Task
 from mechkin_cli.benchmark.stress.tally import Tally, of_record
 
+
+class Done(NamedTuple):
+    """A block, what became of it, and how long that took in s."""
+
+    task: Task
+    tally: Tally
+    seconds: float
+
+
 COMMAND = (sys.executable, "-P", "-m", "mechkin_cli.benchmark.stress.worker")
 
 
-def results(tasks: Iterable[Task], seed: int, processes: int) -> Iterator[Tally]:
+def results(tasks: Iterable[Task], seed: int, processes: int) -> Iterator[Done]:
     """The tally of every task, in the order in which they are done."""
     if processes == 1:
-        yield from (run_block(task.family, seed, task.numbers) for task in tasks)
+        for task in tasks:
+            start = monotonic()
+            tally = run_block(task.family, seed, task.numbers)
+            yield Done(task, tally, monotonic() - start)
         return
     waiting: Iterator[Task] = iter(tasks)
     done: SimpleQueue[tuple[int, str]] = SimpleQueue()
@@ -35,7 +48,8 @@ def results(tasks: Iterable[Task], seed: int, processes: int) -> Iterator[Tally]
             number, line = done.get()
             if not line:
                 raise RuntimeError("a process of the stress test ended before its answer")
-            yield of_record(json.loads(line))
+            task, start = workers[number].given
+            yield Done(task, of_record(json.loads(line)), monotonic() - start)
             busy -= not workers[number].give(next(waiting, None), seed)
 
 
@@ -48,6 +62,7 @@ class _Worker:
         self.process = subprocess.Popen(
             COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf-8"
         )
+        self.given = Task("", ()), 0.0
         Thread(target=self._read, args=(self.process.stdout,), daemon=True).start()
 
     def _read(self, answers: IO[str]) -> None:
@@ -60,6 +75,7 @@ class _Worker:
         if task is None:
             return False
         assert self.process.stdin is not None
+        self.given = task, monotonic()
         self.process.stdin.write(json.dumps([task.family, seed, list(task.numbers)]) + "\n")
         self.process.stdin.flush()
         return True

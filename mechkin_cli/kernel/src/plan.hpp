@@ -327,6 +327,7 @@ struct Request {
   const double* chart_rates;    // charts x rows, may be null without DEMAND_VELOCITY
   const double* chart_accelerations;  // charts x rows, likewise
   const double* friction_told;  // frictions x TOLD_NUMBERS x rows, see FrictionTold; null: rates tell all
+  double* chart_forces;         // charts x rows, may be null: what would have to act along u, with DEMAND_FORCES
 };
 
 enum RowFlag : unsigned char {

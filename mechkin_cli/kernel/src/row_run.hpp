@@ -216,6 +216,10 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
       for (int i = 0; i < in.count; ++i) r.undefined[in.row + i] = lane(undefined, i);
     const Balance balance =
         balance_with_actuators(p, w, velocities, accelerations, r.shift, row_values, tie_value);
+    // the chart stands in the one block, behind its closing equations
+    if (PARTS > 1 && r.chart_forces)
+      for (int i = 0; i < p.charts; ++i)
+        writer(r.chart_forces).put(i, w.multiplier[p.block[0].rows - p.charts + i]);
     const auto actuators = [&](Powers& powers) { add_actuator_power(powers, p, w); };
     if (r.demand & DEMAND_POWER)
       writer(r.power_error)

@@ -15,11 +15,11 @@ PAGE = ROOT / "docs" / "errors.md"
 HEAD = """# Right digits
 
 Every cell of every table of the mechanisms kept here against its true value: the rows repeated in
-double-double from the converged ones, with all numbers as the files' texts have them (`mechkin
-analyze --errors`; [numerics.md](numerics.md#true-errors) says how). *Digits* are those to which
-every cell of a table is right, in parts of the largest of its column; *worst* is the largest such
-error, with its column and row. Made by `python -P tests/mechanisms/right_digits`, which a test
-checks.
+double-double from the converged ones, responses integrated once more from their start, with all
+numbers as the files' texts have them (`mechkin analyze --errors`;
+[numerics.md](numerics.md#true-errors) says how). *Digits* are those to which every cell of a table
+is right, in parts of the largest of its column; *worst* is the largest such error, with its column
+and row. Made by `python -P tests/mechanisms/right_digits`, which a test checks.
 
 | mechanism | table | cells | digits | worst | column | row | not repeated |
 |---|---|---|---|---|---|---|---|

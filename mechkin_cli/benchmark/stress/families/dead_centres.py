@@ -12,7 +12,8 @@ from mechkin_cli.benchmark.stress.draws import uniform
 from mechkin_cli.benchmark.stress.families import shapes
 from mechkin_cli.benchmark.stress.family import Block, Family
 from mechkin_cli.benchmark.stress.numbers.double_double import DEGREE
-from mechkin_cli.benchmark.stress.reach import reach
+from mechkin_cli.benchmark.stress.quantity import Rows
+from mechkin_cli.benchmark.stress.reach import Reach, reach
 from mechkin_cli.benchmark.stress.sweeps import FULL, Linkage, block, towards
 
 POWERS = range(-1, -13, -1)
@@ -27,6 +28,12 @@ def _make(
     generators: Sequence[random.Random],
 ) -> Block:
     linkage = shape(generators, [0] * len(generators))
+    found, degrees = near_ends(linkage, generators)
+    return block(linkage, "dead centres", found, degrees)
+
+
+def near_ends(linkage: Linkage, generators: Sequence[random.Random]) -> tuple[Reach, Rows]:
+    """How far the branches go, and rows next to their ends in degrees (mechanisms, rows)."""
     found = reach(linkage.margin, len(generators))
     sense, _ = towards(found, generators)
     ends = found.ends(sense) / DEGREE
@@ -39,7 +46,7 @@ def _make(
         near = (ends[k : k + 1] - sense[k, 0] * distances).high[0]
         # rows on the near side of the drawing stay there
         degrees[k, 1:] = np.where(near * sense[k, 0] > 0.0, near, 0.0)
-    return block(linkage, "dead centres", found, degrees)
+    return found, degrees
 
 
 def _distances(rng: random.Random) -> np.ndarray:

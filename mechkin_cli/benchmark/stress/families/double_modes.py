@@ -16,7 +16,7 @@ from mechkin_cli.benchmark.stress.linkages.writing import number
 from mechkin_cli.benchmark.stress.numbers.double_double import DEGREE, radians
 from mechkin_cli.benchmark.stress.quantity import Rows, Truth
 from mechkin_cli.benchmark.stress.reach import reach
-from mechkin_cli.benchmark.stress.sweeps import FULL, towards
+from mechkin_cli.benchmark.stress.sweeps import FULL, towards, written_truth
 
 ROWS = 20
 POWERS = (-12, 0)
@@ -50,7 +50,7 @@ def _make(generators: Sequence[random.Random]) -> Block:
         exists, decided = found.decide(radians(places))
         return Truth(linkage.quantities(turning(places)), exists, decided, linkage.size())
 
-    return Block(texts, degrees, truth)
+    return Block(texts, degrees, truth, written_truth(linkage))
 
 
 FAMILY = Family(

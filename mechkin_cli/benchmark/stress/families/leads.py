@@ -13,6 +13,7 @@ from mechkin_cli.benchmark.stress.linkages.moving import turning
 from mechkin_cli.benchmark.stress.linkages.screw import Screw
 from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
 from mechkin_cli.benchmark.stress.quantity import Rows, Truth
+from mechkin_cli.benchmark.stress.sweeps import written_truth
 
 ROWS = 40
 POWERS = (-6, 6)
@@ -44,7 +45,7 @@ def _make(generators: Sequence[random.Random]) -> Block:
         every = np.ones(given.shape, bool)
         return Truth(screw.quantities(turning(given)), every, every, screw.size())
 
-    return Block(texts, degrees, truth)
+    return Block(texts, degrees, truth, written_truth(screw))
 
 
 def _clear(screw: Screw, senses: Rows) -> Rows:
@@ -63,4 +64,5 @@ FAMILY = Family(
     "spindles of leads from 1e-6 to 1e6 m that drive a rocker by nut and rod",
     ROWS,
     (_make,),
+    proven=10,
 )

@@ -12,7 +12,7 @@ from mechkin_cli.benchmark.stress.draws import uniform
 from mechkin_cli.benchmark.stress.families.shapes import drag_links
 from mechkin_cli.benchmark.stress.family import Block, Family
 from mechkin_cli.benchmark.stress.linkages.writing import ACCELERATION, RATE, number
-from mechkin_cli.benchmark.stress.sweeps import turning_truth
+from mechkin_cli.benchmark.stress.sweeps import turning_truth, written_truth
 
 ROWS = (1_000, 10_000, 100_000, 1_000_000)
 BARS = 2
@@ -29,7 +29,7 @@ def _make(rows: int, generators: Sequence[random.Random]) -> Block:
     motion = f"motion: {{inputs: {{A.theta: {{{law}, {rates}}}}}}}"
     texts = [train.moved(k, "long sweeps", motion) for k in range(len(generators))]
     degrees = np.tile(STEP * np.arange(rows), (len(generators), 1))
-    return Block(texts, degrees, turning_truth(train))
+    return Block(texts, degrees, turning_truth(train), written_truth(train))
 
 
 FAMILY = Family(
@@ -38,5 +38,4 @@ FAMILY = Family(
     0,
     tuple(partial(_make, rows) for rows in ROWS),
     lengths=ROWS,
-    certified=False,
 )

@@ -21,4 +21,10 @@ def _make(generators: Sequence[random.Random]) -> Block:
     )
 
 
-FAMILY = Family("many loops", "forty planar drag links in a row", ROWS, (_make,))
+FAMILY = Family(
+    "many loops",
+    "forty planar drag links in a row",
+    ROWS,
+    (_make,),
+    weight=0.1,
+)

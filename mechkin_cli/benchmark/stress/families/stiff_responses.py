@@ -52,5 +52,5 @@ FAMILY = Family(
     ROWS,
     (_make,),
     response=True,
-    certified=False,
+    proven=0,
 )

@@ -7,6 +7,7 @@ from mechkin_cli.benchmark.stress.families import (
     coincident_points,
     dead_centres,
     double_modes,
+    forces,
     leads,
     link_ratios,
     long_sweeps,
@@ -14,6 +15,7 @@ from mechkin_cli.benchmark.stress.families import (
     many_turns,
     parallel_axes,
     sizes,
+    spatial_loops,
     stiff_responses,
 )
 
@@ -31,6 +33,8 @@ FAMILIES = {
         many_turns,
         many_loops,
         long_sweeps,
+        forces,
+        spatial_loops,
         stiff_responses,
     )
 }

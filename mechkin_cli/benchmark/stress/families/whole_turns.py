@@ -10,7 +10,7 @@ import numpy as np
 from mechkin_cli.benchmark.stress.draws import uniform
 from mechkin_cli.benchmark.stress.families.shapes import drag_links
 from mechkin_cli.benchmark.stress.family import Block
-from mechkin_cli.benchmark.stress.sweeps import turning_truth
+from mechkin_cli.benchmark.stress.sweeps import turning_truth, written_truth
 
 
 def whole_turns(
@@ -29,4 +29,4 @@ def whole_turns(
     last = [[rng.choice((-1.0, 1.0)) * uniform(rng, least, 1.0) * degrees] for rng in generators]
     places = np.array(last) * (np.arange(rows) / (rows - 1))
     texts = [train.text(k, name, row) for k, row in enumerate(places)]
-    return Block(texts, places, turning_truth(train))
+    return Block(texts, places, turning_truth(train), written_truth(train))

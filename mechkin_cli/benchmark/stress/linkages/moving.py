@@ -16,10 +16,9 @@ Field = Callable[[Rows], Number]
 """Makes numbers of exact doubles: `DoubleDouble`, or a test's numbers of 40 digits."""
 
 
-def turning(degrees: Rows) -> Series:
+def turning(degrees: Rows | DoubleDouble) -> Series:
     """Angles (mechanisms, rows) in degrees, in rad with the rates that the files write."""
-    angle = radians(degrees)
-    return constant_rates(angle)
+    return constant_rates(radians(degrees))
 
 
 def constant_rates(value: DoubleDouble) -> Series:

@@ -6,12 +6,12 @@ half-angles.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mechkin_cli.benchmark.stress.linkages.moving import Field, vector
-from mechkin_cli.benchmark.stress.linkages.writing import document, joint, swept
+from mechkin_cli.benchmark.stress.linkages.writing import decimals, document, joint, swept
 from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
 from mechkin_cli.benchmark.stress.numbers.series import Number
 from mechkin_cli.benchmark.stress.numbers.vectors import (
@@ -99,6 +99,10 @@ class Rccc:
             dot(gap, cross(four, along_two)) / volume,
             -(dot(gap, normal) / volume),
         )
+
+    def as_written(self) -> Rccc:
+        """The same of the numbers that its files say, in place of their doubles."""
+        return replace(self, field=decimals)
 
     def size(self) -> Rows:
         """The diagonal of the box of the drawn points, (mechanisms, 1)."""

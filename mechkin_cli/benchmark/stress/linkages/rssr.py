@@ -5,12 +5,13 @@ A.theta is the input; D.theta has two roots, one for each sign of the discrimina
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mechkin_cli.benchmark.stress.linkages.moving import Field, vector
-from mechkin_cli.benchmark.stress.linkages.writing import document, joint, swept
+from mechkin_cli.benchmark.stress.linkages.writing import decimals, document, joint, swept
 from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
 from mechkin_cli.benchmark.stress.numbers.series import Number
 from mechkin_cli.benchmark.stress.numbers.vectors import Swing, dot, minus, plus, swing, turn, unit
@@ -54,14 +55,26 @@ class Rssr:
         other = away_sine.number.arctan2(away_cosine.number)
         return (Quantity("D.theta", "angle", sine.arctan2(cosine), other),)
 
+    def as_written(self) -> Rssr:
+        """The same of the numbers that its files say, in place of their doubles."""
+        return replace(self, field=decimals)
+
     def size(self) -> Rows:
         """The diagonal of the box of the drawn points, (mechanisms, 1)."""
         spans = np.ptp(np.stack(self.points), axis=0)
         size: Rows = np.sqrt((spans * spans).sum(axis=1, keepdims=True))
         return size
 
-    def text(self, k: int, name: str, degrees: Rows, *sections: str) -> str:
-        """Mechanism k as a file, swept through the degrees; `sections` follow."""
+    def text(
+        self,
+        k: int,
+        name: str,
+        degrees: Rows,
+        *sections: str,
+        links: Iterable[str] | Mapping[str, str] = ("crank", "rod", "rocker"),
+    ) -> str:
+        """Mechanism k as a file, swept through the degrees; `sections` follow. `links` may have
+        their texts."""
         a, b, c, d = (p[k] for p in self.points)
         joints = {
             "A": joint("R", ("ground", "crank"), point=a, axis=self.axes[0][k]),
@@ -70,4 +83,4 @@ class Rssr:
             "D": joint("R", ("ground", "rocker"), point=d, axis=self.axes[1][k]),
         }
         motion = swept("A.theta", degrees)
-        return document(name, ("crank", "rod", "rocker"), joints, motion, *sections)
+        return document(name, links, joints, motion, *sections)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mechkin_cli.benchmark.stress.linkages.moving import Field, vector
-from mechkin_cli.benchmark.stress.linkages.writing import document, joint, number, swept
+from mechkin_cli.benchmark.stress.linkages.writing import decimals, document, joint, number, swept
 from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
 from mechkin_cli.benchmark.stress.numbers.series import Number
 from mechkin_cli.benchmark.stress.numbers.vectors import Swing, dot, minus, plus, swing, times, unit
@@ -54,6 +54,10 @@ class Screw:
             Quantity("H.theta", "whole turns", -angle),
             Quantity("D.theta", "angle", sine.arctan2(cosine), other),
         )
+
+    def as_written(self) -> Screw:
+        """The same of the numbers that its files say, in place of their doubles."""
+        return replace(self, field=decimals)
 
     def size(self) -> Rows:
         """The diagonal of the box of the drawn points, (mechanisms, 1)."""

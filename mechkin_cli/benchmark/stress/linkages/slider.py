@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mechkin_cli.benchmark.stress.linkages.moving import Field, vector
-from mechkin_cli.benchmark.stress.linkages.writing import document, joint, swept
+from mechkin_cli.benchmark.stress.linkages.writing import decimals, document, joint, swept
 from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
 from mechkin_cli.benchmark.stress.numbers.series import Number
 from mechkin_cli.benchmark.stress.numbers.vectors import (
@@ -60,14 +61,26 @@ class Slider:
         other = middle.number - root.number
         return (Quantity("P.s", "length", middle + root, other),)
 
+    def as_written(self) -> Slider:
+        """The same of the numbers that its files say, in place of their doubles."""
+        return replace(self, field=decimals)
+
     def size(self) -> Rows:
         """The diagonal of the box of the drawn points, (mechanisms, 1)."""
         spans = np.ptp(np.stack(self.points), axis=0)
         size: Rows = np.sqrt((spans * spans).sum(axis=1, keepdims=True))
         return size
 
-    def text(self, k: int, name: str, degrees: Rows) -> str:
-        """Mechanism k as a file, swept through the degrees."""
+    def text(
+        self,
+        k: int,
+        name: str,
+        degrees: Rows,
+        *sections: str,
+        links: Iterable[str] | Mapping[str, str] = ("crank", "rod", "slider"),
+    ) -> str:
+        """Mechanism k as a file, swept through the degrees; `sections` follow. `links` may have
+        their texts."""
         a, b, c = (p[k] for p in self.points)
         joints = {
             "A": joint("R", ("ground", "crank"), point=a, axis=self.axes[0][k]),
@@ -76,4 +89,4 @@ class Slider:
             "P": joint("P", ("ground", "slider"), point=c, axis=self.axes[1][k]),
         }
         motion = swept("A.theta", degrees)
-        return document(name, ("crank", "rod", "slider"), joints, motion)
+        return document(name, links, joints, motion, *sections)

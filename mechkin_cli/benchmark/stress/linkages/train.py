@@ -5,12 +5,12 @@ Every loop is overconstrained in space and a block of its own.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mechkin_cli.benchmark.stress.linkages.moving import Field
-from mechkin_cli.benchmark.stress.linkages.writing import document, joint, swept
+from mechkin_cli.benchmark.stress.linkages.writing import decimals, document, joint, swept
 from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
 from mechkin_cli.benchmark.stress.numbers.series import Number
 from mechkin_cli.benchmark.stress.numbers.vectors import Swing
@@ -112,6 +112,10 @@ class Train:
                 exists &= flat.value.number.high > 0.0
                 decided &= np.abs(flat.value.number.high) > flat.blur
         return exists, decided
+
+    def as_written(self) -> Train:
+        """The same of the numbers that its files say, in place of their doubles."""
+        return replace(self, bars=tuple(replace(bar, field=decimals) for bar in self.bars))
 
     def size(self) -> Rows:
         """The diagonal of the box of the drawn points, (mechanisms, 1)."""

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
 
+import numpy as np
+
+from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
 from mechkin_cli.benchmark.stress.quantity import Rows
 
 RATE = 1.0
@@ -14,6 +18,12 @@ ACCELERATION = 0.25
 def number(value: float) -> str:
     """The shortest text that is read as the same double."""
     return repr(float(value))
+
+
+def decimals(values: Rows) -> DoubleDouble:
+    """The numbers that a file says where it has the texts of doubles."""
+    low = [float(Fraction(repr(x)) - Fraction(x)) for x in values.ravel().tolist()]
+    return DoubleDouble(values, np.array(low).reshape(values.shape))
 
 
 def place(values: Iterable[float]) -> str:

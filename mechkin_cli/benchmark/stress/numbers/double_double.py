@@ -230,6 +230,7 @@ DEGREE = DoubleDouble.of(PI / 180)
 """One degree in rad."""
 
 
-def radians(degrees: Rows) -> DoubleDouble:
-    """Angles in degrees, which are exact doubles, in rad."""
-    return DoubleDouble(degrees) * DEGREE
+def radians(degrees: Rows | DoubleDouble) -> DoubleDouble:
+    """Angles in degrees, of which arrays are exact doubles, in rad."""
+    exact = degrees if isinstance(degrees, DoubleDouble) else DoubleDouble(degrees)
+    return exact * DEGREE

@@ -1,0 +1,47 @@
+"""What is kept of the values of variants: all rows, or what reductions make of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mechkin_cli.analysis.reductions import Reduction
+from mechkin_cli.arrays import Floats
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
+
+Reductions = tuple[Reduction, ...] | Reduction | None
+"""Several, one, or none: all rows."""
+
+
+def reduced(text: str, values: Floats, reduction: Reductions) -> Floats:
+    """What is kept of (variants, rows) or (variants, rows, 3), the reductions last where there are
+    several.
+
+    Raises:
+        UsageError: a function of the caller fails, or gives something else.
+    """
+    if reduction is None:
+        return values
+    if isinstance(reduction, tuple):
+        return np.stack([_by(each, text, values) for each in reduction], axis=-1)
+    return _by(reduction, text, values)
+
+
+def _by(reduction: Reduction, text: str, values: Floats) -> Floats:
+    if values.ndim == 3:
+        parts = [_by(reduction, text, values[:, :, k]) for k in range(3)]
+        return np.stack(parts, axis=1)
+    given = values.view()
+    given.flags.writeable = False  # the next reduction reads the same
+    try:
+        found = np.asarray(reduction(given), dtype=np.float64)
+    except Exception as error:
+        raise UsageError(
+            f"the reduction of {text} failed with {type(error).__name__}: "
+            f"{str(error)[:LONGEST_NAME]}; it takes (variants, rows) = {values.shape}"
+        ) from error
+    if found.shape[:1] != values.shape[:1]:
+        raise UsageError(
+            f"the reduction of {text} gives an array of shape {found.shape}; it takes "
+            f"(variants, rows) = {values.shape} and gives one value a variant"
+        )
+    return found
