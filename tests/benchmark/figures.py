@@ -2,8 +2,8 @@
 
     python tests/benchmark/figures.py [NAME ...] [--rounds N] [--rows N] [--json]
 
-NAMEs: platform, million, verdicts, threads, chains; without any, all of them. Times are by the
-clock on the wall, as threads and files count; run it on an otherwise idle machine.
+NAMEs: platform, million, verdicts, closing, threads, chains; without any, all of them. Times are by
+the clock on the wall, as threads and files count; run it on an otherwise idle machine.
 """
 
 from __future__ import annotations
@@ -171,6 +171,34 @@ def verdicts(_: int, __: int) -> Table:
     return Table("verdicts", "general 7R, positions only", COLUMNS, rows, ())
 
 
+def closing(_: int, __: int) -> Table:
+    """What a column of the angle at which a 7R closes, and of its rates, costs against a column of
+    the joints' points."""
+    specimen = sevenr_specimen()
+    case = KernelCase(specimen, degree_rows(specimen))
+    inputs, guesses = repeated(case.inputs), repeated(case.second_order_guesses())
+    tree = {edge.joint.name for edge in case.layout.graph.edges}
+    angles = list(zip(*specimen.motion, strict=True))
+    own = [name for names in angles for name in names if name.split(".")[0] in tree]
+    at_closing = [name for names in angles for name in names if name.split(".")[0] not in tree]
+    points = [f"{joint}.point" for joint in tree]
+    columns = {"without": 0, "closing angle": len(at_closing), "points": 3 * len(points)}
+    runs = {
+        "without": PlannedRun(case, own),
+        "closing angle": PlannedRun(case, [*own, *at_closing]),
+        "points": PlannedRun(case, [*own, *points]),
+    }
+    times = in_turns({name: partial(run, inputs, guesses) for name, run in runs.items()})
+    without = times["without"].median
+    cost = {
+        name: 1e9 * (times[name].median - without) / BATCH / columns[name]
+        for name in ("closing angle", "points")
+    }
+    rows = [row(name, value, "ns a column and row") for name, value in cost.items()]
+    rows.append(row("ratio", cost["closing angle"] / cost["points"], ""))
+    return Table("closing", "general 7R, columns of its closing joint", COLUMNS, rows, ())
+
+
 def threads(rounds: int, count: int) -> Table:
     """One thread against two, for everything that RCSR and the 7R can be asked."""
     sources = {
@@ -217,7 +245,7 @@ def chains(rounds: int, _: int) -> Table:
     return Table("chains", "load and graph of chains of four-bars", COLUMNS, rows, ())
 
 
-FIGURES = {f.__name__: f for f in (platform, million, verdicts, threads, chains)}
+FIGURES = {f.__name__: f for f in (platform, million, verdicts, closing, threads, chains)}
 
 
 def tables(names: list[str], rounds: int, count: int) -> Iterator[Table]:

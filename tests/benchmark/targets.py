@@ -26,8 +26,8 @@ from mechkin_cli.benchmark.report import Cell, Column, Table
 from mechkin_cli.benchmark.timing import Timing, in_turns
 from mechkin_cli.kernel.width import widths
 
-KERNEL_LIMIT = 2.5
-SWEEP_LIMIT = 5.0
+KERNEL_LIMIT = 1.6
+SWEEP_LIMIT = 2.5
 PROCESS_LIMIT = 1.45
 
 COLUMNS = (

@@ -36,7 +36,7 @@ inline void find_influence(const Plan& p, Workspace& w, const TieValue& tie_valu
     for (int t = 0; t < p.ties; ++t)
       if (p.tie[t].leader == input) w.rate[p.input_column[p.tie[t].input]] = tie_value(t);
     for (int b = 0; b < p.blocks; ++b) block_velocities(p, w, b);
-    for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], false);
+    move_rest(p, w);
     Pack* const out = w.actuation.influence + f++;
     for (int c = 0; c < p.columns; ++c) out[c * n] = w.rate[c] / Pack(p.column_weight[c]);
     for (int a = 0; a < p.actuators; ++a)

@@ -12,6 +12,9 @@
 
 namespace {
 
+// The axes of a closure's frames, a bit each: conditions tell which of them they read.
+enum Axes : unsigned { NO_AXES = 0, X_OF_A = 1, Y_OF_A = 2, Z_OF_A = 4, X_OF_B = 8, Y_OF_B = 16, Z_OF_B = 32, ALL_AXES = 63 };
+
 // Frames of a closing joint in ground axes; `parameter` as in ClosingJoint.
 struct Closure {
   Pose A, B;
@@ -64,21 +67,41 @@ struct OnSecond {
   static MECHKIN_INLINE const Motion& of(const Motion&, const Motion& b) { return b; }
   static MECHKIN_INLINE Vec3 opposite(const Closure& k) { return k.A.o; }
 };
-struct AX : OnFirst { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.A.X; } };
-struct AY : OnFirst { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.A.Y; } };
-struct AZ : OnFirst { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.A.Z; } };
-struct BX : OnSecond { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.B.X; } };
-struct BY : OnSecond { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.B.Y; } };
-struct BZ : OnSecond { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.B.Z; } };
+struct AX : OnFirst {
+  static constexpr unsigned axes = X_OF_A;
+  static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.A.X; }
+};
+struct AY : OnFirst {
+  static constexpr unsigned axes = Y_OF_A;
+  static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.A.Y; }
+};
+struct AZ : OnFirst {
+  static constexpr unsigned axes = Z_OF_A;
+  static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.A.Z; }
+};
+struct BX : OnSecond {
+  static constexpr unsigned axes = X_OF_B;
+  static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.B.X; }
+};
+struct BY : OnSecond {
+  static constexpr unsigned axes = Y_OF_B;
+  static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.B.Y; }
+};
+struct BZ : OnSecond {
+  static constexpr unsigned axes = Z_OF_B;
+  static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.B.Z; }
+};
 template <class Direction>
 struct Reverse : Direction { static MECHKIN_INLINE Vec3 vector(const Closure& k) { return -Direction::vector(k); } };
 
 // In the plane x_A y_A, at an angle from -y_A whose cosine is the pair's parameter, and square to that.
 MECHKIN_INLINE Pack sine_of_parameter(const Closure& k) { return sqrt(Pack(1.0) - k.parameter * k.parameter); }
 struct AlongCylinder : OnFirst {
+  static constexpr unsigned axes = X_OF_A | Y_OF_A;
   static MECHKIN_INLINE Vec3 vector(const Closure& k) { return sine_of_parameter(k) * k.A.X - k.parameter * k.A.Y; }
 };
 struct AcrossCylinder : OnFirst {
+  static constexpr unsigned axes = X_OF_A | Y_OF_A;
   static MECHKIN_INLINE Vec3 vector(const Closure& k) { return k.parameter * k.A.X + sine_of_parameter(k) * k.A.Y; }
 };
 
@@ -103,6 +126,7 @@ struct DirectionCondition {
 // u.d = 0: the other link's origin in the plane square to u through the origin of the link that carries u.
 template <class U>
 struct InPlane : LengthCondition<1> {
+  static constexpr unsigned axes = U::axes;
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = dot(U::vector(k), k.d); }
   static MECHKIN_INLINE void column(const Closure& k, const Twist& s, Pack* r) { r[0] = dot(U::vector(k), s.at(point(k))); }
   static MECHKIN_INLINE void second(const Closure& k, const Motion& a, const Motion& b, Pack* r) {
@@ -117,6 +141,7 @@ struct InPlane : LengthCondition<1> {
 
 // x_A.z_B = y_A.z_B = 0: parallel axes, with z_A.z_B > 0 beside them.
 struct ParallelAxes : DirectionCondition<2> {
+  static constexpr unsigned axes = X_OF_A | Y_OF_A | Z_OF_A | Z_OF_B;
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) {
     r[0] = dot(k.A.X, k.B.Z);
     r[1] = dot(k.A.Y, k.B.Z);
@@ -146,6 +171,7 @@ struct ParallelAxes : DirectionCondition<2> {
 // z_A.z_B keeps its cosine.
 template <class Cosine>
 struct KeptAngle : DirectionCondition<1> {
+  static constexpr unsigned axes = Z_OF_A | Z_OF_B;
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = dot(k.A.Z, k.B.Z) - Cosine::value(k); }
   static MECHKIN_INLINE void column(const Closure& k, const Twist& s, Pack* r) {
     r[0] = dot(s.angular, cross(k.B.Z, k.A.Z));
@@ -162,6 +188,7 @@ struct KeptAngle : DirectionCondition<1> {
 
 // |d| = parameter: two points at a given distance.
 struct Distance : LengthCondition<1> {
+  static constexpr unsigned axes = NO_AXES;
   static MECHKIN_INLINE Pack length(const Closure& k) { return sqrt(dot(k.d, k.d)); }
   static MECHKIN_INLINE Vec3 line(const Closure& k) { return (Pack(1.0) / length(k)) * k.d; }
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = length(k) - k.parameter; }

@@ -14,6 +14,7 @@ struct Conditions;
 template <>
 struct Conditions<> {
   static constexpr int equations = 0, lengths = 0;
+  static constexpr unsigned axes = NO_AXES;
   static MECHKIN_INLINE void residual(const Closure&, Pack*) {}
   static MECHKIN_INLINE void column(const Closure&, Twist, Pack*) {}
   static MECHKIN_INLINE void second(const Closure&, const Motion&, const Motion&, Pack*) {}
@@ -29,6 +30,7 @@ struct Conditions<One, Rest...> {
   using Others = Conditions<Rest...>;
   static constexpr int count = One::equations;
   static constexpr int equations = count + Others::equations, lengths = One::lengths + Others::lengths;
+  static constexpr unsigned axes = One::axes | Others::axes;
   static_assert(One::lengths == count || Others::lengths == 0, "lengths come before directions");
 
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) {

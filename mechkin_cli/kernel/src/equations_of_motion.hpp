@@ -40,7 +40,7 @@ inline void move_along(const Plan& p, Workspace& w, ReducedMotion& m, int direct
   for (int i = 0; i < p.inputs; ++i) w.rate[p.input_column[i]] = 0.0;
   (direction < p.charts ? w.place_rate[direction] : w.rate[p.input_column[direction - p.charts]]) = 1.0;
   for (int b = 0; b < p.blocks; ++b) block_velocities(p, w, b);
-  for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], false);
+  move_rest(p, w);
   for (int c = 0; c < p.columns; ++c) m.tangent[direction * p.columns + c] = w.rate[c];
   for (int k = 0; k < p.links; ++k) m.twist[direction * p.links + k] = w.motion[k].velocity;
 }
@@ -54,16 +54,12 @@ inline void move(const Plan& p, Workspace& w, const ReducedMotion& m, const Pack
     for (int i = 0; i < p.inputs; ++i) sum += input_rate[i] * m.tangent[(p.charts + i) * p.columns + c];
     w.rate[c] = sum;
   }
-  for (int k = 0; k < p.links; ++k) {
-    Twist sum = zero_twist();
-    for (int i = 0; i < p.charts; ++i) sum += rate[i] * m.twist[i * p.links + k];
-    for (int i = 0; i < p.inputs; ++i) sum += input_rate[i] * m.twist[(p.charts + i) * p.links + k];
-    w.motion[k].velocity = sum;
-  }
+  for (int b = 0; b < p.blocks; ++b) move_block(p, w, p.block[b]);
+  move_rest(p, w);
   for (int i = 0; i < p.charts; ++i) w.place_acceleration[i] = 0.0;
   for (int i = 0; i < p.inputs; ++i) w.acceleration[p.input_column[i]] = input_second[i];
   for (int b = 0; b < p.blocks; ++b) block_accelerations(p, w, b);
-  for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], true);
+  accelerate_rest(p, w);
 }
 
 // Momentum of a link that moves with a twist: m v and I omega about the kernel's origin.

@@ -9,6 +9,7 @@ namespace {
 
 // d = 0: a common point, in ground axes.
 struct CommonPoint : LengthCondition<3> {
+  static constexpr unsigned axes = NO_AXES;
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) { r[0] = k.d.x, r[1] = k.d.y, r[2] = k.d.z; }
   static MECHKIN_INLINE void column(const Closure& k, const Twist& s, Pack* r) {
     const Vec3 v = s.at(k.B.o);
@@ -29,6 +30,7 @@ struct CommonPoint : LengthCondition<3> {
 // Equal orientation: the rotation that carries A onto B, as a rotation vector in ground axes. Its skew part alone
 // would vanish at half a turn as well and give false assemblies.
 struct SameOrientation : DirectionCondition<3> {
+  static constexpr unsigned axes = ALL_AXES;
   static MECHKIN_INLINE void residual(const Closure& k, Pack* r) {
     const Vec3 skew = Pack(0.5) * (cross(k.A.X, k.B.X) + cross(k.A.Y, k.B.Y) + cross(k.A.Z, k.B.Z));
     const Pack c = Pack(0.5) * (dot(k.A.X, k.B.X) + dot(k.A.Y, k.B.Y) + dot(k.A.Z, k.B.Z) - Pack(1.0));

@@ -17,10 +17,6 @@ inline void leave_block(const Plan& p, Workspace& w, int index) {
     w.rate[column] = w.acceleration[column] = 0.0;
   }
 }
-inline void leave_motion(const Plan& p, Workspace& w, int index, bool second) {
-  const Block& b = p.block[index];
-  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], second);
-}
 
 // Equations and Jacobian (not factored) at the states as they are.
 template <class Out>
@@ -45,14 +41,14 @@ inline void hold_velocities(const Plan& p, Workspace& w, int index, In&& rate, O
     for (int u = 0; u < b.size; ++u) sum += jacobian[i * b.size + u] * w.rate[p.unknown[b.column_begin + u]];
     first.put(i, sum);
   }
-  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], false);
+  move_block(p, w, b);
 }
 
 template <class In, class Out>
 inline void hold_accelerations(const Plan& p, Workspace& w, int index, In&& acceleration, Out&& second) {
   const Block& b = p.block[index];
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = acceleration(u);
-  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
+  accelerate_block(p, w, b, false);
   second_of_equations(p, w, b);
   for (int i = 0; i < b.rows; ++i) second.put(i, -w.right[i]);
 }

@@ -16,7 +16,7 @@ inline void block_velocities(const Plan& p, Workspace& w, int index) {
   known_rates(p, w, index, w.right);
   at.solve_equations(w.right);
   for (int u = 0; u < b.size; ++u) w.rate[p.unknown[b.column_begin + u]] = w.right[u];
-  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], false);
+  move_block(p, w, b);
 }
 
 // First with the block's unknown second derivatives at zero, which leaves the convective part of the
@@ -25,11 +25,11 @@ inline void block_accelerations(const Plan& p, Workspace& w, int index) {
   const Block& b = p.block[index];
   const BlockMatrices at = matrices_of(p, w, index);
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = 0.0;
-  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
+  accelerate_block(p, w, b, false);
   second_of_equations(p, w, b);
   at.solve_equations(w.right);
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = w.right[u];
-  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
+  accelerate_block(p, w, b, true);
 }
 
 // As block_accelerations, one order higher.

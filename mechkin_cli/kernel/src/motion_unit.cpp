@@ -99,13 +99,6 @@ __attribute__((noinline)) void place_again(const Plan& p, Workspace& w, int bloc
   closed->side = (lanes & side) | (~lanes & closed->side);
 }
 
-// All links' motions by the rates, and the accelerations, of the columns.
-inline void move_all(const Plan& p, Workspace& w, bool second) {
-  for (int b = 0; b < p.blocks; ++b)
-    for (int o = p.block[b].joint_begin; o < p.block[b].joint_end; ++o) move_link(p, w, p.order[o], second);
-  for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], second);
-}
-
 // Rates and twists of lanes that are placed.
 inline void place_directions(const Plan& p, Workspace& w, ReducedMotion& m, const StageGiven& given, Mask lanes) {
   if (!any(lanes)) return;
@@ -115,7 +108,8 @@ inline void place_directions(const Plan& p, Workspace& w, ReducedMotion& m, cons
       rate = select(lanes, packs(given.placed_tangent)[d * p.columns + c], rate);
       w.rate[c] = rate;
     }
-    move_all(p, w, false);
+    for (int b = 0; b < p.blocks; ++b) move_block(p, w, p.block[b]);
+    move_rest(p, w);
     for (int k = 0; k < p.links; ++k) m.twist[d * p.links + k] = w.motion[k].velocity;
   }
 }
@@ -124,7 +118,8 @@ inline void place_accelerations(const Plan& p, Workspace& w, const StageGiven& g
   if (!any(lanes)) return;
   for (int c = 0; c < p.columns; ++c)
     w.acceleration[c] = select(lanes, packs(given.placed_bend)[c], w.acceleration[c]);
-  move_all(p, w, true);
+  for (int b = 0; b < p.blocks; ++b) accelerate_block(p, w, p.block[b], false);
+  accelerate_rest(p, w);
 }
 
 // Kept apart as is_regular is.

@@ -11,27 +11,48 @@ MECHKIN_INLINE Motion motion_of(const Workspace& w, int link) {
   return w.motion[link];
 }
 
-// Twist and spatial acceleration of the link of tree joint k from its parent's:
-// V = V_p + S q', V' = V_p' + S q'' + [V_p, S q'].
-inline void move_link(const Plan& p, Workspace& w, int k, bool second) {
+inline void move_leg(const Plan& p, Workspace& w, int k, bool second) {
+  const Leg& leg = p.leg[p.joints[k].leg];
+  const Vec3 A = w.pose[k].o, B = carried_point(w, leg.second, leg.point);
+  w.motion[k] = leg_motion(A, B, motion_of(w, p.joints[k].parent), motion_of(w, leg.second), second);
+}
+// Sum of the screws of tree joint k, each times its entry of `rate`.
+MECHKIN_INLINE Twist joint_twist(const Plan& p, const Workspace& w, int k, const Pack* rate) {
   const TreeJoint& j = p.joints[k];
-  const Motion parent = motion_of(w, j.parent);
-  if (j.type == TREE_L) {
-    const Leg& leg = p.leg[j.leg];
-    const Vec3 A = w.pose[k].o, B = carried_point(w, leg.second, leg.point);
-    w.motion[k] = leg_motion(A, B, parent, motion_of(w, leg.second), second);
-    return;
-  }
-  Twist relative = zero_twist(), relative_second = zero_twist();
+  Twist sum = zero_twist();
   with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-    for (int i = 0; i < entry.freedoms; ++i) {
-      relative += w.rate[j.column + i] * w.screw[j.column + i];
-      if (second) relative_second += w.acceleration[j.column + i] * w.screw[j.column + i];
-    }
+    for (int i = 0; i < entry.freedoms; ++i) sum += rate[j.column + i] * w.screw[j.column + i];
   });
-  w.motion[k].velocity = parent.velocity + relative;
-  if (second)
-    w.motion[k].acceleration = parent.acceleration + relative_second + bracket(parent.velocity, relative);
+  return sum;
+}
+
+// Twist of the link of tree joint k from its parent's: V = V_p + S q'.
+inline void move_link(const Plan& p, Workspace& w, int k) {
+  const TreeJoint& j = p.joints[k];
+  if (j.type == TREE_L) return move_leg(p, w, k, false);
+  w.motion[k].velocity = motion_of(w, j.parent).velocity + joint_twist(p, w, k, w.rate);
+}
+// Its spatial acceleration, where the twists are known: V' = V_p' + S q'' + [V_p, S q']. With `again` only q'' and V_p' are
+// others than they were.
+inline void accelerate_link(const Plan& p, Workspace& w, int k, bool again) {
+  const TreeJoint& j = p.joints[k];
+  if (j.type == TREE_L) return move_leg(p, w, k, true);
+  const Motion parent = motion_of(w, j.parent);
+  if (!again) w.convective[k] = bracket(parent.velocity, joint_twist(p, w, k, w.rate));
+  w.motion[k].acceleration = parent.acceleration + joint_twist(p, w, k, w.acceleration) + w.convective[k];
+}
+inline void move_block(const Plan& p, Workspace& w, const Block& b) {
+  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o]);
+}
+inline void accelerate_block(const Plan& p, Workspace& w, const Block& b, bool again) {
+  for (int o = b.joint_begin; o < b.joint_end; ++o) accelerate_link(p, w, p.order[o], again);
+}
+// Links beyond all blocks.
+inline void move_rest(const Plan& p, Workspace& w) {
+  for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k]);
+}
+inline void accelerate_rest(const Plan& p, Workspace& w) {
+  for (int k = 0; k < p.rest_count; ++k) accelerate_link(p, w, p.rest[k], false);
 }
 
 // Right-hand side -J q' over the loop's columns that are already known.

@@ -36,15 +36,28 @@ inline void find_screws(const Plan& p, Workspace& w, int k) {
   });
 }
 
-MECHKIN_INLINE Closure closure_of(const Plan& p, const Workspace& w, int c) {
+// Origin of a frame on a link, and those of its axes that the lowest three bits of `axes` name.
+MECHKIN_INLINE void place_axes(const Frame& f, const Pose* link, unsigned axes, Pose& at) {
+  if (axes & X_OF_A) at.X = link ? link->vector(f.x) : constant(f.x);
+  if (axes & Y_OF_A) at.Y = link ? link->vector(f.y) : constant(f.y);
+  if (axes & Z_OF_A) at.Z = link ? link->vector(f.z) : constant(f.z);
+  at.o = link ? link->point(f.o) : constant(f.o);
+}
+// The closure of a closing joint at the poses as they are, as far as `axes` are read.
+inline void place_closure(const Plan& p, const Workspace& w, int c, unsigned axes) {
   const ClosingJoint& j = p.closing[c];
-  Closure k;
-  k.A = placed(j.on_first, pose_of(w, j.first));
-  k.B = placed(j.on_second, pose_of(w, j.second));
+  Closure& k = w.closure[c];
+  place_axes(j.on_first, pose_of(w, j.first), axes, k.A);
+  place_axes(j.on_second, pose_of(w, j.second), axes / X_OF_B, k.B);
   k.d = k.B.o - k.A.o;
   k.parameter = j.parameter;
   if (j.slide >= 0) k.parameter += Pack(j.slide_sign) * w.q[p.joints[j.slide].state];
-  return k;
+  w.whole[c] = axes == ALL_AXES;
+}
+// The closure for coordinates, which read other axes than the equations do; the poses are those of the equations.
+MECHKIN_INLINE const Closure& whole_closure(const Plan& p, const Workspace& w, int c) {
+  if (!w.whole[c]) place_closure(p, w, c, ALL_AXES);
+  return w.closure[c];
 }
 
 inline void place_block(const Plan& p, Workspace& w, const Block& b) {
@@ -59,7 +72,9 @@ template <class Meet>
 MECHKIN_INLINE void closing_equations(const Plan& p, Workspace& w, const Block& b, Meet&& meet) {
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
-    w.closure[c] = closure_of(p, w, c);
+    unsigned axes = ALL_AXES;
+    with_closing_joint(j.type, [&](auto entry) { axes = entry.axes; });
+    place_closure(p, w, c, axes);
     Pack* r = w.right + j.row;
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       entry.residual(w.closure[c], r);
@@ -95,25 +110,22 @@ inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
   const int n = b.size;
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
-    int equations = 0;
-    with_closing_joint(j.type, [&](auto entry) { equations = entry.equations; });
-    for (int u = 0; u < n; ++u)
-      for (int i = 0; i < equations; ++i) a[(j.row + i) * n + u] = 0.0;
-    for (int l = j.loop_begin; l < j.loop_end; ++l) {
-      const TreeJoint& t = p.joints[p.loop[l].joint];
-      int freedoms = 0;
-      with_tree_joint(t.type, [&](auto tree) { freedoms = tree.freedoms; });
-      bool needed = false;
-      for (int f = 0; f < freedoms; ++f) needed = needed || unknown_index(p, index, t.column + f) >= 0;
-      if (!needed) continue;
-      Pack entry[3 * MAX_CLOSING_ROWS];
-      closing_columns(p, w, c, p.loop[l], entry);
-      for (int f = 0; f < freedoms; ++f) {
-        const int u = unknown_index(p, index, t.column + f);
-        if (u < 0) continue;
-        for (int i = 0; i < equations; ++i) a[(j.row + i) * n + u] = entry[f * MAX_CLOSING_ROWS + i];
+    const Closure& k = w.closure[c];
+    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      Pack* const rows = a + j.row * n;
+      for (int e = 0; e < entry.equations * n; ++e) rows[e] = 0.0;
+      for (int l = j.loop_begin; l < j.loop_end; ++l) {
+        const TreeJoint& t = p.joints[p.loop[l].joint];
+        const Pack sign = p.loop[l].sign;
+        for (int f = 0; f < freedoms_of(t.type); ++f) {
+          const int u = unknown_index(p, index, t.column + f);
+          if (u < 0) continue;
+          Pack column[MAX_CLOSING_ROWS];
+          entry.column(k, sign * w.screw[t.column + f], column);
+          for (int i = 0; i < entry.equations; ++i) rows[i * n + u] = column[i];
+        }
       }
-    }
+    });
   }
   if (!b.charts) return;
   Pack* const rows = a + (b.rows - b.charts) * n;

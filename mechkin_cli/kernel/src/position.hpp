@@ -30,21 +30,22 @@ inline Pack block_reach(const Plan& p, const Workspace& w, const Block& b) {
 
 // Closing equations of a block into w.right.
 inline Residual block_residual(const Plan& p, Workspace& w, const Block& b) {
-  Residual worst = {Pack(0.0), Pack(0.0)};
-  const Pack per_reach = Pack(1.0) / max(Pack(1.0), Pack(p.row_weight) * block_reach(p, w, b));
+  Pack length = 0.0, direction = 0.0, sum = 0.0;
   closing_equations(p, w, b, [&](auto entry, const Pack* r) __attribute__((always_inline)) {
     for (int i = 0; i < entry.equations; ++i) {
-      const bool length = i < entry.lengths;
-      const Pack size = length ? Pack(p.row_weight) * abs(r[i]) : abs(r[i]);
-      const Pack test = length ? per_reach * size : size;
-      worst.size = select(size <= worst.size, worst.size, size);  // a NaN wins
-      worst.test = select(test <= worst.test, worst.test, test);
+      Pack& worst = i < entry.lengths ? length : direction;
+      worst = max(worst, abs(r[i])), sum += abs(r[i]);
     }
   });
-  for (int i = b.rows - b.charts; i < b.rows; ++i) {
-    const Pack off = abs(w.right[i]);
-    worst.test = select(off <= worst.test, worst.test, off);
-  }
+  for (int i = b.rows - b.charts; i < b.rows; ++i) sum += abs(w.right[i]);
+  length = Pack(p.row_weight) * length;
+  Residual worst = {max(length, direction), max(length, direction)};
+  const Pack reach = Pack(p.row_weight) * block_reach(p, w, b);
+  if (!all(reach <= Pack(1.0))) worst.test = max(Pack(1.0) / max(Pack(1.0), reach) * length, direction);
+  for (int i = b.rows - b.charts; i < b.rows; ++i) worst.test = max(worst.test, abs(w.right[i]));
+  sum += reach;
+  const Mask number = sum == sum;  // a maximum forgets what is none
+  worst.size = select(number, worst.size, sum), worst.test = select(number, worst.test, sum);
   return worst;
 }
 

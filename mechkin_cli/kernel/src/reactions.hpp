@@ -21,7 +21,8 @@ inline void closing_turn(const Plan& p, const Workspace& w, const ClosingTurn& t
     return;
   }
   const ClosingJoint& j = p.closing[turn.closing];
-  const Pose &A = w.closure[turn.closing].A, &B = w.closure[turn.closing].B;
+  const Closure& k = whole_closure(p, w, turn.closing);
+  const Pose &A = k.A, &B = k.B;
   const Quaternion q = quaternion_of(A.components(B.X), A.components(B.Y), A.components(B.Z));
   out[0][0] = q.w, out[0][1] = q.x, out[0][2] = q.y, out[0][3] = q.z;
   if (order < 2) return;

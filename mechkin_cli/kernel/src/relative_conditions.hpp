@@ -11,6 +11,7 @@ namespace {
 
 // x_A.d = y_A.d = z_A.d = 0.
 struct CommonPoint : LengthCondition<3> {
+  static constexpr unsigned axes = X_OF_A | Y_OF_A | Z_OF_A;
   static MECHKIN_INLINE void put(const Closure& k, const Vec3& a, Pack* r) {
     r[0] = dot(k.A.X, a), r[1] = dot(k.A.Y, a), r[2] = dot(k.A.Z, a);
   }
@@ -30,6 +31,7 @@ struct CommonPoint : LengthCondition<3> {
 // The skew part of the rotation from A to B, sin(angle) times its axis. It vanishes at half a turn as well, where the
 // trace, 1 + 2 cos(angle), is -1: a proof needs that positive beside it.
 struct SameOrientation : DirectionCondition<3> {
+  static constexpr unsigned axes = ALL_AXES;
   // half of z_A.y - y_A.z, x_A.z - z_A.x, y_A.x - x_A.y
   static MECHKIN_INLINE void put(const Closure& k, const Vec3& x, const Vec3& y, const Vec3& z, Pack* r) {
     const Pack half = 0.5;

@@ -169,10 +169,10 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
       if (holds(b))
         hold_velocities(p, w, b, given(r.held->rates, b), equations(r.held->first, b));
       else if (skips(b))
-        leave_motion(p, w, b, false);
+        move_block(p, w, p.block[b]);
       else
         block_velocities(p, w, b);
-    for (int k = 0; k < rest_count; ++k) move_link(p, w, p.rest[k], false);
+    if (rest_count) move_rest(p, w);
   }
   if (accelerations) {
     for (int i = 0; i < p.inputs; ++i) w.acceleration[p.input_column[i]] = in.get(r.accelerations, i);
@@ -180,10 +180,10 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
       if (holds(b))
         hold_accelerations(p, w, b, given(r.held->accelerations, b), equations(r.held->second, b));
       else if (skips(b))
-        leave_motion(p, w, b, true);
+        accelerate_block(p, w, p.block[b], false);
       else
         block_accelerations(p, w, b);
-    for (int k = 0; k < rest_count; ++k) move_link(p, w, p.rest[k], true);
+    if (rest_count) accelerate_rest(p, w);
   }
 
   if (r.demand & DEMAND_JERK) {

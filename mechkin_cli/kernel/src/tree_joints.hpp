@@ -109,5 +109,10 @@ MECHKIN_INLINE void with_tree_joint(int type, F&& f) {
     case TREE_L: return f(Fixed{});
   }
 }
+MECHKIN_INLINE int freedoms_of(int type) {
+  int freedoms = 0;
+  with_tree_joint(type, [&](auto entry) { freedoms = entry.freedoms; });
+  return freedoms;
+}
 
 }  // namespace

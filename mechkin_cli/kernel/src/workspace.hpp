@@ -17,9 +17,11 @@ struct Workspace {
   Pose* pose;                     // links
   Twist* screw;                   // columns
   Motion* motion;                 // links
+  Twist* convective;              // links: acceleration against the parent by its motion alone
   Twist* link_jerk;               // links: second derivative of the twist
   Wrench* carried;                // links: wrench on the link and all that the tree hangs on it
   Closure* closure;               // closing joints
+  bool* whole;                    // closing joints: whether the closure has all axes
   Wrench* reaction;               // closing joints: on the second link
   Pack* jacobian;                 // per block rows x size, factored in place
   Mask* swap;
@@ -66,8 +68,10 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->pose = (Pose*)take(p.links * sizeof(Pose));
   w->screw = (Twist*)take(p.columns * sizeof(Twist));
   w->motion = (Motion*)take((p.links + 1) * sizeof(Motion));
+  w->convective = (Twist*)take(p.links * sizeof(Twist));
   w->carried = (Wrench*)take(p.links * sizeof(Wrench));
   w->closure = (Closure*)take(p.closings * sizeof(Closure));
+  w->whole = (bool*)take(p.closings * sizeof(bool));
   w->reaction = (Wrench*)take(p.closings * sizeof(Wrench));
   w->jacobian = (Pack*)take(squares * pack);
   w->swap = (Mask*)take(pairs * sizeof(Mask));

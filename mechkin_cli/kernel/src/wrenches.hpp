@@ -78,7 +78,7 @@ inline void closing_coordinate(const Plan& p, const Workspace& w, int c, int fre
   else if (order > 0)
     static_cast<Motion&>(motion.a) = motion_of(w, j.first), static_cast<Motion&>(motion.b) = motion_of(w, j.second);
   with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-    entry.coordinate(w.closure[c], motion, freedom, out);
+    entry.coordinate(whole_closure(p, w, c), motion, freedom, out);
   });
 }
 

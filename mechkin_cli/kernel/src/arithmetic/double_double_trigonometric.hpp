@@ -48,7 +48,7 @@ MECHKIN_APART void sincos(const DoubleDouble& x, DoubleDouble& s, DoubleDouble& 
   const DoubleDouble bend = product(product(z, z), series(COSINE_TERMS, COSINE_REST, z));
   const DoubleDouble cosine = accurate_sum(accurate_sum(Real(1.0), -half), bend);
   const Words one = Words{} + 1, two = Words{} + 2, q = angle.quadrant;
-  const Mask odd = {-(q & one)};
+  const Mask odd = mask_of(-(q & one));
   s = flipped(select(odd, cosine, sine), (q & two) << 62);
   c = flipped(select(odd, sine, cosine), ((q + one) & two) << 62);
 }

@@ -6,37 +6,14 @@
 // MECHKIN_LANES (2, 4, 8) is set by the build. A `Real` is a compiler vector of GCC or Clang.
 #pragma once
 
-#include <cstdint>
-#include <cstring>
+#include "mask.hpp"
 
-#ifndef MECHKIN_LANES
-#error "MECHKIN_LANES must be defined by the build (2, 4 or 8)"
-#endif
-
-#if !defined(__GNUC__)
-#error "the kernel needs the vector extensions of GCC >= 11 or Clang >= 16"
-#endif
-#define MECHKIN_INLINE inline __attribute__((always_inline))
 // Compiled once: what is called from many entries of a table, where copies in line would cost room and gain nothing.
 #define MECHKIN_APART inline __attribute__((noinline))
 // The same for what rare rows need: small rather than fast.
 #define MECHKIN_RARE inline __attribute__((noinline, cold))
 
 namespace {
-
-constexpr int LANES = MECHKIN_LANES;
-
-typedef double Doubles __attribute__((vector_size(8 * LANES)));
-typedef std::int64_t Words __attribute__((vector_size(8 * LANES)));
-typedef std::uint64_t Naturals __attribute__((vector_size(8 * LANES)));
-
-// All bits set in a lane: true.
-struct Mask {
-  Words w;
-  friend MECHKIN_INLINE Mask operator&(Mask a, Mask b) { return {a.w & b.w}; }
-  friend MECHKIN_INLINE Mask operator|(Mask a, Mask b) { return {a.w | b.w}; }
-  friend MECHKIN_INLINE Mask operator~(Mask a) { return {~a.w}; }
-};
 
 struct Real {
   Doubles v;
@@ -53,11 +30,11 @@ struct Real {
   MECHKIN_INLINE Real& operator-=(Real b) { v -= b.v; return *this; }
   MECHKIN_INLINE Real& operator*=(Real b) { v *= b.v; return *this; }
 
-  friend MECHKIN_INLINE Mask operator<(Real a, Real b) { return {(Words)(a.v < b.v)}; }
-  friend MECHKIN_INLINE Mask operator<=(Real a, Real b) { return {(Words)(a.v <= b.v)}; }
-  friend MECHKIN_INLINE Mask operator>(Real a, Real b) { return {(Words)(a.v > b.v)}; }
-  friend MECHKIN_INLINE Mask operator>=(Real a, Real b) { return {(Words)(a.v >= b.v)}; }
-  friend MECHKIN_INLINE Mask operator==(Real a, Real b) { return {(Words)(a.v == b.v)}; }
+  friend MECHKIN_INLINE Mask operator<(Real a, Real b) { return is_less(a.v, b.v); }
+  friend MECHKIN_INLINE Mask operator<=(Real a, Real b) { return is_at_most(a.v, b.v); }
+  friend MECHKIN_INLINE Mask operator>(Real a, Real b) { return is_less(b.v, a.v); }
+  friend MECHKIN_INLINE Mask operator>=(Real a, Real b) { return is_at_most(b.v, a.v); }
+  friend MECHKIN_INLINE Mask operator==(Real a, Real b) { return is_equal(a.v, b.v); }
 };
 
 MECHKIN_INLINE Real load(const double* p) {
@@ -67,15 +44,13 @@ MECHKIN_INLINE Real load(const double* p) {
 }
 MECHKIN_INLINE void store(double* p, Real x) { std::memcpy(p, &x.v, sizeof x.v); }
 MECHKIN_INLINE double lane(Real x, int i) { return x.v[i]; }
-MECHKIN_INLINE bool lane(Mask m, int i) { return m.w[i] != 0; }
 
 // c ? a : b, lane by lane.
-MECHKIN_INLINE Real select(Mask c, Real a, Real b) {
-  return (Doubles)(((Words)a.v & c.w) | ((Words)b.v & ~c.w));
-}
+MECHKIN_INLINE Real select(Mask c, Real a, Real b) { return choose(c, a.v, b.v); }
 MECHKIN_INLINE Real abs(Real a) { return (Doubles)((Words)a.v & (Words{} + INT64_MAX)); }
-MECHKIN_INLINE Real max(Real a, Real b) { return select(a > b, a, b); }
-MECHKIN_INLINE Real min(Real a, Real b) { return select(a < b, a, b); }
+// Of a number and NaN the second argument: what compilers know as one instruction.
+MECHKIN_INLINE Real max(Real a, Real b) { return a.v > b.v ? a.v : b.v; }
+MECHKIN_INLINE Real min(Real a, Real b) { return a.v < b.v ? a.v : b.v; }
 // The bits of each lane as an integer, and back.
 MECHKIN_INLINE Words bits(Real a) { return (Words)a.v; }
 MECHKIN_INLINE Real from_bits(Words w) { return (Doubles)w; }
@@ -101,17 +76,6 @@ MECHKIN_INLINE Real sqrt(Real a) {
   Doubles r;
   for (int i = 0; i < LANES; ++i) r[i] = __builtin_sqrt(a.v[i]);
   return r;
-}
-MECHKIN_INLINE Mask all_lanes(bool value) { return {Words{} - (std::int64_t)value}; }
-MECHKIN_INLINE bool any(Mask m) {
-  std::int64_t r = 0;
-  for (int i = 0; i < LANES; ++i) r |= m.w[i];
-  return r != 0;
-}
-MECHKIN_INLINE bool all(Mask m) {
-  std::int64_t r = -1;
-  for (int i = 0; i < LANES; ++i) r &= m.w[i];
-  return r != 0;
 }
 
 }  // namespace

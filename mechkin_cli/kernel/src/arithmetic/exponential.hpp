@@ -120,7 +120,7 @@ MECHKIN_INLINE Real pow(Real x, Real y) {
   result = select(abs(y) == infinity, select(growing, infinity, zero), result);
   result = select((abs(y) == infinity) & (base == one), one, result);
 
-  const Words sign = bits(x) & exponent.odd.w & (Words{} + INT64_MIN);
+  const Words sign = bits(x) & words(exponent.odd) & (Words{} + INT64_MIN);
   result = from_bits(bits(result) ^ sign);
   const Mask undefined = (x < zero) & (base < infinity) & ~exponent.integer;
   result = select(undefined | ~(x == x) | ~(y == y), Real(__builtin_nan("")), result);

@@ -11,7 +11,7 @@
 namespace {
 
 // c where m holds, else 0.
-MECHKIN_INLINE Real where(Mask m, double c) { return from_bits(m.w & bits(Real(c))); }
+MECHKIN_INLINE Real where(Mask m, double c) { return from_bits(words(m) & bits(Real(c))); }
 
 // (u - atan u) / u for |u| <= 7/16.
 MECHKIN_INLINE Real atan_deficit(Real u) {
@@ -60,8 +60,8 @@ MECHKIN_INLINE Real atan2(Real y, Real x) {
   // parts of the constants are multiples of 2^-26, so their sum is exact; what they leave joins the
   // small term u - atan u.
   const Words sign_bit = Words{} + INT64_MIN;
-  const Words flip = (bits(x) ^ steep.w) & sign_bit;
-  const Mask left = {-shift_right(bits(x), 63)};
+  const Words flip = (bits(x) ^ words(steep)) & sign_bit;
+  const Mask left = mask_of(-shift_right(bits(x), 63));
   const Real axis = select(steep, Real(0x1.921fb54000000p+0), where(left, 0x1.921fb54000000p+1));
   const Real axis_rest =
       select(steep, Real(0x1.10b4611a62633p-30), where(left, 0x1.10b4611a62633p-29));

@@ -67,7 +67,7 @@ MECHKIN_INLINE Real tan(Real x) {
   const SinCosParts parts = sincos_parts(angle);
   const DoubleDouble sine = fast_two_sum(parts.sin_big, -parts.sin_small);
   const DoubleDouble cosine = fast_two_sum(parts.cos_big, parts.cos_small);
-  const Mask odd = {-(angle.quadrant & (Words{} + 1))};
+  const Mask odd = mask_of(-(angle.quadrant & (Words{} + 1)));
   const DoubleDouble above = {select(odd, -cosine.high, sine.high),
                               select(odd, -cosine.low, sine.low)};
   const DoubleDouble below = {select(odd, sine.high, cosine.high),

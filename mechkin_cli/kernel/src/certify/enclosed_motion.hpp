@@ -25,19 +25,19 @@ inline void enclose_rates(const Plan& p, Workspace& w, const Solving& s, int ind
   Pack* const x = w.scratch;
   solve_enclosed(matrix_of(p, w, s, index), w.right, s.room, x);
   for (int u = 0; u < b.size; ++u) w.rate[p.unknown[b.column_begin + u]] = x[u];
-  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], false);
+  move_block(p, w, b);
 }
 
 // With the block's own accelerations at zero the second derivatives are what these have to cancel.
 inline void enclose_accelerations(const Plan& p, Workspace& w, const Solving& s, int index) {
   const Block& b = p.block[index];
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = 0.0;
-  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
+  accelerate_block(p, w, b, false);
   second_of_equations(p, w, b);
   Pack* const x = w.scratch;
   solve_enclosed(matrix_of(p, w, s, index), w.right, s.room, x);
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = x[u];
-  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o], true);
+  accelerate_block(p, w, b, true);
 }
 
 // From what each link needs of its joints (w.carried) to what the joints transmit, as `distribute` in doubles.

@@ -70,8 +70,7 @@ inline void enclosed_derivatives(const Plan& p, const Workspace& w, const Box& b
     with_closing_joint(j.type, [&](auto entry) { equations = entry.equations; });
     for (int l = j.loop_begin; l < j.loop_end; ++l) {
       const TreeJoint& t = p.joints[p.loop[l].joint];
-      int freedoms = 0;
-      with_tree_joint(t.type, [&](auto entry) { freedoms = entry.freedoms; });
+      const int freedoms = freedoms_of(t.type);
       Pack column[3 * MAX_CLOSING_ROWS];
       closing_columns(p, w, c, p.loop[l], column);
       // a leg's length goes by its slide exactly

@@ -146,11 +146,11 @@ void enclose_motion(const Plan& p, const EnclosingRequest& r, Memory& m, const L
   Workspace& w = m.w;
   for (int i = 0; i < p.inputs; ++i) w.rate[p.input_column[i]] = in.get(r.rates, i);
   for (int b = 0; b < p.blocks; ++b) enclose_rates(p, w, m.solving, b);
-  for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], false);
+  move_rest(p, w);
   if (!r.accelerations) return;
   for (int i = 0; i < p.inputs; ++i) w.acceleration[p.input_column[i]] = in.get(r.accelerations, i);
   for (int b = 0; b < p.blocks; ++b) enclose_accelerations(p, w, m.solving, b);
-  for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k], true);
+  accelerate_rest(p, w);
 }
 
 void enclose_pack(const Plan& p, const EnclosingRequest& r, Memory& m, const Lookup& in) {
