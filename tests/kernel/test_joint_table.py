@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,8 +16,8 @@ from mechkin_cli.building.joints import parts_of
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import elementary
 from mechkin_cli.mechanism.frames import Frame
-from mechkin_cli.mechanism.joint_table import JOINT_TYPES, dimension_of
-from mechkin_cli.mechanism.joint_type import FIRST
+from mechkin_cli.mechanism.joint_table import CLOSING_CONDITIONS, JOINT_TYPES, dimension_of
+from mechkin_cli.mechanism.joint_type import FIRST, SECOND
 from mechkin_cli.mechanism.model import Joint
 
 LETTERS = list(JOINT_TYPES)
@@ -133,3 +135,37 @@ def test_there_are_no_other_tree_displacements_but_the_hanging_of_legs() -> None
     assert len(_kernel.tree_table()) == len(TREE_LETTERS) + 1 == len(ELEMENTARY) + 1
     assert len(elementary.ELEMENTARY) == len(_kernel.tree_table())
     assert _kernel.tree_table()[-1]["freedoms"] == _kernel.tree_table()[-1]["states"] == 0
+
+
+PAIR = re.compile(
+    r"Pair<Conditions<((?:[^<>]|<[^<>]*>)*)>,\s*Coordinates.*?letter\[\] = \"(\w*)\"", re.DOTALL
+)
+"""An entry of the kernel's list: its conditions and its letter."""
+EQUATIONS = {"parallel": 2, "orientation": 3}
+SPELLED = {
+    "CommonPoint": [("lengths", axis, FIRST) for axis in "xyz"],
+    "ParallelAxes": [("parallel", "", FIRST)] * 2,
+    "SameOrientation": [("orientation", "", FIRST)] * 3,
+    **{f"InPlane<A{axis.upper()}>": [("lengths", axis, FIRST)] for axis in "xyz"},
+    **{f"InPlane<B{axis.upper()}>": [("lengths", axis, SECOND)] for axis in "xyz"},
+}
+
+
+def test_conditions_are_those_of_the_kernel_in_their_order() -> None:
+    """What `solver.redundancy` knows of an equation is said of the right one."""
+    text = (Path(__file__).parents[2] / "mechkin_cli/kernel/src/pairs.hpp").read_text("utf-8")
+    kernel = {}
+    for conditions, letter in PAIR.findall(text):
+        names = re.findall(r"\w+(?:<\w+>)?", conditions)
+        spelled = [SPELLED.get(name, [(name, "", FIRST)]) for name in names]
+        kernel[letter] = [one for equations in spelled for one in equations]
+    assert set(CLOSING_CONDITIONS) < set(kernel)
+    for letter, conditions in CLOSING_CONDITIONS.items():
+        told = [
+            ("KeptAngle<Parameter>", "", FIRST)
+            if condition.kind == "angle"
+            else (condition.kind, axis, condition.side)
+            for condition in conditions
+            for axis in condition.axes or [""] * EQUATIONS.get(condition.kind, 1)
+        ]
+        assert told == kernel[letter], letter
