@@ -32,6 +32,7 @@ from mechkin_cli.schema.joints import (
     TwoTurnJoint,
     WeldJoint,
 )
+from mechkin_cli.tape.scalars import is_settled
 from mechkin_cli.tolerances import PARALLEL
 from mechkin_cli.units import LENGTH
 
@@ -172,7 +173,9 @@ def _zero_directions(
     """
     if section.zero is None:
         x = perpendicular(axes[0])
-        return x, turned_shortest(axes[0], axes[1], x)
+        # written once and exactly known, the turn is none, where doubles round it
+        unturned = axes[1] is axes[0] and is_settled(*axes[0])
+        return x, x if unturned else turned_shortest(axes[0], axes[1], x)
     given = directions_of(fields, path, section, "zero")
     first, second = (
         _square(fields, (*path, "zero", link), axis, vector, "this direction", "axis", errors)

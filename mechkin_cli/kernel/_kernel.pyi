@@ -720,6 +720,7 @@ def prove_boxes(
     states: Floats,
     off: Floats,
     radii: Plan | None = None,
+    follows: bytes | None = None,
     least: Floats | None = None,
     radius: Floats,
     contraction: Floats,
@@ -727,7 +728,8 @@ def prove_boxes(
     proven: NDArray[np.uint8],
 ) -> None:
     """Whether there is exactly one position in a box about each of some states (states, places),
-    whose inputs are `off` (inputs, places) at most; see src/certify/proving_unit.hpp."""
+    whose inputs are `off` (inputs, places) at most; `follows` (equations,) says which hold where
+    the others do; see src/certify/proving_unit.hpp."""
 
 def prove_tubes(
     plan: Plan,
@@ -742,6 +744,7 @@ def prove_tubes(
     proven: NDArray[np.uint8],
     bends: NDArray[np.uint8],
     radii: Plan | None = None,
+    follows: bytes | None = None,
     joined: NDArray[np.uint8],
     width: Floats,
 ) -> tuple[int, int]:

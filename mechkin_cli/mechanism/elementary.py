@@ -49,6 +49,11 @@ class Elementary(NamedTuple):
         return self.states > len(self.freedoms)
 
     @property
+    def motions(self) -> tuple[str, ...]:
+        """What its freedoms are: `("turn",)`, `("slide",)`."""
+        return tuple(freedom.motion for freedom in self.freedoms)
+
+    @property
     def is_thread(self) -> bool:
         """Whether it has a lead, and counts its turns."""
         return any(freedom.motion == "thread" for freedom in self.freedoms)

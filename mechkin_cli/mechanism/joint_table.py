@@ -15,6 +15,7 @@ from mechkin_cli.mechanism.friction import FrictionLaw
 from mechkin_cli.mechanism.joint_type import (
     FIRST,
     SECOND,
+    Condition,
     Coordinate,
     Drawing,
     Drawn,
@@ -210,6 +211,27 @@ FREE = JointType(
     Drawing("ball"),
 )
 """The pair without constraints by which the solver hangs a body that only legs hold."""
+
+
+_POINT = Condition("lengths", "xyz")
+_ACROSS = Condition("lengths", "xy")
+_PARALLEL = Condition("parallel")
+_ORIENTATION = Condition("orientation")
+_ANGLE = Condition("angle")
+
+CLOSING_CONDITIONS = {
+    "R": (_POINT, _PARALLEL),
+    "P": (_ACROSS, _ORIENTATION),
+    "C": (_ACROSS, _PARALLEL),
+    "S": (_POINT,),
+    "Sp": (Condition("lengths", "z", SECOND),),
+    "Sg": (Condition("lengths", "xy", SECOND),),
+    "U": (_POINT, _ANGLE),
+    "E": (Condition("lengths", "z"), _PARALLEL),
+    "W": (_POINT, _ORIENTATION),
+}
+"""By the letter of a closing pair the elementary conditions of its equations, in their order
+(kernel/src/pairs.hpp), where nothing but a joint's frames stands in them."""
 
 
 _ALONG = {"x": _X1, "y": _Y1, "z": _Z1}

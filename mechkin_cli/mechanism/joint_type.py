@@ -27,6 +27,15 @@ class Drawn(NamedTuple):
     reverse: bool = False
 
 
+class Condition(NamedTuple):
+    """An elementary condition of a closing pair: lengths along some axes of the frame on one link,
+    or one of directions: parallel axes, a common orientation, a kept angle of the axes."""
+
+    kind: Literal["lengths", "parallel", "orientation", "angle"]
+    axes: str = ""
+    side: int = FIRST
+
+
 class Step(NamedTuple):
     """A part of a pair: its letter, and along what it is drawn.
 

@@ -14,6 +14,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.redundancy import equations_that_follow
 from mechkin_cli.tape.traced import TraceLost
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ class Enclosed(NamedTuple):
         radii: a plan of their radii about these; None where the doubles are taken as they are.
         constants: high and low parts and radii about their sums (constants, 3); None likewise.
         of_text: whether these constants enclose the numbers of the file's text.
+        follows: which closing equations follow from others of their joint, one byte
+            each; None where none does.
     """
 
     session: Session
@@ -47,6 +50,7 @@ class Enclosed(NamedTuple):
     radii: Plan | None
     constants: Floats | None
     of_text: bool
+    follows: bytes | None
 
     @classmethod
     def of(cls, session: Session) -> Enclosed:
@@ -55,12 +59,13 @@ class Enclosed(NamedTuple):
         try:
             constants = session.precise.enclosed_constants(session)
         except (LookupError, ValueError, TraceLost):
-            return cls(session, session.plan, None, None, False)
+            return cls(session, session.plan, None, None, False, None)
         scale = [_kernel.CONSTANT_LENGTH, _kernel.CONSTANT_SIZE]
         middle, radius = constants[:, 0].copy(), about_high(constants.T)
         radius[scale] = middle[scale]  # of units, which are conventions
         plan = session.plan.with_constants(middle)
-        return cls(session, plan, plan.with_constants(radius), constants, True)
+        follows = bytes(equations_that_follow(session)) if session.is_redundant else None
+        return cls(session, plan, plan.with_constants(radius), constants, True, follows)
 
 
 class Boxes(NamedTuple):
@@ -72,7 +77,7 @@ class Boxes(NamedTuple):
             orientation of the increments that turn it.
         contraction: at most the part of a box that the operator leaves, below 1 where proven.
         beyond: at most the size of the closing equations beyond those solved for; 0 where there
-            are none, or where they hold exactly.
+            are none, or where they follow or hold exactly.
     """
 
     proven: Bools
@@ -183,6 +188,7 @@ def prove_boxes(enclosed: Enclosed, nodes: Nodes) -> Boxes:
         off=np.ascontiguousarray(nodes.off),
         least=np.ascontiguousarray(nodes.least),
         radii=enclosed.radii,
+        follows=enclosed.follows,
         radius=radius,
         contraction=contraction,
         beyond=beyond,
@@ -205,6 +211,7 @@ def prove_tubes(enclosed: Enclosed, nodes: Nodes, boxes: Boxes) -> Tubes:
     found, _ = _kernel.prove_tubes(
         enclosed.plan,
         radii=enclosed.radii,
+        follows=enclosed.follows,
         place=np.concatenate([[0.0], np.cumsum(length)]),
         inputs=np.ascontiguousarray(nodes.values),
         off=np.ascontiguousarray(nodes.off),

@@ -9,7 +9,7 @@ nothing but + - * / sqrt, magnitudes and elementary functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,7 +17,7 @@ import numpy as np
 
 from mechkin_cli.exact import double_double, fraction_of
 from mechkin_cli.tape.floats import meaning
-from mechkin_cli.tape.operations import CONDITIONS, Operation
+from mechkin_cli.tape.operations import ARITY, CONDITIONS, Operation
 from mechkin_cli.tape.recorder import Recorder, renumbered
 from mechkin_cli.tape.scalars import Undecided
 from mechkin_cli.tape.tape import Tape
@@ -41,6 +41,14 @@ class ExactTape(NamedTuple):
     tape: Tape
     numbers: tuple[Fraction, ...]
     values: Floats
+
+
+class Step(NamedTuple):
+    """A register with its operation and operands; a number of the text has none."""
+
+    register: int
+    operation: Operation | None
+    operands: tuple[int, ...]
 
 
 class ExactRecorder(Recorder):
@@ -125,6 +133,42 @@ class ExactRecorder(Recorder):
         numbers = tuple(self.exact[r] for r in given)
         pairs = [double_double(value) for value in numbers]
         return ExactTape(tape, numbers, np.array(pairs, dtype=np.float64).reshape(-1, 2))
+
+    def steps_to(self, wanted: int) -> Iterator[Step]:
+        """How a register comes about, from the numbers of the text on."""
+        for number in self._needed([wanted]):
+            if number in self._written:
+                operation, *operands = self._written[number]
+                yield Step(number, operation, tuple(operands[: ARITY[operation]]))
+            else:
+                yield Step(number, None, ())
+
+    def undivided(self, registers: Sequence[int]) -> list[int]:
+        """Numbers without the last numbers by which all of them were divided or multiplied, which
+        are not zero: in the same ratios, but for the sign of all."""
+        found = list(registers)
+        while True:
+            factors: set[tuple[Operation, int]] = set()
+            rests = []
+            for number in found:
+                if self.exact.get(number) == 0:
+                    rests.append(number)
+                    continue
+                operation, a, b, _ = self._written.get(number, (None, 0, 0, 0))
+                if operation is Operation.DIVIDE:
+                    factors.add((operation, b))
+                    rests.append(a)
+                elif operation is Operation.NEGATE:
+                    factors.add((operation, 0))
+                    rests.append(a)
+                elif operation is Operation.MULTIPLY and self.exact.get(a):
+                    factors.add((operation, a))
+                    rests.append(b)
+                else:
+                    return found
+            if len(factors) != 1:
+                return found
+            found = rests
 
     def _is_rounded(self, register: int) -> bool:
         return register in self.exact and self.exact[register] != self.values[register]

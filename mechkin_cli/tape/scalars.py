@@ -80,6 +80,11 @@ def as_recorded(value: float) -> float:
     return value.recorded if isinstance(value, Recorded) else value
 
 
+def is_settled(*values: float) -> bool:
+    """Whether numbers are recorded exactly: no others will be put in."""
+    return all(isinstance(value, Recorded) and value.is_settled for value in values)
+
+
 def is_finite(value: float) -> bool:
     """Whether a number is neither infinite nor nan."""
     if isinstance(value, Recorded):

@@ -36,6 +36,7 @@ EXACT_MATH |= {
     "nextafter",
     "ulp",
     "fabs",
+    "isqrt",
 }
 INEXACT_NUMPY = {
     *(
@@ -68,6 +69,8 @@ ACCEPTED = {
         "building/sequences.py",
         "10 ** max(0, *(-exponent for exponent in exponents))",
     ): "whole numbers",
+    ("tape/exact_sums.py", "pow(rest, -1, whole)"): "whole numbers",
+    ("tape/identities.py", "prime ** (count // 2)"): "whole numbers",
     ("analysis/response/driven_rows.py", "TIME ** order"): FRACTIONS,
     ("analysis/response/moments.py", "TIME ** order"): FRACTIONS,
     ("building/coordinates.py", "TIME ** order"): FRACTIONS,

@@ -30,6 +30,17 @@ void refuse_charts(const Plan& p) {
   if (p.charts) throw nb::value_error("a plan with a chart has no proofs");
 }
 
+// Which closing equations follow from others, one byte each; null where none does.
+const unsigned char* follows_of(Arguments& given, const Plan& p) {
+  const nb::object object = given.other("follows");
+  if (object.is_none()) return nullptr;
+  const nb::bytes flags = nb::cast<nb::bytes>(object);
+  long equations = 0;
+  for (int b = 0; b < p.blocks; ++b) equations += p.block[b].rows;
+  if ((long)flags.size() != equations) throw nb::value_error("follows has one byte for each closing equation");
+  return (const unsigned char*)flags.data();
+}
+
 // States with the radii of inputs (inputs x places), as the unit of points takes them.
 std::vector<double> with_radii(const Plan& p, const double* states, const double* off, long places) {
   std::vector<double> parts(2 * p.states * places, 0.0);
@@ -52,6 +63,7 @@ void prove_boxes(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.contraction = given.write_required("contraction", Arguments::ONE_PER_ROW);
   r.beyond = given.write_required("beyond", Arguments::ONE_PER_ROW);
   r.proven = given.write_flags_required("proven");
+  r.follows = follows_of(given, p);
   const FrozenPlan* const radii = radii_of(given, plan);
   given.finish();
   r.places = given.rows();
@@ -78,6 +90,7 @@ nb::tuple prove_tubes(const FrozenPlan& plan, const nb::kwargs& keywords) {
   way.proven = given.write_flags_required("proven");
   way.bends = given.write_flags_required("bends");
   Tubes tubes = {given.write_flags_required("joined"), given.write_required("width", Arguments::ONE_PER_ROW), 0, 0};
+  way.follows = follows_of(given, p);
   const FrozenPlan* const radii = radii_of(given, plan);
   given.finish();
   way.rows = given.rows();

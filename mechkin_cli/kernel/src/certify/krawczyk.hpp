@@ -71,11 +71,12 @@ inline void guess_radii(const Plan& p, Proof& w, const BlockPart& part, Least&& 
   }
 }
 
-// At most the size of the equations without a part in C, anywhere in the box.
+// At most the size of the equations without a part in C that do not follow from the others, anywhere in the box.
 inline Real size_beyond(const Plan& p, const Proof& w, const BlockPart& part) {
   Real worst = 0.0;
   if (part.b.rows == part.b.size) return worst;
   for (int e = part.first; e < part.end; ++e) {
+    if (does_follow(w, e)) continue;
     Real share = 0.0, size = w.size[e];
     for (int u = 0; u < part.b.size; ++u) share += polynomial_bound(w.inverse[part.inverse + u * part.end + e]);
     for (int c = 0; c < p.columns; ++c)

@@ -10,6 +10,7 @@ namespace {
 
 struct Proof {
   Enclosures at;
+  const unsigned char* follows;  // equations: ProvingRequest::follows
   unsigned char *reads, *hangs;  // blocks x blocks: whether a block's equations read another's unknowns, and whether they
                                  // do so at all, by way of blocks between; of itself it does
   Pack* inverse;      // C, block by block: size x the equations up to its last
@@ -22,6 +23,9 @@ struct Proof {
   Real* influence;    // size x columns of the largest block: |I - C J|
   double* scalar;     // for one lane's inverse
 };
+
+// Whether an equation holds where those of its joint that do not follow hold.
+inline bool does_follow(const Proof& w, int equation) { return w.follows && w.follows[equation]; }
 
 struct Ledger {
   char* at;

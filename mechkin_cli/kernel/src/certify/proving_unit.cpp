@@ -60,6 +60,7 @@ void prove(const LanePlan& given, const LanePlan* radii, const ProvingRequest& r
   Ledger ledger = {plan + join_parts(given, radii, plan)};
   const Plan& p = *reinterpret_cast<const Plan*>(plan);
   Proof w = lay_out_proof(p, ledger);
+  w.follows = r.follows;
   find_dependence(p, w);
   for (long place = 0; place < r.places; place += LANES)
     prove_pack(p, r, w, place, r.places - place < LANES ? (int)(r.places - place) : LANES);

@@ -10,6 +10,8 @@ struct ProvingRequest {
   long places;
   const double* states;   // states, of the unit's parts, x places: the middle of the box; orientations need no unit length
   const double* least;    // columns x places, may be null: boxes are at least this wide
+  const unsigned char* follows;  // equations of all blocks, may be null: whether one is zero where those of its joint that
+                                 // do not follow are, and the side conditions hold
   double* radius;         // columns x places: of the box that was proven. Of an orientation of its increments x, which turn
                           // it by the quaternion (1, x / 2) about the axes of the joint's frame in the parent.
   double* contraction;    // places: at most the norm of I - C J in parts of the box, below 1 where proven

@@ -20,7 +20,7 @@ inline Real value_at(const Pack& a, double t) {
 }
 
 // A block's rows of C at a parameter into `lines`, which has those of the blocks before. The equations that are solved for
-// are the same all along a curve.
+// are the same all along a curve; what follows from others is none of them.
 inline void invert_at(const Plan& p, Proof& w, const BlockPart& part, double t, Real* lines) {
   const int n = part.b.size, m = part.b.rows;
   const auto at = [&](double t) {
@@ -28,7 +28,8 @@ inline void invert_at(const Plan& p, Proof& w, const BlockPart& part, double t, 
       return value_at(w.at.jacobian[(part.first + i) * p.columns + part.unknown[u]], t);
     };
   };
-  invert_lanes(n, m, at(t), at(0.0), w.scalar, w.square);
+  const auto chooser = [&](int i, int u) { return does_follow(w, part.first + i) ? Real(0.0) : at(0.0)(i, u); };
+  invert_lanes(n, m, at(t), chooser, w.scalar, w.square);
   Real* const own = lines + part.inverse;
   for (int e = 0; e < m * part.first; ++e) w.carried[e] = 0.0;
   for (int a = 0; a < part.index; ++a) {

@@ -130,7 +130,7 @@ bool TubeProver::prove(const Way& way, long from, long to, double* width) {
     if (!holds_row(way, row, parameter(row), false)) return false;
   double contraction = 0.0, beyond = 0.0;
   unsigned char proven = 0;
-  unit_.prove(plan_, radii_, {1, curve_.data(), least_.data(), radius_.data(), &contraction, &beyond, &proven},
+  unit_.prove(plan_, radii_, {1, curve_.data(), least_.data(), way.follows, radius_.data(), &contraction, &beyond, &proven},
               memory_.data());
   if (!proven) return false;
   for (long row = from; row <= to; ++row)

@@ -22,6 +22,7 @@ struct Way {
   const double* radius;        // columns x rows: of the rows' boxes
   const unsigned char* proven; // rows: that these have one position each
   const unsigned char* bends;  // rows: the way bends here, no tube goes through
+  const unsigned char* follows;  // equations: ProvingRequest::follows
 };
 
 struct Tubes {

@@ -1,0 +1,322 @@
+"""Whether exact numbers are zero, decided by identities and never by rounding.
+
+A recorded number is a quotient of two sums (`exact_sums`): what the text says is rational, parts of
+a turn become roots of unity, other angles exponentials, for which sin^2 + cos^2 = 1 and the sums of
+angles hold by themselves; roots are generators whose squares are known. A number is zero where its
+numerator comes out empty. One that is off in any digit of the text is another rational number; what
+is zero by an identity that is not known here is not found to be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from math import isqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+from mechkin_cli.exact import PI
+from mechkin_cli.tape import exact_sums as sums
+from mechkin_cli.tape.exact_sums import ONE, UNIT, ZERO, Monomial, Sum, Undecided
+from mechkin_cli.tape.operations import Operation
+from mechkin_cli.tape.traced import register
+
+if TYPE_CHECKING:
+    from mechkin_cli.tape.exact_recorder import ExactRecorder, Step
+
+_PI = 0
+"""The generator of pi."""
+
+_BITS_OF_A_PART = 100
+"""Of the denominator of a part of pi at most: in a number that is none, the digits of pi are left,
+which have twice as many."""
+
+_LARGEST_FACTOR = 1000
+"""Prime factors up to this one are told apart in the root of a rational number."""
+
+_LARGEST_GAUSS = 7
+"""Roots of primes up to this one are sums of roots of unity: cos(30 deg) is root(3)/2."""
+
+_HALF = Fraction(1, 2)
+
+
+class Quotient(NamedTuple):
+    """above / below, where below is a number that is divided by."""
+
+    above: Sum
+    below: Sum = ONE
+
+
+class Identities:
+    """What is identically zero of the numbers of a recording.
+
+    Args:
+        recorder: that holds the numbers.
+    """
+
+    def __init__(self, recorder: ExactRecorder) -> None:
+        self.recorder = recorder
+        self._read: dict[int, Quotient | None] = {}
+        self._generators: dict[object, int] = {"pi": _PI}
+        self._squares: dict[int, Sum] = {}
+        self._circles: dict[int, tuple[Quotient, Quotient]] = {}
+
+    def is_zero(self, value: object) -> bool:
+        """Whether a recorded number, or a constant, is zero by an identity; False where it is not
+        zero, and where no identity is found."""
+        wanted = register(self.recorder, value)
+        for step in self.recorder.steps_to(wanted):
+            if step.register not in self._read:
+                self._read[step.register] = self._found(step)
+        found = self._read[wanted]
+        return found is not None and not found.above
+
+    def _found(self, step: Step) -> Quotient | None:
+        """A number whose operands have been read; None where it became too long."""
+        try:
+            if step.operation is None:
+                return self._written(step.register)
+            operands = [self._read[operand] for operand in step.operands]
+            rule = _RULES.get(step.operation)
+            if rule is not None and None not in operands:
+                return rule(self, *operands)
+        except Undecided:
+            pass
+        return None
+
+    def _written(self, number: int) -> Quotient | None:
+        value = self.recorder.exact.get(number)
+        if value is None:  # not finite
+            return None
+        part = value / PI
+        if part and part.denominator.bit_length() <= _BITS_OF_A_PART:
+            return Quotient(sums.scaled(part, sums.power(_PI)))
+        return Quotient(sums.number(value))
+
+    def _times(self, a: Sum, b: Sum) -> Sum:
+        """a b, with the squares of roots put in."""
+        return self._reduced(sums.multiplied(a, b))
+
+    def _reduced(self, a: Sum) -> Sum:
+        found: Sum = {}
+        for monomial, factor in a.items():
+            kept, squares = [], []
+            for generator, exponent in monomial.powers:
+                if generator in self._squares:
+                    squares += [self._squares[generator]] * (exponent // 2)
+                    exponent %= 2
+                if exponent:
+                    kept.append((generator, exponent))
+            term: Sum = {Monomial(monomial.turn, monomial.angle, tuple(kept)): factor}
+            for square in squares:
+                term = self._times(term, square)
+            found = sums.added(found, term)
+        return found
+
+    def total(self, a: Quotient, b: Quotient) -> Quotient:
+        """a + b."""
+        if a.below == b.below:
+            return self.shortened(sums.added(a.above, b.above), a.below)
+        above = sums.added(self._times(a.above, b.below), self._times(b.above, a.below))
+        return self.shortened(above, self._times(a.below, b.below))
+
+    def difference(self, a: Quotient, b: Quotient) -> Quotient:
+        """a - b."""
+        return self.total(a, self.opposite(b))
+
+    def opposite(self, a: Quotient) -> Quotient:
+        """-a."""
+        return Quotient(sums.scaled(Fraction(-1), a.above), a.below)
+
+    def product(self, a: Quotient, b: Quotient) -> Quotient:
+        """a b."""
+        return self.shortened(self._times(a.above, b.above), self._times(a.below, b.below))
+
+    def ratio(self, a: Quotient, b: Quotient) -> Quotient:
+        """a / b.
+
+        Raises:
+            Undecided: b is zero.
+        """
+        if not b.above:
+            raise Undecided("a quotient by zero")
+        return self.shortened(self._times(a.above, b.below), self._times(a.below, b.above))
+
+    def shortened(self, above: Sum, below: Sum) -> Quotient:
+        """A quotient, without what divides by a single term."""
+        if not above:
+            return Quotient(ZERO)
+        if above == below:
+            return Quotient(ONE)
+        if len(below) != 1:
+            return Quotient(above, below)
+        ((monomial, factor),) = below.items()
+        inverse = sums.scaled(1 / factor, sums.phase(-monomial.turn, ()))
+        left, powers = ONE, []
+        for generator, exponent in monomial.powers:
+            if generator in self._squares:
+                powers.append((generator, exponent))
+                left = self._times(left, self._squares[generator])
+            else:
+                powers.append((generator, -exponent))
+        rest: Sum = {Monomial(UNIT.turn, sums.opposite(monomial.angle), tuple(powers)): Fraction(1)}
+        above = self._times(self._times(above, inverse), rest)
+        return Quotient(above) if left == ONE else self.shortened(above, left)
+
+    def generator(self, key: object) -> int:
+        """The generator of what is known by a key."""
+        return self._generators.setdefault(key, len(self._generators))
+
+    def root(self, a: Quotient) -> Quotient:
+        """The square root of a number that is not negative."""
+        if not a.above:
+            return Quotient(ZERO)
+        value = sums.rational(a.above) if a.below == ONE else None
+        if value is not None:
+            return Quotient(self._root_of(value))
+        # g = below root(above / below), of whichever sign: g^2 = above below
+        key = (frozenset(a.above.items()), frozenset(a.below.items()))
+        generator = self.generator(("root", key))
+        self._squares[generator] = self._times(a.above, a.below)
+        return self.shortened(sums.power(generator), a.below)
+
+    def _root_of(self, value: Fraction) -> Sum:
+        if value < 0:
+            raise Undecided("the root of a negative number")
+        rest = value.numerator * value.denominator
+        outside, found = Fraction(1, value.denominator), ONE
+        for prime in range(2, _LARGEST_FACTOR + 1):
+            count = 0
+            while rest % prime == 0:
+                rest, count = rest // prime, count + 1
+            outside *= prime ** (count // 2)
+            if count % 2:
+                found = self._times(found, self._root_of_whole(prime))
+        whole = isqrt(rest)
+        if whole * whole == rest:
+            return sums.scaled(outside * whole, found)
+        return sums.scaled(outside, self._times(found, self._root_of_whole(rest)))
+
+    def _root_of_whole(self, value: int) -> Sum:
+        if value <= _LARGEST_GAUSS:
+            return _gauss(value)
+        generator = self.generator(("root", value))
+        self._squares[generator] = sums.number(value)
+        return sums.power(generator)
+
+    def magnitude(self, a: Quotient) -> Quotient:
+        """|a|, of which no more is known than its square, but where it is rational."""
+        value = sums.rational(a.above) if a.below == ONE else None
+        if value is not None:
+            return Quotient(sums.number(abs(value)))
+        return self.root(self.product(a, a))
+
+    def circle(self, a: Quotient) -> tuple[Quotient, Quotient]:
+        """exp(i a) and exp(-i a).
+
+        Raises:
+            Undecided: the angle is no sum of rational multiples of real products.
+        """
+        if a.below != ONE:
+            raise Undecided("the sine of a quotient")
+        turn, angle = Fraction(0), []
+        ways = (Quotient(ONE), Quotient(ONE))
+        for monomial, factor in a.above.items():
+            if monomial.turn or monomial.angle:
+                raise Undecided("the sine of sines")
+            known = self._circles.get(_single(monomial.powers))
+            if monomial.powers == ((_PI, 1),):
+                turn += factor * _HALF
+            elif known is not None and factor.denominator == 1:
+                one, back = known if factor > 0 else known[::-1]
+                for _ in range(abs(factor.numerator)):
+                    ways = (self.product(ways[0], one), self.product(ways[1], back))
+            else:
+                angle.append((monomial.powers, factor))
+        parts = sums.merged(tuple(angle), ())
+        way = Quotient(sums.phase(turn, parts))
+        back = Quotient(sums.phase(-turn, sums.opposite(parts)))
+        return self.product(ways[0], way), self.product(ways[1], back)
+
+    def cosine(self, a: Quotient) -> Quotient:
+        """cos a."""
+        way, back = self.circle(a)
+        return self.product(Quotient(sums.number(_HALF)), self.total(way, back))
+
+    def sine(self, a: Quotient) -> Quotient:
+        """sin a."""
+        way, back = self.circle(a)
+        half_over_i = sums.scaled(_HALF, sums.phase(Fraction(-1, 4), ()))
+        return self.product(Quotient(half_over_i), self.total(way, self.opposite(back)))
+
+    def tangent(self, a: Quotient) -> Quotient:
+        """tan a."""
+        return self.ratio(self.sine(a), self.cosine(a))
+
+    def angle_of(self, y: Quotient, x: Quotient) -> Quotient:
+        """The angle of a point, by its sine and cosine."""
+        far = self.root(self.total(self.product(x, x), self.product(y, y)))
+        turned = self.product(Quotient(sums.phase(Fraction(1, 4), ())), y)
+        one, back = self.total(x, turned), self.total(x, self.opposite(turned))
+        return self._arc("angle", (y, x), (self.ratio(one, far), self.ratio(back, far)))
+
+    def arcsine(self, a: Quotient) -> Quotient:
+        """asin a."""
+        return self.angle_of(a, self._beside(a))
+
+    def arccosine(self, a: Quotient) -> Quotient:
+        """acos a."""
+        return self.angle_of(self._beside(a), a)
+
+    def arctangent(self, a: Quotient) -> Quotient:
+        """atan a."""
+        return self.angle_of(a, Quotient(ONE))
+
+    def _beside(self, a: Quotient) -> Quotient:
+        return self.root(self.total(Quotient(ONE), self.opposite(self.product(a, a))))
+
+    def _arc(
+        self, name: str, of: tuple[Quotient, ...], circle: tuple[Quotient, Quotient]
+    ) -> Quotient:
+        key = tuple(frozenset(part.items()) for quotient in of for part in quotient)
+        generator = self.generator((name, key))
+        self._circles[generator] = circle
+        return Quotient(sums.power(generator))
+
+
+def _gauss(prime: int) -> Sum:
+    """The root of a small prime, or of 1, by Gauss's sum over e(k k / p): i root(p) where p is 3
+    more than a multiple of 4."""
+    if prime == 1:
+        return ONE
+    if prime == 2:
+        eighth = Fraction(1, 8)
+        return sums.added(sums.phase(eighth, ()), sums.phase(-eighth, ()))
+    found: Sum = ZERO
+    back = Fraction(-1, 4) if prime % 4 == 3 else Fraction(0)
+    for k in range(prime):
+        turn = Fraction(k * k, prime) + back
+        found = sums.added(found, sums.phase(turn, ()))
+    return found
+
+
+def _single(powers: sums.Powers) -> int:
+    """The generator of a product of one; -1 of others."""
+    return powers[0][0] if len(powers) == 1 and powers[0][1] == 1 else -1
+
+
+_RULES: dict[Operation, Callable[..., Quotient]] = {
+    Operation.ADD: Identities.total,
+    Operation.SUBTRACT: Identities.difference,
+    Operation.MULTIPLY: Identities.product,
+    Operation.DIVIDE: Identities.ratio,
+    Operation.NEGATE: Identities.opposite,
+    Operation.MAGNITUDE: Identities.magnitude,
+    Operation.SQUARE_ROOT: Identities.root,
+    Operation.SIN: Identities.sine,
+    Operation.COS: Identities.cosine,
+    Operation.TAN: Identities.tangent,
+    Operation.ASIN: Identities.arcsine,
+    Operation.ACOS: Identities.arccosine,
+    Operation.ATAN: Identities.arctangent,
+    Operation.ATAN2: Identities.angle_of,
+}
