@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.analysis.proof.enclosures import bounds, enclosures, is_enclosed
+from mechkin_cli.analysis.proof.enclosures import (
+    bounds,
+    enclosures,
+    reason_against,
+    reason_unknown,
+)
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number, UsageError
 from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.interface.dead_centre import DeadCentre, counted_tubes
@@ -116,12 +121,13 @@ class Certificate:
     def enclosure(self, name: str) -> tuple[Floats, Floats]:
         """Bounds of a quantity in the file's units: two arrays (rows,), of a vector (rows, 3).
 
-        Coordinates, points, rates, accelerations, reactions and efforts of the mechanism as the
-        file's text says it lie between them, in every row that is proven; nan elsewhere, where the
-        quantity is not unique, and where it goes by friction, actuators or tables of loads.
+        Coordinates, points, rates, accelerations, jerks, reactions and efforts of the mechanism as
+        the file's text says it lie between them, in every row that is proven; nan elsewhere, and
+        where the quantity is not unique.
 
         Raises:
-            UsageError: no such quantity, or one that is not enclosed: derived ones, jerks.
+            UsageError: no such quantity, or one that is not enclosed, with the reason: verdicts,
+                what is derived, and forces that go by friction, actuators or tables of loads.
         """
         return self.enclosures([name])[name]
 
@@ -131,8 +137,11 @@ class Certificate:
         known, wanted = result.problem.quantities(), []
         for name in names:
             quantity = known.get(a_text("quantity", name, '"O4.theta_dot"'))
-            if quantity is None or not is_enclosed(result.problem.mechanism, quantity):
-                raise UsageError(f"{name[:LONGEST_NAME]} is no quantity that is enclosed")
+            if quantity is None:
+                raise UsageError(f"{name[:LONGEST_NAME]} is no quantity of this mechanism")
+            against = reason_against(quantity)
+            if against:
+                raise UsageError(f"{name} is not enclosed: {against}")
             wanted.append(quantity)
         rows = result.row_states
         found = enclosures(result.session, self._found, wanted, rows.states, rows.turns)
@@ -140,9 +149,12 @@ class Certificate:
 
     def _bounds(self, wanted: Wanted, found: Enclosure) -> tuple[Floats, Floats]:
         """Of an enclosure in SI (width, rows), in the file's units."""
-        units = self.analysis.result.units
-        known = np.asarray(units.to_si(self.analysis[wanted.name], wanted.dimension))
-        low, high = (part.T for part in bounds(units, wanted, found, known.T))
+        result = self.analysis.result
+        unknown = reason_unknown(result.problem)
+        if unknown and self._found.on_branch.any() and not np.isfinite(found.radius).any():
+            raise UsageError(f"{wanted.name} is not enclosed: {unknown}")
+        known = np.asarray(result.units.to_si(self.analysis[wanted.name], wanted.dimension))
+        low, high = (part.T for part in bounds(result.units, wanted, found, known.T))
         return (low, high) if wanted.vector else (low[:, 0], high[:, 0])
 
     def _told(self, gap: Gap) -> Diagnostic:

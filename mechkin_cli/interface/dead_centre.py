@@ -11,7 +11,7 @@ from mechkin_cli.analysis.proof.enclosures import (
     bounds,
     dead_centre_enclosure,
     input_bounds,
-    is_enclosed,
+    reason_against,
 )
 from mechkin_cli.analysis.proof.fold import are_one
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number, UsageError
@@ -104,7 +104,7 @@ class DeadCentre:
         mechanism = result.problem.mechanism
         if (
             wanted is None
-            or not is_enclosed(mechanism, wanted)
+            or reason_against(wanted)
             or demand_of(mechanism, [wanted]) != Demand.POSITION
         ):
             raise UsageError(f"{name[:LONGEST_NAME]} is no position that is enclosed")

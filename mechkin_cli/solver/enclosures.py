@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.session import Session
 
-ENCLOSED = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
-"""What is enclosed beyond positions: no third derivatives, no verdicts."""
-
 
 class Enclosure(NamedTuple):
     """Numbers that are off high + low by no more than a radius; nothing is known where it is
@@ -42,7 +39,7 @@ class Given(NamedTuple):
     """The inputs of rows, enclosed: high and low parts, and radii about their sums.
 
     Attributes:
-        inputs, rates, accelerations: (inputs, 3, rows), values without whole turns.
+        inputs, rates, accelerations, jerks: (inputs, 3, rows), values without whole turns.
         whole: those turns (inputs, rows).
         ties: rates of tied inputs by those of their leaders (ties, 3, rows).
         time: what laws of loads read as time, s (1, 3, rows).
@@ -51,6 +48,7 @@ class Given(NamedTuple):
     inputs: Floats
     rates: Floats
     accelerations: Floats
+    jerks: Floats
     whole: Floats
     ties: Floats | None
     time: Floats | None
@@ -63,7 +61,7 @@ class Given(NamedTuple):
         except (LookupError, ValueError, TraceLost):
             return cls.of_doubles(session)
         time = None if precise.time is None else precise.time[None]
-        orders = precise.reduced, precise.rates, precise.accelerations
+        orders = precise.reduced, precise.rates, precise.accelerations, precise.jerks
         return cls(*orders, precise.whole, precise.tie_rates, time)
 
     @classmethod
@@ -75,6 +73,7 @@ class Given(NamedTuple):
             _point(inputs.reduced),
             _point(inputs.rates),
             _point(inputs.accelerations),
+            _point(inputs.jerks),
             inputs.whole,
             None if ties is None else _point(ties),
             None if moments is None else _point(moments.values[None]),
@@ -119,8 +118,6 @@ def enclose(
     wanted = tuple(wanted)
     mechanism = session.problem.mechanism
     demand = demand_of(mechanism, wanted)
-    if demand & ~ENCLOSED:
-        raise ValueError("third derivatives are not enclosed")
     readout = session.readout(wanted)
     outputs, constants = _outputs(session, readout.outputs, wanted)
     rows = positions.states.shape[1]
@@ -137,6 +134,7 @@ def enclose(
         contract=1,
         rates=_rows(given.rates) if moving else None,
         accelerations=_rows(given.accelerations) if accelerating else None,
+        jerks=_rows(given.jerks) if demand & Demand.JERK else None,
         ties=None if given.ties is None else _rows(given.ties),
         time=None if given.time is None else _rows(given.time),
         turned=turned,
@@ -212,7 +210,9 @@ def _outputs(
     """The outputs with the numbers of the file's text, and all parts of these (constants, 3); as
     they are, and None, where the text cannot be followed to them."""
     try:
-        constants = session.precise.enclosed_outputs(session, wanted)
+        constants = session.once(
+            ("enclosed outputs", wanted), lambda: session.precise.enclosed_outputs(session, wanted)
+        )
     except (LookupError, ValueError, TraceLost):
         return outputs, None
     return outputs.with_constants(np.ascontiguousarray(constants[:, 0])), constants

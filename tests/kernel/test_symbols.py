@@ -41,6 +41,9 @@ needs_objdump = pytest.mark.skipif(shutil.which("objdump") is None, reason="no o
 PLAIN = ["-O3", "-c", "-fno-exceptions", "-fno-rtti"]
 OF_DOUBLES = [f"unit_{name}" for name in UNITS]
 OF_DOUBLE_DOUBLE = [f"double_double_{name}" for name in DOUBLE_DOUBLE]
+OF_INTERVALS = [f"enclosing_{name}" for name in DOUBLE_DOUBLE]
+FOLDERS = {"unit": "", "double_double": "", "enclosing": "certify"}
+NAMES = {"unit": "UNIT", "double_double": "UNIT", "enclosing": "ENCLOSING"}
 
 
 def compile_unit(name: str, target: Path) -> Path:
@@ -51,13 +54,15 @@ def compile_unit(name: str, target: Path) -> Path:
         arithmetic = []
     else:
         lanes, fused, options = DOUBLE_DOUBLE[instructions]
-        arithmetic = ["-DMECHKIN_ARITHMETIC=1", f"-DMECHKIN_FUSED={fused}", "-Os"]
-    defined = [f"-DMECHKIN_LANES={lanes}", f"-DMECHKIN_UNIT=mechkin_{name}", *arithmetic]
-    source = SOURCES / ("unit.cpp" if kind == "unit" else f"{kind}_unit.cpp")
+        number = 1 if kind == "double_double" else 2
+        arithmetic = [f"-DMECHKIN_ARITHMETIC={number}", f"-DMECHKIN_FUSED={fused}", "-Os"]
+    entry = f"-DMECHKIN_{NAMES[kind]}=mechkin_{name}"
+    defined = [f"-DMECHKIN_LANES={lanes}", entry, *arithmetic, f"-I{SOURCES}"]
+    source = SOURCES / FOLDERS[kind] / ("unit.cpp" if kind == "unit" else f"{kind}_unit.cpp")
     return compile_with(source, target, *PLAIN, *defined, *options)
 
 
-@pytest.fixture(scope="module", params=OF_DOUBLES + OF_DOUBLE_DOUBLE)
+@pytest.fixture(scope="module", params=OF_DOUBLES + OF_DOUBLE_DOUBLE + OF_INTERVALS)
 def unit(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """One unit, compiled as the build does."""
     name: str = request.param
@@ -99,7 +104,7 @@ def test_a_unit_of_doubles_fuses_no_multiplications_and_additions(unit: Path) ->
 
 @needs_compiler
 @needs_objdump
-@pytest.mark.parametrize("unit", OF_DOUBLE_DOUBLE, indirect=True)
+@pytest.mark.parametrize("unit", OF_DOUBLE_DOUBLE + OF_INTERVALS, indirect=True)
 def test_double_double_fuses_products_with_their_rounded_value_alone(unit: Path) -> None:
     found = set(FUSED.findall(instructions(unit)))
     assert found == ({"sub"} if "avx512" in unit.stem else set())
@@ -119,7 +124,9 @@ def test_the_build_compiles_the_same_units() -> None:
     assert "-ffp-contract=off" in build
     units = re.findall(r"^ *mechkin_unit\((\w+) (\d)([^)]*)\)", build, re.MULTILINE)
     assert {name: (int(lanes), flags.split()) for name, lanes, flags in units} == UNITS
-    units = re.findall(r"^ *mechkin_double_double\((\w+) (\d) (\d)([^)]*)\)", build, re.MULTILINE)
-    assert {
-        name: (int(lanes), int(fused), flags.split()) for name, lanes, fused, flags in units
-    } == DOUBLE_DOUBLE
+    for made in ("double_double", "enclosing"):
+        pattern = rf"^ *mechkin_{made}\((\w+) (\d) (\d)([^)]*)\)"
+        units = re.findall(pattern, build, re.MULTILINE)
+        assert {
+            name: (int(lanes), int(fused), flags.split()) for name, lanes, fused, flags in units
+        } == DOUBLE_DOUBLE

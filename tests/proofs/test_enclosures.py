@@ -1,4 +1,4 @@
-"""Rates and accelerations of proven rows lie in their enclosures, at 60 digits; forces of random
+"""Rates up to jerks of proven rows lie in their enclosures, at 60 digits; forces of random
 mechanisms: tests/properties/test_enclosures.py."""
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ def solution(name: str, row: int) -> Any:
 
 
 @pytest.mark.parametrize("name", ["rcsr", "sevenr", "rchch", "rcrcr", "rprhrrr"])
-def test_true_rates_and_accelerations_are_enclosed(name: str) -> None:
+def test_true_rates_up_to_jerks_are_enclosed(name: str) -> None:
     proofs = certificate(name)
     found = {
         f"{joint}.{coordinate}{suffix}": proofs.enclosure(f"{joint}.{coordinate}{suffix}")
         for joint, its in mechanism(name).joints.items()
         for coordinate in its.coordinates
-        for suffix in ("_dot", "_ddot")
+        for suffix in ("_dot", "_ddot", "_dddot")
     }
     for row in ROWS:
         true = solution(name, row)
@@ -59,7 +59,32 @@ def test_reactions_that_are_not_unique_have_none() -> None:
     assert np.isnan(high).all()
 
 
-@pytest.mark.parametrize("name", ["no.such", "O2.theta_dddot", "row.condition", "row.proof"])
-def test_what_is_not_enclosed_is_refused(name: str) -> None:
-    with pytest.raises(mk.UsageError, match="no quantity that is enclosed"):
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("no.such", "is no quantity"),
+        ("row.condition", "not enclosed: a verdict"),
+        ("row.proof", "is no quantity"),
+        ("coupler.screw_pitch", "not enclosed: computed from other quantities"),
+    ],
+)
+def test_what_is_not_enclosed_is_refused_with_the_reason(name: str, why: str) -> None:
+    with pytest.raises(mk.UsageError, match=why):
         certificate("rcsr").enclosure(name)
+
+
+@pytest.mark.parametrize(
+    ("addition", "why"),
+    [
+        ("loads:\n  - {type: friction, joint: O4, coefficient: 0.1, radius: 5 mm}", "friction"),
+        ("actuators: [O4.theta]\nloads:", "actuators"),
+    ],
+)
+def test_forces_that_are_decided_in_doubles_are_refused_with_the_reason(
+    addition: str, why: str
+) -> None:
+    text = RCSR.read_text(encoding="utf-8").split("\ntables:")[0]
+    proofs = mk.loads(text.replace("\nloads:", f"\n{addition}", 1)).certify()
+    with pytest.raises(mk.UsageError, match=why):
+        proofs.enclosure("O2.force")
+    assert np.isfinite(proofs.enclosure("O2.theta_dddot")[0]).all()

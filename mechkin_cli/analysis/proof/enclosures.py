@@ -8,10 +8,8 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.proof.distance import FULL_TURN
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, LEDGER_KINDS
 from mechkin_cli.mechanism.joint_table import is_angle
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.solver.enclosures import Enclosure, Given, Positions, enclose
 from mechkin_cli.solver.inputs import input_unit
 from mechkin_cli.solver.proofs import Enclosed, about_high, input_rounding
@@ -22,7 +20,7 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis.proof.certificate import Certificate
     from mechkin_cli.analysis.proof.dead_centre import DeadCentre
     from mechkin_cli.arrays import Bools, Floats
-    from mechkin_cli.mechanism.model import Mechanism
+    from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.session import Session
     from mechkin_cli.units import UnitSystem
@@ -30,13 +28,27 @@ if TYPE_CHECKING:
 _OF_ROWS = {"kinetic_energy", "potential_energy"}
 
 
-def is_enclosed(mechanism: Mechanism, quantity: Wanted) -> bool:
-    """Whether a quantity is among those that can be enclosed."""
-    if quantity.kind in DERIVED_KINDS or (
-        quantity.owner == "row" and quantity.kind not in _OF_ROWS
-    ):
-        return False
-    return not demand_of(mechanism, [quantity]) & Demand.JERK
+def reason_against(quantity: Wanted) -> str:
+    """Why a quantity has no enclosure in any mechanism; "" where it can have one."""
+    if quantity.kind in LEDGER_KINDS:
+        return "a sum over the rows"
+    if quantity.kind in DERIVED_KINDS:
+        return "computed from other quantities in doubles alone"
+    if quantity.owner == "row" and quantity.kind not in _OF_ROWS:
+        return "a verdict"
+    return ""
+
+
+def reason_unknown(problem: Problem) -> str:
+    """Why forces of a mechanism have no enclosure in any row that is proven; "" where they have."""
+    if problem.mechanism.frictions:
+        return "friction, whose sticking and slipping is decided in doubles"
+    if any(law.curve is not None for law in problem.load_laws):
+        return "a load that is read from a table, whose curve is known in doubles"
+    drives = problem.mechanism.drives
+    if drives is not None and drives.actuators:
+        return "efforts at actuators other than the inputs, which are solved for in doubles"
+    return ""
 
 
 def enclosures(
@@ -75,7 +87,7 @@ def dead_centre_enclosure(session: Session, found: DeadCentre, wanted: Wanted) -
     inputs = np.stack([node.values, np.zeros_like(node.values), node.off], axis=1)
     inputs[exchanged.number, 2] = fold.reach
     still = np.zeros_like(inputs)
-    given = Given(inputs, still, still, np.zeros_like(node.values), None, None)
+    given = Given(inputs, still, still, still, np.zeros_like(node.values), None, None)
     positions = Positions(enclosed.plan, enclosed.constants, node.states, fold.boxes.radius)
     return enclose(exchanged.session, positions, given, [wanted])[wanted.name]
 

@@ -37,16 +37,7 @@ inline void block_jerks(const Plan& p, Workspace& w, int index) {
   const Block& b = p.block[index];
   for (int u = 0; u < b.size; ++u) w.jerk[p.unknown[b.column_begin + u]] = 0.0;
   for (int o = b.joint_begin; o < b.joint_end; ++o) jerk_link(p, w, p.order[o]);
-  for (int c = b.closing_begin; c < b.closing_end; ++c) {
-    const ClosingJoint& j = p.closing[c];
-    const MotionToJerk first = motion_to_jerk(w, j.first), other = motion_to_jerk(w, j.second);
-    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-      Pack r[MAX_CLOSING_ROWS];
-      entry.third(w.closure[c], first, other, r);
-      for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];
-    });
-    if (j.slide >= 0) w.right[j.row] += Pack(j.slide_sign) * w.jerk[p.joints[j.slide].column];
-  }
+  third_of_equations(p, w, b);
   matrices_of(p, w, index).solve_equations(w.right);
   for (int u = 0; u < b.size; ++u) w.jerk[p.unknown[b.column_begin + u]] = w.right[u];
   for (int o = b.joint_begin; o < b.joint_end; ++o) jerk_link(p, w, p.order[o]);

@@ -124,4 +124,18 @@ inline void jerk_link(const Plan& p, Workspace& w, int k) {
                    bracket(parent.acceleration, first) + bracket(parent.velocity, bracket(parent.velocity, first));
 }
 
+// Third derivatives of a block's closing equations, negative, into w.right: as the links move.
+inline void third_of_equations(const Plan& p, Workspace& w, const Block& b) {
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    const MotionToJerk first = motion_to_jerk(w, j.first), other = motion_to_jerk(w, j.second);
+    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      Pack r[MAX_CLOSING_ROWS];
+      entry.third(w.closure[c], first, other, r);
+      for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];
+    });
+    if (j.slide >= 0) w.right[j.row] += Pack(j.slide_sign) * w.jerk[p.joints[j.slide].column];
+  }
+}
+
 }  // namespace

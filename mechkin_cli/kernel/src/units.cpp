@@ -46,6 +46,13 @@ const DoubleDoubleUnit& double_double_unit([[maybe_unused]] int lanes) {
   return *mechkin_double_double_sse2();
 }
 
+const EnclosingUnit& enclosing_unit([[maybe_unused]] int lanes) {
+#if MECHKIN_WIDE
+  if ((lanes == 0 || lanes >= 8) && kernel_unit()->lanes == 8) return *mechkin_enclosing_avx512();
+#endif
+  return *mechkin_enclosing_sse2();
+}
+
 #if MECHKIN_X86
 // 0x1f80: all exceptions masked, round to nearest, no flush-to-zero, no denormals-are-zero
 FloatingPointState::FloatingPointState() : saved_(_mm_getcsr()) { _mm_setcsr(0x1f80); }

@@ -1,6 +1,7 @@
 // Choice of the instruction set, and the floating-point state that every entry of the kernel needs.
 #pragma once
 
+#include "certify/enclosing_unit.hpp"
 #include "double_double_unit.hpp"
 #include "motion_unit.hpp"
 #include "unit.hpp"

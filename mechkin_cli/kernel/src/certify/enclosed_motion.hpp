@@ -1,4 +1,4 @@
-// Rates, accelerations and the wrenches of closing joints over a box that holds the position, block by block.
+// Rates, accelerations, jerks and the wrenches of closing joints over a box that holds the position, block by block.
 //
 // The position is that of the mechanism: the loops are closed there, and so the closing equations' first and second
 // derivatives hold, whose coefficients are enclosed over the box. Of more equations than unknowns those are solved that
@@ -38,6 +38,18 @@ inline void enclose_accelerations(const Plan& p, Workspace& w, const Solving& s,
   solve_enclosed(matrix_of(p, w, s, index), w.right, s.room, x);
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = x[u];
   accelerate_block(p, w, b, true);
+}
+
+// As enclose_accelerations, one order higher.
+inline void enclose_jerks(const Plan& p, Workspace& w, const Solving& s, int index) {
+  const Block& b = p.block[index];
+  for (int u = 0; u < b.size; ++u) w.jerk[p.unknown[b.column_begin + u]] = 0.0;
+  for (int o = b.joint_begin; o < b.joint_end; ++o) jerk_link(p, w, p.order[o]);
+  third_of_equations(p, w, b);
+  Pack* const x = w.scratch;
+  solve_enclosed(matrix_of(p, w, s, index), w.right, s.room, x);
+  for (int u = 0; u < b.size; ++u) w.jerk[p.unknown[b.column_begin + u]] = x[u];
+  for (int o = b.joint_begin; o < b.joint_end; ++o) jerk_link(p, w, p.order[o]);
 }
 
 // From what each link needs of its joints (w.carried) to what the joints transmit, as `distribute` in doubles.

@@ -50,14 +50,15 @@ void check(const EnclosingRequest& r, const OutputList* outputs, const Plan& p) 
   unsigned demand = 0;
   if (r.rates) demand |= DEMAND_VELOCITY;
   if (r.accelerations) demand |= DEMAND_ACCELERATION;
+  if (r.jerks) demand |= DEMAND_JERK;
   if (r.forces) demand |= DEMAND_FORCES;
   refuse(p.charts > 0, "plans with a chart are not enclosed");
   refuse(!outputs != !r.outputs, "outputs and values are given together");
-  refuse(outputs && (outputs->demand() & (DEMAND_VELOCITY | DEMAND_ACCELERATION | DEMAND_FORCES) & ~demand),
+  refuse(outputs && (outputs->demand() & (DEMAND_VELOCITY | DEMAND_ACCELERATION | DEMAND_JERK | DEMAND_FORCES) & ~demand),
          "the outputs need more than is given");
-  refuse(outputs && outputs->demand() & DEMAND_JERK, "third derivatives are not enclosed");
   refuse(r.forces && program_demand(p.law) & ~demand, "loads that vary need more than is given");
   refuse(r.accelerations && !r.rates, "accelerations need rates of the inputs");
+  refuse(r.jerks && !r.accelerations, "jerks need accelerations of the inputs");
   refuse(r.velocities && !r.rates, "first derivatives need rates of the inputs");
   refuse(r.second && !r.accelerations, "second derivatives need accelerations of the inputs");
 }
@@ -73,6 +74,7 @@ void enclose(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.radius = given.read("radius", p.columns);
   r.rates = given.read("rates", 3L * p.inputs);
   r.accelerations = given.read("accelerations", 3L * p.inputs);
+  r.jerks = given.read("jerks", 3L * p.inputs);
   r.ties = given.read("ties", 3L * p.ties);
   r.turned = given.read("turned", turn_slots(p, *kernel_unit(2)));
   r.whole = given.read("whole", p.inputs);
@@ -84,6 +86,7 @@ void enclose(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.sides = given.write("sides", 3L * p.closings);
   r.forces = given.integer("forces", 0, 1, 0);
   r.contract = given.integer("contract", 0, 1, 0);
+  const EnclosingUnit& unit = enclosing_unit((int)given.integer("lanes", 0, 8, 0));
   const OutputList* const outputs = outputs_of(given, plan);
   const std::optional<OutputList> output_low = part_of(given, "output_low", outputs);
   const std::optional<OutputList> output_radii = part_of(given, "output_radii", outputs);
@@ -98,7 +101,6 @@ void enclose(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.wanted_radii = output_radii ? &wanted_radii : nullptr;
   r.rows = given.rows();
   check(r, outputs, p);
-  const EnclosingUnit& unit = *mechkin_enclosing();
   std::vector<char> memory((std::size_t)unit.workspace_size(p));
   nb::gil_scoped_release released;
   FloatingPointState state;

@@ -1,4 +1,4 @@
-// Enclosures of positions, rates, accelerations, forces and outputs in intervals, and of equations and their derivatives over
+// Enclosures of positions, rates, accelerations, jerks, forces and outputs in intervals, and of equations and their derivatives over
 // boxes.
 #define MECHKIN_WIDE_PLAN
 #include "parted_plan.hpp"
@@ -151,6 +151,10 @@ void enclose_motion(const Plan& p, const EnclosingRequest& r, Memory& m, const L
   for (int i = 0; i < p.inputs; ++i) w.acceleration[p.input_column[i]] = in.get(r.accelerations, i);
   for (int b = 0; b < p.blocks; ++b) enclose_accelerations(p, w, m.solving, b);
   accelerate_rest(p, w);
+  if (!r.jerks) return;
+  for (int i = 0; i < p.inputs; ++i) w.jerk[p.input_column[i]] = in.get(r.jerks, i);
+  for (int b = 0; b < p.blocks; ++b) enclose_jerks(p, w, m.solving, b);
+  for (int k = 0; k < p.rest_count; ++k) jerk_link(p, w, p.rest[k]);
 }
 
 void enclose_pack(const Plan& p, const EnclosingRequest& r, Memory& m, const Lookup& in) {
@@ -219,4 +223,4 @@ const EnclosingUnit unit = {workspace_size, enclose};
 
 }  // namespace
 
-extern "C" const EnclosingUnit* mechkin_enclosing() { return &unit; }
+extern "C" const EnclosingUnit* MECHKIN_ENCLOSING() { return &unit; }

@@ -15,6 +15,7 @@ struct EnclosingRequest {
   bool contract;                // whether the box holds the position, about which it is drawn together
   const double* rates;          // inputs x 3 x rows, may be null: no velocities
   const double* accelerations;  // inputs x 3 x rows, may be null: no accelerations
+  const double* jerks;          // inputs x 3 x rows, may be null: no third derivatives
   const double* ties;           // ties x 3 x rows, may be null
   const double* turned;         // as in Request: turn slots x rows, inputs x rows
   const double* whole;
@@ -37,4 +38,10 @@ struct EnclosingUnit {
                   char* workspace);
 };
 
-extern "C" const EnclosingUnit* mechkin_enclosing();
+extern "C" {
+const EnclosingUnit* mechkin_enclosing_sse2();
+const EnclosingUnit* mechkin_enclosing_avx512();
+}
+
+// The widest that the machine has, or the widest of at most `lanes`; nothing that it computes depends on it.
+const EnclosingUnit& enclosing_unit(int lanes = 0);
