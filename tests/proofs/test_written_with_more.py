@@ -4,65 +4,15 @@ same place."""
 from __future__ import annotations
 
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pytest
-from oracle import beside_itself, document, to_text, with_links
-from oracle.document import Document
-from references import MECHANISMS
+from idle_parts import CRANKS, plain, with_idle_link, with_idle_loop
+from oracle import beside_itself, to_text
 
 import mechkin_cli as mk
 from mechkin_cli.interface.certificate import Certificate
-
-
-class Crank(NamedTuple):
-    """A link that turns about a point of ground, in the file's lengths."""
-
-    link: str
-    point: tuple[float, float, float]
-    size: float
-
-
-CRANKS = {
-    "rcsr": Crank("crank", (-5.0, 0.0, 0.0), 1.0),
-    "rssr": Crank("crank", (0.0, 0.0, 0.0), 50.0),
-    "sevenr": Crank("one", (0.0, 0.0, 0.0), 1.0),
-    "rcsr_csr": Crank("crank", (-5.0, 0.0, 0.0), 1.0),
-    "slider_crank": Crank("one", (0.0, 0.0, 0.0), 0.1),
-    "bennett": Crank("one", (0.0, 0.0, 0.0), 0.1),
-}
-
-
-def plain(name: str) -> Document:
-    data = document(MECHANISMS / f"{name}.yaml")
-    return {key: value for key, value in data.items() if key not in ("tables", "follow")}
-
-
-def with_idle_loop(name: str) -> Document:
-    """The crank moves a rocker of no use: R, S, S, R with a short crank, which turns freely."""
-    its = CRANKS[name]
-
-    def at(x: float, y: float, z: float) -> list[str]:
-        return [repr(a + its.size * b) for a, b in zip(its.point, (x, y, z), strict=True)]
-
-    joints = {
-        "X1": {"type": "S", "links": [its.link, "idle_rod"], "point": at(0.1, 0.2, -0.1)},
-        "X2": {"type": "S", "links": ["idle_rod", "idle_rocker"], "point": at(2.0, 2.0, 0.3)},
-        "X3": {
-            "type": "R",
-            "links": ["ground", "idle_rocker"],
-            "point": at(3.0, -0.5, 0.4),
-            "axis": ["0.1", "0.3", "1"],
-        },
-    }
-    return with_links(plain(name), {"idle_rod": {}, "idle_rocker": {}}, joints)
-
-
-def with_idle_link(name: str) -> Document:
-    """A link welded to the crank."""
-    joints = {"X1": {"type": "W", "links": [CRANKS[name].link, "idle"]}}
-    return with_links(plain(name), {"idle": {}}, joints)
 
 
 @cache
@@ -72,8 +22,8 @@ def known(name: str) -> Certificate:
 
 MORE = {
     "beside itself": lambda name: beside_itself(plain(name)),
-    "with an idle loop": with_idle_loop,
-    "with an idle link": with_idle_link,
+    "with an idle loop": lambda name: with_idle_loop(plain(name), CRANKS[name]),
+    "with an idle link": lambda name: with_idle_link(plain(name), CRANKS[name]),
 }
 
 
