@@ -134,18 +134,28 @@ def _timed(
     """With the moments of a section at `path`."""
     from mechkin_cli.building.law_numbers import Clock
 
-    moments = spaced_moments(fields, path, section, limit)
-    last = fields.written((*path, "to"), section.last, TIME)
+    moments, last = spaced_moments(fields, path, section, limit)
     clock = Clock(moments.written, float(moments.written[0]), last)
     return written._replace(time=moments, clock=clock)
 
 
-def spaced_moments(fields: Fields, path: Path, section: TimeSection, limit: RowLimit) -> Moments:
-    """The moments of a section, which run forwards."""
+def spaced_moments(
+    fields: Fields, path: Path, section: TimeSection, limit: RowLimit
+) -> tuple[Moments, float]:
+    """The moments of a section, which run forwards, and where it ends in the file's unit; one
+    moment stands in for those with an error."""
+    errors = fields.error_count
     written = spaced(fields, path, section, TIME, limit)
+    last = float(written[0])
+    if fields.error_count == errors:
+        last = fields.written((*path, "to"), section.last, TIME)
     if written[-1] < written[0]:
         fields.error("time-backwards", path, "time runs backwards", "exchange from and to")
-    return Moments(fields.units.to_si(written.copy(), TIME), written)
+    elif written.size > 1 and (written[-1] - written[0]) * LARGEST_NUMBER <= 1.0:
+        text = f"time stands still over {written.size} rows"
+        fields.error("zero-step", (*path, "to"), text, "give a later moment, or count: 1")
+        written = written[:1]
+    return Moments(fields.units.to_si(written.copy(), TIME), written), last
 
 
 def _orders(

@@ -113,8 +113,7 @@ class _Builder:
         place = (*path, "time")
         errors = self.fields.error_count
         if isinstance(section.time, TimeSection):
-            moments = spaced_moments(self.fields, place, section.time, self.limit)
-            last = self.fields.written((*place, "to"), section.time.last, TIME)
+            moments, last = spaced_moments(self.fields, place, section.time, self.limit)
         else:
             moments = self._listed(place, section.time)
             last = float(moments.written[-1])

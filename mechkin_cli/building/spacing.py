@@ -26,13 +26,15 @@ def spaced(
     limit: RowLimit,
 ) -> Floats:
     """The values in the file's units; what is wrong is noted in `fields`, one value stands in."""
+    errors = fields.error_count
     first = fields.written((*path, "from"), section.first, dimension)
     last = fields.written((*path, "to"), section.last, dimension)
     if section.count is not None:
-        if limit.is_exceeded(fields, (*path, "count"), section.count):
+        if fields.error_count > errors or limit.is_exceeded(
+            fields, (*path, "count"), section.count
+        ):
             return np.array([first])
         return by_count(first, last, section.count)
-    errors = fields.error_count
     assert section.step is not None  # the schema wants one of the two
     step = abs(fields.written((*path, "step"), section.step, dimension))
     if fields.error_count > errors:

@@ -22,6 +22,12 @@ def stopped(stop: str, code: str, *words: str) -> BadMechanism:
 
 START = [
     response("start: {»O.s: 1}, TIME", "unknown-coordinate", "no coordinate s", "theta"),
+    response(
+        "start: {O.theta: 2}, time: {from: 0, to: »3 mm, count: 3}",
+        "expression",
+        "expected a time, found a length",
+    ),
+    response("start: {O.theta: 2}, time: {from: 1, to: »1, count: 3}", "zero-step", "stands still"),
     response("start: {»Q.theta_dot: 1}, TIME", "unknown-coordinate", "Q.theta is no coord"),
     response("start: {»O.theta_ddot: 1}, TIME", "wrong-form", "O1.theta_dot"),
     response("start: {O.theta: »20 mm}, TIME", "expression", "expected an angle", "length"),
@@ -45,7 +51,7 @@ START = [
         "remove it",
     ),
 ]
-"""What starts a response."""
+"""What starts a response, and when."""
 
 DRIVES = [
     started("efforts: {»D.q: 1}", "unknown-coordinate", "no coordinate q", "theta, s"),

@@ -166,6 +166,11 @@ BAD = [
     ("step: 50}", "step: »0}", "zero-step"),
     ("step: 50}", "step: »1e-9}", "too-many-numbers"),
     ("step: 50}", "step: »1 mm}", "expression", "expected a time, found a length"),
+    ("900, step: 50}", '"»1/2 s", step: 1}', "expression", "expected a time, found a frequency"),
+    ("900, step: 50}", '"»1/2 s", count: 3}', "expression", "expected a time, found a frequency"),
+    ("900, step: 50}", "»1e300, count: 3}", "too-large"),
+    ("900, step: 50}", "»100, count: 3}", "zero-step", "time stands still over 3 rows"),
+    ("100, to: 900, step: 50}", "0, to: »1e-310, count: 3}", "zero-step", "a later moment"),
     ("O.theta: LAW", "O.theta: {law: table, file: »law.csv}", "csv-table", "comes from no file"),
 ]
 
