@@ -154,7 +154,7 @@ class Certificate:
         if unknown and self._found.on_branch.any() and not np.isfinite(found.radius).any():
             raise UsageError(f"{wanted.name} is not enclosed: {unknown}")
         known = np.asarray(result.units.to_si(self.analysis[wanted.name], wanted.dimension))
-        low, high = (part.T for part in bounds(result.units, wanted, found, known.T))
+        low, high = (part.T for part in bounds(result.problem, wanted, found, known.T))
         return (low, high) if wanted.vector else (low[:, 0], high[:, 0])
 
     def _told(self, gap: Gap) -> Diagnostic:

@@ -11,6 +11,7 @@ from mechkin_cli.analysis.proof.enclosures import (
     bounds,
     dead_centre_enclosure,
     input_bounds,
+    is_angle_of_place,
     reason_against,
 )
 from mechkin_cli.analysis.proof.fold import are_one
@@ -91,8 +92,9 @@ class DeadCentre:
 
     def enclosure(self, name: str) -> tuple[Floats, Floats]:
         """Bounds of a coordinate or a point of the position there in the file's units: two numbers,
-        of a vector two arrays (3,); nan where no dead centre is proven to exist. Angles are those
-        next to the last row's.
+        of a vector two arrays (3,); nan where no dead centre is proven to exist. Angles go on from
+        the last row's with their whole turns; where the branch of the rows is not proven to lead
+        there, they are those next to the last row's.
 
         Raises:
             UsageError: no such quantity, or one that is no position: at a dead centre rates by the
@@ -113,8 +115,11 @@ class DeadCentre:
         else:
             row = np.asarray(self._analysis[name])[self.row]
             known = np.asarray(result.units.to_si(row, wanted.dimension)).reshape(-1, 1)
+            turned = self._found.turned
+            if turned is not None and is_angle_of_place(wanted):
+                known = known + turned.of_angle(result.session, wanted)
             found = dead_centre_enclosure(result.session, self._found, wanted)
-            low, high = bounds(result.units, wanted, found, known)
+            low, high = bounds(result.problem, wanted, found, known)
         return (low[:, 0], high[:, 0]) if wanted.vector else (low[0, 0], high[0, 0])
 
     def is_same_as(self, other: DeadCentre) -> bool:

@@ -248,6 +248,70 @@ def test_dead_centres_on_both_sides_of_a_gap_are_not_the_same(gap: str) -> None:
     assert are_one(one, again)
 
 
+SCREW_LOOP = """
+format: 1
+units: {length: mm, angle: deg}
+links: {b1: {}, b2: {}, b3: {}, b4: {}, b5: {}, b6: {}}
+joints:
+  J0: {type: P, links: [ground, b1], point: [-532.2, -356.6, -94.5], axis: [0, 0, 1]}
+  J1: {type: H, links: [b1, b2], point: [589.4, 865.3, -493], axis: [0.46, 0.13, 0.18], lead: 61.8}
+  J2: {type: R, links: [b2, b3], point: [-937.7, -425.7, -635.9], axis: [0, 0, 1]}
+  J3: {type: R, links: [b3, b4], point: [219.1, 853.9, -568.1], axis: [0, 0, 1]}
+  J4: {type: H, links: [b4, b5], point: [966.5, 968.5, 178.1], axis: [0, 0, 1], lead: 312.1}
+  J5: {type: R, links: [b5, b6], point: [808.3, 246.1, -112.7], axis: [0, 0, 1]}
+  J6: {type: R, links: [b6, ground], point: [-763.4, -206.4, -178], axis: [1, 1, 0]}
+motion: {inputs: {J0.s: {from: 0, to: -2000, ROWS}}}
+"""
+
+
+@pytest.mark.parametrize("rows", ["count: 2", "count: 9", "step: 40"])
+@pytest.mark.parametrize("closed_at", [None, ["J2"], ["J6"]])
+def test_a_thread_has_turned_as_far_as_it_went(rows: str, closed_at: list[str] | None) -> None:
+    """By its lead more than half a turn; from the last row or in many rows."""
+    model = mk.loads(SCREW_LOOP.replace("ROWS", rows))
+    (found,) = model.certify(closed_at=closed_at).dead_centres
+    assert found.is_proven
+    (low, high), (start, end) = found.enclosure("J4.theta"), found.enclosure("J4.s")
+    lead = mp.mpf("312.1") / 360
+    assert float(start) > 0.5 * 312.1
+    assert lead * low <= end
+    assert start <= lead * high
+
+
+TURNING_LOOP = """
+format: 1
+units: {length: m, angle: deg}
+links: {b1: {}, b2: {}, b3: {}, b4: {}, b5: {}}
+joints:
+  J0: {type: R, links: [ground, b1], point: [-0.544, 0.499, 0.617], axis: [0.444, 0.101, 0.952]}
+  J1: {type: C, links: [b1, b2], point: [0.489, 0.356, -0.894], axis: [0.498, 0.473, 0.892]}
+  J2: {type: R, links: [b2, b3], point: [-0.263, 0.939, 0.080], axis: [0, 0, 1]}
+  J3: {type: R, links: [b3, b4], point: [-0.419, 0.902, 0.641], axis: [0, 0, 1]}
+  J4: {type: H, links: [b4, b5], point: [-0.203, 0.050, 0.276], axis: [1, 1, 0], lead: 0.030}
+  J5: {type: R, links: [b5, ground], point: [0.034, 0.075, -0.302], axis: [-0.72, -0.92, 0.19]}
+motion: {inputs: {J0.theta: {from: 0, to: -300, ROWS}}}
+"""
+
+
+@pytest.mark.parametrize("closed_at", [None, ["J2"], ["J3"]])
+def test_turns_are_those_of_the_rows(closed_at: list[str] | None) -> None:
+    """Where a joint turns on beyond half a turn behind the only row before the dead centre."""
+    few, many = (
+        mk.loads(TURNING_LOOP.replace("ROWS", rows)).certify(closed_at=closed_at)
+        for rows in ("count: 2", "count: 60")
+    )
+    (one,), (other,) = few.dead_centres, many.dead_centres
+    assert one.is_proven
+    assert other.is_proven
+    assert (one.row, other.row) == (0, 4)
+    for name in few.analysis.result.coordinates:
+        low, high = one.enclosure(name)
+        least, most = other.enclosure(name)
+        assert low <= most
+        assert least <= high
+    assert one.enclosure("J2.theta")[0] > 180
+
+
 @pytest.mark.parametrize("bars", [("0", "1", "2"), ("0.6", "0.8", "2"), ("-0.28", "0.96", "3")])
 def test_a_branch_point_is_no_dead_centre(bars: tuple[str, str, str]) -> None:
     """A parallelogram where its bars are in line, said to have a dead centre there; at the place,

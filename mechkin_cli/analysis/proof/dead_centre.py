@@ -4,7 +4,7 @@ to them."""
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.proof.bridge import bridge
 from mechkin_cli.analysis.proof.distance import FULL_TURN
 from mechkin_cli.analysis.proof.fold import Fold, prove_fold
+from mechkin_cli.analysis.proof.turned import Turned
 from mechkin_cli.solver.exchanged import exchange
 from mechkin_cli.solver.proofs import Boxes, Enclosed, Nodes, prove_boxes
 
@@ -37,6 +38,8 @@ class DeadCentre:
         place: the inputs there in doubles, with their whole turns (inputs,), kernel units.
         fold: what is proven to exist; None where nothing is.
         tubes: how many tubes lead there from the row.
+        turned: how far the coordinates go from the row to there; None where the branch is not
+            proven to lead there.
         why: why it is not proven; None where it is.
     """
 
@@ -45,7 +48,15 @@ class DeadCentre:
     place: Floats
     fold: Fold | None
     tubes: int
+    turned: Turned | None
     why: WhyNot | None
+
+
+class Lead(NamedTuple):
+    """The tubes along a way, and how far the coordinates go on it."""
+
+    tubes: int
+    turned: Turned
 
 
 def prove_dead_centre(enclosed: Enclosed, row: Nodes, box: Boxes, end: EndOfRows) -> DeadCentre:
@@ -62,24 +73,25 @@ def prove_dead_centre(enclosed: Enclosed, row: Nodes, box: Boxes, end: EndOfRows
     moved = np.flatnonzero(np.abs(way) > row.off[:, 0])
     number = int(np.abs(way).argmax())
 
-    def found(fold: Fold | None, tubes: int, why: WhyNot | None) -> DeadCentre:
-        return DeadCentre(end.row, number, ending.inputs, fold, tubes, why)
+    def found(fold: Fold | None, lead: Lead | None, why: WhyNot | None) -> DeadCentre:
+        tubes, turned = lead or (0, None)
+        return DeadCentre(end.row, number, ending.inputs, fold, tubes, turned, why)
 
     if moved.size > 1:
-        return found(None, 0, "inputs")
+        return found(None, None, "inputs")
     exchanged = exchange(session, number, ending.block, ending.first)
     if exchanged is None:
-        return found(None, 0, "balls")
+        return found(None, None, "balls")
     inputs = row.reduced[:, 0].copy()
     inputs[number] += way[number]
     guess = _guess(session, row, inputs, number, ending)
     fold = prove_fold(exchanged, inputs, row.off[:, 0], guess)
     if fold is None:
-        return found(None, 0, "box")
+        return found(None, None, "box")
     if fold.boxes.beyond[0] > 0.0:
-        return found(None, 0, "closure")
-    tubes = _lead(enclosed, row, box, fold) if box.proven[0] else 0
-    return found(fold, tubes, None if tubes else "branch")
+        return found(None, None, "closure")
+    lead = _lead(enclosed, row, box, fold) if box.proven[0] else None
+    return found(fold, lead, None if lead else "branch")
 
 
 def _guess(session: Session, row: Nodes, inputs: Floats, number: int, ending: Ending) -> Floats:
@@ -89,7 +101,7 @@ def _guess(session: Session, row: Nodes, inputs: Floats, number: int, ending: En
     gap = float(inputs[number] - row.reduced[number, 0])
     before[number] -= np.copysign(min(abs(gap), tolerances.DEAD_CENTRE_NEAR), gap)
     place = _place_on_way(session, row, before)
-    state: Floats = (row if place is None else place).states[:, 0].copy()
+    state: Floats = (row if place is None else place[0]).states[:, 0].copy()
     for edge, freedom in session.graph.blocks[ending.block].unknowns:
         carrier = session.layout.carriers[session.layout.carrier_of(edge, freedom)[0]]
         own = slice(carrier.state, carrier.state + carrier.part.type.states)
@@ -97,9 +109,9 @@ def _guess(session: Session, row: Nodes, inputs: Floats, number: int, ending: En
     return state
 
 
-def _lead(enclosed: Enclosed, row: Nodes, box: Boxes, fold: Fold) -> int:
-    """The tubes from a row to a dead centre, 0 where the branch is not proven to lead there: with
-    the input as parameter to a place before it, and from there with the exchanged coordinate."""
+def _lead(enclosed: Enclosed, row: Nodes, box: Boxes, fold: Fold) -> Lead | None:
+    """From a row to a dead centre, None where the branch is not proven to lead there: with the
+    input as parameter to a place before it, and from there with the exchanged coordinate."""
     number = fold.exchanged.number
     gap = fold.value - float(row.reduced[number, 0])
     for far in tolerances.DEAD_CENTRE_APPROACH:
@@ -107,33 +119,39 @@ def _lead(enclosed: Enclosed, row: Nodes, box: Boxes, fold: Fold) -> int:
         if ahead < abs(gap):
             inputs = row.reduced.copy()
             inputs[number] += gap - np.copysign(ahead, gap)
-            place = _place_on_way(enclosed.session, row, inputs)
-            if place is None:
+            found = _place_on_way(enclosed.session, row, inputs)
+            if found is None:
                 continue
+            place, turned = found
             way = Nodes(*(np.concatenate(pair, axis=1) for pair in zip(row, place, strict=True)))
             near = prove_boxes(enclosed, place)
             before = bridge(enclosed, way._replace(values=way.reduced)) if near.proven[0] else 0
+            behind = _lead_exchanged(place, near, fold) if before else None
+            if behind:
+                return Lead(before + behind.tubes, turned.and_on(behind.turned))
         else:
-            place, near, before = row, box, 1
-        behind = _lead_exchanged(place, near, fold) if before else 0
-        if behind:
-            return before * (place is not row) + behind
-    return 0
+            behind = _lead_exchanged(row, box, fold)
+            if behind:
+                return behind
+    return None
 
 
-def _place_on_way(session: Session, row: Nodes, inputs: Floats) -> Nodes | None:
-    """The closed place at some inputs (inputs, 1) to which the branch leads from a row."""
+def _place_on_way(session: Session, row: Nodes, inputs: Floats) -> tuple[Nodes, Turned] | None:
+    """The closed place at some inputs (inputs, 1) to which the branch leads from a row, and how far
+    the coordinates go to there."""
     path = np.concatenate([row.reduced, inputs], axis=1)
-    followed = session.follow(path, row.states[:, 0], every_row=True)
+    followed = session.follow(path, row.states[:, 0], every_row=True, turns=True)
     if followed.reached < 2:
         return None
     closed = session.close(inputs, followed.guess[:, 1:])
-    return Nodes.of(session, inputs, inputs, closed.states) if closed.good[0] else None
+    if not closed.good[0]:
+        return None
+    place = Nodes.of(session, inputs, inputs, closed.states)
+    return place, Turned.along(session, followed)
 
 
-def _lead_exchanged(place: Nodes, box: Boxes, fold: Fold) -> int:
-    """The tubes from a place before a dead centre to it, with the exchanged coordinate as
-    parameter.
+def _lead_exchanged(place: Nodes, box: Boxes, fold: Fold) -> Lead | None:
+    """From a place before a dead centre to it, with the exchanged coordinate as parameter.
 
     The place's position has that coordinate only as near as its box says: the first node is all of
     the box, in which each value of the coordinate has one position; that of the place is among
@@ -152,4 +170,7 @@ def _lead_exchanged(place: Nodes, box: Boxes, fold: Fold) -> int:
     least[freed.column], least[driven.column] = place.off[number], 0.0
     start = Nodes(values, values, states, off, least)
     ends = Nodes(*(np.concatenate(pair, axis=1) for pair in zip(start, fold.node, strict=True)))
-    return bridge(fold.enclosed, ends)
+    session = exchanged.session
+    followed = session.follow(ends.reduced, states[:, 0], every_row=True, turns=True)
+    tubes = bridge(fold.enclosed, ends) if followed.reached == 2 else 0
+    return Lead(tubes, Turned.along(session, followed)) if tubes else None

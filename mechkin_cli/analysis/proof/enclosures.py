@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.session import Session
-    from mechkin_cli.units import UnitSystem
 
 _OF_ROWS = {"kinetic_energy", "potential_energy"}
 
@@ -37,6 +36,11 @@ def reason_against(quantity: Wanted) -> str:
     if quantity.owner == "row" and quantity.kind not in _OF_ROWS:
         return "a verdict"
     return ""
+
+
+def is_angle_of_place(quantity: Wanted) -> bool:
+    """Whether it is an angle of a joint, no rate of one."""
+    return quantity.kind == "coordinate" and not quantity.order and is_angle(quantity.coordinate)
 
 
 def reason_unknown(problem: Problem) -> str:
@@ -98,26 +102,34 @@ def input_bounds(session: Session, found: DeadCentre) -> tuple[float, float]:
     known = found.place[found.number] * input_unit(session.layout, item)
     wanted = problem.quantities()[item.name]
     enclosure = dead_centre_enclosure(session, found, wanted)
-    low, high = bounds(problem.units, wanted, enclosure, np.array([[known]]))
+    low, high = bounds(problem, wanted, enclosure, np.array([[known]]))
     return float(low[0, 0]), float(high[0, 0])
 
 
 def bounds(
-    units: UnitSystem, wanted: Wanted, enclosure: Enclosure, known: Floats
+    problem: Problem, wanted: Wanted, enclosure: Enclosure, known: Floats
 ) -> tuple[Floats, Floats]:
     """Bounds of a quantity in the file's units, two arrays (width, places); nan where nothing is
-    known. Angles are those next to what is `known` in SI, of the same shape."""
+    known. Angles are those next to what is `known` in SI, of the same shape; those of threads, of
+    which a turn more is another place, are as they are enclosed."""
     middle, radius = enclosure.high, enclosure.about_high
     scale = np.abs(middle)
-    if wanted.kind == "coordinate" and not wanted.order and is_angle(wanted.coordinate):
+    if is_angle_of_place(wanted) and _is_cyclic(problem, wanted):
         turns = FULL_TURN * np.rint((known - middle) / FULL_TURN)
         middle, scale = middle + turns, scale + np.abs(turns)
     middle, radius, scale = (
-        np.asarray(units.from_si(part, wanted.dimension)) for part in (middle, radius, scale)
+        np.asarray(problem.units.from_si(part, wanted.dimension))
+        for part in (middle, radius, scale)
     )
     off = radius + tolerances.ENCLOSURE_ROUNDING * (radius + scale)
     off = np.where(np.isfinite(off) & np.isfinite(np.atleast_2d(known)), off, np.nan)
     return middle - off, middle + off
+
+
+def _is_cyclic(problem: Problem, angle: Wanted) -> bool:
+    """Whether a turn more of a joint's angle is the same place."""
+    kind = problem.mechanism.joints[angle.owner].type
+    return kind.chain[kind.freedom_of[angle.coordinate]].is_cyclic
 
 
 def _are_inside(session: Session, given: Given) -> Bools:
