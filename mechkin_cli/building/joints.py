@@ -18,7 +18,7 @@ from mechkin_cli.mechanism.frames import (
 from mechkin_cli.mechanism.joint_table import joint_type
 from mechkin_cli.mechanism.joint_type import Drawing, JointType
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint
-from mechkin_cli.mechanism.vectors import Vector, cross, norm
+from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm
 from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.schema.joints import (
     AnyAxisJoint,
@@ -32,7 +32,7 @@ from mechkin_cli.schema.joints import (
     TwoTurnJoint,
     WeldJoint,
 )
-from mechkin_cli.tape.scalars import is_settled
+from mechkin_cli.tape.scalars import by_rounding, either, is_settled
 from mechkin_cli.tolerances import PARALLEL
 from mechkin_cli.units import LENGTH
 
@@ -173,9 +173,12 @@ def _zero_directions(
     """
     if section.zero is None:
         x = perpendicular(axes[0])
-        # written once and exactly known, the turn is none, where doubles round it
-        unturned = axes[1] is axes[0] and is_settled(*axes[0])
-        return x, x if unturned else turned_shortest(axes[0], axes[1], x)
+        turned = turned_shortest(axes[0], axes[1], x)
+        if axes[1] is axes[0] and is_settled(*axes[0]):
+            # written once: exact numbers are not turned at all, where doubles round the turn
+            same = by_rounding(dot(*axes) > 0.0)
+            return x, either(same, lambda: turned, lambda: x)
+        return x, turned
     given = directions_of(fields, path, section, "zero")
     first, second = (
         _square(fields, (*path, "zero", link), axis, vector, "this direction", "axis", errors)

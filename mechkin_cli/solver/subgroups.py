@@ -63,7 +63,8 @@ class Tests:
         return (x, y, z)  # type: ignore[return-value]
 
     def _registers(self, vector: Vector) -> list[int]:
-        return [register(self.recorder, component) for component in vector]
+        found = [register(self.recorder, component) for component in vector]
+        return list(map(self.recorder.origin, found))
 
     def vanishes(self, vector: Iterable[Any]) -> bool:
         """Whether a vector is zero."""

@@ -11,7 +11,7 @@ import operator
 from collections.abc import Callable, Iterable, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal, Inexact, getcontext, localcontext
 from fractions import Fraction
-from math import inf, nextafter, sqrt
+from math import inf, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -32,6 +32,14 @@ _UNIT = float(Decimal(1).scaleb(3 - DIGITS))
 
 _MARGIN = 1.0 + 1.0 / (1 << 20)
 """Above the rounding of a bound that is computed in doubles."""
+
+
+_LEAST_OFF = 2.0**-900
+"""Of a number that is not exact: its bound, a double, never comes out zero."""
+
+_LEAST_RADIUS = 2.0**-200
+"""Of a number that is no sum of two doubles: products of a few such radii, with which intervals of
+doubles go on, are no zeros either. So far below all lengths and directions it widens nothing."""
 
 
 class Near(NamedTuple):
@@ -107,7 +115,7 @@ def of_fraction(number: Fraction) -> Near:
         context.prec = DIGITS
         value = Decimal(number.numerator) / Decimal(number.denominator)
     exact = Fraction(value) == number
-    return Near(value, 0.0 if exact else abs(float(value)) * _UNIT)
+    return Near(value, 0.0 if exact else max(abs(float(value)) * _UNIT, _LEAST_OFF))
 
 
 def parts(near: Near) -> tuple[float, float, float]:
@@ -118,13 +126,14 @@ def parts(near: Near) -> tuple[float, float, float]:
         rest = near.value - Decimal(high)
         low = float(rest)
         rest -= Decimal(low)
-    radius = abs(float(rest)) + near.off
-    return high, low, 0.0 if not radius else nextafter(radius * _MARGIN, inf)
+    if not rest and not near.off:
+        return high, low, 0.0
+    return high, low, max((abs(float(rest)) + near.off) * _MARGIN, _LEAST_RADIUS)
 
 
 def _near(value: Decimal, off: float) -> Near:
     """A result, with its own rounding."""
-    return Near(value, (off + abs(float(value)) * _UNIT) * _MARGIN)
+    return Near(value, max((off + abs(float(value)) * _UNIT) * _MARGIN, _LEAST_OFF))
 
 
 def _size(near: Near) -> float:
@@ -137,6 +146,11 @@ def _rounding(off: float, function: Callable[..., Decimal], *arguments: Decimal)
     context.clear_flags()
     value = function(*arguments)
     return Near(value, off) if not off and not context.flags[Inexact] else _near(value, off)
+
+
+def _carried(off: float, a: Near, b: Near) -> float:
+    """The bound of a result, not zero where an operand has one."""
+    return max(off, _LEAST_OFF) if a.off or b.off else off
 
 
 def _sum(a: Near, b: Near) -> Near:
@@ -153,7 +167,7 @@ def _negative(a: Near) -> Near:
 
 def _product(a: Near, b: Near) -> Near:
     off = _size(a) * b.off + _size(b) * a.off + a.off * b.off
-    return _rounding(off, operator.mul, a.value, b.value)
+    return _rounding(_carried(off, a, b), operator.mul, a.value, b.value)
 
 
 def _quotient(a: Near, b: Near) -> Near:
@@ -161,7 +175,7 @@ def _quotient(a: Near, b: Near) -> Near:
     if not least > 0.0:
         raise NotEnclosed("a quotient by what may be zero")
     off = (a.off + _size(a) / _size(b) * b.off) / least
-    return _rounding(off * _MARGIN, operator.truediv, a.value, b.value)
+    return _rounding(_carried(off * _MARGIN, a, b), operator.truediv, a.value, b.value)
 
 
 def _root(a: Near) -> Near:

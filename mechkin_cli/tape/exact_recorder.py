@@ -60,6 +60,7 @@ class ExactRecorder(Recorder):
         super().__init__((), ())
         self.exact: dict[int, Fraction] = {}
         self._told: dict[tuple[int, int], int] = {}
+        self._origin: dict[int, int] = {}
         self._registers: dict[tuple[Fraction, float, float], int] = {}
 
     def written(self, value: float, number: Fraction) -> Traced:
@@ -87,7 +88,11 @@ class ExactRecorder(Recorder):
             power = self._power(operands[0], self.exact[operands[1]])
             if power is not None:
                 return power
-        return super().compute(operation, *operands)
+        found = super().compute(operation, *operands)
+        origins = tuple(map(self.origin, operands))
+        if origins != operands:
+            self._origin.setdefault(found, self.compute(operation, *origins))
+        return found
 
     def guard(self, condition: Operation, a: int, b: int, *, advice: bool = False) -> bool:
         """What a condition finds of the doubles; nothing hangs on it later."""
@@ -103,11 +108,17 @@ class ExactRecorder(Recorder):
             return register
         if (register, told) not in self._told:
             number = self._told[register, told] = self._register(self.values[told])
+            self._origin[number] = self.origin(register)
             if register in self._written:
                 self._written[number] = self._written[register]
             else:
                 self.exact[number] = self.exact[register]
         return self._told[register, told]
+
+    def origin(self, register: int) -> int:
+        """The register whose exact number one has under another double, or computed in the same way
+        of such; else itself."""
+        return self._origin.get(register, register)
 
     def exact_tape(self, outputs: Iterable[int]) -> ExactTape:
         """The tape of some registers."""

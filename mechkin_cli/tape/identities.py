@@ -63,7 +63,7 @@ class Identities:
     def is_zero(self, value: object) -> bool:
         """Whether a recorded number, or a constant, is zero by an identity; False where it is not
         zero, and where no identity is found."""
-        wanted = register(self.recorder, value)
+        wanted = self.recorder.origin(register(self.recorder, value))
         for step in self.recorder.steps_to(wanted):
             if step.register not in self._read:
                 self._read[step.register] = self._found(step)

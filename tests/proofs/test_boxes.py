@@ -3,6 +3,7 @@ middle are, and what cannot be proven is not."""
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from typing import Any
 
@@ -153,3 +154,22 @@ def test_a_response_has_no_proofs() -> None:
     analysis = mk.load(MECHANISMS / "rcsr_response.yaml").respond()
     with pytest.raises(mk.UsageError, match="proofs are of sweeps"):
         _ = analysis.certificate
+
+
+@pytest.mark.parametrize(
+    "tiny",
+    [
+        "1e-200*1e-200",
+        "1e-200*1e-200/3",
+        "1e-200/1e200",
+        "2^-1200",
+        "exp(-1000)",
+        "exp(-1000)/1e300",
+    ],
+)
+def test_what_is_too_small_for_a_double_is_not_zero(tiny: str) -> None:
+    """The axis of B is tilted by what rounds to nothing, and the plane loop has no position."""
+    text = (MECHANISMS / "slider_crank.yaml").read_text(encoding="utf-8")
+    tilted = re.sub(r"(B: .*axis: )\[0, 0, 1\]", rf'\1["{tiny}", 0, 1]', text)
+    assert tilted != text
+    assert set(mk.loads(tilted).certify().status) == {"proven to closure"}
