@@ -43,5 +43,6 @@ extern "C" __attribute__((visibility("default"))) void enclose(int operation, co
     });
     case 18: return each(x, y, out, n, [](Interval a, Interval b) { return sum_of_products(a, b, b, b, -a, a); });
     case 19: return each(x, y, out, n, [](Interval a, Interval b) { return difference_of_products(a, b, b, b); });
+    case 20: return each(x, y, out, n, [](Interval a, Interval b) { return principal_angle(a, b); });
   }
 }

@@ -76,6 +76,7 @@ OPERATIONS = {
     "add_product": Operation(lambda x, y: x + x * y, largest=1e140),
     "sum_of_products": Operation(lambda x, y: x * y + y * y - x * x, largest=1e140),
     "difference_of_products": Operation(lambda x, y: x * y - y * y, largest=1e140),
+    "principal_angle": Operation(lambda y, x: mp.atan2(y, x), lambda y, x: (x, y) != (0, 0)),
 }
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from kernel.compiler import COMPILER
 from kernel.intervals import OPERATIONS, Intervals, check
+from mpmath import mp
 
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C++ compiler on this machine")
 
@@ -42,6 +43,7 @@ def pairs(number: tuple[float, float]) -> np.ndarray:
         ("acos", (-1.0, 1e-16), (0.0, 0.0)),
         ("tan", (1.5, 0.1), (0.0, 0.0)),
         ("atan2", (0.5, 0.6), (0.5, 0.6)),
+        ("principal_angle", (0.0, 0.6), (-0.5, 0.6)),
         ("power", (-1.0, 0.0), (0.5, 0.0)),
         ("power", (1.0, 1.5), (-1.0, 0.0)),
     ],
@@ -57,6 +59,26 @@ def test_where_there_is_no_value_nothing_is_said(
 def test_of_the_unknown_nothing_is_known(enclose: Intervals, name: str, unknown: float) -> None:
     known = pairs((0.5, 0.0))
     assert not np.isfinite(enclose(name, pairs((0.5, unknown)), known)[2]).any()
+
+
+@pytest.mark.parametrize("radius", [1e-320, 1e-30, 1e-16, 0.5])
+@pytest.mark.parametrize("y", [-1.0, -1e-9, -0.0, 0.0, 1e-9, 0.5])
+def test_an_angle_that_may_be_on_either_side_of_its_cut_has_both(
+    enclose: Intervals, y: float, radius: float
+) -> None:
+    found = enclose("principal_angle", pairs((y * radius, radius)), pairs((-1.0, 0.25)))[:, 0]
+    with mp.workdps(60):
+        low, high = (mp.mpf(found[0]) + mp.mpf(found[1]) + s * mp.mpf(found[2]) for s in (-1, 1))
+        assert low <= -mp.pi
+        assert mp.pi <= high < mp.pi + 1e-15
+
+
+@pytest.mark.parametrize("zero", [0.0, -0.0])
+def test_the_angle_of_a_zero_is_half_a_turn_and_no_more(enclose: Intervals, zero: float) -> None:
+    high, low, radius = enclose("principal_angle", pairs((zero, 0.0)), pairs((-1.0, 0.25)))[:, 0]
+    assert (high, radius < 1e-28) == (math.pi, True)
+    with mp.workdps(60):
+        assert abs(mp.mpf(high) + mp.mpf(low) - mp.pi) <= mp.mpf(radius)
 
 
 def test_radii_are_of_the_size_of_rounding(enclose: Intervals) -> None:

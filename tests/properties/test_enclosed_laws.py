@@ -10,10 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from mpmath import mp
 from oracle import assemble, newton_euler, read
 from properties.cases import case
 from properties.expected import expected
 from properties.test_enclosures import enclosures, outside
+
+import mechkin_cli as mk
 
 ROW = 3
 RATE, BEGIN, END = "2 deg/s", "-4 deg", "4 deg"
@@ -107,3 +110,46 @@ def test_another_law_is_outside() -> None:
     true: dict[str, Any] = expected(mechanism, solution, newton_euler(mechanism, solution))
     _, found = enclosures(texts.package)
     assert len(outside(true, found, ROW)[0]) > 10
+
+
+ACROSS = """\
+format: 1
+units: {length: m, angle: deg}
+links:
+  one: {mass: 2, center_of_mass: [0, 0, 0], inertia: {xx: 0.01, yy: 0.01, zz: 0.02}}
+  two: {}
+  slider: {mass: 1.5, center_of_mass: [0.45, 0, 0]}
+points:
+  p: {link: two, at: [0.2, 0, 0]}
+joints:
+  A: {type: R, links: [ground, one], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: R, links: [one, two], point: [0.1, 0, 0], axis: [0, 0, 1]}
+  C: {type: R, links: [two, slider], point: [0.45, 0, 0], axis: [0, 0, 1]}
+  D: {type: P, links: [ground, slider], point: [0.45, 0, 0], axis: [1, 0, 0]}
+motion: {inputs: {A.theta: {values: [ANGLES]}}}
+loads:
+  - type: force
+    link: slider
+    point: [0.45, 0, 0]
+    force: [0, "100 N*atan2(p.position.y, -0.1 m)/(1 rad)", 0]
+"""
+NEAR_HALF_A_TURN = [
+    *("180.00000000000003", "179.99999999999997", "180.00000000000001", "179.99999999999999"),
+    *("180.000000000000001", "179.999999999999999", "180", "181", "179"),
+]
+
+
+def test_an_angle_near_its_cut_has_its_value_on_either_side() -> None:
+    """The rod carries nothing, so that the guide takes all of the load; its point p lies 0.1 m of
+    0.35 m along it from the crank."""
+    text = ACROSS.replace("ANGLES", ", ".join(NEAR_HALF_A_TURN))
+    low, high = mk.loads(text).certify().enclosure("D.total_force")
+    with mp.workdps(60):
+        for row, angle in enumerate(NEAR_HALF_A_TURN):
+            # sin(180 deg) is zero, and what mpmath makes of it is not
+            sine = mp.mpf(0) if angle == "180" else mp.sin(mp.radians(mp.mpf(angle)))
+            end = mp.mpf("0.1") * sine
+            true = -100 * mp.atan2(end * (1 - mp.mpf("0.1") / mp.mpf("0.35")), mp.mpf("-0.1"))
+            assert mp.mpf(low[row, 1]) <= true <= mp.mpf(high[row, 1]), angle
+    # what is off the cut is known well
+    assert (high[-2:, 1] - low[-2:, 1] < 1e-10).all()

@@ -66,6 +66,18 @@ MECHKIN_INLINE Interval atan2(const Interval& y, const Interval& x) {
   return evaluated(angle, if_finite(larger + rx + ry, moved + Real(0x1p-990)));
 }
 MECHKIN_INLINE Interval atan(const Interval& x) { return atan2(x, Interval(1.0)); }
+// The angle of (x, y) in (-pi, pi], where a whole turn more would be another number: all of [-pi, pi] where the interval meets
+// the cut and goes below it. A zero is +0 here, whatever its sign.
+MECHKIN_INLINE Interval principal_angle(const Interval& y, const Interval& x) {
+  const Real zero = 0.0;
+  const Interval angle = atan2({DoubleDouble(y.midpoint.high + zero, y.midpoint.low), y.radius}, x);
+  const Mask on_axis = (y.radius == zero) & (y.midpoint.high == zero);
+  const Mask both_sides = (lower(x) < zero) & (lower(y) < zero) & (upper(y) >= zero) & ~on_axis;
+  // nothing is known of the angle of what may be the origin
+  const Real known = angle.radius - angle.radius, half_turn = 0x1.921fb54442d19p+1;
+  return {{select(both_sides, zero, angle.midpoint.high), select(both_sides, zero, angle.midpoint.low)},
+          select(both_sides, half_turn + known, angle.radius)};
+}
 
 // How far asin and acos go over the radius: by the largest slope, 1 / sqrt(1 - e^2) at the end e nearest to 1 or -1, and
 // by |acos a - acos b| <= 2 asin sqrt(|a - b| / 2) <= pi / sqrt 2 sqrt|a - b|, which holds there, too.

@@ -74,7 +74,7 @@ inline Interval enclosed_result(int operation, Interval a, Interval b, Interval 
     case TAPE_ASIN: return apart::asin(a);
     case TAPE_ACOS: return apart::acos(a);
     case TAPE_ATAN: return apart::atan(a);
-    case TAPE_ATAN2: return apart::atan2(a, b);
+    case TAPE_ATAN2: return principal_angle(a, b);
     case TAPE_EXP: return apart::exp(a);
     case TAPE_LOG: return apart::log(a);
     case TAPE_POWER: return apart::pow(a, b);
