@@ -34,10 +34,10 @@ _MARGIN = 1.0 + 1.0 / (1 << 20)
 """Above the rounding of a bound that is computed in doubles."""
 
 
-_LEAST_OFF = 2.0**-900
+_LEAST_OFF = 1.0 / (1 << 900)
 """Of a number that is not exact: its bound, a double, never comes out zero."""
 
-_LEAST_RADIUS = 2.0**-200
+_LEAST_RADIUS = 1.0 / (1 << 200)
 """Of a number that is no sum of two doubles: products of a few such radii, with which intervals of
 doubles go on, are no zeros either. So far below all lengths and directions it widens nothing."""
 
