@@ -223,7 +223,8 @@ def _angle(y: Near, x: Near) -> Near:
         if not (y.value or x.value or y.off or x.off):
             return _near(functions.atan2(y.value, x.value), _UNIT)
         raise NotEnclosed("the angle of what may be no point")
-    # the off of y alone next to the negative x axis: half a turn either way is one angle
+    if y.off and x.value - Decimal(x.off) < 0 and abs(y.value) <= Decimal(y.off):
+        raise NotEnclosed("the angle of what may lie on either side of half a turn")
     return _near(functions.atan2(y.value, x.value), 2.0 * (y.off + x.off) / far + _UNIT)
 
 

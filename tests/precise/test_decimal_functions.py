@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from precise.tapes import mp, true_outputs
 
+import mechkin_cli as mk
 from mechkin_cli.tape import decimal_functions as functions
-from mechkin_cli.tape.decimal_replay import DIGITS, NotEnclosed, replay
+from mechkin_cli.tape.decimal_replay import DIGITS, NotEnclosed, double_doubles, replay
 from mechkin_cli.tape.exact_recorder import ExactRecorder
 from mechkin_cli.tape.operations import ARITY, CONDITIONS, Operation
 
@@ -95,3 +96,24 @@ def test_bounds_hold_the_truth() -> None:
             assert abs(text_of(near.value) - true) <= mp.mpf(near.off) + own
             sharp += near.off < 1e-50
     assert sharp > 2000
+
+
+PENDULUM = """
+format: 1
+units: {length: m, angle: deg}
+parameters: {a: "atan2(3 - sqrt(3)^2, -1)", b: "atan2(0, -1)", c: "atan2(3 - sqrt(3)^2, 1)"}
+links: {bob: {}}
+joints: {A: {type: R, links: [ground, bob], point: [0, 0, 0], axis: [0, 0, 1]}}
+motion: {inputs: {A.theta: {values: [0]}}}
+"""
+
+
+def test_an_angle_that_may_lie_on_either_side_of_half_a_turn_is_not_told() -> None:
+    """What rounding leaves of zero has a sign; zero itself has one angle."""
+    one = mk.loads(PENDULUM).session.precise
+    tapes = {name: one.tape([one.problem.parameters[name].value]) for name in "abc"}
+    with pytest.raises(NotEnclosed, match="either side of half a turn"):
+        double_doubles(tapes["a"])
+    ((high, low),) = double_doubles(tapes["b"])
+    assert abs(mp.mpf(high) + mp.mpf(low) - mp.pi) < mp.mpf(10) ** -30
+    assert abs(double_doubles(tapes["c"])).max() < 1e-40
