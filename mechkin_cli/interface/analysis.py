@@ -14,7 +14,7 @@ from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.tables.columns import Columns, Words, evaluate, row_words
 from mechkin_cli.tables.layout import CoefficientsLayout, TableLayout, row_texts
-from mechkin_cli.tables.uniqueness import unique_cells
+from mechkin_cli.uniqueness import unique_cells
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -15,6 +15,7 @@ from mechkin_cli.building.columns import used_quantities
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.expressions import parse
 from mechkin_cli.interface.arguments import a_text
+from mechkin_cli.mechanism.bearing_loads import read_for
 from mechkin_cli.tables.cell_errors import (
     ALL_COLUMNS,
     LOST,
@@ -84,7 +85,7 @@ class Errors:
         """What the tables read, as far as it is repeated."""
         problem = self._analysis.result.problem
         known = problem.quantities()
-        names = used_quantities(self._analysis.layouts, known)
+        names = read_for(used_quantities(self._analysis.layouts, known), known)
         return [known[name] for name in names if not reason_of(problem, known[name])]
 
     @property

@@ -16,6 +16,7 @@ from mechkin_cli.interface.reduced_values import Reductions, reduced
 from mechkin_cli.interface.varied import Base, VariedModel
 from mechkin_cli.kernel._kernel import VariantEnd
 from mechkin_cli.kernel.width import threads_for
+from mechkin_cli.mechanism.bearing_loads import BEARING_KINDS, bearing_load, read_for
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.mechanism.quantities import friction_states
@@ -78,7 +79,8 @@ class Study:
         self.rows = self.problem.motion.rows
         known = self.problem.quantities()
         used = (name for expression in asked.values() for name in sorted(expression.names))
-        self.read = tuple(dict.fromkeys(n for n in map(self._quantity_of, used) if n is not None))
+        own = (name for name in map(self._quantity_of, used) if name is not None)
+        self.read = tuple(read_for(own, known))
         self.wanted = tuple(known[name] for name in self.read)
         self.errors: dict[int, MechkinError] = {}
 
@@ -300,6 +302,8 @@ class _Resolve:
         if name not in self.known:
             raise UnknownName(name, list(self.known))
         wanted = self.known[name]
+        if wanted.kind in BEARING_KINDS:
+            return bearing_load(wanted, self)
         if wanted.owner == "row" and name != "time":
             array = self.runs.residual if wanted.kind == "residual" else self.runs.condition
             return Quantity(array.reshape(-1), wanted.dimension)

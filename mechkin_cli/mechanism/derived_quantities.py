@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from mechkin_cli.mechanism.bearing_loads import BEARING_KINDS
 from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
 from mechkin_cli.mechanism.joint_table import JOINT_TYPES, dimension_of
 from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism, is_written
@@ -38,6 +39,7 @@ DERIVED_KINDS = (
     | POWER_KINDS
     | COEFFICIENT_KINDS
     | LEDGER_KINDS
+    | BEARING_KINDS
 )
 
 _ORIENTED = [kind.letter for kind in JOINT_TYPES.values() if kind.is_oriented]
@@ -60,7 +62,7 @@ _SCREWS: tuple[tuple[Kind, Dimension, bool, int], ...] = (
 _OF_RESPONSES = (
     "is told of the rows of a response: name it in the table, run: NAME, or respond(NAME)"
 )
-_HINTS = {
+_HINTS: dict[str, str] = {
     **{word: f"row.{word} {_OF_RESPONSES}" for word in ("event", "work", "dissipated")},
     "energy_error": f"row.energy_error {_OF_RESPONSES}",
     **dict.fromkeys(
@@ -80,6 +82,10 @@ _HINTS = {
     "mechanical_advantage": (
         "a mechanical advantage has every coordinate that is no input (J.theta, J.s, ...), where "
         "there is an input"
+    ),
+    **dict.fromkeys(
+        [str(kind) for kind in sorted(BEARING_KINDS)],
+        "joints with an axis (R, P, H, C; the normal or groove of others) have bearing loads",
     ),
     "turn": f"joints of type {', '.join(_ORIENTED)} have an orientation",
 } | dict.fromkeys(QUATERNION, f"joints of type {', '.join(_ORIENTED)} have an orientation")

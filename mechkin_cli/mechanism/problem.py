@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism.bearing_loads import bearing_catalogue
 from mechkin_cli.mechanism.coefficient_quantities import coefficient_catalogue
 from mechkin_cli.mechanism.derived_quantities import derived_catalogue, ledger_catalogue
 from mechkin_cli.mechanism.held import Held
@@ -116,11 +117,13 @@ class Problem:
             moving = [*self.response.independent, *self.response.driven_at]
             if moving:
                 found |= coefficient_catalogue(linear, moving, moving[0])
-            return found | response_quantities() | derived_catalogue(mechanism, (), None)
+            found |= response_quantities() | bearing_catalogue(mechanism)
+            return found | derived_catalogue(mechanism, (), None)
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
         found = catalogue(mechanism, self.acting, timed=motion.time is not None, held=self.held)
         if leading is not None:
             found |= coefficient_catalogue(found, motion.driven, leading)
         if motion.time is not None and leading is not None:
             found |= ledger_catalogue()
+        found |= bearing_catalogue(mechanism)
         return found | derived_catalogue(mechanism, motion.driven, leading)

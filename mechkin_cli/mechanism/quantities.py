@@ -92,6 +92,9 @@ Kind = Literal[
     "reaction_level",
     "load_power",
     "actuation",
+    "radial_force",
+    "axial_force",
+    "tilting_moment",
 ]
 """Some are of no use to users: what derived quantities are computed from, and what cells
 are judged by."""

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.mechanism.bearing_loads import BEARING_KINDS
 from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
 from mechkin_cli.mechanism.derived_quantities import (
     DERIVED_KINDS,
@@ -43,6 +44,7 @@ FORCE_KINDS = (
     | _INERTIA_KINDS
     | _HOLDING_KINDS
     | COEFFICIENT_KINDS
+    | BEARING_KINDS
     | FRICTION_KINDS
     | _VERDICT_KINDS
     | {"effort", "dynamic_transmission_angle", "actuation"}

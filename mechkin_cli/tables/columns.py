@@ -17,7 +17,7 @@ from mechkin_cli.proof import Proof
 from mechkin_cli.status import Status, has_solution
 from mechkin_cli.tables.layout import ROW_EVENT, ROW_NUMBERS, ROW_PROOF, ColumnLayout, TableLayout
 from mechkin_cli.tables.source import FloatArray, Source
-from mechkin_cli.tables.uniqueness import unique_cells
+from mechkin_cli.uniqueness import unique_cells
 from mechkin_cli.units import DIMENSIONLESS
 
 

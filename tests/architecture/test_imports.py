@@ -19,6 +19,7 @@ BASE = {
     "runs",
     "status",
     "tolerances",
+    "uniqueness",
 }
 KERNEL = BASE | {"kernel"}
 UNITS = BASE | {"units"}

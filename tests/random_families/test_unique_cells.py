@@ -112,6 +112,13 @@ def arbitrary(found: Loop) -> set[str]:
         wrench = np.array([owners[k][1] for k in mine]).T @ null[:, mine].T
         for k in np.flatnonzero(np.abs(wrench).max(axis=1, initial=0.0) > 1e-8):
             out.add(f"dot({name}.{'moment' if k < 3 else 'force'}, e{'xyz'[k % 3]})")
+        along = SLIDE if found.letters["ABCD".index(name)] == "P" else np.array([0.0, 0.0, 1.0])
+        loads = {
+            "radial_force": np.cross(along, wrench[3:].T),
+            "axial_force": along @ wrench[3:],
+            "tilting_moment": np.cross(along, wrench[:3].T),
+        }
+        out |= {f"{name}.{q}" for q, part in loads.items() if np.abs(part).max(initial=0) > 1e-8}
     return out
 
 
@@ -122,6 +129,9 @@ def fault(number: int) -> str:
         f"dot({j}.{part}, e{x})" for j in "ABCD" for part in ("force", "moment") for x in "xyz"
     ]
     asked = [f"{j}.{part}" for j in "ABCD" for part in ("force", "moment")]
+    for joint, kind in zip("ABCD", found.letters, strict=True):
+        loads = () if kind == "S" else ("radial_force", "axial_force", "tilting_moment")
+        names += [f"{joint}.{load}" for load in loads]
     result = mk.loads(found.text).analyze([*asked, "ex", "ey", "ez", "A.effort"])
     there = np.asarray(result["row.status"]) == "ok"
     where = f"{number} ({found.letters})"

@@ -15,6 +15,7 @@ import numpy as np
 
 from mechkin_cli.analysis.errors.reasons import reason_of
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
+from mechkin_cli.mechanism.bearing_loads import BEARING_KINDS, bearing_load
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.quantities import TIME_OF_ROW
@@ -149,6 +150,8 @@ class Repeated:
         wanted = self.problem.quantities().get(name)
         if wanted is None:
             raise UnknownName(name, (), None)
+        if wanted.kind in BEARING_KINDS:
+            return bearing_load(wanted, self.quantity)
         if name not in self._columns:
             self.read([wanted])
         columns = self._columns[name]

@@ -18,6 +18,7 @@ from mechkin_cli.analysis.sweep.friction import unfounded_in_motion
 from mechkin_cli.analysis.sweep.question import at_once, rest_on_reactions
 from mechkin_cli.analysis.sweep.rows import Rows
 from mechkin_cli.analysis.sweep.sweep import first_assembly, judge_condition, row_notes
+from mechkin_cli.mechanism.bearing_loads import read_for
 from mechkin_cli.mechanism.motion import Motion
 from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.solver.batch import Chart
@@ -244,7 +245,7 @@ def _all_turns(free: Session, closing: Floats) -> Floats:
 def read(result: ResponseResult, quantities: Iterable[str]) -> None:
     """Closes the rows once more, judges them, and reads what is asked for."""
     known = result.problem.quantities()
-    asked: list[Wanted] = [known[name] for name in dict.fromkeys(quantities)]
+    asked: list[Wanted] = [known[name] for name in read_for(quantities, known)]
     rows = result.row_states
     if rows.reached.any():
         energies = [known[name] for name in ENERGIES]

@@ -2,7 +2,7 @@
 by rounding.
 
 Where constraints are redundant, a cell is unique if it changes no more with the former than with
-the latter (tables/uniqueness.py).
+the latter (mechkin_cli/uniqueness.py).
 """
 
 from __future__ import annotations

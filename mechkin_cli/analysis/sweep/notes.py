@@ -9,15 +9,26 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.named_modes import is_cyclic
 from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.expressions import parse
+from mechkin_cli.mechanism.bearing_loads import BEARING_KINDS
 from mechkin_cli.mechanism.model import is_written
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.status import Status
+from mechkin_cli.uniqueness import unique_cells
+from mechkin_cli.units import MOMENT
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from mechkin_cli.analysis.sweep.result import Result
     from mechkin_cli.analysis.sweep.rows import Rows
     from mechkin_cli.arrays import Bools, Floats
-    from mechkin_cli.solver.graph import SolverGraph
+    from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.session import Session
+
+
+LOADS_NAMED = 4
+"""Unique bearing loads that are named one by one."""
 
 
 class _Turn(NamedTuple):
@@ -92,19 +103,58 @@ def _advanced(session: Session, both: Floats) -> set[tuple[int, int]]:
     return found
 
 
-def redundancy_note(graph: SolverGraph) -> Diagnostic:
-    """Redundant constraints leave some reactions arbitrary."""
+def redundancy_note(result: Result, asked: Sequence[Wanted]) -> Diagnostic:
+    """Redundant constraints leave some reactions arbitrary; which loads of the bearings asked for
+    are unique nevertheless."""
+    graph = result.graph
     count = sum(block.equations - len(block.unknowns) for block in graph.blocks)
     joints = sorted({graph.edges[k].joint.name for c in graph.closings for k, _ in c.loop})
     joints = sorted(filter(is_written, {*joints, *(c.joint.name for c in graph.closings)}))
     constraints = "one redundant constraint" if count == 1 else f"{count} redundant constraints"
+    free = "free a joint to make them unique (a sphere for a pin, a cylinder for a slide)"
+    unique = _unique_loads(result, asked)
+    if unique:
+        more = ", ..." if len(unique) > LOADS_NAMED else ""
+        are = "is" if len(unique) == 1 else "are"
+        free = f"ask for {', '.join(unique[:LOADS_NAMED])}{more}, which {are} unique; or {free}"
     return Diagnostic(
         "not-unique",
         "note",
         f"{constraints} in the loops through {', '.join(joints)}: cells of reactions that depend "
         "on them are not unique and stay empty",
-        hint="free a joint to make them unique (a sphere for a pin, a cylinder for a slide)",
+        hint=free,
     )
+
+
+def _unique_loads(result: Result, asked: Sequence[Wanted]) -> list[str]:
+    """The bearing loads of the reactions asked for that are unique in every row, where the
+    reactions are not; along a slide there is none."""
+    known, joints = result.problem.quantities(), result.problem.mechanism.joints
+    wanted = {quantity.name for quantity in asked}
+    found = []
+    for load in (load for load in known.values() if load.kind in BEARING_KINDS):
+        slides = not all(coordinate.is_angle for coordinate in joints[load.owner].type.named)
+        reaction = f"{load.owner}.{'moment' if load.dimension == MOMENT else 'force'}"
+        if reaction not in wanted or (slides and load.kind == "axial_force"):
+            continue
+        if _is_unique(result, load.name) and not _is_unique(result, f"norm({reaction})"):
+            found.append(load.name)
+    return found
+
+
+def _is_unique(result: Result, text: str) -> bool:
+    """Whether an expression of reactions is in every row that has a position."""
+    expression, reached = parse(text), result.row_states.reached
+
+    def values(source: Result) -> Floats:
+        found = np.broadcast_to(
+            np.asarray(expression.evaluate(source.quantity).value), reached.shape
+        )
+        return found[reached]
+
+    others = [values(other) for other in result.alternatives]
+    disturbed = [values(other) for other in result.disturbed]
+    return bool(np.isfinite(unique_cells(values(result), others, disturbed)).all())
 
 
 def condition_notes(rows: Rows, condition: Floats) -> list[Diagnostic]:

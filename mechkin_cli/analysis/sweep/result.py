@@ -26,6 +26,7 @@ from mechkin_cli.analysis.sweep.friction_rows import FrictionRows
 from mechkin_cli.analysis.sweep.proven import Proven
 from mechkin_cli.analysis.sweep.read_off import read_off
 from mechkin_cli.expressions import Quantity, UnknownName, Vector
+from mechkin_cli.mechanism.bearing_loads import BEARING_KINDS, bearing_load
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
 from mechkin_cli.mechanism.drives import without_effort
 from mechkin_cli.solver.codes import Demand
@@ -238,8 +239,9 @@ class Result(Proven):
         if wanted is None:
             passive = without_effort(problem.mechanism.drives, name)
             raise UnknownName(name, sorted(self._columns), passive or hint_of(name))
-        given = self._given(name)
-        if given is not None:
+        if wanted.kind in BEARING_KINDS:
+            return bearing_load(wanted, self.quantity)
+        if (given := self._given(name)) is not None:
             return Quantity(given, wanted.dimension, input_rest(self.session, name))
         if name not in self._columns:
             self.read([wanted])

@@ -21,6 +21,7 @@ from mechkin_cli.analysis.sweep.notes import (
 )
 from mechkin_cli.analysis.sweep.question import Question, question
 from mechkin_cli.analysis.sweep.result import Result
+from mechkin_cli.mechanism.bearing_loads import read_for
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.solver.batch import assembly_size
 from mechkin_cli.solver.codes import Demand
@@ -48,9 +49,9 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     Raises:
         KeyError: an unknown quantity.
     """
-    names = dict.fromkeys(quantities)
+    names = list(dict.fromkeys(quantities))
     known = session.problem.quantities() if names else {}
-    asked = [known[name] for name in names]
+    asked = [known[name] for name in read_for(names, known)]
     session = _followed_part(session, asked)
     session, start = first_assembly(session)
     if start.stuck:
@@ -228,5 +229,5 @@ def row_notes(
     note = open_turn_note(session, rows.states, rows.reached)
     notes += [note] if note else []
     if rests_on_reactions and session.is_redundant and rows.reached.any():
-        notes.append(redundancy_note(session.graph))
+        notes.append(redundancy_note(result, asked))
     return notes

@@ -8,16 +8,19 @@ though each part is not.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.tables.source import FloatArray
 from mechkin_cli.tolerances import UNIQUE_CELL
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
 
 
 def unique_cells(
-    values: FloatArray, others: Sequence[FloatArray], disturbed: Sequence[FloatArray] = ()
-) -> FloatArray:
+    values: Floats, others: Sequence[Floats], disturbed: Sequence[Floats] = ()
+) -> Floats:
     """The values with nan where another admissible value differs; all of shape (rows,).
 
     `disturbed` are the values for reactions that are off by their rounding: what they change is

@@ -1,0 +1,70 @@
+"""What a joint transmits along its axis and square to it, as bearings are chosen by.
+
+Each is an expression of the joint's reaction, evaluated like any other: on rows, on other reactions
+in equilibrium where constraints are redundant, in double-double. What is square to the axis is
+unique in a plane linkage, though neither reaction nor moment of its pins is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from typing import NamedTuple
+
+from mechkin_cli.expressions import Expression, Quantity, Resolve, parse
+from mechkin_cli.mechanism.model import Mechanism, is_written
+from mechkin_cli.mechanism.quantities import Kind, Wanted
+from mechkin_cli.units import FORCE, MOMENT, Dimension
+
+
+class _Load(NamedTuple):
+    """An expression of a joint's reaction, in which J stands for the joint."""
+
+    text: str
+    dimension: Dimension
+
+
+_LOADS: dict[Kind, _Load] = {
+    "radial_force": _Load("norm(cross(J.axis, J.force))", FORCE),
+    "axial_force": _Load("dot(J.axis, J.force)", FORCE),
+    "tilting_moment": _Load("norm(cross(J.axis, J.moment))", MOMENT),
+}
+
+BEARING_KINDS = frozenset(_LOADS)
+
+
+def bearing_catalogue(mechanism: Mechanism) -> dict[str, Wanted]:
+    """`J.radial_force`, `J.axial_force` and `J.tilting_moment` of every joint with an axis."""
+    return {wanted.name: wanted for wanted in _of_joints(mechanism)}
+
+
+def bearing_load(wanted: Wanted, resolve: Resolve) -> Quantity:
+    """The load as its expression gives it, in SI."""
+    return _expression(wanted.kind, wanted.owner).evaluate(resolve)
+
+
+def read_for(names: Iterable[str], known: Mapping[str, Wanted]) -> list[str]:
+    """What has to be read for some quantities: reactions and axes in place of bearing loads.
+
+    Raises:
+        KeyError: an unknown quantity.
+    """
+    found: dict[str, None] = {}
+    for name in names:
+        wanted = known[name]
+        is_load = wanted.kind in BEARING_KINDS
+        parts = sorted(_expression(wanted.kind, wanted.owner).names) if is_load else [name]
+        found |= dict.fromkeys(parts)
+    return list(found)
+
+
+def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
+    for joint in mechanism.joints.values():
+        if is_written(joint.name) and joint.type.axis is not None and joint.type.has_point:
+            for kind, load in _LOADS.items():
+                yield Wanted(f"{joint.name}.{kind}", kind, joint.name, load.dimension, False)
+
+
+@cache
+def _expression(kind: Kind, joint: str) -> Expression:
+    return parse(_LOADS[kind].text.replace("J.", f"{joint}."))
