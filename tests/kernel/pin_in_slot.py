@@ -52,9 +52,7 @@ TEXTBOOK = """\
     ),
 """
 
-README = (
-    "| `Ps` | s, theta | pin of the second link in a `slot` of the first; `axis` of the pin |\n"
-)
+PAGE = "| `Ps` | s, theta | pin of the second link in a `slot` of the first; `axis` of the pin |\n"
 
 ADDITIONS = {
     "mechkin_cli/kernel/src/pairs.hpp": (
@@ -68,10 +66,10 @@ ADDITIONS = {
         ('    | Annotated[WeldJoint, Tag("(W)")]', '    | Annotated[PinSlotJoint, Tag("(Ps)")]\n'),
     ),
     "tests/kernel/pairs.py": (('    "W": Pair(', TEXTBOOK),),
-    "README.md": (("| `W` | none | weld |\n", README),),
+    "docs/modelling.md": (("| `W` | none | weld |\n", PAGE),),
 }
 """The files that a new pair touches: its entry in the kernel, in the table, in the file format, in
-the identity test, and its row in the README."""
+the identity test, and its row in the page on modelling."""
 
 GENERATED = ("schemas/mechanism.schema.json",)
 """Written by `mechkin schema`."""

@@ -20,7 +20,7 @@ from kernel.compiler import COMPILER
 from kernel.pin_in_slot import ADDITIONS, GENERATED, LETTER, MECHANISM
 
 ROOT = Path(__file__).parents[2]
-KEPT = ("mechkin_cli", "schemas", "tests", "README.md", "LICENSE", "pyproject.toml")
+KEPT = ("mechkin_cli", "schemas", "tests", "docs", "README.md", "LICENSE", "pyproject.toml")
 NEAR = 1e-13
 """Some roundings of coordinates of size one."""
 
