@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.building.actuators import build_drives, note_own_motors
 from mechkin_cli.building.assembly import build_assembly, build_follow
@@ -40,14 +40,17 @@ from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
 from mechkin_cli.tables.layout import CoefficientsLayout, TableLayout
 from mechkin_cli.units import LENGTH
 
+if TYPE_CHECKING:
+    from mechkin_cli.view.settings import ViewSettings
+
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})
 _NO_GRAPHS: Mapping[str, SolverGraph | Diagnostic] = MappingProxyType({})
 
 
 class Built(NamedTuple):
     """The problem of a file, its solver graph (or why it cannot be solved as it is driven), its
-    tables, the source it names, what was read, its runs by name and the solver graphs at the starts
-    of its responses."""
+    tables, the source it names, what was read, its runs by name, the solver graphs at the starts of
+    its responses, and how it wants to be shown."""
 
     problem: Problem
     graph: SolverGraph | Diagnostic
@@ -59,6 +62,7 @@ class Built(NamedTuple):
     response_graphs: Mapping[str, SolverGraph | Diagnostic] = _NO_GRAPHS
     coefficients: tuple[CoefficientsLayout, ...] = ()
     balances: tuple[AnyBalance, ...] = ()
+    view: ViewSettings | None = None
 
     def tables_of(self, run: str) -> tuple[TableLayout, ...]:
         """The tables that read a run."""
@@ -78,6 +82,7 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
     own = [table for table in tables if table.run == SWEEP]
     balances = _balances(fields, file, problem)
     coefficients = build_coefficients(fields, file, problem, tables)
+    view = _view(fields, file, problem)
     forces = needs_forces(problem, own)
     if file.loads or file.responses or coefficients or forces:
         note_force_unit(fields)
@@ -101,7 +106,8 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
         raise InvalidFile(in_order(fields.diagnostics))
     problem = replace(problem, diagnostics=tuple(in_order(fields.diagnostics)))
     read = (bool(file.tables), file.source or "", source)
-    return Built(problem, graph, tables, *read, runs_of(file), graphs, coefficients, balances)
+    others = (coefficients, balances, view)
+    return Built(problem, graph, tables, *read, runs_of(file), graphs, *others)
 
 
 def _balances(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[AnyBalance, ...]:
@@ -110,6 +116,14 @@ def _balances(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[An
     from mechkin_cli.building.balances import build_balances
 
     return build_balances(fields, file.balances, problem)
+
+
+def _view(fields: Fields, file: MechanismFile, problem: Problem) -> ViewSettings | None:
+    if file.view is None:
+        return None
+    from mechkin_cli.building.view import build_view
+
+    return build_view(fields, file.view, problem.mechanism)
 
 
 def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fields:

@@ -19,6 +19,7 @@ from mechkin_cli.cli.modes import modes
 from mechkin_cli.cli.ranges import ranges
 from mechkin_cli.cli.schema import schema
 from mechkin_cli.cli.tables import tables
+from mechkin_cli.version import version as package_version
 
 app = typer.Typer(
     name="mechkin",
@@ -37,17 +38,8 @@ def _options(
     version: bool = typer.Option(False, "--version", help="Print the version and exit."),
 ) -> None:
     if version:
-        put(f"mechkin {_version()}\n")
+        put(f"mechkin {package_version()}\n")
         raise typer.Exit()
-
-
-def _version() -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version("mechkin")
-    except PackageNotFoundError:
-        return "(source folder, not installed)"
 
 
 def run() -> int:

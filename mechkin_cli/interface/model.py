@@ -14,6 +14,7 @@ from mechkin_cli.interface.arguments import Setting, a_text, texts
 from mechkin_cli.interface.asking import run_name
 from mechkin_cli.interface.certified import Certified
 from mechkin_cli.interface.settings import input_values
+from mechkin_cli.interface.viewed import Viewed
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.graph import SolverGraph
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.precise import Precise
 
 
-class Model(Certified):
+class Model(Certified, Viewed):
     """A checked mechanism file."""
 
     def __init__(self, built: Built, stem: str) -> None:

@@ -51,7 +51,7 @@ def run_sweep(
     balances = chosen(model.built.balances, tables)
     names = wanted_names(session, SWEEP, layouts, quantities)
     names += read_by(balances, problem)
-    _refuse_loaded_spin(session, names)
+    refuse_loaded_spin(session, names)
     result = analyze(session.packed(packing), names)
     systems = chosen(model.built.coefficients, tables)
     analysis = Analysis(model, layouts, result, SWEEP, systems, balances)
@@ -79,8 +79,12 @@ def _closed_at(problem: Problem, names: Sequence[str]) -> Session:
         raise UsageError(f"{why}; {cure}") from None
 
 
-def _refuse_loaded_spin(session: Session, names: Sequence[str]) -> None:
-    """Forces and energies need what spins freely to have no cause to spin."""
+def refuse_loaded_spin(session: Session, names: Sequence[str]) -> None:
+    """Forces and energies need what spins freely to have no cause to spin.
+
+    Raises:
+        UsageError: one of some quantities is such, and something would spin.
+    """
     problem = session.problem
     if not names or not (find_legs(problem.mechanism) or problem.held):
         return

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from mechkin_cli.interface.variants import Reduce, Variants
     from mechkin_cli.mechanism.response import Response
     from mechkin_cli.solver.precise import Precise
+    from mechkin_cli.view.settings import ViewSettings
 
 
 class Base:
@@ -186,6 +187,11 @@ class VariedModel(Model):
         """The same model built anew: no recording holds responses."""
         built = self.built if self._variation is None else self._base.built(self._values)
         return Model(built, self.stem)
+
+    @property
+    def view_settings(self) -> ViewSettings:
+        """As `Model.view_settings`; its lengths are those of these parameters."""
+        return super().view_settings if self.built.view is None else self._fresh.view_settings
 
     def response(self, name: str) -> Response:
         """What one of the file's responses asks for, in SI."""

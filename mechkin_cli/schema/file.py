@@ -18,6 +18,7 @@ from mechkin_cli.schema.runs import free_run_names
 from mechkin_cli.schema.scalars import AnyDimension, Coordinate, Name, Text
 from mechkin_cli.schema.tables import Table, differing_names
 from mechkin_cli.schema.units_section import METRIC, UnitsSection
+from mechkin_cli.schema.view import ViewSection
 
 
 def _format_number(value: Any) -> int:
@@ -76,6 +77,8 @@ class MechanismFile(Section):
     """Warnings that the file acknowledges."""
     idle: Literal["hold"] | None = None
     """`hold`: idle freedoms that loads would move are held, and the holding moment is reported."""
+    view: ViewSection | None = None
+    """How `mechkin view` shows the mechanism; it changes no number."""
 
     def check(self) -> None:
         """There is a joint, and no two tables are written to the same files."""

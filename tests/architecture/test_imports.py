@@ -20,6 +20,7 @@ BASE = {
     "status",
     "tolerances",
     "uniqueness",
+    "version",
 }
 KERNEL = BASE | {"kernel"}
 UNITS = BASE | {"units"}
@@ -29,8 +30,9 @@ MECHANISM = EXPRESSIONS | {"mechanism"}
 SOLVER = MECHANISM | {"solver"}
 FREEDOMS = SOLVER | {"freedoms"}
 ANALYSIS = FREEDOMS | {"analysis"}
-BUILDING = FREEDOMS | {"reading", "schema", "building", "tables.layout"}
-INTERFACE = BUILDING | ANALYSIS | {"tables", "interface"}
+BUILDING = FREEDOMS | {"reading", "schema", "building", "tables.layout", "view.settings"}
+VIEW = ANALYSIS | {"tables", "view"}
+INTERFACE = BUILDING | VIEW | {"interface"}
 BENCHMARK = INTERFACE | {"benchmark"}
 ALLOWED = {
     **dict.fromkeys(BASE, BASE),
@@ -46,6 +48,7 @@ ALLOWED = {
     "analysis": ANALYSIS,
     "tables": EXPRESSIONS | {"tables"},
     "building": BUILDING,
+    "view": VIEW,
     "interface": INTERFACE,
     "benchmark": BENCHMARK,
     "cli": BENCHMARK | {"cli"},

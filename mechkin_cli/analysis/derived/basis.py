@@ -158,11 +158,16 @@ def _basis(mechanism: Mechanism, quantity: Wanted) -> list[Wanted]:
         joint = mechanism.joints[owner]
         return [*directions(joint.first), *directions(joint.second)]
     if quantity.kind in FINITE_KINDS:
-        return [*directions(owner), _place(owner)]
+        return displacement(owner)
     if quantity.kind in INSTANT_KINDS:
         speed = Wanted(f"{owner} velocity", "link_point", owner, VELOCITY, True, order=1)
         return [Wanted(f"{owner}.omega", "omega", owner, ANGULAR_RATE, True), _place(owner), speed]
     return []
+
+
+def displacement(link: str) -> list[Wanted]:
+    """What a link's displacement from the drawing is read from."""
+    return [*directions(link), _place(link)]
 
 
 def directions(link: str) -> list[Wanted]:

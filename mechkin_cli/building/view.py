@@ -1,0 +1,116 @@
+"""Checks `view:` - links and points that exist, lengths that can be drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism, is_written
+from mechkin_cli.nearest import nearest_hint
+from mechkin_cli.units import LENGTH, TIME
+from mechkin_cli.view.settings import ShapeSetting, ViewSettings
+
+if TYPE_CHECKING:
+    from mechkin_cli.mechanism.vectors import Vector
+    from mechkin_cli.schema.view import ShapeOfLink, ViewSection
+    from mechkin_cli.units import Dimension
+
+
+def build_view(fields: Fields, section: ViewSection, mechanism: Mechanism) -> ViewSettings:
+    """What the section asks for; what is wrong is noted in `fields`."""
+    view = _View(fields, mechanism)
+    camera = section.camera
+    return ViewSettings(
+        colours=dict(view.of_links("colours", section.colours)),
+        hidden=frozenset(view.links("hidden", section.hidden)),
+        shapes={
+            name: view.shape(name, shape) for name, shape in view.of_links("shapes", section.shapes)
+        },
+        joint_radius=view.positive("joint_radius", section.joint_radius, LENGTH),
+        paths=None if section.paths is None else frozenset(view.points(section.paths)),
+        forces=section.forces == "shown",
+        arrow_length=view.positive("arrow_length", section.arrow_length, LENGTH),
+        camera=None if camera is None else fields.direction(("view", "camera"), camera),
+        speed=view.positive("speed", section.speed, TIME),
+    )
+
+
+class _View:
+    """Reads the section of one file."""
+
+    def __init__(self, fields: Fields, mechanism: Mechanism) -> None:
+        self.fields = fields
+        self.mechanism = mechanism
+        self.known = [GROUND_NAME, *(name for name in mechanism.links if is_written(name))]
+
+    def links(self, key: str, names: Iterable[str]) -> list[str]:
+        """Those of the names that are links."""
+        return [
+            name
+            for at, name in enumerate(names)
+            if self._exists(("view", key, at), name, self.known, "link")
+        ]
+
+    def of_links(self, key: str, given: Mapping[str, Any]) -> list[tuple[str, Any]]:
+        """Those entries of a mapping that belong to links."""
+        found = []
+        for name, value in given.items():
+            hint = self._hint(name, self.known)
+            if hint is None:
+                found.append((name, value))
+            elif not self.fields.is_refused(name):
+                text = f"there is no link {name}"
+                self.fields.key_error("unknown-name", ("view", key, name), text, hint)
+        return found
+
+    def points(self, names: Iterable[str]) -> list[str]:
+        """Those of the names that are named points."""
+        known = list(self.mechanism.points)
+        return [
+            name
+            for at, name in enumerate(names)
+            if self._exists(("view", "paths", at), name, known, "point")
+        ]
+
+    def shape(self, link: str, section: ShapeOfLink) -> ShapeSetting:
+        """The shape of a link."""
+        points = section.points
+        if points is None:
+            return ShapeSetting(section.kind)
+        found = [self._point(link, at, point) for at, point in enumerate(points)]
+        return ShapeSetting(section.kind, tuple(point for point in found if point is not None))
+
+    def positive(self, key: str, text: str | None, dimension: Dimension) -> float | None:
+        """A number above zero; None where the section has none."""
+        if text is None:
+            return None
+        before = self.fields.error_count
+        value = self.fields.number(("view", key), text, dimension)
+        if value <= 0.0 and self.fields.error_count == before:
+            self.fields.error("not-positive", ("view", key), f"{key} is above zero")
+        return value
+
+    def _point(self, link: str, at: int, point: str | tuple[str, ...]) -> Vector | None:
+        path: Path = ("view", "shapes", link, "points", at)
+        if not isinstance(point, str):
+            return self.fields.vector(path, point, LENGTH)
+        own = {name: on.vector for name, on in self.mechanism.joint_points() if on.link == link}
+        own |= {name: on.vector for name, on in self.mechanism.points.items() if on.link == link}
+        return (
+            own[point]
+            if self._exists(path, point, list(own), f"joint or point of {link}")
+            else None
+        )
+
+    def _exists(self, path: Path, name: str, known: list[str], what: str) -> bool:
+        hint = self._hint(name, known)
+        if hint is not None and not self.fields.is_refused(name):
+            self.fields.error("unknown-name", path, f"there is no {what} {name}", hint)
+        return hint is None
+
+    def _hint(self, name: str, known: list[str]) -> str | None:
+        """What to write in place of a name that is not known; None of one that is."""
+        if name in known:
+            return None
+        return nearest_hint(name, known) or f"there are {', '.join(known) or 'none'}"

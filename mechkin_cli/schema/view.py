@@ -1,0 +1,92 @@
+"""`view:` - how `mechkin view` draws the mechanism; nothing in it changes a number of a table."""
+
+from typing import Annotated, Any, Final, Literal
+
+from mechkin_cli.schema.alternatives import Choice, Tag
+from mechkin_cli.schema.base import NOTHING, Section, refuse
+from mechkin_cli.schema.rules import After, Before, Limits, Named, ShortForm, Shown
+from mechkin_cli.schema.scalars import (
+    COLOUR_PATTERN,
+    DirectionVector,
+    Duration,
+    Length,
+    LengthVector,
+    Name,
+)
+
+Kind = Literal["rod", "plate", "star", "none"]
+KINDS: Final = "rod|plate|star|none"
+
+Colour = Annotated[
+    str,
+    Limits(pattern=COLOUR_PATTERN),
+    Shown(("string",), "a colour as #rrggbb, in quotes", ("#c0392b",)),
+    Named("Colour"),
+]
+
+
+def _name_or_vector(value: Any) -> str:
+    return "(name)" if isinstance(value, str) else "(vector)"
+
+
+NamedOrGiven = Annotated[
+    Annotated[Name, Tag("(name)")] | Annotated[LengthVector, Tag("(vector)")],
+    Choice(_name_or_vector),
+    Named("NamedOrGiven"),
+]
+
+
+class ShapeOfLink(Section):
+    """How a link is drawn. A plain word stands for its kind."""
+
+    kind: Kind | None = None
+    """`rod` from end to end, `plate` over points of a plane, `star` of rods to the middle, or
+    `none`; left out, as its points lie."""
+    points: Annotated[tuple[NamedOrGiven, ...], Limits(min_length=2, max_length=100)] | None = None
+    """The points it goes through: joints and named points of the link by name, or [x, y, z] in the
+    home drawing; left out, all joints and named points of the link."""
+
+
+def _with_kind(value: Any) -> Any:
+    return {"kind": value} if isinstance(value, str) else value
+
+
+KindOrShape = Annotated[
+    ShapeOfLink, Before(_with_kind), ShortForm(("string",), "the kind alone", f"^({KINDS})$")
+]
+
+
+def _all_different(names: tuple[str, ...]) -> tuple[str, ...]:
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise refuse("twice", f"{name} is named twice", "name it once", index)
+    return names
+
+
+Names = Annotated[tuple[Name, ...], After(_all_different)]
+
+
+class ViewSection(Section):
+    """How `mechkin view` shows the mechanism."""
+
+    colours: dict[Name, Colour] = NOTHING
+    """Colours of links by name, for example {crank: "#c0392b"}; the others have colours of their
+    own."""
+    hidden: Names = ()
+    """Links that are not drawn, nor their halves of joints."""
+    shapes: dict[Name, KindOrShape] = NOTHING
+    """Shapes of links by name, for example {coupler: plate}."""
+    joint_radius: Length | None = None
+    """Radius of the pins and balls of joints; left out, the radius at which a joint rubs, else by
+    the size of the mechanism."""
+    paths: Names | None = None
+    """Named points whose paths are drawn; left out, all, and [] none."""
+    forces: Literal["shown", "hidden"] = "shown"
+    """Whether arrows of forces and moments are seen at first."""
+    arrow_length: Length | None = None
+    """Length of the longest arrow of a force, and of a moment; left out, by the size of the
+    mechanism."""
+    camera: DirectionVector | None = None
+    """Direction from the mechanism to the eye, in ground axes; left out, the page chooses."""
+    speed: Duration | None = None
+    """How long once through a run takes; left out, the page chooses."""

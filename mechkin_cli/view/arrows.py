@@ -1,0 +1,112 @@
+"""Arrows of forces and moments: every joint's reaction on its second link, and what drives apply.
+
+`J.force` and `J.moment` are what the first link exerts on the second, about the joint's point;
+`J.effort` is what a drive applies to the second link, along the joint's axis. Components that are
+not unique are left out, and the arrow's name says which; an arrow of which nothing is known in
+any row is not there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.mechanism.joint_table import is_angle
+from mechkin_cli.tables.layout import effort_names
+from mechkin_cli.units import FORCE, MOMENT
+from mechkin_cli.view.encoding import packed
+from mechkin_cli.view.joints import drawn_joints
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.mechanism.model import Attached, Mechanism
+    from mechkin_cli.mechanism.problem import Problem
+    from mechkin_cli.view.encoding import Plain
+    from mechkin_cli.view.lengths import Lengths
+    from mechkin_cli.view.readable import Readable
+
+Kind = Literal["force", "moment"]
+AXES = "xyz"
+KINDS: tuple[Kind, Kind] = ("force", "moment")
+
+
+class Arrow(NamedTuple):
+    """Vectors over the rows (rows, 3) in the file's units, at a point of a link."""
+
+    name: str
+    kind: Kind
+    place: Attached
+    values: Floats
+
+
+def has_forces(mechanism: Mechanism) -> bool:
+    """Whether anything can cause a force: a load, gravity on a mass, a mass that moves."""
+    masses = any(link.has_mass for link in mechanism.links.values())
+    return masses or bool(mechanism.loads or mechanism.frictions)
+
+
+def reactions(problem: Problem) -> list[str]:
+    """Names of the quantities that are shown as arrows of joints."""
+    known = problem.quantities()
+    names = [f"{joint.name}.{kind}" for joint in drawn_joints(problem.mechanism) for kind in KINDS]
+    return [name for name in names if name in known]
+
+
+def arrow_records(
+    analysis: Readable, rows: NDArray[np.intp], links: Sequence[str], lengths: Lengths
+) -> list[Plain]:
+    """The arrows for the page in some rows."""
+    units = analysis.result.units
+    labels = {"force": units.label(FORCE), "moment": units.label(MOMENT)}
+    return [
+        {
+            "name": arrow.name,
+            "kind": arrow.kind,
+            "unit": labels[arrow.kind],
+            "link": links.index(arrow.place.link),
+            "place": lengths.vector(arrow.place.vector),
+            "values": packed("f32", arrow.values[rows]),
+        }
+        for arrow in _arrows(analysis)
+    ]
+
+
+def _arrows(analysis: Readable) -> Iterator[Arrow]:
+    problem = analysis.result.problem
+    joints = problem.mechanism.joints
+    for name in reactions(problem):
+        joint, _, word = name.rpartition(".")
+        kind = KINDS[0] if word == KINDS[0] else KINDS[1]
+        yield from _known(Arrow(name, kind, joints[joint].point, analysis[name]))
+    yield from _efforts(analysis, problem)
+
+
+def _efforts(analysis: Readable, problem: Problem) -> Iterator[Arrow]:
+    driven = [f"{joint}.{coordinate}" for joint, coordinate in problem.acting]
+    for name, effort in zip(driven, effort_names(driven), strict=True):
+        joint = problem.mechanism.joints[name.rpartition(".")[0]]
+        if joint not in drawn_joints(problem.mechanism) or len(joint.coordinates) != 1:
+            continue  # the axis of one of several coordinates is not that of the joint
+        along = analysis[f"{joint.name}.axis"] * analysis[effort][:, None]
+        kind = KINDS[1] if is_angle(name.rpartition(".")[2]) else KINDS[0]
+        yield from _known(Arrow(effort, kind, joint.point, along))
+
+
+def _known(arrow: Arrow) -> Iterator[Arrow]:
+    """The arrow without components that are not unique in any row; nothing if none is left, or if
+    all are zero."""
+    known = np.array([np.isfinite(component).any() for component in arrow.values.T])
+    values = np.where(known, arrow.values, 0.0)
+    if not known.any() or not np.nan_to_num(values).any():
+        return
+    name = arrow.name
+    if not known.all():
+        told = ", ".join(axis for axis, is_known in zip(AXES, known, strict=True) if is_known)
+        name = f"{name} ({told} alone: the rest is not unique)"
+    yield arrow._replace(name=name, values=values)

@@ -1,0 +1,228 @@
+"""A mechanism with its runs as the data of one page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.mechanism.model import GROUND_NAME, diagonal, is_written
+from mechkin_cli.units import ANGLE, FORCE, LENGTH, MOMENT
+from mechkin_cli.view.assumed import assumed
+from mechkin_cli.view.branch import BranchScene
+from mechkin_cli.view.joints import drawn_joints, joint_records, sliding_coordinate
+from mechkin_cli.view.lengths import Lengths
+from mechkin_cli.view.poses import carried
+from mechkin_cli.view.settings import ViewSettings
+from mechkin_cli.view.shapes import link_shape
+from mechkin_cli.view.table_cells import table_record
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.mechanism.problem import Problem
+    from mechkin_cli.view.encoding import Plain
+    from mechkin_cli.view.readable import ShownRun
+
+FORMAT = 1
+"""Version of the data that pages read."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What a page shows.
+
+    Attributes:
+        program: name and version of what wrote it.
+        file: name of the mechanism file.
+        problem: the mechanism; poses are those of the runs.
+        runs: in the order of the file.
+        notes: everything that was said of the file and its runs.
+        settings: the `view:` section.
+    """
+
+    program: str
+    file: str
+    problem: Problem
+    runs: tuple[ShownRun, ...]
+    notes: tuple[Diagnostic, ...] = ()
+    settings: ViewSettings = field(default_factory=ViewSettings)
+
+    @cached_property
+    def links(self) -> list[str]:
+        """Names of the links, ground first."""
+        moving = (name for name in self.problem.mechanism.links if is_written(name))
+        return [GROUND_NAME, *(name for name in moving if name != GROUND_NAME)]
+
+    @cached_property
+    def branches(self) -> list[list[BranchScene]]:
+        """The branches of every run."""
+        return [[BranchScene(one, self.links) for one in run.branches] for run in self.runs]
+
+    @cached_property
+    def _lengths(self) -> Lengths:
+        return Lengths(self.problem.units)
+
+    @cached_property
+    def _left_out(self) -> frozenset[str]:
+        """Links that no run has followed."""
+        followed = {
+            name
+            for run in self.runs
+            for branch in run.branches
+            for name in branch.analysis.result.problem.mechanism.links
+        }
+        return frozenset(self.links) - followed - {GROUND_NAME}
+
+    @cached_property
+    def box(self) -> tuple[Floats, Floats]:
+        """Corners (m) of the box of all joints' and named points that are followed, over all poses;
+        of the drawing where there is no pose."""
+        mechanism = self.problem.mechanism
+        drawn = [at for _, at in mechanism.joint_points()] + [*mechanism.points.values()]
+        seen = [at for at in drawn if at.link not in self._left_out] or drawn
+        poses = [one.poses for run in self.branches for one in run if one.poses.size]
+        corners = [
+            carried(found[:, self.links.index(at.link)], at.vector)
+            for found in poses
+            for at in seen
+        ]
+        if not corners:
+            corners = [np.array([at.vector]) for at in seen] or [np.zeros((1, 3))]
+        every = np.concatenate(corners)
+        return every.min(axis=0), every.max(axis=0)
+
+    def record(self) -> Plain:
+        """The data of the page (`format` 1); numbers in the file's units."""
+        problem, lengths, settings = self.problem, self._lengths, self.settings
+        units, mechanism = problem.units, problem.mechanism
+        low, high = self.box
+        size = diagonal([tuple(low), tuple(high)])
+        camera = settings.camera
+        arrow = settings.arrow_length
+        return {
+            "format": FORMAT,
+            "program": self.program,
+            "file": self.file,
+            "name": mechanism.name,
+            "units": {
+                "length": units.label(LENGTH),
+                "angle": units.label(ANGLE),
+                "force": units.label(FORCE),
+                "moment": units.label(MOMENT),
+            },
+            "size": lengths.one(size),
+            "centre": lengths.vector((low + high) / 2.0),
+            "up": self._up(),
+            "planar": False,
+            "links": [self._link(name, size) for name in self.links],
+            "joints": joint_records(
+                mechanism, self.links, self._travels(), settings.joint_radius, lengths
+            ),
+            "points": self._points(),
+            "runs": [
+                self._run(run, branches)
+                for run, branches in zip(self.runs, self.branches, strict=True)
+            ],
+            "tables": self._tables(),
+            "notes": [_note(one) for one in self.notes],
+            "assumed": assumed(problem, self.runs),
+            "view": {
+                "camera": None if camera is None else list(camera),
+                "speed": settings.speed,
+                "forces": settings.forces,
+                "arrow_length": None if arrow is None else lengths.one(arrow),
+            },
+        }
+
+    def _up(self) -> list[float]:
+        """Against gravity, of the sweep or else of a response; z where there is none."""
+        gravities = [self.problem.mechanism.gravity]
+        for run in self.runs:
+            gravities.append(run.branches[0].analysis.result.problem.mechanism.gravity)
+        for gravity in gravities:
+            if any(gravity):
+                down = np.array(gravity)
+                return [float(x) for x in 0.0 - down / np.linalg.norm(down)]
+        return [0.0, 0.0, 1.0]
+
+    def _link(self, name: str, size: float) -> Plain:
+        settings, lengths = self.settings, self._lengths
+        shape = link_shape(self.problem.mechanism, name, size, settings.shapes.get(name))
+        drawn: Plain = {
+            "kind": shape.kind,
+            "points": [lengths.vector(point) for point in shape.points],
+        }
+        if shape.normal is not None:
+            drawn["normal"] = [float(x) for x in shape.normal]
+        if shape.centre is not None:
+            drawn["centre"] = lengths.vector(shape.centre)
+        return {
+            "name": name,
+            "colour": settings.colours.get(name),
+            "hidden": name in settings.hidden or name in self._left_out,
+            "shape": drawn,
+        }
+
+    def _points(self) -> list[Plain]:
+        chosen = self.settings.paths
+        return [
+            {
+                "name": name,
+                "link": self.links.index(at.link),
+                "place": self._lengths.vector(at.vector),
+                "path": at.link != GROUND_NAME and (chosen is None or name in chosen),
+            }
+            for name, at in self.problem.mechanism.points.items()
+        ]
+
+    def _travels(self) -> dict[str, tuple[float, float]]:
+        """Least and most of every slide that stands alone in its joint, over all poses."""
+        found: dict[str, tuple[float, float]] = {}
+        for branch in (one for run in self.branches for one in run if one.posed.size):
+            for joint in drawn_joints(branch.analysis.result.problem.mechanism):
+                name = sliding_coordinate(joint)
+                if name is None:
+                    continue
+                slides = np.asarray(branch.analysis[name], dtype=np.float64)[
+                    branch.rows[branch.posed]
+                ]
+                low, high = float(slides.min()), float(slides.max())
+                before = found.get(joint.name, (low, high))
+                found[joint.name] = (min(low, before[0]), max(high, before[1]))
+        return found
+
+    def _run(self, run: ShownRun, branches: Sequence[BranchScene]) -> Plain:
+        axis = branches[0].axis
+        return {
+            "name": run.name,
+            "kind": "sweep" if run.name == "sweep" else "response",
+            "title": run.title,
+            "x": {"label": axis.label, "unit": axis.unit},
+            "branches": [
+                branch.record(number == 0, self._lengths) for number, branch in enumerate(branches)
+            ],
+        }
+
+    def _tables(self) -> list[Plain]:
+        found = []
+        for run, branches in zip(self.runs, self.branches, strict=True):
+            own = branches[0]
+            codes = [int(code) for code in own.analysis.result.status[own.rows]]
+            for table in (*own.analysis.tables, *run.tables, own.verdicts):
+                found.append(table_record(table, run.name, own.rows, codes))
+        return found
+
+
+def _note(diagnostic: Diagnostic) -> Plain:
+    """A message without its place and severity, and these."""
+    place = diagnostic.place
+    bare = str(diagnostic._replace(place=None)).removeprefix(f"{diagnostic.severity}: ")
+    return {
+        "severity": diagnostic.severity,
+        "text": bare,
+        "place": None if place is None else str(place),
+    }

@@ -1,0 +1,130 @@
+"""The form of the data that pages read, as a JSON Schema: the two sides of it are written apart."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+def _object(**properties: Any) -> dict[str, Any]:
+    return {
+        "type": "object",
+        "properties": properties,
+        "required": sorted(properties),
+        "additionalProperties": False,
+    }
+
+
+def _list(items: Any, **more: Any) -> dict[str, Any]:
+    return {"type": "array", "items": items, **more}
+
+
+def _or_null(schema: dict[str, Any]) -> dict[str, Any]:
+    return {"anyOf": [schema, {"type": "null"}]}
+
+
+def _packed(kind: str) -> dict[str, Any]:
+    return _object(**{kind: {"type": "string", "contentEncoding": "base64"}})
+
+
+TEXT = {"type": "string"}
+NUMBER = {"type": "number"}
+SWITCH = {"type": "boolean"}
+INDEX = {"type": "integer", "minimum": 0}
+VECTOR = _list(NUMBER, minItems=3, maxItems=3)
+COLUMN = _object(label=TEXT, unit=TEXT)
+HALF = _object(point=VECTOR, axis=VECTOR, x=VECTOR, axis2=_or_null(VECTOR))
+
+
+def _shape(kind: Any, **more: Any) -> dict[str, Any]:
+    return _object(kind=kind, points=_list(VECTOR), **more)
+
+
+SHAPE = {
+    "oneOf": [
+        _shape({"enum": ["rod", "none"]}),
+        _shape({"const": "plate"}, normal=VECTOR),
+        _shape({"const": "star"}, centre=VECTOR),
+    ]
+}
+BRANCH = _object(
+    name=TEXT,
+    own=SWITCH,
+    rows=INDEX,
+    x=_packed("f64"),
+    poses=_object(rows=_packed("i32"), values=_packed("f32")),
+    status=_object(words=_list(TEXT), codes=_packed("u8")),
+    marks=_list(
+        _object(x=NUMBER, kind={"enum": ["dead-centre", "branch-point", "event"]}, text=TEXT)
+    ),
+    columns=_list(_object(label=TEXT, unit=TEXT, table=TEXT, values=_packed("f64"))),
+    arrows=_list(
+        _object(
+            name=TEXT,
+            kind={"enum": ["force", "moment"]},
+            unit=TEXT,
+            link=INDEX,
+            place=VECTOR,
+            values=_packed("f32"),
+        )
+    ),
+)
+DATA = _object(
+    format={"const": 1},
+    program={"type": "string", "pattern": "^mechkin "},
+    file=TEXT,
+    name=TEXT,
+    units=_object(length=TEXT, angle=TEXT, force=TEXT, moment=TEXT),
+    size={"type": "number", "exclusiveMinimum": 0},
+    centre=VECTOR,
+    up=VECTOR,
+    planar=SWITCH,
+    links=_list(
+        _object(
+            name=TEXT,
+            colour=_or_null({"type": "string", "pattern": "^#[0-9A-Fa-f]{6}$"}),
+            hidden=SWITCH,
+            shape=SHAPE,
+        )
+    ),
+    joints=_list(
+        _object(
+            name=TEXT,
+            type=TEXT,
+            links=_list(INDEX, minItems=2, maxItems=2),
+            halves=_list(HALF, minItems=2, maxItems=2),
+            lead=_or_null(NUMBER),
+            travel=_or_null(_list(NUMBER, minItems=2, maxItems=2)),
+            radius=_or_null({"type": "number", "exclusiveMinimum": 0}),
+        )
+    ),
+    points=_list(_object(name=TEXT, link=INDEX, place=VECTOR, path=SWITCH)),
+    runs=_list(
+        _object(
+            name=TEXT,
+            kind={"enum": ["sweep", "response"]},
+            title=TEXT,
+            x=COLUMN,
+            branches=_list(BRANCH, minItems=1),
+        )
+    ),
+    tables=_list(
+        _object(
+            name=TEXT,
+            title=TEXT,
+            run=TEXT,
+            columns=_list(COLUMN),
+            rows=_list(_list(TEXT)),
+            status=_list(INDEX),
+        )
+    ),
+    notes=_list(
+        _object(severity={"enum": ["note", "warning", "error"]}, text=TEXT, place=_or_null(TEXT))
+    ),
+    assumed=_list(TEXT),
+    view=_object(
+        camera=_or_null(VECTOR),
+        speed=_or_null(NUMBER),
+        forces=SWITCH,
+        arrow_length=_or_null(NUMBER),
+    ),
+)

@@ -1,0 +1,95 @@
+"""`view:` in a file: what it changes on the page, and how its mistakes are told."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from view.files import FOUR_BAR
+from view.seen import data, poses
+
+import mechkin_cli as mk
+
+VIEW = """
+view:
+  colours: {crank: "#C0392b", ground: "#000000"}
+  hidden: [rocker]
+  shapes:
+    coupler: star
+    crank: {kind: plate, points: [A, B, [0, 5, 0], [1 cm, 5, 0]]}
+    ground: rod
+  joint_radius: 2.5
+  paths: []
+  forces: hidden
+  arrow_length: 4 cm
+  camera: [0, -2, 0]
+  speed: 0.1 min
+"""
+
+
+def test_everything_reaches_the_page() -> None:
+    shown = data(mk.loads(FOUR_BAR + VIEW), modes=False)
+    links = {one["name"]: one for one in shown["links"]}
+    assert links["crank"]["colour"] == "#C0392b"
+    assert links["coupler"]["colour"] is None
+    assert [name for name, one in links.items() if one["hidden"]] == ["rocker"]
+    assert links["coupler"]["shape"]["kind"] == "star"
+    assert links["coupler"]["shape"]["centre"] == pytest.approx([50, 10, 0])
+    assert links["crank"]["shape"]["points"] == [[0, 0, 0], [20, 0, 0], [0, 5, 0], [10, 5, 0]]
+    assert links["ground"]["shape"] == {"kind": "rod", "points": [[0, 0, 0], [70, 0, 0]]}
+    assert {one["radius"] for one in shown["joints"]} == {2.5}
+    assert [one["path"] for one in shown["points"]] == [False]
+    view = {"camera": [0, -1, 0], "speed": 6.0, "forces": False, "arrow_length": 40.0}
+    assert shown["view"] == view
+
+
+def test_no_number_depends_on_it() -> None:
+    plain, seen = mk.loads(FOUR_BAR), mk.loads(FOUR_BAR + VIEW)
+    assert plain.analyze().tables[0].columns[1].values.tobytes() == (
+        seen.analyze().tables[0].columns[1].values.tobytes()
+    )
+    np.testing.assert_array_equal(poses(data(plain)), poses(data(seen)))
+
+
+def test_left_out_nothing_is_asked_for() -> None:
+    shown = data(mk.loads(FOUR_BAR), modes=False)
+    empty = {"camera": None, "speed": None, "forces": True, "arrow_length": None}
+    assert shown["view"] == empty
+    assert [one["path"] for one in shown["points"]] == [True]
+    assert {one["radius"] for one in shown["joints"]} == {None}
+    assert data(mk.loads(FOUR_BAR + "view: {}\n"), modes=False) == shown
+
+
+def test_a_joint_that_rubs_has_its_radius() -> None:
+    text = FOUR_BAR + "loads: [{type: friction, joint: B, coefficient: 0.1, radius: 3}]\n"
+    shown = data(mk.loads(text), modes=False)
+    assert {one["name"]: one["radius"] for one in shown["joints"]}["B"] == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize(
+    ("view", "place", "words"),
+    [
+        ("{colours: {crnk: '#000000'}}", "crnk", "did you mean crank"),
+        ("{colours: {crank: red}}", "red", "#rrggbb"),
+        ("{hidden: [crank, crank]}", "crank", "named twice"),
+        ("{hidden: [A]}", "A", "there is no link A"),
+        ("{shapes: {crank: ball}}", "ball", "rod"),
+        ("{shapes: {crank: {points: [A, p]}}}", "p", "joint or point of crank"),
+        ("{shapes: {crank: {points: [A]}}}", "[A]", "2"),
+        ("{shapes: {crank: {points: [A, [1, 2]]}}}", "[1, 2]", "3"),
+        ("{joint_radius: 0}", "0", "above zero"),
+        ("{joint_radius: 3 deg}", "3 deg", "length"),
+        ("{paths: [q]}", "q", "there is no point q"),
+        ("{forces: maybe}", "maybe", "shown"),
+        ("{camera: [0, 0, 0]}", "[0, 0, 0]", "zero"),
+        ("{speed: -1}", "-1", "above zero"),
+        ("{colors: {crank: '#000000'}}", "colors", "colours"),
+    ],
+)
+def test_mistakes_are_told_at_their_place(view: str, place: str, words: str) -> None:
+    text = FOUR_BAR + f"view: {view}\n"
+    with pytest.raises(mk.InvalidFile) as refused:
+        mk.loads(text)
+    (error,) = refused.value.diagnostics
+    assert words in str(error)
+    line = text.splitlines()[error.place.line - 1]
+    assert line[error.place.column - 1 :].lstrip("'\"").startswith(place), str(error)
