@@ -83,7 +83,7 @@ def _table(
             columns.append(layout)
     title = section.title or section.name
     published = _published(section.published)
-    return TableLayout(section.name, title, tuple(columns), published, run)
+    return TableLayout(section.name, title, tuple(columns), published, run, section.summary)
 
 
 def _default(problem: Problem, run: str) -> TableLayout:

@@ -14,6 +14,7 @@ from mechkin_cli.tables.decimal_text import column_texts
 
 if TYPE_CHECKING:
     from mechkin_cli.interface import Analysis
+    from mechkin_cli.tables.summary import Summary
 
 MOST_ROWS = 60
 """Longer tables are shown with this many rows."""
@@ -34,6 +35,11 @@ def shown_tables(analysis: Analysis, folder: Path) -> Iterator[str]:
         left_out = analysis.rows - len(chosen)
         if left_out:
             lines.append(f"({left_out} of {analysis.rows} rows left out here; all are in {folder})")
+        if table.summary is not None:
+            from mechkin_cli.tables.summary import written_notes
+
+            notes = written_notes(table.summary, _one_line)
+            lines += [line for note in notes for line in wrap(f"({note})", width)]
         yield "\n".join(lines) + "\n\n"
 
 
@@ -46,8 +52,23 @@ def shown_table(table: Columns, count: int) -> str:
 
 def _grouped(table: Columns, rows: Sequence[int], width: int) -> Iterator[list[str]]:
     """The lines of the columns that fit side by side, group by group."""
-    for group in _groups([_cells(column, rows) for column in table.columns], width):
+    columns = [_texts(column, rows) for column in table.columns]
+    if table.summary is not None:
+        columns = _with_summary(columns, table.summary)
+    for group in _groups([_padded(cells) for cells in columns], width):
         yield [GAP.join(row).rstrip() for row in zip(*group, strict=True)]
+
+
+def _with_summary(columns: list[list[str]], summary: Summary) -> list[list[str]]:
+    """The columns with what stands below them; its words stand in the first column, or in one of
+    their own where that is summed up itself."""
+    below = {each.number: summary.texts(each) for each in summary.columns}
+    words, gap = list(summary.lines), len(summary.lines) * [""]
+    if 0 in below:
+        columns = [len(columns[0]) * [""], *columns]
+        below = {number + 1: texts for number, texts in below.items()}
+    below[0] = words
+    return [[*cells, "", *below.get(number, gap)] for number, cells in enumerate(columns)]
 
 
 def _one_line(text: str) -> str:
@@ -61,13 +82,16 @@ def _chosen_rows(rows: int) -> list[int]:
     return [*range(half), *range(rows - half, rows)]
 
 
-def _cells(column: Column, chosen: Sequence[int]) -> list[str]:
-    """Label, unit and cells of a column, padded to one width."""
+def _texts(column: Column, chosen: Sequence[int]) -> list[str]:
+    """Label, unit and cells of a column."""
     if isinstance(column.values, Words):
         texts = column.values.texts(chosen)
     else:
         texts = column_texts(column.values[list(chosen)], column.decimals)
-    cells = [_one_line(column.label), f"[{column.unit}]" if column.unit else "", *texts]
+    return [_one_line(column.label), f"[{column.unit}]" if column.unit else "", *texts]
+
+
+def _padded(cells: list[str]) -> list[str]:
     width = max(map(len, cells))
     return [cell.rjust(width) for cell in cells]
 

@@ -152,6 +152,11 @@ def _fresh_files(
     for analysis in analyses:
         for table in (*analysis.tables, *analysis.coefficients, *analysis.balance_tables):
             fresh[f"{table.name}.csv"] = csv_bytes(table, COMMITTED_DIGITS)
+            if table.summary is not None:
+                from mechkin_cli.tables.summary import summary_table
+
+                below = summary_table(table.name, table.title, table.summary)
+                fresh[f"{below.name}.csv"] = csv_bytes(below, COMMITTED_DIGITS)
             fresh[f"{table.name}.md"] = markdown_bytes(table, analysis.result)
     if printed:
         fresh[PAGE] = errata_page(model.name, model.source, printed).encode()

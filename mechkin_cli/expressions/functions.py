@@ -19,12 +19,14 @@ from mechkin_cli.units import ANGLE, DIMENSIONLESS, Dimension
 
 
 class Function(NamedTuple):
-    """A function of `fewest` arguments, or of any larger number where `variadic`."""
+    """A function of `fewest` arguments, or of any larger number where `variadic`; `alone` says
+    what to write where a single argument is given and another thing is meant."""
 
     usage: str
     fewest: int
     apply: Callable[..., Quantity]
     variadic: bool = False
+    alone: str = ""
 
     def accepts(self, count: int) -> bool:
         """Whether the function takes so many arguments."""
@@ -35,6 +37,17 @@ class Function(NamedTuple):
         """How many arguments the function takes, in words."""
         noun = "argument" if self.fewest == 1 else "arguments"
         return f"{'at least ' if self.variadic else ''}{self.fewest} {noun}"
+
+    def cure(self, count: int) -> str:
+        """What to write in place of a call with so many arguments."""
+        return f"write {self.usage}{self.alone if count == 1 else ''}"
+
+
+_OVER_ROWS = {
+    word: f" for the {of_two} of several in each row; the {of_all} over the rows stands below a "
+    f'table with summary: [{word}], and in r.summary("...").{word} of Python'
+    for word, of_two, of_all in (("min", "smaller", "smallest"), ("max", "larger", "largest"))
+}
 
 
 def dot_product(a: Vector, b: Vector) -> Scalar:
@@ -105,6 +118,10 @@ def _extreme(
     return apply
 
 
+def _extreme_of(word: str, function: Callable[[Scalar, Scalar], Scalar]) -> Function:
+    return Function(f"{word}(a, b)", 2, _extreme(function), True, _OVER_ROWS[word])
+
+
 def _wrap(site: Site, operand: Operand) -> Quantity:
     value = site.periodic(operand)
     site.require(operand, ANGLE)
@@ -145,8 +162,12 @@ FUNCTIONS: dict[str, Function] = {
     "pow": Function("pow(x, n)", 2, raise_to_power),
     "abs": Function("abs(x)", 1, _absolute),
     "sign": Function("sign(x)", 1, _sign),
-    "min": Function("min(a, b)", 2, _extreme(scalar_functions.smaller), variadic=True),
-    "max": Function("max(a, b)", 2, _extreme(scalar_functions.larger), variadic=True),
+    "min": Function(
+        "min(a, b)", 2, _extreme(scalar_functions.smaller), True, alone=_OVER_ROWS["min"]
+    ),
+    "max": Function(
+        "max(a, b)", 2, _extreme(scalar_functions.larger), True, alone=_OVER_ROWS["max"]
+    ),
     "wrap": Function("wrap(angle)", 1, _wrap),
     "dot": Function("dot(a, b)", 2, _dot),
     "cross": Function("cross(a, b)", 2, _cross),

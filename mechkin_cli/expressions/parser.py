@@ -165,7 +165,7 @@ class _Parser:
             raise ExpressionError(
                 f"{name.text} takes {function.arity_text}, not {count}",
                 name.start,
-                f"write {function.usage}",
+                function.cure(count),
             )
         self.emit(Operation(name.text, count, name.start))
 

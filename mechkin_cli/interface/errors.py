@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.analysis.errors import Repeated, repetition
-from mechkin_cli.analysis.errors.reasons import BALANCE, DENSE, WORDS, reason_of
+from mechkin_cli.analysis.errors.reasons import BALANCE, DENSE, SUMMARY, WORDS, reason_of
 from mechkin_cli.analysis.errors.repeated import NotRepeated
 from mechkin_cli.building.columns import used_quantities
 from mechkin_cli.diagnostics import UsageError
@@ -61,6 +61,11 @@ class Errors:
             not_repeated(table.name, ALL_COLUMNS, "", 0, why)
             for tables, why in ((analysis.coefficients, DENSE), (analysis.balance_tables, BALANCE))
             for table in tables
+        )
+        self.columns += tuple(
+            not_repeated(f"{table.name}.summary", ALL_COLUMNS, "", 0, SUMMARY)
+            for table in analysis.tables
+            if table.summary is not None
         )
 
     @cached_property

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from mechkin_cli.analysis.reductions import Reduction
 from mechkin_cli.arrays import Floats
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
+from mechkin_cli.reductions import Reduction
 
 Reductions = tuple[Reduction, ...] | Reduction | None
 """Several, one, or none: all rows."""

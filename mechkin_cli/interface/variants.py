@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.analysis.reductions import REDUCTIONS
 from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
 from mechkin_cli.expressions import Expression, ExpressionError, parse
 from mechkin_cli.interface.arguments import a_whole_number, shown, texts
@@ -18,6 +17,7 @@ from mechkin_cli.interface.responses import response_name
 from mechkin_cli.interface.variant_runs import Study, sample_of
 from mechkin_cli.interface.varied import Base, file_values
 from mechkin_cli.kernel.width import check_threads, check_width
+from mechkin_cli.reductions import REDUCTIONS
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.status import Status
 from mechkin_cli.tables.layout import ROW_TEXTS

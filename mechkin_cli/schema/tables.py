@@ -1,6 +1,6 @@
 """`tables:` - the layouts a run writes, one file each: columns are expressions over quantities."""
 
-from typing import Annotated, Any, Protocol, TypeVar
+from typing import Annotated, Any, Literal, Protocol, TypeVar
 
 from mechkin_cli.schema.base import Section, refuse
 from mechkin_cli.schema.rules import After, Barred, Before, Limits, Named, ShortForm, Shown
@@ -107,6 +107,16 @@ def _differing_labels(columns: tuple[Column, ...]) -> tuple[Column, ...]:
     return columns
 
 
+SummaryWord = Literal["max", "min", "peak", "mean", "rms", "range"]
+
+
+def _each_once(words: tuple[str, ...]) -> tuple[str, ...]:
+    for index, word in enumerate(words):
+        if word in words[:index]:
+            raise refuse("named-twice", f"{word} stands there twice", "name it once", index)
+    return words
+
+
 class Table(Section):
     """A table with one row per position."""
 
@@ -121,6 +131,9 @@ class Table(Section):
         tuple[ColumnOrText, ...], Limits(min_length=1, max_length=1000), After(_differing_labels)
     ]
     """The columns, from left to right."""
+    summary: Annotated[tuple[SummaryWord, ...], Limits(min_length=1), After(_each_once)] = ()
+    """What stands below the table for each column that is computed: some of [max, min, peak, mean,
+    rms, range]. `peak` is the largest magnitude; max, min and peak have their places."""
     published: PathOrPublishedValues | None = None
     """Values printed in the source, as a CSV file with the same labels."""
 

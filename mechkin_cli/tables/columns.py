@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,9 @@ from mechkin_cli.tables.layout import ROW_EVENT, ROW_NUMBERS, ROW_PROOF, ColumnL
 from mechkin_cli.tables.source import FloatArray, Source
 from mechkin_cli.uniqueness import unique_cells
 from mechkin_cli.units import DIMENSIONLESS
+
+if TYPE_CHECKING:
+    from mechkin_cli.tables.summary import Summary
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,12 +69,14 @@ class Column:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Columns:
-    """One evaluated table; `of_rows` says that its rows are those of the run."""
+    """One evaluated table; `of_rows` says that its rows are those of the run, `summary` what stands
+    below it."""
 
     name: str
     title: str
     columns: tuple[Column, ...]
     of_rows: bool = True
+    summary: Summary | None = None
 
 
 def evaluate(table: TableLayout, source: Source) -> Columns:
@@ -80,7 +86,12 @@ def evaluate(table: TableLayout, source: Source) -> Columns:
         ExpressionError: a column is no number per row, or names what the source does not have.
     """
     columns = tuple(column_of(layout, source) for layout in table.columns)
-    return Columns(table.name, table.title, columns)
+    summary = None
+    if table.summary:
+        from mechkin_cli.tables.summary import summary_of
+
+        summary = summary_of(table.summary, table.columns, columns, source)
+    return Columns(table.name, table.title, columns, summary=summary)
 
 
 def status_words(source: Source) -> Words:

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from mechkin_cli.status import Status
 from mechkin_cli.tables.columns import Columns, Words, solved_rows
-from mechkin_cli.tables.source import FloatArray, Source
+from mechkin_cli.tables.run_parameter import RunParameter, run_parameter
+from mechkin_cli.tables.source import Source
 
 LISTED_RANGES = 6
 
@@ -42,7 +43,7 @@ def _where(chosen: NDArray[np.bool_], source: Source) -> str:
     rows = np.flatnonzero(chosen)
     starts = np.flatnonzero(np.diff(rows, prepend=-2) != 1)
     ends = np.append(starts[1:], rows.size)
-    swept = _swept_input(source)
+    swept = run_parameter(source)
     texts = [
         _range_text(int(rows[start]) + 1, int(rows[end - 1]) + 1, swept)
         for start, end in zip(starts[:LISTED_RANGES], ends[:LISTED_RANGES], strict=True)
@@ -52,15 +53,7 @@ def _where(chosen: NDArray[np.bool_], source: Source) -> str:
     return f"{'Row' if rows.size == 1 else 'Rows'} {', '.join(texts)}"
 
 
-def _swept_input(source: Source) -> tuple[str, FloatArray, str] | None:
-    """Name, values and unit of the first input that is not held."""
-    for name, values in source.inputs.items():
-        if bool((values != values[0]).any()):
-            return name, values, source.units.label(source.quantity(name).dimension)
-    return None
-
-
-def _range_text(first: int, last: int, swept: tuple[str, FloatArray, str] | None) -> str:
+def _range_text(first: int, last: int, swept: RunParameter | None) -> str:
     rows = str(first) if first == last else f"{first}-{last}"
     if swept is None:
         return rows

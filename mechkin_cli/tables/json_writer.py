@@ -10,6 +10,7 @@ import json
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from math import isfinite
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
@@ -23,6 +24,7 @@ from mechkin_cli.tables.source import FloatArray, Source
 
 if TYPE_CHECKING:
     from mechkin_cli.tables.cell_errors import ColumnErrors
+    from mechkin_cli.tables.summary import Extreme, Summary
     from mechkin_cli.tables.writers import Results
 
 Plain = dict[str, object]
@@ -101,6 +103,7 @@ def table_record(columns: Columns, threads: int = 0) -> Plain:
         "name": columns.name,
         "title": columns.title,
         "columns": _column_records(columns, threads),
+        **({} if columns.summary is None else {"summary": _summary_record(columns.summary)}),
     }
 
 
@@ -128,6 +131,30 @@ def _column_records(columns: Columns, threads: int) -> list[Plain]:
         }
         for column in columns.columns
     ]
+
+
+def _summary_record(summary: Summary) -> Plain:
+    """What stands below a table, by column: null where no row has a cell."""
+    return {
+        "at": summary.parameter,
+        "at_unit": summary.unit,
+        "columns": [
+            {
+                "label": each.label,
+                "unit": each.unit,
+                **{word: _number(getattr(each.statistics, word)) for word in summary.words},
+                "rows": each.statistics.rows,
+            }
+            for each in summary.columns
+        ],
+    }
+
+
+def _number(found: float | Extreme) -> object:
+    """A number, or an extreme with its place; null for nan."""
+    if isinstance(found, tuple):
+        return {"value": _number(found.value), "at": _number(found.place)}
+    return found if isfinite(found) else None
 
 
 def _errors_record(errors: Sequence[ColumnErrors]) -> Plain:

@@ -61,13 +61,14 @@ class PublishedValues(NamedTuple):
 
 class TableLayout(NamedTuple):
     """One table; `name` is the stem of its files, `title` its heading in Markdown, `run` the run
-    whose rows it has."""
+    whose rows it has, `summary` the words of what stands below it (`reductions.REDUCTIONS`)."""
 
     name: str
     title: str
     columns: tuple[ColumnLayout, ...]
     published: PublishedValues | None = None
     run: str = SWEEP
+    summary: tuple[str, ...] = ()
 
 
 def row_texts(run: str) -> tuple[str, ...]:

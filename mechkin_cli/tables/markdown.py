@@ -1,4 +1,4 @@
-"""Markdown of a table: title, labels with units, declared decimals, footnotes.
+"""Markdown of a table: title, labels with units, declared decimals, its summary, footnotes.
 
 Cells are padded so that the text reads as a table in a terminal as well. Undeclared decimals are
 chosen as `mechkin_cli.tables.decimal_text` says.
@@ -6,12 +6,19 @@ chosen as `mechkin_cli.tables.decimal_text` says.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+import numpy as np
+
 from mechkin_cli.tables.columns import Column, Columns, Words
 from mechkin_cli.tables.decimal_text import decimal_column
 from mechkin_cli.tables.footnotes import footnotes
 from mechkin_cli.tables.native_columns import threads_for, word_column
 from mechkin_cli.tables.neutral import markdown_text
 from mechkin_cli.tables.source import Source
+
+if TYPE_CHECKING:
+    from mechkin_cli.tables.summary import Summary
 
 
 def markdown_bytes(columns: Columns, source: Source, threads: int = 0) -> bytes:
@@ -28,8 +35,29 @@ def markdown_bytes(columns: Columns, source: Source, threads: int = 0) -> bytes:
     ]
     title = f"# {markdown_text(columns.title or columns.name)}\n\n"
     table: bytes = _kernel.markdown_text(headers, cells, threads_for(columns, threads))
+    below = "" if columns.summary is None else _below(columns.summary)
     notes = "".join(f"- {note}\n" for note in footnotes(columns, source, markdown_text))
-    return b"".join((title.encode(), table, f"\n{notes}".encode() if notes else b""))
+    notes = below + (f"\n{notes}" if notes else "")
+    return b"".join((title.encode(), table, notes.encode()))
+
+
+def _below(summary: Summary) -> str:
+    """The rows below a table as a table of their own, and what is said of them."""
+    from mechkin_cli.tables.summary import written_notes
+
+    columns = [["summary", *summary.lines]]
+    for each in summary.columns:
+        header = _header(Column(each.label, each.unit, np.empty(0)))
+        columns.append([header, *summary.texts(each)])
+    widths = [max(map(len, cells)) for cells in columns]
+    pads = [str.ljust, *(str.rjust for _ in summary.columns)]
+    head, *lines = (
+        f"| {' | '.join(pad(*cell) for pad, *cell in zip(pads, row, widths, strict=True))} |\n"
+        for row in zip(*columns, strict=True)
+    )
+    rule = [f":{'-' * (widths[0] - 1)}", *(f"{'-' * (width - 1)}:" for width in widths[1:])]
+    said = "".join(f"- {note}\n" for note in written_notes(summary, markdown_text))
+    return "".join(("\n", head, f"| {' | '.join(rule)} |\n", *lines, f"\n{said}" if said else ""))
 
 
 def _header(column: Column) -> str:

@@ -41,6 +41,11 @@ def _csv(runs: Sequence[Results]) -> Iterator[File]:
     for results in runs:
         for table in results.tables:
             yield f"{table.name}.csv", csv_bytes(table, threads=results.threads)
+            if table.summary is not None:
+                from mechkin_cli.tables.summary import summary_table
+
+                below = summary_table(table.name, table.title, table.summary)
+                yield f"{below.name}.csv", csv_bytes(below)
 
 
 def _markdown(runs: Sequence[Results]) -> Iterator[File]:

@@ -15,6 +15,7 @@ BASE = {
     "legible",
     "nearest",
     "proof",
+    "reductions",
     "regular_file",
     "runs",
     "status",

@@ -197,3 +197,59 @@ def test_labels_and_titles_of_several_lines_stay_on_one(mechkin, write):
     tables = 'tables: [{name: t, title: "a\\nb", columns: [{label: "x\\ny", value: 1}]}]\n'
     run = mechkin("analyze", write("crank.yaml", files.CRANK + tables))
     assert run.out.splitlines()[:4] == ["t: a b", "", "x y", ""]
+
+
+SUMMED = files.CRANK + (
+    "tables:\n  - {name: tip, summary: [max, peak, mean], columns: [O.theta, "
+    "{label: x, value: tip.position.x, decimals: 2}]}\n"
+    "  - {name: both, summary: [min], columns: [{label: x, value: tip.position.x, decimals: 2}, "
+    "O.theta]}\n"
+)
+
+
+def test_a_summary_stands_below_its_table(mechkin, write, folder) -> None:
+    run = mechkin("analyze", write("crank.yaml", SUMMED), "--format", "csv")
+    # over 0, 45, 90 degrees by the trapezoidal rule: (1 + 1.41)*2/2/2
+    assert run.out == (
+        "tip\n\n"
+        "O.theta     x\n"
+        "  [deg]   [m]\n"
+        "      0  2.00\n"
+        "     45  1.41\n"
+        "     90  0.00\n\n"
+        "    max  2.00\n"
+        "     at     0\n"
+        "   peak  2.00\n"
+        "     at     0\n"
+        "   mean  1.21\n"
+        "   rows     3\n"
+        "(at: O.theta [deg]; mean and rms over O.theta)\n\n"
+        "both\n\n"
+        "         x  O.theta\n"
+        "       [m]    [deg]\n"
+        "      2.00        0\n"
+        "      1.41       45\n"
+        "      0.00       90\n\n"
+        " min  0.00\n"
+        "  at    90\n"
+        "rows     3\n"
+        "(at: O.theta [deg])\n\n"
+    )
+    text = (folder / "out" / "crank" / "both.summary.csv").read_text()
+    assert [line.partition(",")[0] for line in text.splitlines()] == [
+        "summary",
+        "min",
+        "min at",
+        "rows",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("written", "words"),
+    [("[max, max]", "max stands there twice"), ("[median]", "median"), ("[]", "summary")],
+)
+def test_a_summary_that_cannot_be(mechkin, write, written, words) -> None:
+    file = write("crank.yaml", SUMMED.replace("[max, peak, mean]", written))
+    run = mechkin("analyze", file)
+    assert run.code == 3
+    assert words in run.err

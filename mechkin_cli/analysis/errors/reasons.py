@@ -25,6 +25,7 @@ NOT_RESOLVED = "beyond the moment at which the steps of the repetition run out"
 DRAWING = "measured from the drawing in doubles"
 DENSE = "a dense system"
 BALANCE = "a balance over all rows"
+SUMMARY = "a summary: off by no more than twice the worst cell of its column"
 AS_DRIVEN = "read as if the start's coordinates were driven"
 
 

@@ -1,0 +1,188 @@
+"""What stands below a table: extremes with their places, means and ranges of its columns.
+
+Rows without a cell do not count, and `rows` says how many do. Mean and RMS are integrals over the
+way of the run's parameter by the trapezoidal rule, so that they do not depend on where rows are
+dense: a row counts for half the way to each of its neighbours (`reductions.row_weights`). Places
+are values of that parameter, of the first row that has the extreme; where nothing moves, numbers
+of rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from mechkin_cli.reductions import REDUCTIONS, mean, root_mean_square, row_weights
+from mechkin_cli.status import Status
+from mechkin_cli.tables.columns import Column, Columns, words_of
+from mechkin_cli.tables.decimal_text import column_texts
+from mechkin_cli.tables.layout import ROW_NUMBER, ColumnLayout
+from mechkin_cli.tables.run_parameter import run_parameter
+from mechkin_cli.tables.source import FloatArray, Source
+
+AT = "at"
+ROWS = "rows"
+"""Words of the rows below a table that no reduction has."""
+
+
+class Extreme(NamedTuple):
+    """A value and its place: what the run's parameter is there, in the file's units."""
+
+    value: float
+    place: float
+
+
+class Statistics(NamedTuple):
+    """Of one column, in the file's units; nan where no row has a cell.
+
+    `peak` is the largest magnitude, `range` the difference of max and min, `rows` how many rows
+    have a cell.
+    """
+
+    max: Extreme
+    min: Extreme
+    peak: Extreme
+    mean: float
+    rms: float
+    range: float
+    rows: int
+
+
+class SummaryColumn(NamedTuple):
+    """A column that is summed up: its place among the table's columns."""
+
+    number: int
+    label: str
+    unit: str
+    decimals: int | None
+    statistics: Statistics
+
+
+class Summary(NamedTuple):
+    """The rows below a table: which, of what parameter the places are (with its unit), and the
+    numbers of each column; `notes` say what does not count or is doubtful."""
+
+    words: tuple[str, ...]
+    parameter: str
+    unit: str
+    columns: tuple[SummaryColumn, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """Words in front of the rows."""
+        found: list[str] = []
+        for word in self.words:
+            found += [word, AT] if word in _WITH_PLACE else [word]
+        return (*found, ROWS)
+
+    @property
+    def places(self) -> str:
+        """What places are values of, with the unit."""
+        return f"{self.parameter} [{self.unit}]" if self.unit else self.parameter
+
+    def numbers(self, column: SummaryColumn) -> list[float]:
+        """The numbers of a column, one for each of the lines."""
+        found: list[float] = []
+        for word in self.words:
+            value = getattr(column.statistics, word)
+            found += [*value] if word in _WITH_PLACE else [value]
+        return [*found, float(column.statistics.rows)]
+
+    def texts(self, column: SummaryColumn) -> list[str]:
+        """The same as people read them: with the column's decimals, places with nine digits."""
+        numbers = np.array(self.numbers(column))
+        is_value = np.array([line not in (AT, ROWS) for line in self.lines])
+        values = iter(column_texts(numbers[is_value], column.decimals))
+        others = (f"{n + 0.0:.9g}" if np.isfinite(n) else "" for n in numbers[~is_value].tolist())
+        return [next(values) if own else next(others) for own in is_value]
+
+
+_WITH_PLACE = ("max", "min", "peak")
+
+
+def statistics(values: FloatArray, source: Source) -> Statistics:
+    """The numbers of a column (rows,), nan where a row has no cell."""
+    along = run_parameter(source)
+    places = np.arange(1.0, source.rows + 1) if along is None else along.values
+    weights = np.ones(source.rows) if along is None else row_weights(places)
+    row = values[None]
+    numbers = {word: float(reduce(row)[0]) for word, reduce in REDUCTIONS.items()}
+
+    def extreme(word: str, sizes: FloatArray) -> Extreme:
+        at = np.flatnonzero(sizes == numbers[word])
+        return Extreme(numbers[word], float(places[at[0]]) if at.size else np.nan)
+
+    return Statistics(
+        extreme("max", values),
+        extreme("min", values),
+        extreme("peak", np.abs(values)),
+        float(mean(row, weights)[0]),
+        float(root_mean_square(row, weights)[0]),
+        numbers["range"],
+        int(np.count_nonzero(~np.isnan(values))),
+    )
+
+
+def summary_of(
+    words: tuple[str, ...],
+    layouts: Sequence[ColumnLayout],
+    columns: Sequence[Column],
+    source: Source,
+) -> Summary:
+    """The rows below a table; time, inputs and words are left out."""
+    along = run_parameter(source)
+    found = tuple(
+        SummaryColumn(
+            number, column.label, column.unit, column.decimals, statistics(column.values, source)
+        )
+        for number, (layout, column) in enumerate(zip(layouts, columns, strict=True))
+        if isinstance(column.values, np.ndarray)
+        and layout.expression.text.strip() not in source.inputs
+    )
+    name, unit = (ROW_NUMBER, "") if along is None else (along.name, along.unit)
+    return Summary(words, name, unit, found, tuple(_notes(found, source)))
+
+
+def written_notes(summary: Summary, written: Callable[[str], str] = str) -> list[str]:
+    """What is said below the rows; `written` makes of a label what is to stand in the file."""
+    over = "" if summary.parameter == ROW_NUMBER else f"; mean and rms over {summary.parameter}"
+    has_mean = {"mean", "rms"}.intersection(summary.words)
+    has_place = set(_WITH_PLACE).intersection(summary.words)
+    said = [f"{AT}: {summary.places}{over if has_mean else ''}"] if has_place else []
+    if has_mean and not has_place and over:
+        said = [over.removeprefix("; ")]
+    return [written(text) for text in (*said, *summary.notes)]
+
+
+def summary_table(name: str, title: str, summary: Summary) -> Columns:
+    """The rows as a table of its own, `NAME.summary`."""
+    words: list[str] = []
+    for line in summary.lines:
+        words.append(f"{words[-1]} {AT}" if line == AT else line)
+    columns = [Column("summary", "", words_of(words))]
+    for each in summary.columns:
+        numbers = np.array(summary.numbers(each))
+        columns.append(Column(each.label, each.unit, numbers, each.decimals))
+    return Columns(f"{name}.summary", f"Summary of {title or name}", tuple(columns), of_rows=False)
+
+
+def _notes(columns: Sequence[SummaryColumn], source: Source) -> list[str]:
+    found = []
+    missing = {c.label: source.rows - c.statistics.rows for c in columns}
+    missing = {label: count for label, count in missing.items() if count}
+    if len(missing) == len(columns) and len(set(missing.values())) == 1:
+        missing = {"any column": max(missing.values())}
+    for label, count in missing.items():
+        verb = "has" if count == 1 else "have"
+        do = "does" if count == 1 else "do"
+        rows = f"{count} of {source.rows} rows"
+        found.append(f"{rows} {verb} no cell of {label} and {do} not count")
+    for status in Status:
+        count = int(np.count_nonzero(source.status == status))
+        if status is not Status.ok and status.has_solution and count:
+            verb = "is" if count == 1 else "are"
+            found.append(f"{count} of the rows {verb} {status.label}")
+    return found
