@@ -50,14 +50,14 @@ def add_or_subtract(site: Site, left: Operand, right: Operand) -> Quantity:
     """Sum or difference of scalars or of vectors."""
     action, function = _SUM_WORDS[site.symbol]
     dimension = common_dimension(site, action, left, right)
-    return Quantity(_elementwise(function, left.value, right.value), dimension)
+    return Quantity(elementwise(function, left.value, right.value), dimension)
 
 
 def multiply(site: Site, left: Operand, right: Operand) -> Quantity:
     """Product of scalars, or of a scalar and a vector."""
     if isinstance(left.value, Vector) and isinstance(right.value, Vector):
         raise site.error("* does not multiply two vectors", "write dot(a, b) or cross(a, b)")
-    product = _elementwise(operator.mul, left.value, right.value)
+    product = elementwise(operator.mul, left.value, right.value)
     return Quantity(product, left.dimension * right.dimension)
 
 
@@ -67,7 +67,7 @@ def divide(site: Site, left: Operand, right: Operand) -> Quantity:
     constant = any(is_number(item) for item in _components(left.value))
     if constant and is_number(divisor) and divisor == 0.0:
         raise site.error("division by zero", "check the values of the parameters", right)
-    quotient = _elementwise(operator.truediv, left.value, divisor)
+    quotient = elementwise(operator.truediv, left.value, divisor)
     return Quantity(quotient, left.dimension / right.dimension)
 
 
@@ -131,7 +131,7 @@ def vector(site: Site, x: Operand, y: Operand, z: Operand) -> Quantity:
     return Quantity(Vector(*components), dimension)
 
 
-def _elementwise(function: Callable[[Scalar, Scalar], Scalar], left: Value, right: Value) -> Value:
+def elementwise(function: Callable[[Scalar, Scalar], Scalar], left: Value, right: Value) -> Value:
     """The function on two scalars, or on components; a scalar goes with every component."""
     if not isinstance(left, Vector) and not isinstance(right, Vector):
         return function(left, right)

@@ -1,7 +1,8 @@
 """Derivatives of an expression whose names move: the chain rule, node by node, up to third order.
 
 Each operation and function of expressions has its rule for jets here. Where a derivative does not
-exist (abs and sign at zero, min and max of two that cross, sqrt at zero) it is nan or infinite.
+exist (abs and sign at zero, min and max of two that cross, a comparison
+of equals, a step of floor, sqrt at zero) it is nan or infinite.
 """
 
 from __future__ import annotations
@@ -13,11 +14,10 @@ from typing import Any
 import numpy as np
 
 from mechkin_cli.arrays import Floats
-from mechkin_cli.expressions import jets, scalar_functions
+from mechkin_cli.expressions import conditions, jets, scalar_functions, slopes, steps, truths
 from mechkin_cli.expressions.expression import Expression
 from mechkin_cli.expressions.jets import Jet
 from mechkin_cli.expressions.nodes import Number, Operation
-from mechkin_cli.kernel import functions as kernel
 from mechkin_cli.units import conversion
 
 JetVector = tuple[Jet, Jet, Jet]
@@ -71,61 +71,6 @@ def _through(outer: Callable[[Floats], tuple[Floats, ...]]) -> Callable[[Jet], J
     return lambda inner: jets.of(outer(inner[0]), inner)
 
 
-def _sin(x: Floats) -> tuple[Floats, ...]:
-    sine, cosine = kernel.sin(x), kernel.cos(x)
-    return sine, cosine, -sine, -cosine
-
-
-def _cos(x: Floats) -> tuple[Floats, ...]:
-    sine, cosine = kernel.sin(x), kernel.cos(x)
-    return cosine, -sine, -cosine, sine
-
-
-def _tan(x: Floats) -> tuple[Floats, ...]:
-    tangent = kernel.tan(x)
-    square = tangent * tangent
-    return (
-        tangent,
-        1.0 + square,
-        2.0 * tangent * (1.0 + square),
-        (1.0 + square) * (2.0 + 6 * square),
-    )
-
-
-def _asin(x: Floats) -> tuple[Floats, ...]:
-    slope = 1.0 / np.sqrt((1.0 - x) * (1.0 + x))
-    cube = slope * slope * slope
-    return kernel.asin(x), slope, x * cube, cube * (1.0 + 3.0 * (x * slope) * (x * slope))
-
-
-def _acos(x: Floats) -> tuple[Floats, ...]:
-    _, first, second, third = _asin(x)
-    return kernel.acos(x), -first, -second, -third
-
-
-def _atan(x: Floats) -> tuple[Floats, ...]:
-    slope = 1.0 / (1.0 + x * x)
-    square = slope * slope
-    return kernel.atan(x), slope, -2.0 * x * square, (6.0 * x * x - 2.0) * (square * slope)
-
-
-def _sqrt(x: Floats) -> tuple[Floats, ...]:
-    root = np.sqrt(x)
-    first = 0.5 / root
-    second = -0.5 * first / x
-    return root, first, second, -1.5 * second / x
-
-
-def _exp(x: Floats) -> tuple[Floats, ...]:
-    value = kernel.exp(x)
-    return value, value, value, value
-
-
-def _log(x: Floats) -> tuple[Floats, ...]:
-    slope = 1.0 / x
-    return kernel.log(x), slope, -(slope * slope), 2.0 * (slope * slope * slope)
-
-
 def _angle_of(y: Jet, x: Jet) -> Jet:
     """atan2(y, x): its rate is (x y' - y x') / (x^2 + y^2), whose jet has one order less."""
     turning = jets.product(x, _rate(y)) - jets.product(y, _rate(x))
@@ -143,7 +88,7 @@ def _rate(jet: Jet) -> Jet:
 def _power(base: Jet, exponent: Jet) -> Jet:
     if not jets.is_constant(exponent):
         value = scalar_functions.power(*np.broadcast_arrays(base[0], exponent[0]))
-        by_logarithm = jets.product(exponent, jets.of(_log(base[0]), base))
+        by_logarithm = jets.product(exponent, jets.of(slopes.log(base[0]), base))
         return jets.of((value,) * jets.ORDERS, by_logarithm)  # type: ignore[arg-type]
     x, n = np.broadcast_arrays(base[0], exponent[0])
     orders, factor = [], np.ones_like(x)
@@ -179,6 +124,74 @@ def _extreme(sign: float) -> Callable[..., Jet]:
     return lambda *operands: reduce(one, operands)
 
 
+def _compared(symbol: str) -> Callable[[Jet, Jet], Jet]:
+    """A step where a difference passes zero, else a constant."""
+    truth = conditions.COMPARED[symbol]
+
+    def apply(a: Jet, b: Jet) -> Jet:
+        step = _sign(a - b)
+        values = np.broadcast_to(truth(*np.broadcast_arrays(a[0], b[0])), step[:1].shape)
+        return np.concatenate([values, step[1:]])
+
+    return apply
+
+
+def _joined(truth: Callable[[Any, Any], Any]) -> Callable[[Jet, Jet], Jet]:
+    """A step where the truth of one that decides steps, else a constant."""
+
+    def apply(a: Jet, b: Jet) -> Jet:
+        a, b = np.broadcast_arrays(a, b)
+        value = truth(a[0], b[0])
+        # 0 of `and`, 1 of `or`: what one condition alone decides
+        alone = truth(np.zeros(1), np.ones(1))
+        decided = [
+            (each == alone) & ~np.isnan(jet).any(axis=0) for each, jet in ((a[0], a), (b[0], b))
+        ]
+        rates = np.where(decided[0] | decided[1], 0.0, a[1:] + b[1:])
+        return np.concatenate([value[None], rates])
+
+    return apply
+
+
+def _if(truth: Jet, a: Any, b: Any) -> Any:
+    """The chosen one; where the choice jumps nothing has a derivative."""
+
+    def of_numbers(one: Jet, other: Jet) -> Jet:
+        found = np.where(truth[0] == 0.0, other, one)
+        return np.where(np.isnan(truth).any(axis=0), np.nan, found)
+
+    return _on_each(of_numbers)(a, b)
+
+
+def _staircase(
+    value: Callable[[Any], Any], nearest_step: Callable[[Any], Any]
+) -> Callable[[Jet], Jet]:
+    """Constant between its steps; `nearest_step` is zero on one."""
+
+    def apply(a: Jet) -> Jet:
+        jump = (nearest_step(a[0]) == 0.0) & (a[1:] != 0.0).any(axis=0)
+        still = np.where(jump, np.nan, np.zeros_like(a[1:]))
+        return np.concatenate([np.atleast_2d(value(a[0])), still])
+
+    return apply
+
+
+_floor = _staircase(steps.below, lambda x: x - steps.nearest(x))
+
+
+def _mod(a: Jet, period: Jet) -> Jet:
+    return a - jets.product(period, _floor(jets.quotient(a, period)))
+
+
+def _hypot(*sides: Jet) -> Jet:
+    square = reduce(lambda a, b: a + b, (jets.product(side, side) for side in sides))
+    return jets.of(slopes.sqrt(square[0]), square)
+
+
+def _norm(a: JetVector) -> Jet:
+    return _hypot(*a)
+
+
 def _wrap(a: Jet) -> Jet:
     return np.concatenate([np.atleast_2d(scalar_functions.wrap(a[0])), a[1:]])
 
@@ -206,16 +219,16 @@ RULES: dict[str, Callable[..., Any]] = {
     ".x": lambda a: a[0],
     ".y": lambda a: a[1],
     ".z": lambda a: a[2],
-    "sin": _through(_sin),
-    "cos": _through(_cos),
-    "tan": _through(_tan),
-    "asin": _through(_asin),
-    "acos": _through(_acos),
-    "atan": _through(_atan),
+    "sin": _through(slopes.sin),
+    "cos": _through(slopes.cos),
+    "tan": _through(slopes.tan),
+    "asin": _through(slopes.asin),
+    "acos": _through(slopes.acos),
+    "atan": _through(slopes.atan),
     "atan2": _angle_of,
-    "sqrt": _through(_sqrt),
-    "exp": _through(_exp),
-    "log": _through(_log),
+    "sqrt": _through(slopes.sqrt),
+    "exp": _through(slopes.exp),
+    "log": _through(slopes.log),
     "pow": _power,
     "abs": _absolute,
     "sign": _sign,
@@ -225,6 +238,25 @@ RULES: dict[str, Callable[..., Any]] = {
     "dot": _dot,
     "cross": _cross,
     "det": lambda a, b, c: _dot(a, _cross(b, c)),
-    "norm": lambda a: jets.of(_sqrt(_dot(a, a)[0]), _dot(a, a)),
+    "norm": _norm,
+    "unit_vector": lambda a: _on_each(jets.quotient)(a, _norm(a)),
+    "angle_between": lambda a, b: _angle_of(_norm(_cross(a, b)), _dot(a, b)),
+    **{symbol: _compared(symbol) for symbol in conditions.COMPARED},
+    "and": _joined(truths.both),
+    "or": _joined(truths.either),
+    "not": lambda a: jets.constant(1.0) - a,
+    "if": _if,
+    "clip": lambda a, least, most: _extreme(-1.0)(_extreme(1.0)(a, least), most),
+    "hypot": _hypot,
+    "floor": _floor,
+    "ceil": _staircase(steps.above, lambda x: x - steps.nearest(x)),
+    "round": _staircase(steps.nearest, lambda x: x - steps.below(x) - 0.5),
+    "mod": _mod,
+    "sinh": _through(slopes.sinh),
+    "cosh": _through(slopes.cosh),
+    "tanh": _through(slopes.tanh),
+    "asinh": _through(slopes.asinh),
+    "acosh": _through(slopes.acosh),
+    "atanh": _through(slopes.atanh),
 }
 """Every operation's rule for jets; a vector is a tuple of three jets."""

@@ -14,13 +14,11 @@ if TYPE_CHECKING:
 
 
 def exact_literal(number: Number) -> Quantity:
-    """The number as written: a double where it is one, else double-double."""
+    """The number as written, so that a function of it has all its digits, too."""
     if number.unit is None and number.text == "pi":
         return Quantity(DoubleDoubles.of_fraction(PI))  # type: ignore[arg-type]
     exact = Fraction(number.text)
     if number.unit is None:
-        if exact == Fraction(number.value):
-            return Quantity(number.value)
         return Quantity(DoubleDoubles.of_fraction(exact))  # type: ignore[arg-type]
     value: Any = DoubleDoubles.of_fraction(exact * number.unit.factor)
     return Quantity(value, number.unit.dimension)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mechkin_cli.expressions import arithmetic
+from mechkin_cli.expressions import arithmetic, conditions
 from mechkin_cli.expressions.errors import ExpressionError, UnknownName
 from mechkin_cli.expressions.functions import FUNCTIONS
 from mechkin_cli.expressions.limits import MAX_EXPONENT, MAX_QUOTED
@@ -40,6 +40,10 @@ _OPERATIONS: dict[str, Callable[..., Quantity]] = {
     ".x": arithmetic.component,
     ".y": arithmetic.component,
     ".z": arithmetic.component,
+    **dict.fromkeys(conditions.COMPARED, conditions.compare),
+    "and": conditions.join,
+    "or": conditions.join,
+    "not": conditions.deny,
     **{name: function.apply for name, function in FUNCTIONS.items()},
 }
 _AXES = ("x", "y", "z")

@@ -5,17 +5,22 @@ A function is added by one entry of `FUNCTIONS`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import operator
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import reduce
+from math import inf, nextafter
 from typing import NamedTuple
 
-from mechkin_cli.expressions import scalar_functions
-from mechkin_cli.expressions.arithmetic import common_dimension, raise_to_power
+from mechkin_cli.expressions import conditions, hyperbolic, scalar_functions, steps
+from mechkin_cli.expressions.arithmetic import common_dimension, divide, raise_to_power
 from mechkin_cli.expressions.operand import Operand, Site
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Vector
 from mechkin_cli.tape.scalars import is_number, of_one
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, Dimension
+
+_BELOW_ONE = nextafter(1.0, 0.0)
+"""The last double at which artanh is finite."""
 
 
 class Function(NamedTuple):
@@ -103,16 +108,21 @@ def _sign(site: Site, operand: Operand) -> Quantity:
     return Quantity(scalar_functions.sign(site.scalar(operand)))
 
 
+def _common_dimension_of(site: Site, action: str, operands: Sequence[Operand]) -> Dimension:
+    """The dimension of operands that must be of one kind."""
+    first, dimension = operands[0], operands[0].dimension
+    for operand in operands[1:]:
+        sofar = Operand(Quantity(first.value, dimension), first.offset, first.number)
+        dimension = common_dimension(site, action, sofar, operand)
+    return dimension
+
+
 def _extreme(
     function: Callable[[Scalar, Scalar], Scalar],
 ) -> Callable[..., Quantity]:
     def apply(site: Site, *operands: Operand) -> Quantity:
         values = [site.scalar(operand) for operand in operands]
-        first = operands[0]
-        dimension = first.dimension
-        for operand in operands[1:]:
-            sofar = Operand(Quantity(first.value, dimension), first.offset, first.number)
-            dimension = common_dimension(site, "compare {left} and {right}", sofar, operand)
+        dimension = _common_dimension_of(site, "compare {left} and {right}", operands)
         return Quantity(reduce(function, values), dimension)
 
     return apply
@@ -120,6 +130,44 @@ def _extreme(
 
 def _extreme_of(word: str, function: Callable[[Scalar, Scalar], Scalar]) -> Function:
     return Function(f"{word}(a, b)", 2, _extreme(function), True, _OVER_ROWS[word])
+
+
+def _clip(site: Site, operand: Operand, least: Operand, most: Operand) -> Quantity:
+    raised = Operand(_extreme(scalar_functions.larger)(site, operand, least), operand.offset)
+    return _extreme(scalar_functions.smaller)(site, raised, most)
+
+
+def _of_number(
+    function: Callable[[Scalar], Scalar], least: float = -inf, most: float = inf
+) -> Callable[[Site, Operand], Quantity]:
+    """A function of a dimensionless number, which lies between bounds where it is constant."""
+
+    def apply(site: Site, operand: Operand) -> Quantity:
+        value = site.scalar(operand)
+        site.require(operand, DIMENSIONLESS)
+        if is_number(value) and not least <= value <= most:
+            raise site.error(
+                f"{site.symbol} has no finite value for {value:.6g}",
+                "check the values of the parameters",
+                operand,
+            )
+        return Quantity(function(value))
+
+    return apply
+
+
+def _remainder(site: Site, operand: Operand, period: Operand) -> Quantity:
+    value, length = site.scalar(operand), site.scalar(period)
+    dimension = common_dimension(site, "take mod of {left} and {right}", operand, period)
+    if is_number(length) and length == 0.0:
+        raise site.error("mod of zero", "check the values of the parameters", period)
+    return Quantity(steps.remainder(value, length), dimension)
+
+
+def _hypotenuse(site: Site, *operands: Operand) -> Quantity:
+    squares = [site.scalar(operand) * site.scalar(operand) for operand in operands]
+    dimension = _common_dimension_of(site, "take hypot of {left} and {right}", operands)
+    return Quantity(scalar_functions.square_root(reduce(operator.add, squares)), dimension)
 
 
 def _wrap(site: Site, operand: Operand) -> Quantity:
@@ -148,6 +196,19 @@ def _norm(site: Site, operand: Operand) -> Quantity:
     return Quantity(scalar_functions.square_root(dot_product(value, value)), operand.dimension)
 
 
+def _unit_vector(site: Site, operand: Operand) -> Quantity:
+    site.vector(operand)
+    return divide(site, operand, Operand(_norm(site, operand), operand.offset))
+
+
+def _angle_between(site: Site, a: Operand, b: Operand) -> Quantity:
+    """By atan2, whose digits do not get lost where the vectors are parallel."""
+    normal = cross_product(site.vector(a), site.vector(b))
+    sine = scalar_functions.square_root(dot_product(normal, normal))
+    cosine = dot_product(site.vector(a), site.vector(b))
+    return Quantity(scalar_functions.angle_of(sine, cosine), ANGLE)
+
+
 FUNCTIONS: dict[str, Function] = {
     "sin": Function("sin(angle)", 1, _elementary("SIN", ANGLE, DIMENSIONLESS)),
     "cos": Function("cos(angle)", 1, _elementary("COS", ANGLE, DIMENSIONLESS)),
@@ -162,15 +223,46 @@ FUNCTIONS: dict[str, Function] = {
     "pow": Function("pow(x, n)", 2, raise_to_power),
     "abs": Function("abs(x)", 1, _absolute),
     "sign": Function("sign(x)", 1, _sign),
-    "min": Function(
-        "min(a, b)", 2, _extreme(scalar_functions.smaller), True, alone=_OVER_ROWS["min"]
-    ),
-    "max": Function(
-        "max(a, b)", 2, _extreme(scalar_functions.larger), True, alone=_OVER_ROWS["max"]
-    ),
+    "min": _extreme_of("min", scalar_functions.smaller),
+    "max": _extreme_of("max", scalar_functions.larger),
+    "clip": Function("clip(x, least, most)", 3, _clip),
+    "if": Function("if(condition, a, b)", 3, conditions.choose),
+    "hypot": Function("hypot(a, b)", 2, _hypotenuse, variadic=True),
+    "floor": Function("floor(x)", 1, _of_number(steps.below, -steps.LARGEST, steps.LARGEST)),
+    "ceil": Function("ceil(x)", 1, _of_number(steps.above, -steps.LARGEST, steps.LARGEST)),
+    "round": Function("round(x)", 1, _of_number(steps.nearest, -steps.LARGEST, steps.LARGEST)),
+    "mod": Function("mod(x, period)", 2, _remainder),
+    "sinh": Function("sinh(x)", 1, _of_number(hyperbolic.sinh)),
+    "cosh": Function("cosh(x)", 1, _of_number(hyperbolic.cosh)),
+    "tanh": Function("tanh(x)", 1, _of_number(hyperbolic.tanh)),
+    "asinh": Function("asinh(x)", 1, _of_number(hyperbolic.asinh)),
+    "acosh": Function("acosh(x)", 1, _of_number(hyperbolic.acosh, 1.0)),
+    "atanh": Function("atanh(x)", 1, _of_number(hyperbolic.atanh, -_BELOW_ONE, _BELOW_ONE)),
     "wrap": Function("wrap(angle)", 1, _wrap),
     "dot": Function("dot(a, b)", 2, _dot),
     "cross": Function("cross(a, b)", 2, _cross),
     "det": Function("det(a, b, c)", 3, _determinant),
     "norm": Function("norm(a)", 1, _norm),
+    "unit_vector": Function("unit_vector(a)", 1, _unit_vector),
+    "angle_between": Function("angle_between(a, b)", 2, _angle_between),
 }
+
+INSTEAD = {
+    "ln": "the natural logarithm is log(x)",
+    "log10": "write log(x)/log(10)",
+    "log2": "write log(x)/log(2)",
+    "arcsin": "write asin(x)",
+    "arccos": "write acos(x)",
+    "arctan": "write atan(x)",
+    "arctan2": "write atan2(y, x)",
+    "fabs": "write abs(x)",
+    "sgn": "write sign(x)",
+    "clamp": "write clip(x, least, most)",
+    "where": "write if(condition, a, b)",
+    "degrees": "angles know their unit: divide by 1 deg for the number of degrees",
+    "radians": "angles know their unit: multiply a number of degrees by 1 deg",
+    "cbrt": "write pow(x, 1/3)",
+    "length": "write norm(a)",
+    "normalize": "write unit_vector(a)",
+}
+"""What to write for functions that go by another name elsewhere."""

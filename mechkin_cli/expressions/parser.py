@@ -1,15 +1,17 @@
 """Tokens to nodes: a precedence-climbing parser (Pratt 1973) with limits on size and depth.
 
-From weakest to strongest: `+ -`, `* /`, sign, `^` (right to left; `**` is the same), then calls,
-`.x .y .z`, parentheses and `[a, b, c]`. So `-a^2` is `-(a^2)` and `2^-1` is one half.
+From weakest to strongest: `or`, `and`, `not`, comparisons, `+ -`, `* /`, sign, `^` (right to left;
+`**` is the same), then calls, `.x .y .z`, parentheses and `[a, b, c]`. So `-a^2` is `-(a^2)`,
+`2^-1` is one half and `not a < b and c < d` is `(not (a < b)) and (c < d)`.
 """
 
 from __future__ import annotations
 
 import math
 
+from mechkin_cli.expressions.conditions import COMPARED
 from mechkin_cli.expressions.errors import ExpressionError
-from mechkin_cli.expressions.functions import FUNCTIONS
+from mechkin_cli.expressions.functions import FUNCTIONS, INSTEAD
 from mechkin_cli.expressions.limits import MAX_DEPTH, MAX_NODES, MAX_QUOTED
 from mechkin_cli.expressions.nodes import Name, Node, Number, Operation
 from mechkin_cli.expressions.number_unit import UnitReader
@@ -17,7 +19,9 @@ from mechkin_cli.expressions.tokens import Token, tokenize, vanishes
 from mechkin_cli.expressions.written import read
 from mechkin_cli.nearest import nearest_hint
 
-_BINDING = {"+": 10, "-": 10, "*": 20, "/": 20, "^": 40, "**": 40}
+_COMPARING = dict.fromkeys(COMPARED, 5)
+_BINDING = {"or": 1, "and": 2, **_COMPARING, "+": 10, "-": 10, "*": 20, "/": 20, "^": 40, "**": 40}
+_NOT_BINDING = 3
 _SIGN_BINDING = 30
 _COMPONENTS = (".x", ".y", ".z")
 
@@ -75,6 +79,9 @@ class _Parser:
             strength = _BINDING[operator.text]
             self.expression(strength - 1 if power else strength)
             self.emit(Operation("^" if power else operator.text, 2, operator.start))
+            if operator.text in COMPARED and self.token.text in COMPARED:
+                hint = "join two comparisons: a < b and b < c"
+                raise ExpressionError("a comparison of a comparison", self.token.start, hint)
         self.depth -= 1
 
     def operand(self) -> None:
@@ -85,6 +92,10 @@ class _Parser:
             self.name(token)
         elif token.text in ("-", "+"):
             self.sign(token)
+            return
+        elif token.text == "not":
+            self.expression(_NOT_BINDING)
+            self.emit(Operation("not", 1, token.start))
             return
         elif token.text == "(":
             self.expression(0)
@@ -158,7 +169,9 @@ class _Parser:
             raise ExpressionError(
                 f"there is no function {name.text[:MAX_QUOTED]}",
                 name.start,
-                nearest_hint(name.text, FUNCTIONS) or f"functions are {', '.join(FUNCTIONS)}",
+                INSTEAD.get(name.text)
+                or nearest_hint(name.text, FUNCTIONS)
+                or f"functions are {', '.join(FUNCTIONS)}",
             )
         count = self.arguments(")", self.take())
         if not function.accepts(count):

@@ -37,14 +37,17 @@ Value = Scalar | Vector
 @dataclass(frozen=True, slots=True, eq=False)
 class Quantity:
     """A value in SI and its dimension; of an angle that has turned, `rest` is the same without
-    whole turns, known more closely."""
+    whole turns, known more closely. A `truth` is 1 where something holds, 0 where it does not."""
 
     value: Value
     dimension: Dimension = DIMENSIONLESS
     rest: Scalar | None = None
+    truth: bool = False
 
     @property
     def phrase(self) -> str:
         """What the quantity is, in words: `a length`, `a vector (a length)`."""
+        if self.truth:
+            return "a condition"
         phrase = self.dimension.phrase
         return f"a vector ({phrase})" if isinstance(self.value, Vector) else phrase

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from mechkin_cli.exact import PI, TURN, Exact
 from mechkin_cli.expressions.quantity import Scalar
 from mechkin_cli.tape import scalars
-from mechkin_cli.tape.scalars import Recorded
+from mechkin_cli.tape.scalars import Recorded, Undecided
 
 Condition = NDArray[np.bool_] | np.bool_
 
@@ -99,6 +99,17 @@ def _wrapped(angle: Any) -> Any:
     turned = (turned > math.pi).choose(turned - TURN, turned)
     turned = (turned <= -math.pi).choose(turned + TURN, turned)
     return (angle > -math.pi).choose((angle <= math.pi).choose(angle, turned), turned)
+
+
+def branch(condition: Any, value: Scalar, other: Scalar) -> Scalar:
+    """`value` where a comparison holds, else `other`: two ways to compute one thing, so that nobody
+    needs to find where they meet."""
+    if isinstance(condition, Undecided):
+        found: Scalar = condition.choose(value, other)
+        return found
+    if scalars.is_row(value) or scalars.is_row(other):
+        return np.where(condition, value, other)
+    return _select(condition, value, other)
 
 
 def _select(condition: Condition, chosen: Scalar, other: Scalar) -> Scalar:

@@ -13,9 +13,10 @@ Kind = Literal["number", "name", "component", "symbol", "end"]
 _TOKEN = re.compile(
     r"""
     (?P<number>    (?: [0-9]+ \.? [0-9]* | \. [0-9]+ ) (?: [eE] [+-]? [0-9]+ )? )
+  | (?P<word>      (?: and | or | not ) (?! [A-Za-z0-9_.] ) )
   | (?P<name>      [A-Za-z_][A-Za-z0-9_]* (?: \. [A-Za-z_][A-Za-z0-9_]* )* )
   | (?P<component> \. [A-Za-z_][A-Za-z0-9_]* )
-  | (?P<symbol>    \*\* | [-+*/^()\[\],] )
+  | (?P<symbol>    \*\* | [<>=!]= | [-+*/^()\[\],<>] )
     """,
     re.VERBOSE,
 )
@@ -35,7 +36,14 @@ _INSTEAD = {
     "μ": "write micrometres as um",
     "{": "write ( and )",
     "}": "write ( and )",
-    "=": "an expression has no =",
+    "=": "an expression has no =; write == to compare",
+    "≤": "write <=",
+    "≥": "write >=",
+    "≠": "write !=",
+    "&": "write and",
+    "|": "write or; a magnitude is abs(x), of a vector norm(a)",
+    "!": "write not, or != to compare",
+    "?": "write a choice as if(condition, a, b)",
     "%": "write per cent as /100",
     ";": "separate arguments with a comma",
     "'": "leave out the quotes",
@@ -104,5 +112,7 @@ def _unexpected(character: str, offset: int) -> ExpressionError:
     return ExpressionError(
         f"unexpected character '{shown}'",
         offset,
-        _INSTEAD.get(character, "an expression has numbers, names, + - * / ^ ( ) [ ] and commas"),
+        _INSTEAD.get(
+            character, "an expression has numbers, names, + - * / ^ ( ) [ ], comparisons and commas"
+        ),
     )

@@ -9,10 +9,18 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 _WORDS = ("ground", "row", "time", "pi", "turn", "nan", "inf", "infinity")
-_VECTOR_FUNCTIONS = ("dot", "cross", "det", "norm")
+_OPERATORS = ("and", "or", "not", "if")
+_VECTOR_FUNCTIONS = ("dot", "cross", "det", "norm", "unit_vector", "angle_between")
 _ANGLE_FUNCTIONS = ("wrap", "sin", "cos", "tan", "asin", "acos", "atan", "atan2")
-_NUMBER_FUNCTIONS = ("sqrt", "abs", "sign", "min", "max", "exp", "log", "pow")
-RESERVED: Final = frozenset((*_WORDS, *_VECTOR_FUNCTIONS, *_ANGLE_FUNCTIONS, *_NUMBER_FUNCTIONS))
+_NUMBER_FUNCTIONS = ("sqrt", "abs", "sign", "min", "max", "exp", "log", "pow", "clip", "hypot")
+_STEPS = ("floor", "ceil", "round", "mod")
+_HYPERBOLIC_FUNCTIONS = ("sinh", "cosh", "tanh", "asinh", "acosh", "atanh")
+RESERVED: Final = frozenset(
+    (
+        *(*_WORDS, *_OPERATORS, *_STEPS),
+        *(*_VECTOR_FUNCTIONS, *_ANGLE_FUNCTIONS, *_NUMBER_FUNCTIONS, *_HYPERBOLIC_FUNCTIONS),
+    )
+)
 """Words that cannot be the name of anything in a file."""
 
 _SECTIONS = ("parameters", "links", "joints", "chain", "points", "directions")

@@ -211,7 +211,8 @@ def _of_pairs(
         high, low = function(*((n.high, n.low) for n in numbers))
         # the errors of an infinity are nan, it itself is not
         rough = plain(*(n.high for n in numbers))
-        return DoubleDoubles(np.where(np.isfinite(high), high, rough), low)
+        is_pair = np.isfinite(high)
+        return DoubleDoubles(np.where(is_pair, high, rough), np.where(is_pair, low, 0.0))
 
     return apply
 

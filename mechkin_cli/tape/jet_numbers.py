@@ -106,6 +106,11 @@ class JetNumber(Recorded):
     def __eq__(self, other: object) -> Any:
         return JetCondition(self.orders[0] == orders_of(other)[0])
 
+    @staticmethod
+    def chosen_by(condition: Any, chosen: Any, other: Any) -> JetNumber:
+        """One of two, of which one is such a number, by a condition of numbers that are none."""
+        return JetCondition(condition).choose(chosen, other)
+
     def apply(self, operation: str, *others: Any) -> Any:
         """The operation of a name on this number first, then on others."""
         return (

@@ -48,12 +48,14 @@ class Condition(Undecided):
 
     def choose(self, chosen: float | Traced, other: float | Traced) -> Traced:
         """`chosen` where the condition holds, else `other`."""
+        for number in (chosen, other):
+            if _is_made_of_others(number):
+                made: Any = number
+                return made.chosen_by(self, chosen, other)  # type: ignore[no-any-return]
         if self.negated:
             chosen, other = other, chosen
-        recorder = self.recorder
-        holds = recorder.compute(self.operation, self.left, self.right)
-        registers = (register(recorder, chosen), register(recorder, other))
-        return recorder.number(recorder.compute(Operation.CHOOSE, holds, *registers))
+        holds = self.recorder.compute(self.operation, self.left, self.right)
+        return _computed(Operation.CHOOSE, self.recorder.number(holds), chosen, other)
 
 
 class Traced(Recorded):

@@ -52,7 +52,19 @@ WORDS |= {
     "sign": mp.sign,
 }
 WORDS |= {
-    "sign": mp.sign,
+    name: getattr(mp, name)
+    for name in ("sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "floor", "ceil")
+}
+WORDS |= {
+    "round": mp.nint,
+    "mod": lambda a, b: a - b * mp.floor(a / b),
+    "clip": lambda x, low, high: min(max(x, low), high),
+    "hypot": lambda *sides: mp.sqrt(sum(side * side for side in sides)),
+    "choice": lambda truth, a, b: a if truth else b,
+    "unit_vector": lambda a: a / mp.sqrt(inner(a, a)),
+    "angle_between": lambda a, b: mp.acos(
+        inner(a, b) / mp.sqrt(inner(a, a)) / mp.sqrt(inner(b, b))
+    ),
     "min": min,
     "max": max,
     "wrap": lambda a: a - 2 * mp.pi * mp.nint(a / (2 * mp.pi)),
@@ -71,13 +83,28 @@ SAMPLES = [
         "norm(cross([x, y, 1], 2*[z, 2, x]/y - [1, 2, x]))",
     ),
     *("2*asin(sin(x)/2)*exp(-y)/sqrt(1 + z^2)", "sign(x - y)*z"),
+    *("sinh(x)", "sinh(y*y)", "cosh(x)", "tanh(x)", "tanh(2*y)", "asinh(z)", "asinh(-3*y)"),
+    *(
+        "acosh(y)",
+        "atanh(z)",
+        "atanh(x/2)",
+        "hypot(x, y, 2)",
+        "clip(x, y, 3)",
+        "clip(y, -2, x + 5)",
+    ),
+    *("floor(3*y)*x", "ceil(3*y)*x", "round(3*y)*x", "mod(5*y, 2)", "mod(y, x)"),
+    *("if(x < y, x^2, y)", "if(x > y or y >= 9, x^2, y)", "if(not x <= y, x^2, z)*y"),
+    *("if(x == y, x, z^2)", "if(x != y and z < 5, z^3, x)", "angle_between([x, y, 1], [z, 2, x])"),
+    "dot(unit_vector([x, y, z]), [1, x, 2])",
 ]
 
 
 @pytest.mark.parametrize("text", SAMPLES)
 def test_derivatives_are_those_of_a_taylor_series(text: str) -> None:
     found = np.broadcast_to(derivatives(parse(text), moving()), (4, len(MOMENTS)))
-    source = text.replace("^", "**").replace("[", "array([").replace("]", "])")
+    source = (
+        text.replace("^", "**").replace("if(", "choice(").replace("[", "array([").replace("]", "])")
+    )
     with mp.workdps(40):
 
         def along(t: mp.mpf) -> mp.mpf:
@@ -101,7 +128,11 @@ def test_a_component_moves_as_what_it_was_made_of(text: str, order: str) -> None
 
 def test_every_operation_and_function_has_a_rule_and_is_tried() -> None:
     signs = {"+", "-", "*", "/", "^", "negate", "[]", ".x", ".y", ".z"}
-    assert set(RULES) == signs | set(FUNCTIONS)
+    truths = {"<", "<=", ">", ">=", "==", "!=", "and", "or", "not"}
+    assert set(RULES) == signs | truths | set(FUNCTIONS)
+    assert all(
+        any(f" {sign} " in text or f"{sign} " in text for text in SAMPLES) for sign in truths
+    )
     assert all(any(f"{name}(" in text for text in SAMPLES) for name in FUNCTIONS)
 
 
@@ -116,6 +147,15 @@ def test_every_operation_and_function_has_a_rule_and_is_tried() -> None:
         "min(x, 2*x)",
         "max(x, 0)",
         "asin(1 + x)",
+        "if(x > 0, x, 2*x)",
+        "floor(1 + x)",
+        "ceil(x)",
+        "round(x + 0.5)",
+        "mod(x, 1)",
+        "clip(x, 0, 1)",
+        "hypot(x, 2*x)",
+        "acosh(1 + x)",
+        "atanh(1 + x)",
         "x^0.5",
     ],
 )

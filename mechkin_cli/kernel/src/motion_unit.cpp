@@ -163,23 +163,36 @@ struct Undefined {
   Mask load, stop;
 };
 
-// The values of loads, of kinks and of what else is watched; the lanes in which a load or a stop has none.
-inline Undefined evaluate_program(const Plan& p, Workspace& w, const StageGiven& given, const StageValues& values,
-                             Pack* watched) {
+// The values of loads, of kinks and of what else is watched from the registers of a run, in some lanes.
+inline void take_program(const Plan& p, Workspace& w, Mask lanes, Pack* watched) {
+  for (int v = 0; v < p.load_values; ++v) w.load[v] = select(lanes, w.law[p.law.output[v]], w.load[v]);
+  for (int k = 0; k < p.law.kinks; ++k) watched[k] = select(lanes, kink_value(p.law, k, w.law), watched[k]);
+  Pack* const other = watched + p.law.kinks - p.load_values;
+  for (int v = p.load_values; v < p.law.outputs; ++v) other[v] = select(lanes, w.law[p.law.output[v]], other[v]);
+}
+
+inline Undefined undefined_values(const Plan& p, const Workspace& w, const Pack* watched) {
   Undefined undefined = {all_lanes(false), all_lanes(false)};
-  if (!p.law.outputs) return undefined;
-  run_on_sides(p, w, p.law, values, packs(given.side), w.law);
-  for (int v = 0; v < p.load_values; ++v) {
-    w.load[v] = w.law[p.law.output[v]];
-    undefined.load = undefined.load | ~(w.load[v] == w.load[v]);
-  }
-  for (int k = 0; k < p.law.kinks; ++k) watched[k] = kink_value(p.law, k, w.law);
-  for (int v = p.load_values; v < p.law.outputs; ++v) {
-    const Pack value = w.law[p.law.output[v]];
-    watched[p.law.kinks + v - p.load_values] = value;
-    undefined.stop = undefined.stop | ~(value == value);
-  }
+  for (int v = 0; v < p.load_values; ++v) undefined.load = undefined.load | ~(w.load[v] == w.load[v]);
+  const Pack* const other = watched + p.law.kinks - p.load_values;
+  for (int v = p.load_values; v < p.law.outputs; ++v) undefined.stop = undefined.stop | ~(other[v] == other[v]);
   return undefined;
+}
+
+// The values of loads, of kinks and of what else is watched; the lanes in which a load or a stop has none. Where one has none
+// beyond a kink on the side before it, such as a root of what was positive, it is taken as it is there: the step that ends
+// on the kink asks for no such place but by rounding.
+inline Undefined evaluate_program(const Plan& p, Workspace& w, const StageGiven& given, const StageValues& values,
+                                  Pack* watched) {
+  if (!p.law.outputs) return {all_lanes(false), all_lanes(false)};
+  run_on_sides(p, w, p.law, values, packs(given.side), w.law);
+  take_program(p, w, all_lanes(true), watched);
+  const Undefined undefined = undefined_values(p, w, watched);
+  const Mask lost = undefined.load | undefined.stop;
+  if (!p.law.kinks || !any(lost)) return undefined;
+  run_program(p, w, p.law, values, w.law);
+  take_program(p, w, lost, watched);
+  return undefined_values(p, w, watched);
 }
 
 void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const Slips& slips, const StageGiven& given,
