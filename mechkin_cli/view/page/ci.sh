@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Brings what the page's tests need (a browser, Node, the pinned packages) and compares the built page byte by byte.
+# As root with apt it installs what is missing; elsewhere it says what is, and the browser's tests are skipped.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+missing() {
+  local each
+  for each in node npm chromium; do command -v "$each" > /dev/null || printf '%s ' "$each"; done
+}
+
+if [ -n "$(missing)" ] && [ "$(id -u)" = 0 ] && command -v apt-get > /dev/null; then
+  packages=$(missing)
+  apt-get update -qq
+  # shellcheck disable=SC2086 # one package a word
+  DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends ${packages/node /nodejs } > /dev/null
+fi
+if [ -n "$(missing)" ]; then
+  echo "the page of \`mechkin view\` is neither rebuilt nor tried in a browser: not here: $(missing)"
+  exit 0
+fi
+npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
+npm run --silent check

@@ -1,0 +1,30 @@
+// Colours: of links, verdicts, marks and curves, chosen to be told apart on light and dark ground.
+
+const GROUND = "#8b929c";
+const LINKS = [
+  "#3b82d6", "#e5782e", "#2fa36b", "#c94f7c", "#8b6fd0", "#c2a01d", "#29a0b1", "#b0603a",
+  "#6f9a2b", "#d65555", "#5768c9", "#a64fb0",
+];
+const GOOD = "#2fa36b";
+const DOUBTFUL = "#d9a21b";
+const BAD = "#d64545";
+
+export const CURVES = [
+  "#3b82d6", "#e5782e", "#2fa36b", "#c94f7c", "#8b6fd0", "#29a0b1", "#c2a01d", "#b0603a",
+];
+
+export const MARKS = { "dead-centre": "#d64545", "branch-point": "#8b6fd0", event: "#29a0b1" };
+
+export const ARROWS = { force: "#d6303f", moment: "#7a43d1" };
+
+/** A colour that the file may have given, if it is one, else the link's own. */
+export function linkColour(link, index) {
+  if (/^#[0-9a-f]{6}$/i.test(link.colour ?? "")) return link.colour;
+  return index === 0 ? GROUND : LINKS[(index - 1) % LINKS.length];
+}
+
+/** The colour of a verdict: only `ok` is good, and what was computed with a doubt is not lost. */
+export function verdictColour(word) {
+  if (word === "ok") return GOOD;
+  return /^near|^ill|undecided|warning|redundant/.test(word) ? DOUBTFUL : BAD;
+}

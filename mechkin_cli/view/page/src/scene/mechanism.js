@@ -1,0 +1,126 @@
+// The mechanism: a group for each link, which its pose moves. Ghosts are the same groups, pale.
+
+import { Group, Quaternion, Vector3 } from "three";
+import { linkColour } from "../colours.js";
+import { Body } from "./body.js";
+import { Half, stemOf } from "./halves.js";
+import { PAIRS } from "./pairs.js";
+import { addShape } from "./shapes.js";
+import { travels } from "./travel.js";
+import { vector } from "./vectors.js";
+
+const JOINT_SIZE = 0.028; // of the mechanism's size
+const LEAST_JOINT_SIZE = 0.008;
+const CLOSE = 0.22; // of the least distance between two joints of a link
+const EDGE_SHADE = 0.45;
+const GHOST_OPACITY = 0.22;
+
+/** The size of a joint where the file says nothing: fit to the mechanism, and to joints that lie close. */
+export function jointUnit(data) {
+  let least = Infinity;
+  data.links.forEach((_, link) => {
+    if (link === 0) return;
+    const points = pointsOf(data, link);
+    points.forEach((one, k) =>
+      points.slice(k + 1).forEach((other) => {
+        const apart = one.distanceTo(other);
+        if (apart > 1e-3 * data.size) least = Math.min(least, apart);
+      }),
+    );
+  });
+  const wished = Math.min(JOINT_SIZE * data.size, CLOSE * least);
+  return Math.max(LEAST_JOINT_SIZE * data.size, wished);
+}
+
+function pointsOf(data, link) {
+  return data.joints.flatMap((joint) =>
+    joint.links.flatMap((each, k) => (each === link ? [vector(joint.halves[k].point)] : [])),
+  );
+}
+
+/** The bodies of all links, as drawn. */
+export class Mechanism {
+  constructor(data, branches) {
+    this.data = data;
+    this.unit = jointUnit(data);
+    this.object = new Group();
+    const bodies = data.links.map(() => new Body());
+    data.links.forEach((link, index) => addShape(bodies[index], link.shape, this.unit));
+    const travel = travels(data, branches);
+    data.joints.forEach((joint, j) => this.#addJoint(joint, bodies, travel[j]));
+    this.links = bodies.map((body, index) => {
+      const group = body.finish(linkColour(data.links[index], index), EDGE_SHADE);
+      group.visible = !data.links[index].hidden;
+      this.object.add(group);
+      return group;
+    });
+  }
+
+  #addJoint(joint, bodies, travel) {
+    const u = joint.radius > 0 ? Math.min(joint.radius, 0.1 * this.data.size) : this.unit;
+    const up = vector(this.data.up);
+    const [first, second] = joint.halves.map((half, k) => {
+      const link = joint.links[k];
+      const [point, axis] = [vector(half.point), vector(half.axis).normalize()];
+      const others = [...pointsOf(this.data, link), ...this.data.links[link].shape.points.map(vector)];
+      const stem = stemOf(others, point, link === 0, axis, up);
+      return new Half(half, bodies[link], u, stem, link === 0);
+    });
+    PAIRS.get(joint.type)?.({ joint, first, second, u, travel });
+  }
+
+  /** Puts the links where a branch has them; `place` may lie between two poses (see `between`). */
+  show(branch, index, next = index, share = 0) {
+    this.links.forEach((group, link) => {
+      const { t, q } = branch.pose(index, link);
+      group.position.set(...t);
+      group.quaternion.set(q[1], q[2], q[3], q[0]);
+      if (share > 0) blend(group, this.#middle(link), branch.pose(next, link), share);
+    });
+  }
+
+  /** The drawn place about which a link turns least on the screen. */
+  #middle(link) {
+    this.middles ??= this.data.links.map((each, k) => {
+      const points = [...pointsOf(this.data, k), ...each.shape.points.map(vector)];
+      const middle = new Vector3();
+      points.forEach((point) => middle.addScaledVector(point, 1 / points.length));
+      return middle;
+    });
+    return this.middles[link];
+  }
+
+  /** Pale copies for comparison; they share all geometry. */
+  ghost(colour) {
+    const object = new Group();
+    const links = this.links.map((group) => {
+      const copy = group.clone();
+      copy.children.forEach((child) => {
+        child.material = child.material.clone();
+        child.material.transparent = true;
+        child.material.depthWrite = false;
+        child.material.opacity = child.isMesh ? GHOST_OPACITY : 1.6 * GHOST_OPACITY;
+        if (colour) child.material.color.set(colour);
+      });
+      object.add(copy);
+      return copy;
+    });
+    return Object.assign(Object.create(Mechanism.prototype), { data: this.data, unit: this.unit, object, links });
+  }
+
+  /** Where a place drawn on a link is now. */
+  now(link, place) {
+    const group = this.links[link];
+    return vector(place).applyQuaternion(group.quaternion).add(group.position);
+  }
+}
+
+/** Turns about the link's middle, which goes straight on, so that long links keep their joints together. */
+function blend(group, middle, pose, share) {
+  const from = middle.clone().applyQuaternion(group.quaternion).add(group.position);
+  const turn = new Quaternion(pose.q[1], pose.q[2], pose.q[3], pose.q[0]);
+  const to = middle.clone().applyQuaternion(turn).add(new Vector3(...pose.t));
+  group.quaternion.slerp(turn, share);
+  const reached = middle.clone().applyQuaternion(group.quaternion);
+  group.position.copy(from.lerp(to, share).sub(reached));
+}

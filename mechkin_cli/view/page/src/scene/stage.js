@@ -1,0 +1,155 @@
+// The stage: canvas, camera, lights, floor. It draws when something has changed, and never else.
+
+import {
+  Color, DirectionalLight, GridHelper, HemisphereLight, PerspectiveCamera, Quaternion, Scene,
+  Vector3, WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { vector } from "./vectors.js";
+
+const FIELD = 28; // degrees: little perspective, so that lengths can be compared
+const MARGIN = 1.12;
+
+/** The browser cannot draw in three dimensions. */
+export class NoWebGL extends Error {}
+
+function rendererOrReason() {
+  try {
+    return new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+  } catch (error) {
+    throw new NoWebGL(error.message);
+  }
+}
+
+/** A camera that is turned by mouse, finger or keys, over a canvas that fills `host`. */
+export class Stage {
+  #asked = false;
+
+  /** @throws {NoWebGL} where the browser gives none */
+  constructor(host, data) {
+    this.host = host;
+    this.data = data;
+    this.renderer = rendererOrReason();
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+    host.prepend(this.renderer.domElement);
+    this.scene = new Scene();
+    this.up = vector(data.up).normalize();
+    this.centre = vector(data.centre);
+    this.camera = new PerspectiveCamera(FIELD, 1, 0.01 * data.size, 60 * data.size);
+    this.camera.up.copy(this.up);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener("change", () => this.ask());
+    this.#light();
+    this.afterDraw = () => {};
+    this.keepsSize = () => false;
+    new ResizeObserver(() => this.#resize()).observe(host);
+  }
+
+  #light() {
+    this.scene.add(new HemisphereLight(0xffffff, 0x8a8f99, 1.9));
+    this.sun = new DirectionalLight(0xffffff, 2.1);
+    this.fill = new DirectionalLight(0xffffff, 0.5);
+    this.scene.add(this.sun, this.fill, this.sun.target, this.fill.target);
+  }
+
+  /** Light comes over the viewer's left shoulder, so that no side that is seen is black. */
+  #follow() {
+    const right = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
+    const above = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
+    for (const [light, x, y] of [[this.sun, -0.5, 0.7], [this.fill, 0.8, -0.2]]) {
+      light.position.copy(this.camera.position)
+        .addScaledVector(right, x * this.distance).addScaledVector(above, y * this.distance);
+      light.target.position.copy(this.controls.target);
+    }
+  }
+
+  get distance() {
+    return this.camera.position.distanceTo(this.controls.target);
+  }
+
+  /** Background, floor and lines for light or dark. */
+  setTheme({ background, grid }) {
+    this.scene.background = new Color(background);
+    this.gridColour = grid;
+    this.setFloor(this.floorHeight);
+    this.ask();
+  }
+
+  /** A grid square to `up`; null takes it away. */
+  setFloor(height) {
+    this.floorHeight = height;
+    if (this.floor) {
+      this.scene.remove(this.floor);
+      this.floor.dispose();
+      this.floor = null;
+    }
+    if (height === null || height === undefined || this.data.planar) return;
+    const step = 10 ** Math.floor(Math.log10(this.data.size / 4));
+    const cells = 2 * Math.ceil(this.data.size / step);
+    this.floor = new GridHelper(cells * step, cells, this.gridColour, this.gridColour);
+    this.floor.material.transparent = true;
+    this.floor.material.opacity = 0.45;
+    this.floor.quaternion.copy(new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), this.up));
+    this.floor.position.copy(this.centre).addScaledVector(this.up, height - this.centre.dot(this.up));
+    this.scene.add(this.floor);
+  }
+
+  /** Looks along `-direction` so that all `places` are on the stage. */
+  look(direction, places) {
+    const back = direction.clone().normalize();
+    this.camera.up.copy(Math.abs(back.dot(this.up)) > 0.999 ? this.#sideways() : this.up);
+    this.camera.position.copy(this.centre).add(back);
+    this.camera.lookAt(this.centre);
+    this.camera.updateMatrixWorld();
+    const [right, above] = [0, 1].map((k) => new Vector3().setFromMatrixColumn(this.camera.matrixWorld, k));
+    const tall = Math.tan((FIELD * Math.PI) / 360) / MARGIN;
+    const wide = tall * this.camera.aspect;
+    // the four sides of the frustum, each pushed out until it holds every place
+    const side = (across, slope) =>
+      Math.max(...places.map((place) => {
+        const off = place.clone().sub(this.centre);
+        return off.dot(across) + slope * off.dot(back);
+      }));
+    const sides = [[right, wide], [right.clone().negate(), wide], [above, tall], [above.clone().negate(), tall]]
+      .map(([across, slope]) => side(across, slope));
+    const target = this.centre.clone()
+      .addScaledVector(right, (sides[0] - sides[1]) / 2).addScaledVector(above, (sides[2] - sides[3]) / 2);
+    const distance = Math.max((sides[0] + sides[1]) / (2 * wide), (sides[2] + sides[3]) / (2 * tall), 0.1 * this.data.size);
+    this.controls.target.copy(target);
+    this.camera.position.copy(target).addScaledVector(back, distance);
+    this.controls.update();
+    this.ask();
+  }
+
+  #sideways() {
+    return Math.abs(this.up.y) < 0.9 ? new Vector3(0, 1, 0) : new Vector3(0, 0, -1);
+  }
+
+  #resize() {
+    const { clientWidth: width, clientHeight: height } = this.host;
+    if (this.keepsSize() || width === 0 || height === 0) return;
+    this.renderer.setSize(width, height);
+    const first = this.width === undefined;
+    [this.width, this.height] = [width, height];
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    if (first) this.whenSized?.();
+    this.draw();
+  }
+
+  /** Asks for one picture in the browser's next frame. */
+  ask() {
+    if (this.#asked) return;
+    this.#asked = true;
+    requestAnimationFrame(() => {
+      this.#asked = false;
+      this.draw();
+    });
+  }
+
+  draw() {
+    this.#follow();
+    this.renderer.render(this.scene, this.camera);
+    this.afterDraw();
+  }
+}
