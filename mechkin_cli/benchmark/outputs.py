@@ -10,13 +10,11 @@ from mechkin_cli.benchmark.figure import Panel, svg
 from mechkin_cli.benchmark.page import best_table, page
 from mechkin_cli.benchmark.tables import csv_text
 from mechkin_cli.tables.json_writer import json_text
+from mechkin_cli.version import versions
 
 if TYPE_CHECKING:
     from mechkin_cli.benchmark.report import Table
     from mechkin_cli.benchmark.runs import Bench
-
-FORMAT = 1
-"""Of the JSON record."""
 
 NAMES = {"json": "bench.json", "csv": "bench.csv", "page": "bench.md", "figure": "bench.svg"}
 
@@ -25,8 +23,7 @@ def record(
     machine: Mapping[str, str], benches: Sequence[Bench], tables: Sequence[Table]
 ) -> dict[str, Any]:
     """The run as plain data: `mechanisms` with their measurements, then the tables by name."""
-    return {
-        "format": FORMAT,
+    return versions() | {
         "machine": dict(machine),
         "mechanisms": [bench.record() for bench in benches],
         "tables": {table.name: table.record() for table in (best_table(benches), *tables)},

@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Progress, Record, put, put_json, refusal, say, say_diagnostics
+from mechkin_cli.cli.given_file import STDIN_NAME, is_stdin, model_of, shown
+from mechkin_cli.cli.messages import (
+    FORMS,
+    Progress,
+    Record,
+    put,
+    put_json,
+    refusal,
+    say,
+    say_diagnostics,
+    tell_as,
+)
 from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.cli.runs import certify_sweeps, run_all
 from mechkin_cli.diagnostics import InvalidFile, UsageError
@@ -15,6 +27,7 @@ from mechkin_cli.runs import SWEEP
 from mechkin_cli.tables.writers import USUAL_FORMATS, WRITERS, Results, written_files
 
 if TYPE_CHECKING:
+    from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.interface import Analysis, Model
 
 FORMATS = f"{', '.join(tuple(WRITERS)[:-1])} or {tuple(WRITERS)[-1]}"
@@ -29,8 +42,10 @@ class _Request:
     tables: list[str] | None
     formats: tuple[str, ...]
     threads: int
+    units: bool
     explain: bool
     json: bool
+    writes: bool
     quiet: bool
     strict: bool
     errors: bool
@@ -41,17 +56,19 @@ def analyze_files(
     files: list[Path],
     out: Path | None = None,
     format: list[str] | None = None,
+    units: bool = False,
     set_: list[str] | None = None,
     mode: str | None = None,
     table: list[str] | None = None,
     lanes: int = 0,
     threads: int = 0,
-    explain: bool = False,
-    json: bool = False,
-    quiet: bool = False,
+    certify: bool = False,
     strict: bool = False,
     errors: bool = False,
-    certify: bool = False,
+    explain: bool = False,
+    messages: str | None = None,
+    json: bool = False,
+    quiet: bool = False,
 ) -> ExitCode:
     """Runs the sweep and the responses of each file and writes their tables.
 
@@ -62,20 +79,23 @@ def analyze_files(
     """
     from mechkin_cli.kernel.width import force_threads, force_width
 
+    tell_as(messages)
     force_width(lanes)
     force_threads(threads)
     request = _Request(
-        parameters(set_),
-        mode,
-        table,
-        _formats(format),
-        threads,
-        explain,
-        json,
-        quiet,
-        strict,
-        errors,
-        certify,
+        settings=parameters(set_),
+        mode=mode,
+        tables=table,
+        formats=_formats(format),
+        threads=threads,
+        units=units,
+        explain=explain,
+        json=json,
+        writes=not json or out is not None or bool(format),
+        quiet=quiet,
+        strict=strict,
+        errors=errors,
+        certify=certify,
     )
     code = ExitCode.OK
     records: list[Record] = []
@@ -93,35 +113,46 @@ def analyze_files(
 
 def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]:
     """Runs one file; what is wrong with it does not stop the others."""
-    from mechkin_cli.interface import load
-    from mechkin_cli.tables.files import OutputFolder
     from mechkin_cli.tables.json_writer import runs_record
 
     try:
-        model = load(path, request.settings)
+        model = model_of(path, request.settings)
         if request.errors:
             _refuse_own_errors(model, request.tables)
-        with OutputFolder(folder) as output:
-            analyses = run_all(model, request.tables, request.mode)
-            notes = certify_sweeps(analyses) if request.certify else ()
-            results = [_results(analysis, request) for analysis in analyses]
-            written = output.write(written_files(results, request.formats))
+        analyses, notes, written = _run(model, folder, request)
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
     said = dict.fromkeys(found for analysis in analyses for found in analysis.diagnostics)
-    say_diagnostics((*said, *notes), str(path))
+    say_diagnostics((*said, *notes), shown(path))
     record: Record = {}
     if request.json:
-        record = {"file": str(path)} | runs_record(results)
+        results = [_results(analysis, request) for analysis in analyses]
+        record = {"file": shown(path)} | runs_record(results)
         if request.explain:
             from mechkin_cli.cli.explanation import explanation
 
             texts = [explanation(analysis) for analysis in analyses]
             record["explanation"] = "\n".join(texts).split("\n")
     else:
-        _report(path, analyses, folder, written, request)
+        _report(shown(path), analyses, folder, written, request)
     enough = all(_is_enough(analysis, request) for analysis in analyses)
     return ExitCode.OK if enough else ExitCode.ROWS_MISSING, record
+
+
+def _run(
+    model: Model, folder: Path, request: _Request
+) -> tuple[list[Analysis], tuple[Diagnostic, ...], list[Path]]:
+    """The runs, notes on what is not proven, and the files written: alone in their folder from
+    before the work on, so that nothing is computed that cannot be written."""
+    from mechkin_cli.tables.files import OutputFolder
+
+    with OutputFolder(folder) if request.writes else nullcontext() as output:
+        analyses = run_all(model, request.tables, request.mode)
+        notes = certify_sweeps(analyses) if request.certify else ()
+        if output is None:
+            return analyses, notes, []
+        results = [_results(analysis, request) for analysis in analyses]
+        return analyses, notes, output.write(written_files(results, request.formats))
 
 
 def _refuse_own_errors(model: Model, wanted: list[str] | None) -> None:
@@ -151,7 +182,8 @@ def _formats(given: list[str] | None) -> tuple[str, ...]:
     formats = tuple(dict.fromkeys(given or USUAL_FORMATS))
     for name in formats:
         if name not in WRITERS:
-            raise UsageError(f"--format {name}: formats are {', '.join(WRITERS)}")
+            cure = f"; for messages write --messages {name}" if name in FORMS else ""
+            raise UsageError(f"--format {name}: formats are {', '.join(WRITERS)}{cure}")
     return formats
 
 
@@ -159,8 +191,9 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
     """The folder of each file; no two files share one."""
     folders: dict[Path, Path] = {}
     for path in files:
+        stem = STDIN_NAME if is_stdin(path) else path.stem
         # a file called ...yaml has the stem .., which leads out of the folder
-        stem = path.stem if path.stem.strip(".") else path.name
+        stem = stem if stem.strip(".") else path.name
         folder = out if out and len(files) == 1 else (out or Path("out")) / stem
         twin = next((other for other, taken in folders.items() if taken == folder), None)
         if twin == path:
@@ -179,12 +212,19 @@ def _results(analysis: Analysis, request: _Request) -> Results:
     tables = (*analysis.tables, *analysis.coefficients, *analysis.balance_tables)
     errors = analysis.errors.columns if request.errors else None
     return Results(
-        name, tables, result, analysis.diagnostics, request.threads, analysis.run, errors
+        name,
+        tables,
+        result,
+        analysis.diagnostics,
+        request.threads,
+        analysis.run,
+        errors,
+        request.units,
     )
 
 
 def _report(
-    path: Path, analyses: list[Analysis], folder: Path, written: list[Path], request: _Request
+    file: str, analyses: list[Analysis], folder: Path, written: list[Path], request: _Request
 ) -> None:
     from mechkin_cli.cli.show import shown_tables
     from mechkin_cli.cli.summary import files_line, summary
@@ -199,6 +239,6 @@ def _report(
     if request.quiet:
         return
     for analysis in analyses:
-        for line in summary(path, analysis, errors=request.errors):
+        for line in summary(file, analysis, errors=request.errors):
             say(line)
     say(files_line(folder, written))

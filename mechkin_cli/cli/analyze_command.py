@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from mechkin_cli.cli.analyze import FORMATS, analyze_files
-from mechkin_cli.cli.options import Files, Json, Quiet, Set
+from mechkin_cli.cli.completion import format_names, table_names
+from mechkin_cli.cli.options import Files, Json, Messages, Quiet, Set
 
 
 def analyze(
@@ -18,15 +19,28 @@ def analyze(
     ] = None,
     format: Annotated[
         list[str] | None,
-        typer.Option("--format", metavar="FORMAT", help=f"{FORMATS}; may be repeated."),
+        typer.Option(
+            "--format",
+            metavar="FORMAT",
+            help=f"{FORMATS}; may be repeated.",
+            autocompletion=format_names,
+        ),
     ] = None,
+    units: Annotated[
+        bool, typer.Option("--units", help="Write units into the headers of CSV: theta [deg].")
+    ] = False,
     set_: Set = None,
     mode: Annotated[
         str | None, typer.Option("--mode", metavar="NAME", help="Assembly mode at the first row.")
     ] = None,
     table: Annotated[
         list[str] | None,
-        typer.Option("--table", metavar="NAME", help="Only this table; may be repeated."),
+        typer.Option(
+            "--table",
+            metavar="NAME",
+            help="Only this table; may be repeated.",
+            autocompletion=table_names,
+        ),
     ] = None,
     lanes: Annotated[
         int,
@@ -51,25 +65,31 @@ def analyze(
     explain: Annotated[
         bool, typer.Option("--explain", help="Show the solver graph and what is skipped.")
     ] = False,
+    messages: Messages = None,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Run the sweep and the responses of each file and write their tables."""
+    """Run the sweep and the responses of each file and write their tables.
+
+    With --json nothing is written, unless --out or --format asks for files, too.
+    """
     code = analyze_files(
-        files,
-        out,
-        format,
-        set_,
-        mode,
-        table,
-        lanes,
-        threads,
-        explain,
-        json,
-        quiet,
-        strict,
-        errors,
-        certify,
+        files=files,
+        out=out,
+        format=format,
+        units=units,
+        set_=set_,
+        mode=mode,
+        table=table,
+        lanes=lanes,
+        threads=threads,
+        certify=certify,
+        strict=strict,
+        errors=errors,
+        explain=explain,
+        messages=messages,
+        json=json,
+        quiet=quiet,
     )
     if code:
         raise typer.Exit(code)

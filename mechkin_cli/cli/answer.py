@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 import typer
 
 from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.given_file import model_of, shown
 from mechkin_cli.cli.messages import Record, put_json, refusal, say_diagnostics
 from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
@@ -42,19 +43,17 @@ def answer(file: Path, settings: list[str] | None, json: bool, question: Questio
     Raises:
         typer.Exit: with the exit code, unless all is well.
     """
-    from mechkin_cli.interface import load
-
     record: Record = {}
     try:
-        model = load(file, parameters(settings))
+        model = model_of(file, parameters(settings))
         found = question.ask(model)
     except (InvalidFile, UsageError) as error:
         code, record = refusal(file, error)
     else:
-        say_diagnostics(found.diagnostics, str(file))
+        say_diagnostics(found.diagnostics, shown(file))
         code = ExitCode.OK if question.is_answered(found) else ExitCode.ROWS_MISSING
         if json:
-            record = {"file": str(file), **question.record(model, found)}
+            record = {"file": shown(file), **question.record(model, found)}
         else:
             question.show(model, found)
     if json:

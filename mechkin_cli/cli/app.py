@@ -25,7 +25,7 @@ app = typer.Typer(
     name="mechkin",
     help="Displacement, rates, reactions and tables of spatial mechanisms from YAML files.",
     no_args_is_help=True,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )

@@ -12,6 +12,7 @@ import typer
 
 from mechkin_cli.cli import stress_options as options
 from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.given_file import refuse_stdin
 from mechkin_cli.cli.messages import Record, put, put_json, refusal
 from mechkin_cli.cli.options import Json
 from mechkin_cli.diagnostics import InvalidFile, UsageError
@@ -122,6 +123,7 @@ def _read(files: Sequence[Path]) -> tuple[int, list[Subject], list[Scene], list[
     refused: list[Record] = []
     for file, name in _names(files).items():
         try:
+            refuse_stdin(file, "bench reads a file several times, and - is none")
             subject = Subject(name, load(file), file)
             scenes.append(Scene(subject.name, subject.model))
             found.append(subject)

@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mechkin_cli.cli.completion import message_forms
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Record, put, put_json, refusal, say_diagnostics
-from mechkin_cli.cli.options import Files, Json, Quiet, Set
+from mechkin_cli.cli.given_file import model_of, shown
+from mechkin_cli.cli.messages import (
+    Record,
+    put,
+    put_json,
+    refusal,
+    say_diagnostics,
+    tell_as,
+)
+from mechkin_cli.cli.options import MESSAGES_HELP, Files, Json, Quiet, Set
 from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.runs import SWEEP
@@ -19,8 +28,24 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.graph import SolverGraph
 
 
-def check(files: Files, set_: Set = None, json: Json = False, quiet: Quiet = False) -> None:
+def check(
+    files: Files,
+    set_: Set = None,
+    messages: Annotated[
+        str | None,
+        typer.Option(
+            "--messages",
+            "--format",
+            metavar="FORM",
+            help=MESSAGES_HELP,
+            autocompletion=message_forms,
+        ),
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
     """Validate mechanism files; every error with its line and column."""
+    tell_as(messages)
     settings = parameters(set_)
     code = ExitCode.OK
     records: list[Record] = []
@@ -35,19 +60,17 @@ def check(files: Files, set_: Set = None, json: Json = False, quiet: Quiet = Fal
 
 
 def _one(path: Path, settings: dict[str, str], silent: bool) -> tuple[ExitCode, Record]:
-    from mechkin_cli.interface import load
-
     try:
-        model = load(path, settings)
-        text = f"{path}: ok ({_sentence(model)})\n"
+        model = model_of(path, settings)
+        text = f"{shown(path)}: ok ({_sentence(model)})\n"
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
     found = (*model.diagnostics, *_input_faults(model))
-    say_diagnostics(found)
+    say_diagnostics(found, shown(path))
     if not silent:
         put(text)
     diagnostics = [diagnostic.record() for diagnostic in found]
-    return ExitCode.OK, {"file": str(path), "diagnostics": diagnostics}
+    return ExitCode.OK, {"file": shown(path), "diagnostics": diagnostics}
 
 
 def _input_faults(model: Model) -> list[Diagnostic]:

@@ -9,14 +9,36 @@ from pathlib import Path
 from typing import TextIO
 
 from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.given_file import shown
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.legible import legible, whole
+from mechkin_cli.version import versions
 
 Record = dict[str, object]
 """Plain data for `--json`."""
 
 _COLOURS = {"error": "\x1b[31m", "warning": "\x1b[33m", "note": "\x1b[36m"}
 _PLAIN = "\x1b[0m"
+
+
+FORMS = ("text", "github")
+"""How diagnostics are told: sentences for a person, or annotations of GitHub."""
+
+_form = FORMS[0]
+
+
+def tell_as(form: str | None) -> None:
+    """Chooses the form of the diagnostics from here on; None: text.
+
+    Raises:
+        UsageError: there is no such form.
+    """
+    global _form
+    if form is None:
+        form = FORMS[0]
+    if form not in FORMS:
+        raise UsageError(f"--messages {form}: forms are {' and '.join(FORMS)}")
+    _form = form
 
 
 def put(text: str) -> None:
@@ -39,8 +61,9 @@ def put(text: str) -> None:
         stdout_failed(error)
 
 
-def put_json(record: object) -> None:
-    """One JSON object on stdout, in ASCII where stdout has another encoding than UTF-8.
+def put_json(record: Record) -> None:
+    """One JSON object on stdout, in ASCII where stdout has another encoding than UTF-8; the
+    versions of program and format come first.
 
     Raises:
         UsageError: stdout takes no more.
@@ -48,7 +71,8 @@ def put_json(record: object) -> None:
     from mechkin_cli.tables.json_writer import json_text
 
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
-    put(json_text(record, ascii=encoding.lower().replace("_", "-") not in ("utf-8", "utf8")))
+    whole_record = versions() | record
+    put(json_text(whole_record, ascii=encoding.lower().replace("_", "-") not in ("utf-8", "utf8")))
 
 
 def stdout_failed(error: OSError) -> None:
@@ -108,6 +132,11 @@ def _fitted(text: str) -> str:
 def say_diagnostics(diagnostics: Iterable[Diagnostic], file: str | None = None) -> None:
     """Diagnostics on stderr; those without a place of their own are put at the file."""
     for diagnostic in diagnostics:
+        if _form == "github":
+            from mechkin_cli.cli.annotations import annotation
+
+            _say(annotation(diagnostic, file))
+            continue
         text = str(diagnostic)
         if diagnostic.place is None and file is not None:
             text = f"{file}: {text}"
@@ -116,13 +145,17 @@ def say_diagnostics(diagnostics: Iterable[Diagnostic], file: str | None = None) 
 
 def refusal(path: Path, error: InvalidFile | UsageError) -> tuple[ExitCode, Record]:
     """Says why a file was not used; its exit code and its record."""
+    file = shown(path)
     if isinstance(error, InvalidFile):
         say_diagnostics(error.diagnostics)
         code, diagnostics = ExitCode.INVALID_FILE, error.diagnostics
     else:
-        say(f"mechkin: {error}")
         code, diagnostics = ExitCode.USAGE, (Diagnostic("usage", "error", str(error)),)
-    return code, {"file": str(path), "diagnostics": [found.record() for found in diagnostics]}
+        if _form == "github":
+            say_diagnostics(diagnostics, file)
+        else:
+            say(f"mechkin: {error}")
+    return code, {"file": file, "diagnostics": [found.record() for found in diagnostics]}
 
 
 def _coloured(text: str, severity: str) -> str:

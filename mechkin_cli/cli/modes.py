@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mechkin_cli.cli.answer import Question, answer
+from mechkin_cli.cli.completion import run_names
 from mechkin_cli.cli.messages import Record, put, say
 from mechkin_cli.cli.options import File, Json, Quiet, Set
 from mechkin_cli.diagnostics import UsageError
@@ -29,7 +30,12 @@ def modes(
     ] = None,
     run: Annotated[
         str | None,
-        typer.Option("--run", metavar="NAME", help="At the start of this response."),
+        typer.Option(
+            "--run",
+            metavar="NAME",
+            help="At the start of this response.",
+            autocompletion=run_names,
+        ),
     ] = None,
     certify: Annotated[
         bool,

@@ -7,15 +7,43 @@ from typing import Annotated
 
 import typer
 
+from mechkin_cli.cli.completion import mechanism_files, message_forms, parameter_names
+from mechkin_cli.cli.messages import FORMS
+
 Files = Annotated[
-    list[Path], typer.Argument(help="Mechanism files (YAML, format 1).", metavar="FILE")
+    list[Path],
+    typer.Argument(
+        help="Mechanism files (YAML, format 1); - is the text on stdin.",
+        metavar="FILE",
+        autocompletion=mechanism_files,
+    ),
 ]
-File = Annotated[Path, typer.Argument(help="Mechanism file (YAML, format 1).", metavar="FILE")]
+File = Annotated[
+    Path,
+    typer.Argument(
+        help="Mechanism file (YAML, format 1); - is the text on stdin.",
+        metavar="FILE",
+        autocompletion=mechanism_files,
+    ),
+]
 Set = Annotated[
     list[str] | None,
     typer.Option(
-        "--set", metavar="NAME=VALUE", help="Replace a parameter, as P1=0.6in; repeatable."
+        "--set",
+        metavar="NAME=VALUE",
+        help="Replace a parameter, as P1=0.6in; repeatable.",
+        autocompletion=parameter_names,
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="One JSON object on stdout and nothing else.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Only warnings and errors.")]
+MESSAGES_HELP = f"How messages are told: {' or '.join(FORMS)} (annotations for CI)."
+Messages = Annotated[
+    str | None,
+    typer.Option(
+        "--messages",
+        metavar="FORM",
+        help=MESSAGES_HELP,
+        autocompletion=message_forms,
+    ),
+]

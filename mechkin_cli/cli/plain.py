@@ -1,7 +1,7 @@
 """Plain command lines of `mechkin analyze`, read without typer.
 
-Plain is: files, known options in full, each with its value as a word of its own that does not start
-with a dash, nothing given twice that is wanted once. Of all else typer is to judge.
+Plain is: files (or `-`), known options in full, each with its value as a word of its own that does
+not start with a dash, nothing given twice that is wanted once. Of all else typer is to judge.
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ class Option(NamedTuple):
 OPTIONS = {
     "--out": Option("out", Path),
     "--format": Option("format", str, True),
+    "--units": Option("units", None),
+    "--messages": Option("messages", str),
     "--set": Option("set_", str, True),
     "--mode": Option("mode", str),
     "--table": Option("table", str, True),
@@ -45,7 +47,7 @@ def plain_analysis(words: Sequence[str]) -> dict[str, Any] | None:
     given: dict[str, Any] = {"files": []}
     rest = iter(words[1:])
     for word in rest:
-        if not word.startswith("-"):
+        if not word.startswith("-") or word == "-":
             given["files"].append(Path(word))
         elif word not in OPTIONS or not _add(given, OPTIONS[word], rest):
             return None

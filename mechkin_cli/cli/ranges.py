@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mechkin_cli.cli.answer import Question, answer
+from mechkin_cli.cli.completion import input_names
 from mechkin_cli.cli.messages import Record, put, say
 from mechkin_cli.cli.options import File, Json, Quiet, Set
 
@@ -31,7 +32,12 @@ def ranges(
     file: File,
     input: Annotated[
         str | None,
-        typer.Option("--input", metavar="NAME", help="Input that moves (the first one swept)."),
+        typer.Option(
+            "--input",
+            metavar="NAME",
+            help="Input that moves (the first one swept).",
+            autocompletion=input_names,
+        ),
     ] = None,
     output: Annotated[
         list[str] | None,

@@ -12,13 +12,14 @@ from collections.abc import Callable
 
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.interrupts import said
-from mechkin_cli.cli.messages import say, say_diagnostics, stdout_failed
+from mechkin_cli.cli.messages import say, say_diagnostics, stdout_failed, tell_as
 from mechkin_cli.cli.plain import plain_analysis
 from mechkin_cli.diagnostics import InvalidFile, MechkinError, UsageError
 
 
 def run() -> int:
     """Runs the command line of the process; its exit code."""
+    tell_as(None)
     code = _run()
     if code == ExitCode.INTERRUPTED:
         said()

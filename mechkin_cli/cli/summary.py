@@ -23,7 +23,7 @@ IDLE_SHOWN = 2
 """Idle freedoms that are named one by one."""
 
 
-def summary(path: Path, analysis: Analysis, *, errors: bool = False) -> list[str]:
+def summary(file: str, analysis: Analysis, *, errors: bool = False) -> list[str]:
     """Lines: driven freedoms, loops, branch, rows, worst residual and power error; of a response
     what is free, and how it ended; with `errors` how many digits are right."""
     result = analysis.result
@@ -45,7 +45,7 @@ def summary(path: Path, analysis: Analysis, *, errors: bool = False) -> list[str
         from mechkin_cli.cli.errors_line import errors_line
 
         rows.append(("errors", errors_line(analysis)))
-    return [f"{name} ({path})", *(_line(*row) for row in rows)]
+    return [f"{name} ({file})", *(_line(*row) for row in rows)]
 
 
 def files_line(folder: Path, written: Sequence[Path]) -> str:

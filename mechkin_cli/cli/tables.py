@@ -9,9 +9,20 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mechkin_cli.cli.completion import mechanism_files
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Progress, Record, put, put_json, refusal, say, say_diagnostics
-from mechkin_cli.cli.options import Json, Quiet
+from mechkin_cli.cli.given_file import refuse_stdin
+from mechkin_cli.cli.messages import (
+    Progress,
+    Record,
+    put,
+    put_json,
+    refusal,
+    say,
+    say_diagnostics,
+    tell_as,
+)
+from mechkin_cli.cli.options import Json, Messages, Quiet
 from mechkin_cli.cli.runs import run_all
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
@@ -26,7 +37,12 @@ MECHANISMS = Path("mechanisms")
 
 def tables(
     path: Annotated[
-        Path, typer.Argument(help="A mechanism file, or a folder of them.", metavar="PATH")
+        Path,
+        typer.Argument(
+            help="A mechanism file, or a folder of them.",
+            metavar="PATH",
+            autocompletion=mechanism_files,
+        ),
     ] = MECHANISMS,
     check: Annotated[
         bool, typer.Option("--check", help="Compare with the tables on disk, write nothing.")
@@ -35,16 +51,20 @@ def tables(
         bool,
         typer.Option("--against", help="List printed cells that do not agree, write nothing."),
     ] = False,
+    messages: Messages = None,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """Regenerate the tables kept beside mechanism files.
 
+    What mechkin wrote there for a table that the file has no more is removed; other files stay.
     FOLDER/STEM.yaml has its tables in FOLDER/STEM/TABLE.csv and .md; where tables name printed
     values, FOLDER/STEM/errata.md compares them, and disagreements.csv has every printed cell that
     does not agree. For a folder, FOLDER/README.md is an overview of
     its mechanisms; a README.md of your own is left alone.
     """
+    tell_as(messages)
+    refuse_stdin(path, "tables are kept beside a file, and - is none")
     files = _mechanism_files(path)
     if against:
         from mechkin_cli.cli.against import list_disagreements
@@ -117,6 +137,7 @@ def _made(
 ) -> tuple[ExitCode, Record, OverviewRow | None]:
     from mechkin_cli.cli.overview import overview_row
     from mechkin_cli.tables.against_print import against_print
+    from mechkin_cli.tables.stale import stale_in
 
     analyses = run_all(model)
     said = tuple(dict.fromkeys(found for one in analyses for found in one.diagnostics))
@@ -133,10 +154,13 @@ def _made(
     if output is None:
         outcome, compared = _compare(file.with_suffix(""), fresh, json, quiet)
         return max(code, outcome), record | {"tables": compared}, row
-    written = output.write(fresh)
+    stale = stale_in(output.folder, fresh)
+    written = output.write(fresh, stale)
     if not quiet:
-        say(f"{output.folder}: {len(written)} files written")
-    return code, record | {"written": [str(path) for path in written]}, row
+        gone = f", {len(stale)} removed ({', '.join(stale)})" if stale else ""
+        say(f"{output.folder}: {len(written)} files written{gone}")
+    record |= {"written": [str(path) for path in written]}
+    return code, record | {"removed": [str(output.folder / name) for name in stale]}, row
 
 
 def _fresh_files(

@@ -42,8 +42,25 @@ def load(path: str | Path, parameters: Mapping[str, Setting] = _NO_PARAMETERS) -
 
 
 def loads(
-    text: str, name: str = "text", parameters: Mapping[str, Setting] = _NO_PARAMETERS
+    text: str,
+    name: str = "text",
+    parameters: Mapping[str, Setting] = _NO_PARAMETERS,
+    *,
+    folder: str | Path | None = None,
 ) -> Model:
-    """As `load`, for the text of a mechanism file; `name` stands for the file in messages."""
+    """As `load`, for the text of a mechanism file.
+
+    Args:
+        text: YAML.
+        name: stands for the file in messages.
+        parameters: as in `load`.
+        folder: where the files are that the text names; None: it may name none.
+
+    Raises:
+        UsageError: an unknown parameter.
+        InvalidFile: with every independent error, its line and its column.
+    """
     a_text("text", text, '"format: 1 ..."'), a_text("name", name, '"rcsr.yaml"')
-    return Model(build(open_text(text, name, parameter_texts(parameters))), Path(name).stem)
+    place = None if folder is None else a_path("folder", folder)
+    built = build(open_text(text, name, parameter_texts(parameters), place))
+    return Model(built, Path(name).stem)

@@ -16,7 +16,11 @@ from typing import Literal
 
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.regular_file import MOST_TABLE_BYTES, read_regular
+from mechkin_cli.tables.stale import stale_files
 from mechkin_cli.tables.table_text import TableText, read_table_text
+
+REMOVED = "`mechkin tables` removes it"
+LEFT = "it does not look like one of mechkin's, which leaves it: move it, or remove it yourself"
 
 SHOWN_CELLS = 3
 SHOWN_LINES = 3
@@ -40,7 +44,8 @@ class CellChange:
 class FileComparison:
     """Outcome for one file.
 
-    `missing`: not committed; `extra`: committed, but no table makes it. `cells` holds the first few
+    `missing`: not committed; `extra`: committed, but no table makes it, and the remark says what to
+    do. `cells` holds the first few
     of `cell_count` differing cells, `remarks` what is no matter of cells. The largest changes are
     over all numeric cells, None where no numeric cell differs.
     """
@@ -64,7 +69,9 @@ def compare_files(
         else FileComparison(name, "missing")
         for name, content in fresh.items()
     ]
-    return found + [FileComparison(name, "extra") for name in sorted(committed.keys() - fresh)]
+    stale = stale_files(fresh, committed)
+    cures = {name: REMOVED if name in stale else LEFT for name in committed.keys() - fresh}
+    return found + [FileComparison(name, "extra", (cures[name],)) for name in sorted(cures)]
 
 
 def read_committed(folder: Path, suffixes: tuple[str, ...] = (".csv", ".md")) -> dict[str, bytes]:

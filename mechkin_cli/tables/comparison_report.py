@@ -27,7 +27,8 @@ def _file_lines(comparison: FileComparison) -> list[str]:
     if comparison.verdict == "missing":
         return _wrapped(f"{comparison.name}: missing, not committed yet", "")
     if comparison.verdict == "extra":
-        return _wrapped(f"{comparison.name}: extra, no table makes this file any more", "")
+        text = f"{comparison.name}: extra, no table makes this file any more"
+        return _wrapped("; ".join((text, *comparison.remarks)), "")
     lines = _wrapped(_headline(comparison), "")
     for remark in comparison.remarks:
         lines += _wrapped(_shortened(remark, _LONGEST_REMARK), "  ")

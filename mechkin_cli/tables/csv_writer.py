@@ -8,7 +8,7 @@ Labels that a spreadsheet would take for formulas begin with an apostrophe (`tab
 
 from __future__ import annotations
 
-from mechkin_cli.tables.columns import Columns, Words
+from mechkin_cli.tables.columns import Column, Columns, Words
 from mechkin_cli.tables.native_columns import number_column, threads_for, word_column
 from mechkin_cli.tables.neutral import csv_text
 
@@ -18,12 +18,14 @@ COMMITTED_DIGITS = 12
 SHORTEST = 0
 
 
-def csv_bytes(columns: Columns, significant_digits: int = SHORTEST, threads: int = 0) -> bytes:
+def csv_bytes(
+    columns: Columns, significant_digits: int = SHORTEST, threads: int = 0, units: bool = False
+) -> bytes:
     """The whole file as UTF-8; `SHORTEST` or 1 to 15 significant digits; threads 0: as many as the
-    table is worth."""
+    table is worth; with `units` in the header, as `theta [deg]`."""
     from mechkin_cli.kernel import _kernel
 
-    labels = [csv_text(column.label) for column in columns.columns]
+    labels = [csv_text(_header(column, units)) for column in columns.columns]
     cells = [
         word_column(column.values, csv_text)
         if isinstance(column.values, Words)
@@ -38,3 +40,7 @@ def csv_bytes(columns: Columns, significant_digits: int = SHORTEST, threads: int
         threads=threads_for(columns, threads),
     )
     return text
+
+
+def _header(column: Column, units: bool) -> str:
+    return f"{column.label} [{column.unit}]" if units and column.unit else column.label

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 NAME = "disagreements.csv"
 """File beside the errata page; there is none where all cells agree."""
 
+HEADER = "table,row,found by,at,column,printed,computed,units\n"
+"""Its first line."""
+
 
 def disagreements_csv(tables: Sequence[PrintedTable]) -> bytes:
     """The file, as UTF-8; empty where all cells agree."""

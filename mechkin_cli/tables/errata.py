@@ -23,7 +23,7 @@ _THOUSAND, _MILLION = Decimal(1000), Decimal(1_000_000)
 WORST_CELLS = 5
 """Cells shown per table; the rest is counted."""
 
-_HEAD = """\
+HEAD = """\
 A printed cell **agrees** when it is the computed number rounded to the printed digits, it is **one
 off** when it is a neighbour of that number in the last digit, else it **differs**. Differences are
 printed less computed; a *unit* is one unit of the last printed digit."""
@@ -47,7 +47,7 @@ def errata_page(name: str, source: str, tables: Sequence[PrintedTable]) -> str:
     parts = [f"# {markdown_text(whole(name))}: printed and computed values"]
     if source:
         parts.append(f"Source: {markdown_text(source)}.")
-    parts += [_HEAD, _overview(tables), *_data(tables)]
+    parts += [HEAD, _overview(tables), *_data(tables)]
     for table in tables:
         parts += _table_parts(table)
     return "\n\n".join(parts) + "\n"

@@ -17,7 +17,7 @@ import contextlib
 import os
 import re
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 replacing: set[Path] = set()
@@ -31,27 +31,31 @@ _UP = f"..{os.sep}..{os.sep}"
 """From `old/` to the folder in which the set stands."""
 
 
-def replace_files(folder: Path, files: Mapping[str, bytes], refuse: Refuse) -> None:
-    """Put files (name -> content) into the folder, replacing those of the same names.
+def replace_files(
+    folder: Path, files: Mapping[str, bytes], refuse: Refuse, removed: Sequence[str] = ()
+) -> None:
+    """Put files (name -> content) into the folder, replacing those of the same names; those of the
+    names `removed` go at the same moment.
 
     Whatever fails, a keyboard interrupt included, the old files stay.
     """
+    names = [*files, *removed]
     attempt = folder / f".mechkin-{os.urandom(8).hex()}"
     try:
         replacing.add(attempt)
-        _prepare(attempt, folder, files, refuse)
-        if len(files) == 1:
+        _prepare(attempt, folder, files, names, refuse)
+        if len(names) == len(files) == 1:
             (name,) = files
             with refuse(folder / name):
                 (attempt / "new" / name).replace(folder / name)
         elif _link(attempt / "set", "old"):
-            for name in files:
+            for name in names:
                 with refuse(folder / name):
                     _put_link(f"{attempt.name}/set/{name}", folder / name, attempt)
             with refuse(folder):
                 _put_link("new", attempt / "set", attempt)
         else:
-            _replace_one_by_one(attempt, folder, list(files), refuse)
+            _replace_one_by_one(attempt, folder, names, refuse)
     finally:
         _without_interrupts(lambda: settle(attempt))
         replacing.discard(attempt)
@@ -81,9 +85,11 @@ def settle_all(folder: Path) -> None:
                     path.unlink()
 
 
-def _prepare(attempt: Path, folder: Path, files: Mapping[str, bytes], refuse: Refuse) -> None:
+def _prepare(
+    attempt: Path, folder: Path, files: Mapping[str, bytes], names: Sequence[str], refuse: Refuse
+) -> None:
     """The attempt's folder with both sides."""
-    for name in list(files)[:1]:
+    for name in names[:1]:
         with refuse(folder / name):
             attempt.mkdir()
             (attempt / "new").mkdir()
@@ -91,7 +97,7 @@ def _prepare(attempt: Path, folder: Path, files: Mapping[str, bytes], refuse: Re
     for name, content in files.items():
         with refuse(folder / name):
             _write(attempt / "new" / name, content)
-    for name in files:
+    for name in names:
         with refuse(folder / name):
             _keep(folder / name, attempt / "old" / name)
 
@@ -158,7 +164,10 @@ def _replace_one_by_one(attempt: Path, folder: Path, names: list[str], refuse: R
     try:
         for name in names:
             with refuse(folder / name):
-                (attempt / "new" / name).replace(folder / name)
+                if (attempt / "new" / name).exists():
+                    (attempt / "new" / name).replace(folder / name)
+                else:
+                    (folder / name).unlink()
     except BaseException:
         done = [name for name in names if not (attempt / "new" / name).exists()]
         _without_interrupts(lambda: _take_back(attempt, folder, done))

@@ -6,7 +6,7 @@ import contextlib
 import errno
 import os
 import stat
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
@@ -60,8 +60,9 @@ class OutputFolder:
             self._claim.release()
             self._claim = None
 
-    def write(self, files: Mapping[str, bytes]) -> list[Path]:
-        """Write `files` (name -> content) at one moment; returns their paths in the order given.
+    def write(self, files: Mapping[str, bytes], removed: Sequence[str] = ()) -> list[Path]:
+        """Write `files` (name -> content), and remove the files `removed`, at one moment; returns
+        the paths written in the order given.
 
         Raises:
             UsageError: a file cannot be written, and none was; the message says where, why and what
@@ -74,7 +75,7 @@ class OutputFolder:
         for target in targets:
             with _refusal(target):
                 _refuse_special(target)
-        replace_files(self.folder, files, _refusal)
+        replace_files(self.folder, files, _refusal, removed)
         return targets
 
     def _enter(self) -> None:

@@ -88,7 +88,13 @@ def runs_record(runs: Sequence[Results]) -> Plain:
     responses with names of their own."""
     records = {
         results.run: analysis_record(
-            results.name if results.run == SWEEP else results.run, *results[1:]
+            results.name if results.run == SWEEP else results.run,
+            results.tables,
+            results.source,
+            results.diagnostics,
+            results.threads,
+            results.run,
+            results.errors,
         )
         for results in runs
     }

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.runs import SWEEP
+from mechkin_cli.version import versions
 
 if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Diagnostic
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
 
 class Results(NamedTuple):
     """What there is to write of one run of a mechanism; `threads` 0: as many as a table is
-    worth; `errors` of all columns, None where they were not asked for."""
+    worth; `errors` of all columns, None where they were not asked for; `units` says that headers of
+    CSV have them."""
 
     name: str
     tables: tuple[Columns, ...]
@@ -29,6 +31,13 @@ class Results(NamedTuple):
     threads: int = 0
     run: str = SWEEP
     errors: tuple[ColumnErrors, ...] | None = None
+    units: bool = False
+
+    def csv(self, table: Columns) -> bytes:
+        """A table of the run as CSV."""
+        from mechkin_cli.tables.csv_writer import csv_bytes
+
+        return csv_bytes(table, threads=self.threads, units=self.units)
 
 
 File = tuple[str, bytes]
@@ -36,16 +45,14 @@ File = tuple[str, bytes]
 
 
 def _csv(runs: Sequence[Results]) -> Iterator[File]:
-    from mechkin_cli.tables.csv_writer import csv_bytes
-
     for results in runs:
         for table in results.tables:
-            yield f"{table.name}.csv", csv_bytes(table, threads=results.threads)
+            yield f"{table.name}.csv", results.csv(table)
             if table.summary is not None:
                 from mechkin_cli.tables.summary import summary_table
 
                 below = summary_table(table.name, table.title, table.summary)
-                yield f"{below.name}.csv", csv_bytes(below)
+                yield f"{below.name}.csv", results.csv(below)
 
 
 def _markdown(runs: Sequence[Results]) -> Iterator[File]:
@@ -64,7 +71,7 @@ def _markdown(runs: Sequence[Results]) -> Iterator[File]:
 def _json(runs: Sequence[Results]) -> Iterator[File]:
     from mechkin_cli.tables.json_writer import json_bytes, runs_record
 
-    yield "analysis.json", json_bytes(runs_record(runs))
+    yield "analysis.json", json_bytes(versions() | runs_record(runs))
 
 
 WRITERS: Mapping[str, Callable[[Sequence[Results]], Iterator[File]]] = {
@@ -80,16 +87,15 @@ USUAL_FORMATS = ("csv", "md")
 def written_files(runs: Sequence[Results], formats: Iterable[str]) -> dict[str, bytes]:
     """All files of the formats by name, and `rows.csv`, of a response `NAME.rows.csv`; where errors
     were asked for, `errors.csv` and of a response `NAME.errors.csv`."""
-    from mechkin_cli.tables.csv_writer import csv_bytes
     from mechkin_cli.tables.rows_table import rows_table
 
     files = dict(file for name in formats for file in WRITERS[name](runs))
     for results in runs:
         rows = rows_table(results.source, results.run)
-        files[f"{rows.name}.csv"] = csv_bytes(rows, threads=results.threads)
+        files[f"{rows.name}.csv"] = results.csv(rows)
         if results.errors is not None:
             from mechkin_cli.tables.errors_table import cells_table
 
             cells = cells_table(results.errors, results.run)
-            files[f"{cells.name}.csv"] = csv_bytes(cells, threads=results.threads)
+            files[f"{cells.name}.csv"] = results.csv(cells)
     return files

@@ -64,7 +64,7 @@ def test_nothing_of_the_current_folder_runs(trapped: Path, file: Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
     assert not (trapped.parent / "mark").exists()
     record = json.loads(done.stdout)
-    assert list(record) == ["format", "machine", "mechanisms", "tables"]
+    assert list(record) == ["mechkin", "format", "machine", "mechanisms", "tables"]
     (mechanism,) = record["mechanisms"]
     assert mechanism["name"] == "rssr"
     assert all(m["microseconds"] > 0.0 for m in mechanism["measurements"])

@@ -65,7 +65,7 @@ def test_any_name_of_a_file(tmp_path: Path, name: bytes) -> None:
         assert (code, err) == (0, b"")
         assert names_in(found)
         assert "\x1b" not in "".join(names_in(found)) or b"\x1b" in name
-    assert len(list((tmp_path / "out").rglob("rows.csv"))) == 1
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -180,6 +180,39 @@ def test_tables_finds_missing_and_surplus_files(mechkin, committed) -> None:
     assert "old.csv: extra" in out
 
 
+def test_tables_removes_what_it_wrote_and_writes_no_more(mechkin, write, folder) -> None:
+    mechkin("tables", write("crank.yaml", files.CRANK))
+    notes = {"crank/notes.md": "# mine\n", "crank/measured.csv": "a\n1\n"}
+    for name, text in notes.items():
+        write(name, text)
+    write("crank.yaml", files.CRANK + files.TABLES)
+    told = mechkin("tables", "crank.yaml", "--check").out
+    assert "sweep.csv: extra, no table makes this file any more; `mechkin tables` removes" in told
+    assert "notes.md: extra, no table makes this file any more; it does not look like" in told
+    run = mechkin("tables", "crank.yaml", "--json")
+    (record,) = run.json["files"]
+    assert record["removed"] == ["crank/sweep.csv", "crank/sweep.md"]
+    assert "2 removed (sweep.csv, sweep.md)" in run.err
+    kept = {path.name for path in (folder / "crank").iterdir()}
+    assert not kept & {"sweep.csv", "sweep.md"}
+    assert {name: (folder / name).read_text(encoding="utf-8") for name in notes} == notes
+    assert mechkin("tables", "crank.yaml").err.endswith("files written\n")
+    assert "sweep" not in mechkin("tables", "crank.yaml", "--check").out
+
+
+def test_the_errata_go_with_the_print_that_they_compare(mechkin, write, folder) -> None:
+    write("printed.csv", "O.theta,x\n0,2.1\n45,1.4\n")
+    table = "  - {{name: tip{}, columns: [O.theta, {{label: x, value: tip.position.x}}]}}\n"
+    text = f"{files.CRANK}tables:\n"
+    write("crank.yaml", text + table.format(", published: printed.csv"))
+    assert mechkin("tables", "crank.yaml").code == 0
+    pages = {"errata.md", "disagreements.csv"}
+    assert pages <= {path.name for path in (folder / "crank").iterdir()}
+    write("crank.yaml", text + table.format(""))
+    assert mechkin("tables", "crank.yaml").code == 0
+    assert {path.name for path in (folder / "crank").iterdir()} == {"tip.csv", "tip.md"}
+
+
 def test_tables_regenerates_what_is_committed(mechkin, committed) -> None:
     written = [path for path in committed.iterdir() if path.is_file()]
     expected = {path.name: path.read_bytes() for path in written}

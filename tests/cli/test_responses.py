@@ -67,7 +67,7 @@ def test_one_object_holds_all_runs(mechkin, write) -> None:
     assert [column["label"] for column in fall["tables"][0]["columns"]][-1] == "row.event"
     assert push["row_count"] == 3
     alone = mechkin("analyze", write("pendulum.yaml", PENDULUM), "--json").json
-    assert alone.keys() == {"file", "name", "responses"}
+    assert alone.keys() == {"mechkin", "format", "file", "name", "responses"}
     assert alone["responses"] == found["responses"]
 
 

@@ -164,3 +164,47 @@ def test_nothing_is_written_for_a_file_that_is_refused(mechkin, write, folder) -
     mechkin("analyze", write("bad.yaml", files.INVALID))
     mechkin("check", RCSR)
     assert names(folder) == ["bad.yaml"]
+
+
+def test_json_on_stdout_writes_no_file(mechkin, write, folder) -> None:
+    path = write("crank.yaml", CRANK)
+    before = names(folder)
+    printed = mechkin("analyze", path, "--json").out
+    assert names(folder) == before
+    assert mechkin("analyze", path, "--json", "--out", "here").out == printed
+    assert "rows.csv" in names(folder / "here")
+
+
+def test_json_begins_with_the_versions_of_program_and_format(mechkin, write) -> None:
+    from importlib.metadata import version
+
+    path = write("crank.yaml", CRANK)
+    for words in (["analyze"], ["check"], ["modes"], ["ranges"], ["mobility"], ["tables"]):
+        record = mechkin(*words, path, "--json").json
+        assert list(record)[:2] == ["mechkin", "format"]
+        assert (record["mechkin"], record["format"]) == (version("mechkin"), 1)
+
+
+def test_units_in_the_headers_of_csv_on_request(mechkin, write, folder) -> None:
+    path = write("crank.yaml", CRANK)
+    mechkin("analyze", path, "--out", "bare")
+    mechkin("analyze", path, "--units", "--out", "with")
+    for bare in (folder / "bare").glob("*.csv"):
+        head, *rows = bare.read_text(encoding="utf-8").splitlines()
+        whole, *same = (folder / "with" / bare.name).read_text(encoding="utf-8").splitlines()
+        assert same == rows
+        assert head != whole
+    assert whole_header(folder, "tip") == "O.theta [deg],x [m]"
+    assert whole_header(folder, "drive") == '"torque, motor [N*m]"'
+    assert whole_header(folder, "rows") == (
+        "row,O.theta [deg],mode,status,residual,condition,power_error"
+    )
+
+
+def whole_header(folder, table: str) -> str:
+    return (folder / "with" / f"{table}.csv").read_text(encoding="utf-8").splitlines()[0]
+
+
+def test_help_is_short_as_well(mechkin) -> None:
+    for words in ([], ["analyze"], ["check"], ["modes"], ["tables"], ["bench"], ["schema"]):
+        assert mechkin(*words, "-h").out == mechkin(*words, "--help").out != ""

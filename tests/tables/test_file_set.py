@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables.files import write_files
+from mechkin_cli.tables.files import OutputFolder, write_files
 
 OLD = {"a.csv": b"old a", "b.md": b"old b", "other.csv": b"of another run"}
 NEW = {"a.csv": b"new a", "b.md": b"new b", "c.md": b"new c"}
@@ -106,6 +106,32 @@ def test_a_fault_at_every_operation(tmp_path: Path, before: dict[str, bytes], fa
     assert seen == {True, False}
 
 
+@pytest.mark.parametrize("fault", [die, fail, interrupt])
+def test_what_is_removed_goes_at_the_same_moment(tmp_path: Path, fault) -> None:
+    """No fault leaves the removed file gone and the others old, or the other way round."""
+    new = {"a.csv": b"new a"}
+    after = {"a.csv": b"new a", "other.csv": OLD["other.csv"]}
+    seen = set()
+    for number in range(1, 500):
+        folder = tmp_path / str(number)
+        write_files(folder, OLD)
+        code = child(lambda folder=folder: removing(folder, new, ["b.md"]), number, fault)
+        if code == 77:
+            break
+        write_files(folder, {"next.csv": b"next"})
+        assert debris(folder) == []
+        left = files(folder)
+        del left["next.csv"]
+        assert left in (OLD, after), number
+        seen.add(left == OLD)
+    assert seen == {True, False}
+
+
+def removing(folder: Path, new: dict[str, bytes], removed: list[str]) -> None:
+    with OutputFolder(folder) as output:
+        output.write(new, removed)
+
+
 def test_a_kill_while_the_next_run_clears(tmp_path: Path) -> None:
     """Also a run that clears what another left may be killed at every operation."""
     for first in range(20, 60, 3):
@@ -145,8 +171,6 @@ def test_what_earlier_versions_left_is_cleared(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_another_run_writes_to_is_refused(tmp_path: Path) -> None:
-    from mechkin_cli.tables.files import OutputFolder
-
     folder = tmp_path / "out"
     with OutputFolder(folder) as output:
         code = child(lambda: write_files(folder, OLD), 1000, die)
@@ -159,8 +183,6 @@ def test_a_folder_that_another_run_writes_to_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_folder_made_for_nothing_goes_again(tmp_path: Path) -> None:
-    from mechkin_cli.tables.files import OutputFolder
-
     with OutputFolder(tmp_path / "out" / "crank"):
         assert (tmp_path / "out" / "crank").is_dir()
     assert list(tmp_path.iterdir()) == []
