@@ -1,7 +1,8 @@
 """Which files beside a mechanism were written by mechkin for a table that it has no more.
 
 Nothing else may ever be removed, so a file must show where it comes from: a table has two files of
-one name, CSV and Markdown, with the same labels and as many rows; the errata page and the list of
+one name, CSV and Markdown, with the same labels and as many rows, and perhaps its summary beside
+them; the errata page and the list of
 disagreements have the words and the header that they always have.
 """
 
@@ -19,8 +20,17 @@ from mechkin_cli.tables.table_text import read_table_text
 
 def stale_files(fresh: Collection[str], committed: Mapping[str, bytes]) -> tuple[str, ...]:
     """Names in `committed` that mechkin wrote and that are not among the `fresh` ones."""
-    others = sorted(name for name in committed if name not in fresh)
-    return tuple(name for name in others if _is_own(name, others, committed))
+    others = {name: committed[name] for name in sorted(committed) if name not in fresh}
+    own = {name for name, content in others.items() if _is_page(name, content)}
+    for name in others:
+        twin = f"{name.removesuffix('.csv')}.md"
+        if name.endswith(".csv") and twin in others and _is_pair(others[name], others[twin]):
+            own |= {name, twin}
+    for name, content in others.items():
+        table = f"{name.removesuffix('.summary.csv')}.csv"
+        if name.endswith(".summary.csv") and (table in own or table in fresh):
+            own |= {name} if content.startswith(b"summary,") else set()
+    return tuple(name for name in others if name in own)
 
 
 def stale_in(folder: Path, fresh: Collection[str]) -> tuple[str, ...]:
@@ -35,20 +45,18 @@ def stale_in(folder: Path, fresh: Collection[str]) -> tuple[str, ...]:
     return stale_files(fresh, found)
 
 
-def _is_own(name: str, others: Collection[str], committed: Mapping[str, bytes]) -> bool:
-    if name == PAGE:
-        return HEAD.encode() in committed[name]
+def _is_page(name: str, content: bytes) -> bool:
+    """Whether it is the errata page, or the list of disagreements."""
     if name == NAME:
-        return committed[name].startswith(HEADER.encode())
-    stem = name.rpartition(".")[0]
-    twins = f"{stem}.csv", f"{stem}.md"
-    return all(twin in others for twin in twins) and _is_pair(*(committed[t] for t in twins))
+        return content.startswith(HEADER.encode())
+    return name == PAGE and HEAD.encode() in content
 
 
 def _is_pair(csv: bytes, markdown: bytes) -> bool:
     """Whether both are the same table: a title, labels with their units, and as many rows."""
     try:
-        cells, page = read_table_text("a.csv", csv), read_table_text("a.md", markdown)
+        table = markdown.partition(b"\n\n| summary ")[0]
+        cells, page = read_table_text("a.csv", csv), read_table_text("a.md", table)
     except ValueError:
         return False
     labels = tuple(label.partition(" [")[0] for label in page.labels)

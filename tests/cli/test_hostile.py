@@ -141,7 +141,6 @@ def test_a_reader_that_stops_early(folder: Path, line: str) -> None:
 @pytest.mark.parametrize(
     ("file", "words"),
     [
-        ("-", "there is no file -"),
         ("''", "is a directory"),
         (".", "is a directory; name a mechanism file in it, for example crank.yaml"),
         ("pipe", "pipe is not a regular file"),

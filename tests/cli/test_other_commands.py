@@ -200,6 +200,23 @@ def test_tables_removes_what_it_wrote_and_writes_no_more(mechkin, write, folder)
     assert "sweep" not in mechkin("tables", "crank.yaml", "--check").out
 
 
+def test_a_summary_goes_with_its_table(mechkin, write, folder) -> None:
+    summed = files.TABLES.replace("{name: tip,", "{name: tip, summary: [max, rms],")
+    mechkin("tables", write("crank.yaml", files.CRANK + summed))
+    assert "tip.summary.csv" in {path.name for path in (folder / "crank").iterdir()}
+    write("crank.yaml", files.CRANK + files.TABLES.replace("name: tip,", "name: point,"))
+    run = mechkin("tables", "crank.yaml")
+    assert "3 removed (tip.csv, tip.md, tip.summary.csv)" in run.err
+    assert mechkin("tables", "crank.yaml", "--check").code == 0
+
+
+def test_a_summary_alone_goes_as_well(mechkin, write, folder) -> None:
+    summed = files.TABLES.replace("{name: tip,", "{name: tip, summary: [max, rms],")
+    mechkin("tables", write("crank.yaml", files.CRANK + summed))
+    write("crank.yaml", files.CRANK + files.TABLES)
+    assert "1 removed (tip.summary.csv)" in mechkin("tables", "crank.yaml").err
+
+
 def test_the_errata_go_with_the_print_that_they_compare(mechkin, write, folder) -> None:
     write("printed.csv", "O.theta,x\n0,2.1\n45,1.4\n")
     table = "  - {{name: tip{}, columns: [O.theta, {{label: x, value: tip.position.x}}]}}\n"
