@@ -20,6 +20,7 @@ from mechkin_cli.schema import tables as written
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.tables.layout import (
     ColumnLayout,
+    PlotLayout,
     PrintedRemark,
     PublishedValues,
     TableLayout,
@@ -83,7 +84,8 @@ def _table(
             columns.append(layout)
     title = section.title or section.name
     published = _published(section.published)
-    return TableLayout(section.name, title, tuple(columns), published, run, section.summary)
+    plot = None if section.plot is None else PlotLayout(section.plot.x, section.plot.y)
+    return TableLayout(section.name, title, tuple(columns), published, run, section.summary, plot)
 
 
 def _default(problem: Problem, run: str) -> TableLayout:

@@ -16,6 +16,7 @@ from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import put, say
 from mechkin_cli.cli.mobility import mobility
 from mechkin_cli.cli.modes import modes
+from mechkin_cli.cli.plot import plot
 from mechkin_cli.cli.ranges import ranges
 from mechkin_cli.cli.schema import schema
 from mechkin_cli.cli.tables import tables
@@ -29,7 +30,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (analyze, check, modes, ranges, mobility, tables, schema, bench):
+for command in (analyze, check, modes, ranges, mobility, plot, tables, schema, bench):
     app.command()(command)
 
 

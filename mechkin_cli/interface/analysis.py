@@ -11,6 +11,7 @@ import numpy as np
 from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.expressions import Expression, Vector, parse
 from mechkin_cli.interface.arguments import a_text
+from mechkin_cli.interface.plotted import Plotted
 from mechkin_cli.interface.summaries import Summarized
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.tables.columns import Columns, Words, evaluate, row_words
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.balance import AnyBalance
 
 
-class Analysis(Summarized):
+class Analysis(Summarized, Plotted):
     """Results of a sweep or a response: `r["O2.theta"]` is an array over the rows, in the file's
     units.
 

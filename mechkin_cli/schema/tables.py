@@ -107,6 +107,16 @@ def _differing_labels(columns: tuple[Column, ...]) -> tuple[Column, ...]:
     return columns
 
 
+class Plot(Section):
+    """The picture that `mechkin plot` makes of a table."""
+
+    x: Text | None = None
+    """Label of the column against which the others stand; left out, time where the run has one,
+    else its first input that moves."""
+    y: Annotated[tuple[Text, ...], Limits(min_length=1)] = ()
+    """Labels of the columns that are drawn; left out, all of numbers."""
+
+
 SummaryWord = Literal["max", "min", "peak", "mean", "rms", "range"]
 
 
@@ -115,6 +125,15 @@ def _each_once(words: tuple[str, ...]) -> tuple[str, ...]:
         if word in words[:index]:
             raise refuse("named-twice", f"{word} stands there twice", "name it once", index)
     return words
+
+
+def _refuse_unknown(plot: Plot, labels: list[str]) -> None:
+    """Refuses a picture of columns that the table does not have."""
+    named = [(plot.x, ("plot", "x"))] if plot.x is not None else []
+    for label, at in (*named, *((y, ("plot", "y", k)) for k, y in enumerate(plot.y))):
+        if label not in labels:
+            text = f"the table has no column {label!r} to draw"
+            raise refuse("unknown-label", text, f"labels are {', '.join(labels)}", *at)
 
 
 class Table(Section):
@@ -134,12 +153,16 @@ class Table(Section):
     summary: Annotated[tuple[SummaryWord, ...], Limits(min_length=1), After(_each_once)] = ()
     """What stands below the table for each column that is computed: some of [max, min, peak, mean,
     rms, range]. `peak` is the largest magnitude; max, min and peak have their places."""
+    plot: Plot | None = None
+    """The picture that `mechkin plot` makes of it."""
     published: PathOrPublishedValues | None = None
     """Values printed in the source, as a CSV file with the same labels."""
 
     def check(self) -> None:
-        """What is published names columns of the table."""
+        """What is drawn and what is published names columns of the table."""
         labels = [column.label for column in self.columns]
+        if self.plot is not None:
+            _refuse_unknown(self.plot, labels)
         rows_by = self.published.rows_by if self.published else None
         if rows_by not in (None, ROW_NUMBER, *labels):
             text = f"the table has no column {rows_by!r} to find its rows by"

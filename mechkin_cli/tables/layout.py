@@ -59,6 +59,14 @@ class PublishedValues(NamedTuple):
     rows_by: str | None = None
 
 
+class PlotLayout(NamedTuple):
+    """The picture of a table, by labels of its columns: `x` None: over the run's parameter, `y`
+    () all others."""
+
+    x: str | None = None
+    y: tuple[str, ...] = ()
+
+
 class TableLayout(NamedTuple):
     """One table; `name` is the stem of its files, `title` its heading in Markdown, `run` the run
     whose rows it has, `summary` the words of what stands below it (`reductions.REDUCTIONS`)."""
@@ -69,6 +77,7 @@ class TableLayout(NamedTuple):
     published: PublishedValues | None = None
     run: str = SWEEP
     summary: tuple[str, ...] = ()
+    plot: PlotLayout | None = None
 
 
 def row_texts(run: str) -> tuple[str, ...]:

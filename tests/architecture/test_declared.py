@@ -17,8 +17,9 @@ BY_HAND = {}
 
 def declared() -> set[str]:
     project = tomllib.loads((ROOT.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    # what the benchmark compares with is asked for by its extra, and done without
-    named = [*project["dependencies"], *project["optional-dependencies"]["bench"]]
+    # what the benchmark compares with and what draws are asked for by extras, and done without
+    extras = project["optional-dependencies"]
+    named = [*project["dependencies"], *extras["bench"], *extras["plot"]]
     return {re.split(r"[<>=;\[ ]", text)[0] for text in named}
 
 

@@ -33,7 +33,8 @@ FREEDOMS = SOLVER | {"freedoms"}
 ANALYSIS = FREEDOMS | {"analysis"}
 BUILDING = FREEDOMS | {"reading", "schema", "building", "tables.layout", "view.settings"}
 VIEW = ANALYSIS | {"tables", "view"}
-INTERFACE = BUILDING | VIEW | {"interface"}
+PLOTS = VIEW | {"plots"}
+INTERFACE = BUILDING | PLOTS | {"interface"}
 BENCHMARK = INTERFACE | {"benchmark"}
 ALLOWED = {
     **dict.fromkeys(BASE, BASE),
@@ -50,6 +51,7 @@ ALLOWED = {
     "tables": EXPRESSIONS | {"tables"},
     "building": BUILDING,
     "view": VIEW,
+    "plots": PLOTS,
     "interface": INTERFACE,
     "benchmark": BENCHMARK,
     "cli": BENCHMARK | {"cli"},
@@ -70,6 +72,7 @@ HOMES = {
     "pinocchio": {"benchmark"},
     "casadi": {"benchmark"},
     "mujoco": {"benchmark"},
+    "matplotlib": {"plots"},
 }
 """Libraries that only one room may import."""
 

@@ -1,0 +1,137 @@
+"""`mechkin plot`: pictures of a run, of its tables or of what is named."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import put, refusal, say_diagnostics
+from mechkin_cli.cli.options import File, Quiet, Set
+from mechkin_cli.cli.parameters import parameters
+from mechkin_cli.diagnostics import InvalidFile, UsageError
+from mechkin_cli.expressions import ExpressionError
+from mechkin_cli.runs import SWEEP
+
+if TYPE_CHECKING:
+    from mechkin_cli.interface import Analysis, Model
+
+ENDING = "svg"
+"""Format of pictures whose file is not named."""
+
+
+def plot(
+    file: File,
+    x: Annotated[
+        str | None,
+        typer.Option("--x", metavar="NAME", help="What the curves stand against (the input)."),
+    ] = None,
+    y: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--y", metavar="NAMES", help="What is drawn, with commas between; may be repeated."
+        ),
+    ] = None,
+    table: Annotated[
+        list[str] | None,
+        typer.Option("--table", metavar="NAME", help="Only this table; may be repeated."),
+    ] = None,
+    run: Annotated[
+        str | None, typer.Option("--run", metavar="NAME", help="Run that --y is of (the first).")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", metavar="PICTURE", help="A .svg, .png or .pdf file."),
+    ] = None,
+    mode: Annotated[
+        str | None, typer.Option("--mode", metavar="NAME", help="Assembly mode at the first row.")
+    ] = None,
+    set_: Set = None,
+    quiet: Quiet = False,
+) -> None:
+    """Draw the tables of a file, each as its `plot:` says, or what --y names.
+
+    Labels of columns, quantities or expressions stand over the run's parameter or over --x;
+    vectors are drawn in a plane: a point's position as its coupler curve, a force as its polar
+    diagram. Without -o the pictures are out/STEM/TABLE.svg. Needs matplotlib: the extra plot.
+    """
+    from mechkin_cli.interface import load
+    from mechkin_cli.plots.figure import format_of, image
+
+    ending = ENDING if out is None else format_of(out)
+    names = [name for text in y or () for name in listed(text)]
+    if names and table:
+        raise UsageError("--y names what is drawn, --table too; leave one of them out")
+    try:
+        model = load(file, parameters(set_))
+        analyses = _tables(model, table, run, mode) if not names else {}
+        if names:
+            analyses[file.stem] = _run(model, run, mode), None
+        if out is not None and len(analyses) > 1:
+            tables = ", ".join(analyses)
+            raise UsageError(f"-o is one picture; choose one of {tables} with --table")
+        files = {}
+        for name, (analysis, own) in analyses.items():
+            try:
+                picture = analysis.picture(tuple(names), x, own)
+            except ExpressionError as error:
+                raise UsageError(str(error)) from error
+            files[f"{name}.{ending}" if out is None else out.name] = image(picture, ending)
+    except (InvalidFile, UsageError) as error:
+        code, _ = refusal(file, error)
+        raise typer.Exit(code) from error
+    _write(file, out, files, quiet)
+    found = [analysis for analysis, _ in analyses.values()]
+    said = dict.fromkeys(one for analysis in found for one in analysis.diagnostics)
+    say_diagnostics(tuple(said), str(file))
+    if not all(analysis.complete for analysis in found):
+        raise typer.Exit(ExitCode.ROWS_MISSING)
+
+
+def listed(text: str) -> list[str]:
+    """Names with commas between them; those in brackets part nothing.
+
+    >>> listed("A.effort, dot(A.force, d)")
+    ['A.effort', 'dot(A.force, d)']
+    """
+    parts, depth = [""], 0
+    for character in text:
+        depth += (character in "([") - (character in ")]")
+        if character == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += character
+    return [part.strip() for part in parts if part.strip()]
+
+
+def _run(model: Model, run: str | None, mode: str | None) -> Analysis:
+    """The run that is named, or the first."""
+    name = model.runs[0] if run is None else run
+    if name == SWEEP:
+        return model.analyze(mode=mode)
+    return model.respond(name, mode=mode)
+
+
+def _tables(
+    model: Model, names: list[str] | None, run: str | None, mode: str | None
+) -> dict[str, tuple[Analysis, str | None]]:
+    """The tables that are drawn, by name, with their runs."""
+    from mechkin_cli.cli.runs import run_all
+
+    return {
+        layout.name: (analysis, layout.name)
+        for analysis in run_all(model, names, mode)
+        for layout in analysis.layouts
+        if run in (None, analysis.run)
+    }
+
+
+def _write(file: Path, out: Path | None, files: dict[str, bytes], quiet: bool) -> None:
+    from mechkin_cli.tables.files import write_files
+
+    folder = Path("out") / file.stem if out is None else out.parent
+    written = write_files(folder, files)
+    for path in () if quiet else written:
+        put(f"{path}\n")
