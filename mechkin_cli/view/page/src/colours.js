@@ -20,7 +20,11 @@ export const ARROWS = { force: "#d6303f", moment: "#7a43d1" };
 /** A colour that the file may have given, if it is one, else the link's own. */
 export function linkColour(link, index) {
   if (/^#[0-9a-f]{6}$/i.test(link.colour ?? "")) return link.colour;
-  return index === 0 ? GROUND : LINKS[(index - 1) % LINKS.length];
+  if (index === 0) return GROUND;
+  if (index <= LINKS.length) return LINKS[index - 1];
+  // beyond the list, hues by the golden angle lie as far from each other as they can
+  const hue = (137.508 * index) % 360;
+  return `hsl(${hue.toFixed(1)}, 48%, ${index % 2 ? 42 : 56}%)`;
 }
 
 /** The colour of a verdict: only `ok` is good, and what was computed with a doubt is not lost. */

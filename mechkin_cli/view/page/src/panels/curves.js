@@ -8,12 +8,15 @@ import { told } from "../numbers.js";
 import { ColumnChoice } from "./column_choice.js";
 
 const FIRST_COLUMNS = 3;
-const HEIGHT = 230;
+const LEAST_HEIGHT = 220;
+const MOST_HEIGHT = 420;
+const BESIDE = 110; // pixels of the panel that are no plot
 const DASHES = [[6, 4], [2, 3], [10, 3, 2, 3], [1, 4]];
 
 /** Draws the chosen columns of the run that is shown. */
 export class Curves {
   constructor(host, state, theme) {
+    this.host = host;
     this.state = state;
     this.theme = theme;
     this.plots = [];
@@ -42,8 +45,8 @@ export class Curves {
   #offer() {
     const { run } = this.state;
     const columns = run.branches[0]?.columns ?? [];
-    const own = columns.map((column) => column.label).indexOf(run.x.label);
-    const usual = columns.map(keyOf).filter((_, k) => k !== own && hasNumbers(columns[k])).slice(0, FIRST_COLUMNS);
+    const { x } = this.state.branch;
+    const usual = columns.filter((column) => hasNumbers(column) && !isX(column, x)).slice(0, FIRST_COLUMNS).map(keyOf);
     const keys = this.chosen.get(run.name) ?? new Set(usual);
     this.chosen.set(run.name, keys);
     this.choice.offer(columns.map((column) => ({ ...column, key: keyOf(column) })), keys);
@@ -59,14 +62,14 @@ export class Curves {
     const colours = new Map(columns.map((column, k) => [keyOf(column), CURVES[k % CURVES.length]]));
     this.choice.paint(colours);
     this.plots = units.map((unit, k) =>
-      this.#plot(unit, columns.filter((column) => column.unit === unit), colours, k === units.length - 1),
+      this.#plot(unit, columns.filter((column) => column.unit === unit), colours, k === units.length - 1, units.length),
     );
     this.empty.hidden = columns.length > 0;
     this.#listMarks();
     this.#moveCursor();
   }
 
-  #plot(unit, columns, colours, last) {
+  #plot(unit, columns, colours, last, count) {
     const { run, branch } = this.state;
     const ink = this.theme.colour("--ink-soft");
     const grid = { stroke: this.theme.colour("--line"), width: 1 };
@@ -91,7 +94,7 @@ export class Curves {
     const { label, unit: xUnit } = run.x;
     const options = {
       width: Math.max(260, this.plotted.clientWidth),
-      height: HEIGHT,
+      height: this.#height(count),
       cursor: { sync: { key: this.sync.key }, drag: { x: true, y: false }, focus: { prox: 24 } },
       legend: { live: false, show: true },
       scales: { x: { time: false } },
@@ -186,10 +189,16 @@ export class Curves {
     if (at !== undefined && plot.line) plot.line.style.transform = `translateX(${plot.valToPos(this.axis.x[at], "x")}px)`;
   }
 
+  /** So high that the plots fill the panel, where there are few. */
+  #height(count) {
+    const each = (this.host.clientHeight - BESIDE) / Math.max(1, count) - 34;
+    return Math.min(MOST_HEIGHT, Math.max(LEAST_HEIGHT, Math.round(each)));
+  }
+
   #fit() {
     const width = this.plotted.clientWidth;
     if (width < 50) return;
-    for (const plot of this.plots) if (plot.width !== width) plot.setSize({ width, height: HEIGHT });
+    for (const plot of this.plots) if (plot.width !== width) plot.setSize({ width, height: this.#height(this.plots.length) });
   }
 }
 
@@ -234,6 +243,9 @@ const finite = (value) => (Number.isFinite(value) ? value : null);
 const keyOf = (column) => `${column.table ?? ""}\u0000${column.label}`;
 const withUnit = (label, unit) => (unit ? (label ? `${label} in ${unit}` : unit) : label);
 const hasNumbers = (column) => numbers(column.values).some(Number.isFinite);
+
+/** Whether a column only says again what the plots run over. */
+const isX = (column, x) => numbers(column.values).every((value, row) => Math.abs(value - x[row]) <= 1e-9 * Math.abs(x[row]));
 
 function stroke(brush, x, top, height) {
   brush.beginPath();

@@ -6,16 +6,17 @@ import {
 import { ARROWS } from "../colours.js";
 import { numbers } from "../data.js";
 
-const LONGEST = 0.3; // of the mechanism's size, for the usual largest value
-const CUT = 0.8; // of the mechanism's size; what is longer is cut and pale
+const LONGEST = 0.22; // of the mechanism's size, for the usual largest value
+const CUT = 0.6; // of the mechanism's size; what is longer is cut and pale
+const HEAD = 1.8; // length of a head, in joint sizes
 const USUAL = 0.97; // share of values that the scale is made for: near dead centres forces have no bound
 const UP = new Vector3(0, 1, 0);
 
 /** All arrows of a branch. */
 export class Arrows {
-  constructor(data, branch, unit) {
-    this.size = data.size;
-    this.longest = data.view?.arrow_length ?? LONGEST * data.size;
+  constructor(data, branch, unit, size) {
+    this.size = size;
+    this.longest = data.view?.arrow_length ?? LONGEST * size;
     this.zoom = 1;
     this.object = new Group();
     this.usual = {};
@@ -25,7 +26,7 @@ export class Arrows {
       this.object.add(made.group);
       return { arrow, ...made, values: numbers(arrow.values), shown: false };
     });
-    this.headLength = 2.2 * unit;
+    this.headLength = HEAD * unit;
   }
 
   /** The length of an arrow of one unit. */
@@ -57,23 +58,16 @@ export class Arrows {
       each.tip = value.clone().multiplyScalar(length).add(group.position);
     }
   }
-
-  dispose() {
-    this.object.traverse((each) => {
-      each.geometry?.dispose();
-      each.material?.dispose();
-    });
-  }
 }
 
 /** A shaft of unit length along y with one head, or two. */
 function shaped(kind, unit) {
   const material = new MeshStandardMaterial({ color: ARROWS[kind], roughness: 0.6, transparent: true });
   const group = new Group();
-  const shaft = new Mesh(new CylinderGeometry(0.2 * unit, 0.2 * unit, 1, 12).translate(0, 0.5, 0), material);
-  const length = 2.2 * unit;
+  const shaft = new Mesh(new CylinderGeometry(0.15 * unit, 0.15 * unit, 1, 12).translate(0, 0.5, 0), material);
+  const length = HEAD * unit;
   const heads = (kind === "moment" ? [0, 1] : [0]).map(
-    () => new Mesh(new ConeGeometry(0.6 * unit, length, 18).translate(0, length / 2, 0), material),
+    () => new Mesh(new ConeGeometry(0.48 * unit, length, 18).translate(0, length / 2, 0), material),
   );
   group.add(shaft, ...heads);
   return { group, shaft, heads, material };

@@ -6,6 +6,8 @@ import {
 import { mergeGeometries } from "three/examples/jsm/utils/BufferGeometryUtils.js";
 
 const EDGE_ANGLE = 38; // degrees
+const EDGE_SHADE = 0.45;
+const GHOST_OPACITY = 0.25;
 
 /** Collects the parts of one link, as drawn, and makes the group that its pose moves. */
 export class Body {
@@ -20,15 +22,26 @@ export class Body {
   }
 
   /** The group, whose position and quaternion are the link's displacement from the drawing. */
-  finish(colour, dark) {
-    const group = new Group();
-    if (this.#parts.length === 0) return group;
-    const geometry = mergeGeometries(this.#parts);
-    const material = new MeshStandardMaterial({ color: colour, roughness: 0.55, metalness: 0.05 });
-    group.add(new Mesh(geometry, material));
+  finish(colour) {
+    const { group, geometry, material } = this.#solid(colour, {});
+    if (!geometry) return group;
     const edges = new LineSegments(new EdgesGeometry(geometry, EDGE_ANGLE), new LineBasicMaterial());
-    edges.material.color.copy(material.color).multiplyScalar(dark);
+    edges.material.color.copy(material.color).multiplyScalar(EDGE_SHADE);
     group.add(edges);
     return group;
+  }
+
+  /** The same, pale and without edges. */
+  ghost(colour) {
+    return this.#solid(colour, { transparent: true, opacity: GHOST_OPACITY, depthWrite: false }).group;
+  }
+
+  #solid(color, more) {
+    const group = new Group();
+    if (this.#parts.length === 0) return { group };
+    const geometry = mergeGeometries(this.#parts);
+    const material = new MeshStandardMaterial({ color, roughness: 0.55, metalness: 0.05, ...more });
+    group.add(new Mesh(geometry, material));
+    return { group, geometry, material };
   }
 }

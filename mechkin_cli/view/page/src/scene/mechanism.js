@@ -1,4 +1,4 @@
-// The mechanism: a group for each link, which its pose moves. Ghosts are the same groups, pale.
+// The mechanism in one branch: a group for each link, which its pose moves.
 
 import { Group, Quaternion, Vector3 } from "three";
 import { linkColour } from "../colours.js";
@@ -12,11 +12,9 @@ import { vector } from "./vectors.js";
 const JOINT_SIZE = 0.028; // of the mechanism's size
 const LEAST_JOINT_SIZE = 0.008;
 const CLOSE = 0.22; // of the least distance between two joints of a link
-const EDGE_SHADE = 0.45;
-const GHOST_OPACITY = 0.22;
 
 /** The size of a joint where the file says nothing: fit to the mechanism, and to joints that lie close. */
-export function jointUnit(data) {
+export function jointUnit(data, size) {
   let least = Infinity;
   data.links.forEach((_, link) => {
     if (link === 0) return;
@@ -24,12 +22,12 @@ export function jointUnit(data) {
     points.forEach((one, k) =>
       points.slice(k + 1).forEach((other) => {
         const apart = one.distanceTo(other);
-        if (apart > 1e-3 * data.size) least = Math.min(least, apart);
+        if (apart > 1e-3 * size) least = Math.min(least, apart);
       }),
     );
   });
-  const wished = Math.min(JOINT_SIZE * data.size, CLOSE * least);
-  return Math.max(LEAST_JOINT_SIZE * data.size, wished);
+  const wished = Math.min(JOINT_SIZE * size, CLOSE * least);
+  return Math.max(LEAST_JOINT_SIZE * size, wished);
 }
 
 function pointsOf(data, link) {
@@ -38,26 +36,29 @@ function pointsOf(data, link) {
   );
 }
 
-/** The bodies of all links, as drawn. */
+/** The bodies of all links, as drawn; rails are as long as the branch's travels. */
 export class Mechanism {
-  constructor(data, branches) {
+  /**
+   * @param unit  the size of a joint (see `jointUnit`)
+   * @param ghost  the one colour of a mechanism that is drawn pale, for comparison
+   */
+  constructor(data, branch, unit, ghost = null) {
     this.data = data;
-    this.unit = jointUnit(data);
+    this.unit = unit;
     this.object = new Group();
     const bodies = data.links.map(() => new Body());
-    data.links.forEach((link, index) => addShape(bodies[index], link.shape, this.unit));
-    const travel = travels(data, branches);
+    data.links.forEach((link, index) => addShape(bodies[index], link.shape, unit));
+    const travel = travels(data, branch);
     data.joints.forEach((joint, j) => this.#addJoint(joint, bodies, travel[j]));
     this.links = bodies.map((body, index) => {
-      const group = body.finish(linkColour(data.links[index], index), EDGE_SHADE);
-      group.visible = !data.links[index].hidden;
+      const group = ghost ? body.ghost(ghost) : body.finish(linkColour(data.links[index], index));
       this.object.add(group);
       return group;
     });
   }
 
   #addJoint(joint, bodies, travel) {
-    const u = joint.radius > 0 ? Math.min(joint.radius, 0.1 * this.data.size) : this.unit;
+    const u = joint.radius > 0 ? Math.min(joint.radius, 4 * this.unit) : this.unit;
     const up = vector(this.data.up);
     const [first, second] = joint.halves.map((half, k) => {
       const link = joint.links[k];
@@ -88,24 +89,6 @@ export class Mechanism {
       return middle;
     });
     return this.middles[link];
-  }
-
-  /** Pale copies for comparison; they share all geometry. */
-  ghost(colour) {
-    const object = new Group();
-    const links = this.links.map((group) => {
-      const copy = group.clone();
-      copy.children.forEach((child) => {
-        child.material = child.material.clone();
-        child.material.transparent = true;
-        child.material.depthWrite = false;
-        child.material.opacity = child.isMesh ? GHOST_OPACITY : 1.6 * GHOST_OPACITY;
-        if (colour) child.material.color.set(colour);
-      });
-      object.add(copy);
-      return copy;
-    });
-    return Object.assign(Object.create(Mechanism.prototype), { data: this.data, unit: this.unit, object, links });
   }
 
   /** Where a place drawn on a link is now. */

@@ -20,9 +20,9 @@ function revolute({ first, second, u }) {
   second.post(2.1 * u);
 }
 
-/** The reach along z of a rail on which the other half slides. */
-function reach({ least, most }, u) {
-  return [least.z - 2.2 * u, most.z + 2.2 * u];
+/** The reach along z of a rail on which the other half slides: from its own link's joint on. */
+function reach({ least, most }, u, margin = 2.2) {
+  return [Math.min(0, least.z) - margin * u, Math.max(0, most.z) + margin * u];
 }
 
 /** Blocks that carry the ends of a rail on the ground. */
@@ -74,9 +74,12 @@ function universal({ first, second, u }) {
   second.add(ball(0.55 * u));
 }
 
-/** The box in which the other half's point comes on this half's plane, with a margin. */
+/** The box in which the other half's point comes on this half's plane, from its own link's joint on, with a margin. */
 function spread({ least, most }, margin) {
-  return [[least.x - margin, least.y - margin], [most.x + margin, most.y + margin]];
+  return [
+    [Math.min(0, least.x) - margin, Math.min(0, least.y) - margin],
+    [Math.max(0, most.x) + margin, Math.max(0, most.y) + margin],
+  ];
 }
 
 /** A thin plate in the half's x and y, its face at z = `face`, on the side of its link. */
@@ -98,7 +101,7 @@ function sphereInGroove({ first, second, u, travel }) {
   first.add(ball(0.8 * u));
   first.post(2.1 * u);
   const open = frame(second.point, second.axis, (second.across ?? second.x).clone().negate());
-  second.add(trough(0.83 * u, 1.1 * u, travel[1].least.z - 1.4 * u, travel[1].most.z + 1.4 * u), open);
+  second.add(trough(0.83 * u, 1.1 * u, ...reach(travel[1], u, 1.4)), open);
   second.foot(1.1 * u);
 }
 
@@ -135,7 +138,7 @@ function slottedSphere({ first, second, u }) {
 function slottedCylinder({ joint, first, second, u, travel }) {
   const slot = joint.halves[0].axis2 ? vector(joint.halves[0].axis2) : second.axis;
   const pipe = frame(first.point, first.axis, slot);
-  first.add(trough(0.84 * u, 1.15 * u, travel[0].least.z - 1.4 * u, travel[0].most.z + 1.4 * u, 0.9), pipe);
+  first.add(trough(0.84 * u, 1.15 * u, ...reach(travel[0], u, 1.4), 0.9), pipe);
   first.foot(1.1 * u);
   second.add(ball(0.8 * u));
   second.add(bar(0.3 * u, 0, 1.9 * u));

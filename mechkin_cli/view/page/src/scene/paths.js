@@ -51,11 +51,4 @@ export class Paths {
       dot.visible = mechanism.links[point.link].visible;
     }
   }
-
-  dispose() {
-    this.object.traverse((each) => {
-      each.geometry?.dispose();
-      each.material?.dispose();
-    });
-  }
 }

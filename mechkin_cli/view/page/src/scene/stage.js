@@ -21,6 +21,15 @@ function rendererOrReason() {
   }
 }
 
+/** Takes an object off the stage and gives its memory back. */
+export function dispose(object) {
+  object.removeFromParent();
+  object.traverse((each) => {
+    each.geometry?.dispose();
+    each.material?.dispose();
+  });
+}
+
 /** A camera that is turned by mouse, finger or keys, over a canvas that fills `host`. */
 export class Stage {
   #asked = false;
@@ -35,7 +44,7 @@ export class Stage {
     this.scene = new Scene();
     this.up = vector(data.up).normalize();
     this.centre = vector(data.centre);
-    this.camera = new PerspectiveCamera(FIELD, 1, 0.01 * data.size, 60 * data.size);
+    this.camera = new PerspectiveCamera(FIELD, 1, 2e-3 * data.size, 60 * data.size);
     this.camera.up.copy(this.up);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.ask());
@@ -119,6 +128,14 @@ export class Stage {
     this.camera.position.copy(target).addScaledVector(back, distance);
     this.controls.update();
     this.ask();
+  }
+
+  /** Whether all places are on the stage. */
+  sees(places) {
+    return places.every((place) => {
+      const { x, y, z } = place.clone().project(this.camera);
+      return Math.abs(x) <= 1 && Math.abs(y) <= 1 && z < 1;
+    });
   }
 
   #sideways() {

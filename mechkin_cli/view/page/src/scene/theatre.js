@@ -4,13 +4,15 @@ import { CURVES } from "../colours.js";
 import { Arrows } from "./arrows.js";
 import { posesAt } from "./between.js";
 import { Labels } from "./labels.js";
-import { Mechanism } from "./mechanism.js";
+import { Mechanism, jointUnit } from "./mechanism.js";
 import { Paths } from "./paths.js";
-import { Stage } from "./stage.js";
+import { Stage, dispose } from "./stage.js";
 import { vector } from "./vectors.js";
-import { firstDirection, placesOf, withRoom } from "./viewpoint.js";
+import { diagonal, firstDirection, placesOf, withRoom } from "./viewpoint.js";
 
 const FLOOR = 2.6; // below the lowest joint, in joint sizes
+const MOST_GHOSTS = 8; // of more modes than that nothing could be told apart
+const MOST_VALUES = 8; // arrows whose values are written beside them
 const LOST = 0.35; // opacity of the mechanism in a row without position
 
 /** Draws the state. */
@@ -22,6 +24,7 @@ export class Theatre {
     this.labels = new Labels(host.querySelector(".names"));
     this.shown = { names: true, paths: true, floor: true };
     this.arrowNames = null;
+    this.hidden = new Set(this.data.links.flatMap(({ hidden }, link) => (hidden ? [link] : [])));
     this.noPose = host.querySelector("#no-pose");
     this.stage.afterDraw = () => this.#name();
     this.stage.whenSized = () => this.home();
@@ -29,66 +32,65 @@ export class Theatre {
   }
 
   #change(changes) {
-    if (changes.has("run")) this.#build();
+    if (changes.has("run")) this.#open();
     if (changes.has("branch") || changes.has("run")) this.#dress();
     if (changes.has("compare") || changes.has("branch")) this.#compare();
     this.#pose();
   }
 
-  /** The mechanism of a run, with rails as long as its travels. */
-  #build() {
+  /** Sizes of what is drawn, from the run's own branch; the mechanisms of a run are made when they are first shown. */
+  #open() {
+    for (const made of this.mechanisms?.values() ?? []) dispose(made.object);
+    this.mechanisms = new Map();
+    const own = placesOf(this.data, this.state.branches()[0]);
+    this.size = diagonal(own) || this.data.size || 1;
+    this.unit = jointUnit(this.data, this.size);
+  }
+
+  /** The branch's mechanism, paths and arrows; the view stays unless something is out of it. */
+  #dress() {
     const { scene } = this.stage;
+    const { branch } = this.state;
+    const zoom = this.arrows?.zoom ?? 1;
     if (this.mechanism) scene.remove(this.mechanism.object);
-    const hidden = this.mechanism?.links.map((group) => !group.visible);
-    const branches = this.state.branches();
-    this.mechanism = new Mechanism(this.data, branches);
-    hidden?.forEach((off, link) => (this.mechanism.links[link].visible = !off));
-    scene.add(this.mechanism.object);
-    this.places = placesOf(this.data, [branches[0]]);
-    const heights = this.places.map((place) => place.dot(this.stage.up));
-    this.floorHeight = Math.min(...heights) - FLOOR * this.mechanism.unit;
+    for (const old of [this.paths, this.arrows]) if (old) dispose(old.object);
+    if (!this.mechanisms.has(branch)) this.mechanisms.set(branch, new Mechanism(this.data, branch, this.unit));
+    this.mechanism = this.mechanisms.get(branch);
+    this.mechanism.links.forEach((group, link) => (group.visible = !this.hidden.has(link)));
+    this.paths = new Paths(this.data, branch, this.unit);
+    this.arrows = new Arrows(this.data, branch, this.unit, this.size);
+    this.arrows.zoom = zoom;
+    this.#choose();
+    scene.add(this.mechanism.object, this.paths.object, this.arrows.object);
+    this.places = placesOf(this.data, branch);
+    this.floorHeight = Math.min(...this.places.map((place) => place.dot(this.stage.up))) - FLOOR * this.unit;
     this.#floor();
+    if (this.stage.width && !this.stage.sees(this.places)) this.home();
   }
 
   #floor() {
     this.stage.setFloor(this.shown.floor ? this.floorHeight : null);
   }
 
-  /** Paths and arrows of the branch. */
-  #dress() {
-    const { scene } = this.stage;
-    for (const old of [this.paths, this.arrows]) {
-      if (!old) continue;
-      scene.remove(old.object);
-      old.dispose();
-    }
-    this.paths = new Paths(this.data, this.state.branch, this.mechanism.unit);
-    this.paths.object.visible = this.shown.paths;
-    const zoom = this.arrows?.zoom ?? 1;
-    this.arrows = new Arrows(this.data, this.state.branch, this.mechanism.unit);
-    this.arrows.zoom = zoom;
-    this.#choose();
-    scene.add(this.paths.object, this.arrows.object);
-  }
-
   #choose() {
     for (const each of this.arrows.all) each.shown = this.arrowNames?.has(each.arrow.name) ?? false;
   }
 
-  /** Pale copies of the mechanism in the other modes, each with its paths. */
+  /** The mechanism in the other modes, pale, each with its paths. */
   #compare() {
     for (const { mechanism, paths } of this.ghosts ?? []) {
-      this.stage.scene.remove(mechanism.object, paths.object);
-      paths.dispose();
+      dispose(mechanism.object);
+      dispose(paths.object);
     }
     this.ghosts = [];
     if (!this.state.compare) return;
-    this.state.branches().forEach((branch, k) => {
-      if (branch === this.state.branch) return;
-      const mechanism = this.mechanism.ghost(CURVES[k % CURVES.length]);
-      const paths = new Paths(this.data, branch, this.mechanism.unit, 0.4);
-      this.ghosts.push({ branch, mechanism, paths });
+    const others = this.state.branches().filter((branch) => branch !== this.state.branch && branch.poseCount > 0);
+    this.ghosts = others.slice(0, MOST_GHOSTS).map((branch) => {
+      const colour = CURVES[this.state.branches().indexOf(branch) % CURVES.length];
+      const mechanism = new Mechanism(this.data, branch, this.unit, colour);
+      const paths = new Paths(this.data, branch, this.unit, 0.4);
       this.stage.scene.add(mechanism.object, paths.object);
+      return { branch, mechanism, paths };
     });
   }
 
@@ -146,10 +148,12 @@ export class Theatre {
         wanted.push({ key: `point ${name}`, text: name, places: [this.mechanism.now(link, place)], kind: "point" });
       }
     }
-    for (const { arrow, group, magnitude, tip } of this.arrows.all) {
-      if (!group.visible || !tip) continue;
+    const arrows = this.arrows.all.filter(({ group, tip }) => group.visible && tip);
+    for (const { arrow, group, magnitude, tip } of arrows.length > MOST_VALUES ? [] : arrows) {
+      // what a name says in brackets stands in the list of arrows
+      const name = arrow.name.replace(/ \(.*\)$/, "*");
       wanted.unshift({
-        key: `arrow ${arrow.name}`, text: `${arrow.name} ${magnitude.toPrecision(4)} ${arrow.unit}`, places: [tip, group.position], kind: arrow.kind,
+        key: `arrow ${arrow.name}`, text: `${name} ${magnitude.toPrecision(4)} ${arrow.unit}`, places: [tip, group.position], kind: arrow.kind,
       });
     }
     this.labels.show(wanted, camera, width, height);
@@ -162,7 +166,7 @@ export class Theatre {
 
   /** Looks along one of the ground axes, or another direction. */
   lookFrom(direction) {
-    const room = 2.6 * this.mechanism.unit;
+    const room = 2.6 * this.unit;
     const back = direction instanceof Array ? vector(direction) : direction;
     this.stage.look(back, withRoom(this.places, room));
   }
@@ -175,6 +179,8 @@ export class Theatre {
   }
 
   setLinkVisible(link, on) {
+    if (on) this.hidden.delete(link);
+    else this.hidden.add(link);
     this.mechanism.links[link].visible = on;
     this.#pose();
   }

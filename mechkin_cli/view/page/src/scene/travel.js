@@ -3,29 +3,27 @@
 import { Matrix4, Quaternion, Vector3 } from "three";
 import { frame, vector } from "./vectors.js";
 
-const MOST_POSES = 200; // of a branch; between them a rail's end is not missed by much
+const MOST_POSES = 200; // between them a rail's end is not missed by much
 
 /**
  * For each joint and each of its halves, the box [least, most] (Vector3) of the other half's point in this half's frame.
  * @returns {Array<[Box, Box]>}
  */
-export function travels(data, branches) {
+export function travels(data, branch) {
   const frames = data.joints.map((joint) =>
     joint.halves.map((half) => frame(vector(half.point), vector(half.axis), vector(half.x))),
   );
   const boxes = data.joints.map(() => [emptyBox(), emptyBox()]);
-  for (const branch of branches) {
-    const stride = Math.max(1, Math.ceil(branch.poseCount / MOST_POSES));
-    for (let index = 0; index < branch.poseCount; index += stride) {
-      const poses = data.links.map((_, link) => poseMatrix(branch.pose(index, link)));
-      data.joints.forEach((joint, j) => {
-        const placed = joint.links.map((link, k) => poses[link].clone().multiply(frames[j][k]));
-        placed.forEach((own, k) => {
-          const other = new Vector3().setFromMatrixPosition(placed[1 - k]);
-          grow(boxes[j][k], other.applyMatrix4(own.clone().invert()));
-        });
+  const stride = Math.max(1, Math.ceil(branch.poseCount / MOST_POSES));
+  for (let index = 0; index < branch.poseCount; index += stride) {
+    const poses = data.links.map((_, link) => poseMatrix(branch.pose(index, link)));
+    data.joints.forEach((joint, j) => {
+      const placed = joint.links.map((link, k) => poses[link].clone().multiply(frames[j][k]));
+      placed.forEach((own, k) => {
+        const other = new Vector3().setFromMatrixPosition(placed[1 - k]);
+        grow(boxes[j][k], other.applyMatrix4(own.clone().invert()));
       });
-    }
+    });
   }
   return boxes.map((pair) => pair.map((box) => (box.least.x <= box.most.x ? box : zeroBox())));
 }

@@ -1,6 +1,6 @@
 // From where to look first: the side from which the mechanism covers most and hides itself least.
 
-import { Vector3 } from "three";
+import { Box3, Vector3 } from "three";
 import { squareTo, vector } from "./vectors.js";
 import { poseMatrix } from "./travel.js";
 
@@ -8,21 +8,26 @@ const MOST_POSES = 60;
 const TURNS = 24;
 const HEIGHT = 0.45; // of the camera over the floor, in parts of its distance
 
-/** Where the joints and the points with paths come to in some branches. */
-export function placesOf(data, branches) {
+/** Where the joints and the points come to in a branch. */
+export function placesOf(data, branch) {
   const found = [];
-  for (const branch of branches) {
-    const stride = Math.max(1, Math.ceil(branch.poseCount / MOST_POSES));
-    for (let index = 0; index < branch.poseCount; index += stride) {
-      const poses = data.links.map((_, link) => poseMatrix(branch.pose(index, link)));
-      for (const joint of data.joints) {
-        joint.links.forEach((link, k) => found.push(vector(joint.halves[k].point).applyMatrix4(poses[link])));
-      }
-      for (const { link, place } of data.points) found.push(vector(place).applyMatrix4(poses[link]));
-    }
+  const shown = (link) => !data.links[link].hidden;
+  const stride = Math.max(1, Math.ceil(branch.poseCount / MOST_POSES));
+  for (let index = 0; index < branch.poseCount; index += stride) {
+    const poses = data.links.map((_, link) => poseMatrix(branch.pose(index, link)));
+    const add = (link, place) => shown(link) && found.push(vector(place).applyMatrix4(poses[link]));
+    for (const joint of data.joints) joint.links.forEach((link, k) => add(link, joint.halves[k].point));
+    for (const { link, place } of data.points) add(link, place);
+    data.links.forEach(({ shape }, link) => shape.points.forEach((place) => add(link, place)));
   }
   if (found.length === 0) found.push(vector(data.centre));
   return found;
+}
+
+/** The diagonal of the box that holds places. */
+export function diagonal(places) {
+  const box = new Box3().setFromPoints(places);
+  return box.min.distanceTo(box.max);
 }
 
 /** Corners of cubes of half width `room` about places: what the parts drawn there need. */
