@@ -61,6 +61,9 @@ def moved(found: tuple[np.ndarray, np.ndarray], place: np.ndarray) -> np.ndarray
     return place + w * twice + np.cross(v, twice) + t
 
 
+CURVES = "window.mechkin.curves.plots.reduce((sum, plot) => sum + plot.series.length - 1, 0)"
+
+
 def colours(browser: Browser) -> dict[str, int]:
     """How many points of the canvas have each colour, of a few thousand."""
     found: dict[str, int] = browser.evaluate("""(() => {
@@ -200,11 +203,11 @@ def test_modes_are_switched_and_compared(show: Show) -> None:
     browser.evaluate("window.mechkin.seek(10)")
     browser.select(".modes select", "mode 2")
     assert (row(browser), browser.evaluate("window.mechkin.state.branch.name")) == (10, "mode 2")
-    alone = browser.evaluate("document.querySelectorAll('.u-series').length")
+    alone = browser.evaluate(CURVES)
     before = colours(browser)
     browser.click(".modes input")
     assert browser.evaluate("window.mechkin.theatre.ghosts.length") == 1
-    assert browser.evaluate("document.querySelectorAll('.u-series').length") > alone
+    assert browser.evaluate(CURVES) > alone
     assert colours(browser) != before
     ghost = browser.evaluate(
         "window.mechkin.theatre.ghosts[0].mechanism.links[3].quaternion.toArray()"

@@ -13,6 +13,9 @@ export const CURVES = [
   "#3b82d6", "#e5782e", "#2fa36b", "#c94f7c", "#8b6fd0", "#29a0b1", "#c2a01d", "#b0603a",
 ];
 
+/** So many other modes are compared at once: of more, nothing could be told apart. */
+export const MOST_COMPARED = 8;
+
 export const MARKS = { "dead-centre": "#d64545", "branch-point": "#8b6fd0", event: "#29a0b1" };
 
 export const ARROWS = { force: "#d6303f", moment: "#7a43d1" };

@@ -40,7 +40,7 @@ function showRuns(data, theme, tabs) {
   const state = new State(data);
   offerRuns(data, state);
   const player = new Player(find("#player"), state);
-  new Curves(find("#curves"), state, theme);
+  const curves = new Curves(find("#curves"), state, theme);
   tabs.add("curves", "Curves");
   new Tables(find("#tables"), state, theme);
   tabs.add("tables", data.tables.length > 1 ? `Tables (${data.tables.length})` : "Table");
@@ -55,7 +55,7 @@ function showRuns(data, theme, tabs) {
       home: () => theatre?.home(), look: (axis, back) => tools?.look(axis, back),
     },
   });
-  Object.assign(window.mechkin, hooks(data, state, player, theatre));
+  Object.assign(window.mechkin, hooks({ data, state, player, curves, theatre }));
 }
 
 function offerRuns(data, state) {
@@ -94,10 +94,10 @@ function say(text) {
 }
 
 /** What tests, and the browser's console, may ask and do. */
-function hooks(data, state, player, theatre) {
+function hooks({ data, state, player, curves, theatre }) {
   const link = (name) => data.links.findIndex((each) => each.name === name);
   return {
-    data, state, theatre,
+    data, state, curves, theatre,
     seek: (row) => state.seek(row),
     row: () => state.row,
     pose: (name) => theatre.pose(link(name)),

@@ -38,6 +38,7 @@ export class Player {
 
   #show(changes) {
     const { branch, row } = this.state;
+    if (changes.has("compare") && !changes.has("branch")) this.#offerModes();
     if (changes.has("branch")) {
       this.slider.max = Math.max(0, branch.rows - 1);
       this.slider.disabled = this.button.disabled = branch.rows < 2;
@@ -62,7 +63,8 @@ export class Player {
     const kept = [];
     if (many) {
       const names = branches.map((each) => each.name);
-      const modes = choice("Assembly mode", names, (k) => this.state.setBranch(names[k]));
+      const texts = branches.map(({ name, own }) => (own ? `${name} (the file's)` : name));
+      const modes = choice("Assembly mode", texts, (k) => this.state.setBranch(names[k]));
       modes.value = branches.indexOf(this.state.branch);
       kept.push(modes, tick("compare", this.state.compare, (on) => this.state.setCompare(on)));
     }

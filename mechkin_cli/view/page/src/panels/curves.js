@@ -1,7 +1,7 @@
 // Curves of any columns: one plot for each unit, a common cursor, a click that seeks, marks and verdicts.
 
 import uPlot from "uplot";
-import { CURVES, MARKS, verdictColour } from "../colours.js";
+import { CURVES, MARKS, MOST_COMPARED, verdictColour } from "../colours.js";
 import { numbers } from "../data.js";
 import { element } from "../dom.js";
 import { told } from "../numbers.js";
@@ -25,10 +25,11 @@ export class Curves {
       this.chosen.set(state.run.name, keys);
       this.#draw();
     });
+    this.remark = element("p.remark");
     this.empty = element("p.empty", {}, "No column is chosen.");
     this.marks = element("ul.marks");
     this.plotted = element("div.plots");
-    host.append(this.choice.node, this.plotted, this.empty, this.marks);
+    host.append(this.choice.node, this.remark, this.plotted, this.empty, this.marks);
     this.sync = uPlot.sync("mechkin");
     new ResizeObserver(() => this.#fit()).observe(this.plotted);
     theme.addEventListener("change", () => this.#draw());
@@ -65,6 +66,8 @@ export class Curves {
       this.#plot(unit, columns.filter((column) => column.unit === unit), colours, k === units.length - 1, units.length),
     );
     this.empty.hidden = columns.length > 0;
+    const others = this.#others().map(({ branch: other }) => other.name);
+    this.remark.textContent = others.length > 0 ? `dashed: ${others.join(", ")}` : "";
     this.#listMarks();
     this.#moveCursor();
   }
@@ -96,7 +99,7 @@ export class Curves {
       width: Math.max(260, this.plotted.clientWidth),
       height: this.#height(count),
       cursor: { sync: { key: this.sync.key }, drag: { x: true, y: false }, focus: { prox: 24 } },
-      legend: { live: false, show: true },
+      legend: { show: false }, // the chips above the plots are the legend
       scales: { x: { time: false } },
       axes: [
         { ...axis, label: last ? (this.axis.byRow ? "row" : withUnit(label, xUnit)) : undefined, labelSize: last ? 20 : 0, size: last ? 36 : 28 },
@@ -115,7 +118,8 @@ export class Curves {
     if (!this.state.compare) return [];
     return this.state.branches()
       .map((branch, index) => ({ branch, index }))
-      .filter(({ branch }) => branch !== this.state.branch)
+      .filter(({ branch }) => branch !== this.state.branch && branch.poseCount > 0)
+      .slice(0, MOST_COMPARED)
       .map((each) => ({ ...each, axis: new RowAxis(each.branch) }));
   }
 
@@ -191,7 +195,7 @@ export class Curves {
 
   /** So high that the plots fill the panel, where there are few. */
   #height(count) {
-    const each = (this.host.clientHeight - BESIDE) / Math.max(1, count) - 34;
+    const each = (this.host.clientHeight - BESIDE) / Math.max(1, count) - 4;
     return Math.min(MOST_HEIGHT, Math.max(LEAST_HEIGHT, Math.round(each)));
   }
 

@@ -33,7 +33,9 @@ export class Body {
 
   /** The same, pale and without edges. */
   ghost(colour) {
-    return this.#solid(colour, { transparent: true, opacity: GHOST_OPACITY, depthWrite: false }).group;
+    // set back a little, so that what lies in the same place as the mechanism does not show through it
+    const back = { polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4 };
+    return this.#solid(colour, { transparent: true, opacity: GHOST_OPACITY, depthWrite: false, ...back }).group;
   }
 
   #solid(color, more) {

@@ -52,6 +52,7 @@ export class Mechanism {
     data.joints.forEach((joint, j) => this.#addJoint(joint, bodies, travel[j]));
     this.links = bodies.map((body, index) => {
       const group = ghost ? body.ghost(ghost) : body.finish(linkColour(data.links[index], index));
+      group.visible = !(ghost && index === 0) && !data.links[index].hidden; // one ground is enough
       this.object.add(group);
       return group;
     });

@@ -113,21 +113,30 @@ export class Stage {
     const [right, above] = [0, 1].map((k) => new Vector3().setFromMatrixColumn(this.camera.matrixWorld, k));
     const tall = Math.tan((FIELD * Math.PI) / 360) / MARGIN;
     const wide = tall * this.camera.aspect;
+    const { top, bottom } = this.#covered();
+    const [over, under] = [tall * (1 - 2 * top), tall * (1 - 2 * bottom)];
     // the four sides of the frustum, each pushed out until it holds every place
     const side = (across, slope) =>
       Math.max(...places.map((place) => {
         const off = place.clone().sub(this.centre);
         return off.dot(across) + slope * off.dot(back);
       }));
-    const sides = [[right, wide], [right.clone().negate(), wide], [above, tall], [above.clone().negate(), tall]]
+    const sides = [[right, wide], [right.clone().negate(), wide], [above, over], [above.clone().negate(), under]]
       .map(([across, slope]) => side(across, slope));
+    const distance = Math.max((sides[0] + sides[1]) / (2 * wide), (sides[2] + sides[3]) / (over + under), 1e-3 * this.data.size);
     const target = this.centre.clone()
-      .addScaledVector(right, (sides[0] - sides[1]) / 2).addScaledVector(above, (sides[2] - sides[3]) / 2);
-    const distance = Math.max((sides[0] + sides[1]) / (2 * wide), (sides[2] + sides[3]) / (2 * tall), 0.1 * this.data.size);
+      .addScaledVector(right, (sides[0] - sides[1]) / 2)
+      .addScaledVector(above, (sides[2] - sides[3] - (over - under) * distance) / 2);
     this.controls.target.copy(target);
     this.camera.position.copy(target).addScaledVector(back, distance);
     this.controls.update();
     this.ask();
+  }
+
+  /** The shares of the stage's height that its tools and its legend lie over. */
+  #covered() {
+    const share = (selector) => Math.min(0.25, (this.host.querySelector(selector)?.offsetHeight ?? 0) / (this.height || 1));
+    return { top: share("#tools"), bottom: share("#legend") };
   }
 
   /** Whether all places are on the stage. */

@@ -1,6 +1,6 @@
 // What is on the stage: the mechanism at the row that is shown, ghosts of other modes, paths, arrows, names.
 
-import { CURVES } from "../colours.js";
+import { CURVES, MOST_COMPARED } from "../colours.js";
 import { Arrows } from "./arrows.js";
 import { posesAt } from "./between.js";
 import { Labels } from "./labels.js";
@@ -11,7 +11,6 @@ import { vector } from "./vectors.js";
 import { diagonal, firstDirection, placesOf, withRoom } from "./viewpoint.js";
 
 const FLOOR = 2.6; // below the lowest joint, in joint sizes
-const MOST_GHOSTS = 8; // of more modes than that nothing could be told apart
 const MOST_VALUES = 8; // arrows whose values are written beside them
 const LOST = 0.35; // opacity of the mechanism in a row without position
 
@@ -85,7 +84,7 @@ export class Theatre {
     this.ghosts = [];
     if (!this.state.compare) return;
     const others = this.state.branches().filter((branch) => branch !== this.state.branch && branch.poseCount > 0);
-    this.ghosts = others.slice(0, MOST_GHOSTS).map((branch) => {
+    this.ghosts = others.slice(0, MOST_COMPARED).map((branch) => {
       const colour = CURVES[this.state.branches().indexOf(branch) % CURVES.length];
       const mechanism = new Mechanism(this.data, branch, this.unit, colour);
       const paths = new Paths(this.data, branch, this.unit, 0.4);
