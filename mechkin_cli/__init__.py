@@ -2,9 +2,34 @@
 
 import mechkin_cli as mk
 
-m = mk.load("mechanisms/rcsr.yaml")
-r = m.analyze()
-r["O4.theta"]          # array over the rows, in the file's units
+m = mk.load("mechanisms/rcsr.yaml")    a Model: the checked file; also a dict of its sections
+m = mk.loads(text)                     the same from a text
+r = m.analyze()                        an Analysis: the sweep; m.respond("NAME"): a response
+
+Of a model
+    m.analyze()  m.respond()           the runs
+    m.modes()                          the ways to assemble it
+    m.ranges()                         from where to where an input can go: dead centres, circuits
+    m.mobility()                       what can move
+    m.solve({"O1.theta": 161.5})       one position
+    m.with_parameters({"P1": 0.48})    the model with other values
+    m.vary({"P1": [0.46, 0.48]})       many variants at once
+    m.certify()                        proofs of the sweep's rows
+    m.view()                           a page that shows it in motion
+
+Of an analysis
+    r["O4.theta"]  r["norm(O3.force)"] any quantity or expression over the rows, in the file's units
+    list(r)  "O4.theta" in r  r.keys() the quantities there are; r.unit("O4.theta"): the unit of one
+    r.tables["NAME"]  r.balances       tables as the file lays them out
+    r.to_pandas("NAME")                a table as a DataFrame
+    r.summary()  r.peak("O1.effort")   extremes with their places, means
+    r.plot()  r.picture()              curves, drawn or as plain data
+    r.errors  r.certificate            true errors of all cells; proofs
+    r.diagnostics  r.complete          what the run has to say; whether every row is solved
+
+Errors are a MechkinError: an InvalidFile with one Diagnostic per fault and its place, a UsageError
+for a call that cannot be, an ExpressionError for a quantity that is none. Status has the verdicts
+of rows. `help(mk.Model)` and `help(mk.Analysis)` tell all.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from mechkin_cli.diagnostics import InvalidFile
 from mechkin_cli.reading.document import Document, document_from_text, read_document
@@ -39,6 +39,18 @@ def open_text(
     that the text names."""
     document = replace(document_from_text(text, name), folder=folder)
     return _checked(document.with_parameters(parameters))
+
+
+def open_data(
+    data: Mapping[Any, Any],
+    name: str,
+    parameters: Mapping[str, str] = _NONE,
+    folder: Path | None = None,
+) -> Source:
+    """As `open_text`, for the plain data of a program; places are ways of keys."""
+    from mechkin_cli.reading.from_data import document_from_data
+
+    return _checked(document_from_data(data, name, folder).with_parameters(parameters))
 
 
 def _checked(document: Document) -> Source:

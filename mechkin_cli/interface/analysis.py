@@ -12,7 +12,9 @@ from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.expressions import Expression, Vector, parse
 from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.interface.plotted import Plotted
+from mechkin_cli.interface.reading import Reading
 from mechkin_cli.interface.summaries import Summarized
+from mechkin_cli.named import Named
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.tables.columns import Columns, Words, evaluate, row_words
 from mechkin_cli.tables.layout import CoefficientsLayout, TableLayout, row_texts
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.balance import AnyBalance
 
 
-class Analysis(Summarized, Plotted):
+class Analysis(Reading, Summarized, Plotted):
     """Results of a sweep or a response: `r["O2.theta"]` is an array over the rows, in the file's
     units.
 
@@ -121,9 +123,9 @@ class Analysis(Summarized, Plotted):
         return Errors(self)
 
     @cached_property
-    def tables(self) -> tuple[Columns, ...]:
-        """The tables that were asked for, evaluated in the file's units."""
-        return tuple(evaluate(layout, self.result) for layout in self.layouts)
+    def tables(self) -> Named[Columns]:
+        """The tables that were asked for, evaluated in the file's units: in order, and by name."""
+        return Named(evaluate(layout, self.result) for layout in self.layouts)
 
     @cached_property
     def coefficients(self) -> tuple[Columns, ...]:
@@ -166,6 +168,20 @@ class Analysis(Summarized, Plotted):
             for i, column in enumerate(columns)
         ]
         return np.stack(settled, axis=1) if len(settled) > 1 else settled[0]
+
+    def unit(self, text: str) -> str:
+        """The unit of a quantity or an expression, as tables write it: `deg`, `N*m`, `` of words
+        and pure numbers.
+
+        Raises:
+            ExpressionError: no such quantity, or dimensions that do not fit.
+        """
+        a_text("a quantity or expression", text, '"O4.theta"')
+        if text in row_texts(self.run):
+            return ""
+        expression = parse(text)
+        result = self._readable(expression.names)
+        return result.units.label(expression.evaluate(result.quantity, result.units).dimension)
 
     def _columns(self, expression: Expression, result: Result) -> list[NDArray[np.float64]]:
         """The value of an expression in the file's units: one column, or three of a vector."""

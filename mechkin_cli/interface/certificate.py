@@ -16,6 +16,7 @@ from mechkin_cli.analysis.proof.enclosures import (
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number, UsageError
 from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.interface.dead_centre import DeadCentre, counted_tubes
+from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.proof import Proof
 from mechkin_cli.runs import SWEEP
 
@@ -46,7 +47,7 @@ _CURE = {
 }
 
 
-class Certificate:
+class Certificate(Listed):
     """What is proven of the rows of a sweep.
 
     Raises:
@@ -58,6 +59,12 @@ class Certificate:
             raise UsageError(f"{analysis.run} is a response: proofs are of sweeps")
         self.analysis = analysis
         self._found: Found = analysis.result.certificate
+
+    @property
+    def listing(self) -> Listing:
+        """What is proven, and where nothing is."""
+        head = f"Certificate of {self.analysis.model.name}: {self.words}"
+        return Listing(head, notes=tuple(str(one) for one in self.diagnostics))
 
     @cached_property
     def status(self) -> NDArray[np.str_]:

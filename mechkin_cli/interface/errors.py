@@ -15,6 +15,7 @@ from mechkin_cli.building.columns import used_quantities
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.expressions import parse
 from mechkin_cli.interface.arguments import a_text
+from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.mechanism.bearing_loads import read_for
 from mechkin_cli.tables.cell_errors import (
     ALL_COLUMNS,
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
     from mechkin_cli.tape.double_doubles import DoubleDoubles
 
 
-class Errors:
+class Errors(Listed):
     """True errors of the cells of an analysis, in the file's units.
 
     `errors["theta4"]` is |cell - true value| over the rows, of a column by its label, of a column
@@ -67,6 +68,21 @@ class Errors:
             for table in analysis.tables
             if table.summary is not None
         )
+
+    @property
+    def listing(self) -> Listing:
+        """The worst cell of each column, or why there is none."""
+        digits = "nothing was repeated" if self.digits is None else f"right to {self.digits} digits"
+        rows = []
+        for column in self.columns:
+            row = column.worst
+            told = [column.why, "", "", ""]
+            if row >= 0:
+                error, relative = column.error[row], column.relative[row]
+                told = ["", f"{error:.1e} {column.unit}", f"{relative:.1e}", str(row + 1)]
+            rows.append((column.table, column.label, told[1], told[2], told[3], told[0]))
+        labels = ("table", "column", "worst error", "relative", "row", "why not")
+        return Listing(f"True errors of {self._analysis.model.name}: {digits}", labels, tuple(rows))
 
     @cached_property
     def repeated(self) -> Repeated:

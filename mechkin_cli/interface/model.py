@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mechkin_cli.building.build import Built, build
-from mechkin_cli.building.source import open_text
+from mechkin_cli.building.source import open_data, open_text
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.arguments import Setting, a_text, texts
@@ -15,7 +15,9 @@ from mechkin_cli.interface.asking import run_name
 from mechkin_cli.interface.certified import Certified
 from mechkin_cli.interface.settings import input_values
 from mechkin_cli.interface.viewed import Viewed
+from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.mechanism.problem import Problem
+from mechkin_cli.named import Named
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.graph import SolverGraph
 from mechkin_cli.solver.session import Session
@@ -35,7 +37,7 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.precise import Precise
 
 
-class Model(Certified, Viewed):
+class Model(Listed, Certified, Viewed):
     """A checked mechanism file."""
 
     def __init__(self, built: Built, stem: str) -> None:
@@ -48,7 +50,29 @@ class Model(Certified, Viewed):
         """Pickled and copied as the text of the file; tables that it names are read again."""
         document = self.built.read.document
         given = (document.text, document.file, dict(document.overrides), document.folder)
-        return _rebuilt, (*given, self.stem)
+        return _rebuilt, (*given, self.stem, document.is_data)
+
+    @property
+    def listing(self) -> Listing:
+        """Links, joints, inputs and tables; nothing is solved for it."""
+        mechanism = self.problem.mechanism
+        joints = tuple(
+            (
+                joint.name,
+                joint.letter,
+                ", ".join(f"{joint.name}.{c}" for c in joint.type.coordinates),
+            )
+            for joint in mechanism.joints.values()
+        )
+        inputs = ", ".join(driven.name for driven in self.problem.motion.inputs)
+        found = {
+            "loops": str(mechanism.loops),
+            "inputs": inputs or "none",
+            "runs": ", ".join(self.runs),
+            "tables": ", ".join(table.name for table in self.tables),
+        }
+        notes = tuple(f"{name}: {text}" for name, text in found.items() if text)
+        return Listing(f"Model of {self.name}", ("joint", "type", "coordinates"), joints, notes)
 
     @property
     def name(self) -> str:
@@ -115,9 +139,10 @@ class Model(Certified, Viewed):
         return precise(self.built, self.problem)
 
     @property
-    def tables(self) -> tuple[TableLayout, ...]:
-        """Layouts of the file's tables; a run without any has one of its own name."""
-        return self.built.tables
+    def tables(self) -> Named[TableLayout]:
+        """Layouts of the file's tables, in order and by name; a run without any has one of its own
+        name."""
+        return Named(self.built.tables)
 
     @property
     def runs(self) -> tuple[str, ...]:
@@ -394,7 +419,16 @@ class Model(Certified, Viewed):
 
 
 def _rebuilt(
-    text: str, file: str, overrides: Mapping[str, str], folder: Path | None, stem: str
+    text: str,
+    file: str,
+    overrides: Mapping[str, str],
+    folder: Path | None,
+    stem: str,
+    is_data: bool,
 ) -> Model:
-    """A model of the text that another had."""
+    """A model of the text that another had, or of the data that its text was made from."""
+    if is_data:
+        import json
+
+        return Model(build(open_data(json.loads(text), file, overrides, folder)), stem)
     return Model(build(open_text(text, file, overrides, folder)), stem)

@@ -17,6 +17,7 @@ from mechkin_cli.nearest import nearest
 from mechkin_cli.reading.nodes import (
     Entry,
     Mapping,
+    Mark,
     Node,
     PlainData,
     Scalar,
@@ -38,7 +39,8 @@ class Document:
 
     `file` is the name that messages show, `text` the source, `root` the top-level mapping;
     `overrides` holds the parameters set from outside, by name; `folder` is where files are sought
-    that it names, None for a text that comes from no file.
+    that it names, None for a text that comes from no file. `is_data` says that the text was made
+    from a program's data: places are then ways of keys.
     """
 
     file: str
@@ -46,6 +48,7 @@ class Document:
     root: Mapping
     overrides: dict[str, str] = field(default_factory=dict)
     folder: Path | None = None
+    is_data: bool = False
 
     @cached_property
     def data(self) -> dict[str, PlainData]:
@@ -65,12 +68,13 @@ class Document:
         """Where the value at a path stands; for a missing one, its nearest ancestor that exists."""
         if override := self._override(path):
             return self._outside(override, 0)
-        return Place(self.file, *self._reach(path)[0].value.mark)
+        entry, depth = self._reach(path)
+        return self._at(path[:depth], entry.value.mark)
 
     def key_place(self, path: KeyPath) -> Place:
         """Where the key at a path stands (of a list item, the item); missing keys as in `place`."""
         entry, depth = self._reach(path)
-        return Place(self.file, *entry.mark) if depth == len(path) else self.place(path)
+        return self._at(path, entry.mark) if depth == len(path) else self.place(path)
 
     def place_in(self, path: KeyPath, offset: int) -> Place:
         """Where the character `offset` (from 0) of the scalar at a path stands in the source."""
@@ -79,6 +83,8 @@ class Document:
         node = self.node(path)
         if not isinstance(node, Scalar):
             return self.place(path)
+        if self.is_data:
+            return self.place(path)._replace(column=offset + 1)
         from mechkin_cli.reading.offsets import source_mark  # only on the way to messages
 
         return Place(self.file, *source_mark(node, offset, self._lines))
@@ -114,6 +120,14 @@ class Document:
             entry = Entry(entry.mark, Scalar(text, entry.value.mark, Style.PLAIN))
         return entry, len(path)
 
+    def _at(self, path: KeyPath, mark: Mark) -> Place:
+        """A place that the text has, or the way of keys to it."""
+        return (
+            Place(f"{self.file} at {key_words(path)}", 0, 1)
+            if self.is_data
+            else Place(self.file, *mark)
+        )
+
     def _override(self, path: KeyPath) -> str | None:
         if len(path) == 2 and path[0] == _PARAMETERS and path[1] in self.overrides:
             return str(path[1])
@@ -137,6 +151,16 @@ def document_from_text(text: str, name: str) -> Document:
     check_size(len(text.encode("utf-8", "surrogatepass")), name)
     text = text.removeprefix("\ufeff")
     return Document(name, text, parse(text, name))
+
+
+def key_words(path: KeyPath) -> str:
+    """A way of keys as messages show it.
+
+    >>> key_words(("joints", "A", "point", 2)), key_words(())
+    ('joints.A.point[2]', 'the top')
+    """
+    words = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in path)
+    return words.removeprefix(".") or "the top"
 
 
 def _child(node: Node, step: str | int) -> Entry | None:

@@ -24,6 +24,7 @@ from mechkin_cli.freedoms.configurations import Body, assembled, home
 from mechkin_cli.freedoms.idle import IdleFreedom, idle_freedoms
 from mechkin_cli.freedoms.local_dimension import Freedom, freedom_of
 from mechkin_cli.freedoms.motions import Motions
+from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.random_starts import RandomStarts
@@ -32,8 +33,8 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.session import Session
 
 
-@dataclass(frozen=True)
-class Mobility:
+@dataclass(frozen=True, repr=False)
+class Mobility(Listed):
     """What can move.
 
     `count` is Kutzbach's; `mobility` the finite freedom, None where it cannot be told (no assembly,
@@ -55,6 +56,15 @@ class Mobility:
     redundant: tuple[Redundancy, ...]
     fixed: tuple[str, ...]
     diagnostics: tuple[Diagnostic, ...]
+
+    @property
+    def listing(self) -> Listing:
+        """The verdict, and what is idle, redundant or fixed."""
+        notes = [f"{self.count} by Kutzbach's count, {self.loops} loops"]
+        notes += [f"idle: {item.sentence}" for item in self.idle]
+        notes += [f"redundant: {item.sentence}" for item in self.redundant]
+        notes += [f"fixed: {', '.join(self.fixed)} never move"] if self.fixed else []
+        return Listing(f"Mobility of {self.name}: {self.verdict}", notes=tuple(notes))
 
     @property
     def useful(self) -> int | None:

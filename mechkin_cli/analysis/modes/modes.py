@@ -19,6 +19,7 @@ from mechkin_cli.analysis.assembly.not_assembled import nothing_found
 from mechkin_cli.analysis.assembly.probe import Probe
 from mechkin_cli.analysis.assembly.start import choose_start, state_at_first_row
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.solver.clusters import pose_keys, same_poses
@@ -47,8 +48,8 @@ class Mode(NamedTuple):
     condition: float
 
 
-@dataclass(frozen=True)
-class Modes:
+@dataclass(frozen=True, repr=False)
+class Modes(Listed):
     """The assembly modes at `inputs` (file's units) and how the search went.
 
     `picked` is the name of the mode that the file's `assembly:` takes, None where it takes none or
@@ -75,6 +76,26 @@ class Modes:
     turns: int | None
     diagnostics: tuple[Diagnostic, ...]
     proofs: ModeProofs | None = None
+
+    @property
+    def listing(self) -> Listing:
+        """The modes, a line each, with what is known of their completeness."""
+        place = ", ".join(f"{name} = {value:.9g}" for name, value in self.inputs.items())
+        head = f"Modes{' at ' if place else ''}{place}: {self.sentence}"
+        if not self.modes:
+            return Listing(head)
+        names = tuple(self.modes[0].coordinates)
+        rows = tuple(
+            (
+                f"{mode.name}{'*' if mode.name == self.picked else ''}",
+                *(f"{mode.coordinates[name]:.6g}" for name in names),
+                f"{mode.residual:.1e}",
+            )
+            for mode in self.modes
+        )
+        notes = [f"* mode {self.picked} is the one that the file takes"] if self.picked else []
+        notes += [f"proofs: {self.proofs.sentence}"] if self.proofs is not None else []
+        return Listing(head, ("mode", *names, "residual"), rows, tuple(notes))
 
     @property
     def sentence(self) -> str:

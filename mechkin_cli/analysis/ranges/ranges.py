@@ -14,6 +14,7 @@ from mechkin_cli.analysis.assembly.home import is_home_assembled, nearest_to_hom
 from mechkin_cli.analysis.assembly.named_modes import NamedModes, name_modes
 from mechkin_cli.analysis.assembly.not_assembled import nothing_found
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
+from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
@@ -58,8 +59,8 @@ class Range:
     extremes: tuple[Extreme, ...]
 
 
-@dataclass(frozen=True)
-class Ranges:
+@dataclass(frozen=True, repr=False)
+class Ranges(Listed):
     """Ranges of `input` with all others held as in the first row.
 
     `circuits` are the modes joined in one circuit: each is reached from the others by moving the
@@ -72,6 +73,31 @@ class Ranges:
     ranges: tuple[Range, ...]
     circuits: tuple[tuple[str, ...], ...]
     diagnostics: tuple[Diagnostic, ...]
+
+    @property
+    def listing(self) -> Listing:
+        """The ranges, a line each, and the dead centres of outputs below them."""
+        held = "".join(f", {name} held at {value:.9g}" for name, value in self.at.items())
+        rows = tuple(
+            (
+                item.mode,
+                *(
+                    "turns fully" if item.turns else f"{end.value:.9g} ({end.kind})"
+                    for end in (item.lower, item.upper)
+                ),
+                str(item.circuit),
+            )
+            for item in self.ranges
+        )
+        notes = tuple(
+            f"{extreme.output} is extreme in mode {item.mode}: {extreme.value:.9g} at "
+            f"{self.input} = {extreme.input:.9g}"
+            for item in self.ranges
+            for extreme in item.extremes
+        )
+        unit = f" [{self.unit}]" if self.unit else ""
+        labels = ("mode", "from", "to", "circuit")
+        return Listing(f"Ranges of {self.input}{unit}{held}", labels, rows, notes)
 
 
 def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, ...] = ()) -> Ranges:
