@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.building.columns import Sample
-from mechkin_cli.expressions import ExpressionError, Vector, parse
+from mechkin_cli.expressions import ExpressionError, Vector
 from mechkin_cli.mechanism.balance import AnyBalance, Cycle, Flywheel, Harmonics, Work
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.schema import balances as written
@@ -169,7 +169,7 @@ class _Builder:
         dimension: Dimension | None = None
         for i, text in enumerate(texts):
             try:
-                expression = parse(text)
+                expression = self.fields.definitions.parse(text)
                 quantity = expression.evaluate(Sample(self.fields, self.known, SWEEP))
                 if dimension is not None and not quantity.dimension.compatible(dimension):
                     raise ExpressionError(
@@ -183,7 +183,9 @@ class _Builder:
                     own = text.strip()
                     bare = own.replace(".", "").replace("_", "").isalnum()
                     stem = own if bare else f"({own})"
-                    found += [(f"{stem}.{a}", parse(f"{stem}.{a}")) for a in "xyz"]
+                    found += [
+                        (f"{stem}.{a}", self.fields.definitions.parse(f"{stem}.{a}")) for a in "xyz"
+                    ]
                 else:
                     found.append((text.strip(), expression))
             except ExpressionError as error:

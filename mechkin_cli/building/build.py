@@ -26,6 +26,7 @@ from mechkin_cli.building.unit_system import note_force_unit, read_units
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.mechanism.balance import AnyBalance
+from mechkin_cli.mechanism.influence import differentiation
 from mechkin_cli.mechanism.model import Attached, Link, Mechanism
 from mechkin_cli.mechanism.motion import Motion
 from mechkin_cli.mechanism.problem import Problem
@@ -78,6 +79,7 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
     file = source.file
     fields = read_fields(source, given)
     problem = replace(build_problem(fields, file), hold_idle=file.idle == "hold")
+    problem = _with_definitions(fields, file, problem)
     tables = build_tables(fields, file, problem)
     own = [table for table in tables if table.run == SWEEP]
     balances = _balances(fields, file, problem)
@@ -110,6 +112,17 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
     return Built(problem, graph, tables, *read, runs_of(file), graphs, *others)
 
 
+def _with_definitions(fields: Fields, file: MechanismFile, problem: Problem) -> Problem:
+    """The problem with the file's named expressions, in which derivatives are known now."""
+    fields.definitions = replace(fields.definitions, differentiate=differentiation(problem))
+    if file.quantities:
+        from mechkin_cli.building.quantities import check_quantities, take_derivatives
+
+        take_derivatives(fields)
+        check_quantities(fields, file, problem)
+    return replace(problem, definitions=fields.definitions)
+
+
 def _balances(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[AnyBalance, ...]:
     if not file.balances:
         return ()
@@ -131,6 +144,10 @@ def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fie
     units, wrong_units = read_units(source.document, source.file.units)
     fields = Fields(source.document, units, diagnostics=wrong_units)
     read_parameters(fields, source.file.parameters, given)
+    if source.file.quantities:
+        from mechkin_cli.building.quantities import read_quantities
+
+        read_quantities(fields, source.file.quantities)
     return fields
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
 from mechkin_cli.building.run_names import runs_of, unknown_run
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector, parse
+from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector
 from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.mechanism.drives import Drives, without_effort
 from mechkin_cli.mechanism.problem import Problem
@@ -141,7 +141,7 @@ def _column(
     fields: Fields, path: Path, column: written.Column, sample: Sample
 ) -> ColumnLayout | None:
     try:
-        expression = parse(column.value)
+        expression = fields.definitions.parse(column.value)
         if column.value.strip() not in sample.texts:
             found = expression.evaluate(sample, fields.units)
             if isinstance(found.value, Vector):
@@ -186,7 +186,12 @@ class Sample:
             raise AlreadyRefused(name)
         wanted = self.quantities.get(name)
         if wanted is None:
-            known = [*self.parameters, *self.quantities, *self.texts]
+            known = [
+                *self.parameters,
+                *self.fields.definitions.named,
+                *self.quantities,
+                *self.texts,
+            ]
             passive = without_effort(self.drives, name)
             raise UnknownName(name, known, passive or hint_of(name))
         one = np.ones(1)

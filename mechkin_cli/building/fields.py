@@ -18,6 +18,7 @@ from mechkin_cli.expressions import (
     parse,
 )
 from mechkin_cli.expressions import Vector as Components
+from mechkin_cli.expressions.definitions import Definitions
 from mechkin_cli.mechanism.vectors import ZERO, Vector
 from mechkin_cli.reading.document import Document
 from mechkin_cli.reading.limits import MOST_DIAGNOSTICS
@@ -52,6 +53,7 @@ class Fields:
     zeros.
 
     `refused` holds names whose definitions have errors: what uses them is not reported again.
+    `definitions` are the file's named expressions.
     """
 
     document: Document
@@ -59,6 +61,7 @@ class Fields:
     parameters: dict[str, Quantity] = field(default_factory=dict)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     refused: set[str] = field(default_factory=set)
+    definitions: Definitions = field(default_factory=Definitions)
 
     def note(self, diagnostic: Diagnostic) -> None:
         """Notes something.

@@ -87,7 +87,7 @@ class LoadLaws:
         """The law of an expression of any dimension, which is no load; None where an error was
         noted."""
         try:
-            expression = parse(text)
+            expression = self.fields.definitions.parse(text)
             if expression.names <= self.fields.parameters.keys():
                 hint = "write an expression of coordinates, rates, positions, velocities or time"
                 raise ExpressionError("this value never changes", 0, hint)

@@ -11,7 +11,7 @@ from mechkin_cli.building.coordinates import CODE, without
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.gravity import gravity_of
 from mechkin_cli.building.run_names import unknown_run
-from mechkin_cli.expressions import ExpressionError, parse
+from mechkin_cli.expressions import ExpressionError
 from mechkin_cli.mechanism.friction import Rubbing
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.model import (
@@ -240,7 +240,7 @@ class LoadBuilder:
             self._laws.acting(self._acting)
             return self._laws.by_table(path, text, over, dimension)
         try:
-            expression = parse(text)
+            expression = self.fields.definitions.parse(text)
         except ExpressionError as error:
             self.fields.expression_error(path, error)
             return 0.0

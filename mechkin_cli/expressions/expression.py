@@ -17,7 +17,7 @@ import numpy as np
 
 from mechkin_cli.expressions import arithmetic, conditions
 from mechkin_cli.expressions.errors import ExpressionError, UnknownName
-from mechkin_cli.expressions.functions import FUNCTIONS
+from mechkin_cli.expressions.functions import FORMS, FUNCTIONS
 from mechkin_cli.expressions.limits import MAX_EXPONENT, MAX_QUOTED
 from mechkin_cli.expressions.nodes import Name, Node, Number, Operation
 from mechkin_cli.expressions.operand import Operand, Resolve, Site
@@ -44,7 +44,7 @@ _OPERATIONS: dict[str, Callable[..., Quantity]] = {
     "and": conditions.join,
     "or": conditions.join,
     "not": conditions.deny,
-    **{name: function.apply for name, function in FUNCTIONS.items()},
+    **{name: function.apply for name, function in (FUNCTIONS | FORMS).items()},
 }
 _AXES = ("x", "y", "z")
 _DEFAULT_UNITS = UnitSystem()

@@ -247,6 +247,16 @@ FUNCTIONS: dict[str, Function] = {
     "angle_between": Function("angle_between(a, b)", 2, _angle_between),
 }
 
+
+def _no_derivative(site: Site, *operands: Operand) -> Quantity:
+    raise site.error(
+        "derivatives are known in columns and quantities: of positions, by an input", None
+    )
+
+
+FORMS = {"derivative": Function("derivative(expression, input)", 2, _no_derivative)}
+"""What is written as a function, and replaced before it is evaluated (`definitions`)."""
+
 INSTEAD = {
     "ln": "the natural logarithm is log(x)",
     "log10": "write log(x)/log(10)",

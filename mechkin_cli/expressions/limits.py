@@ -6,6 +6,10 @@ MAX_TEXT_LENGTH = 4000
 MAX_NODES = 1000
 """Numbers, names and operations of one expression."""
 
+MAX_EXPANDED = 20000
+"""The same with quantities and derivatives in the places of their names: some 1e-4 s a row of
+each."""
+
 MAX_DEPTH = 50
 """Nested parentheses, calls, signs and powers; bounds the recursion of the parser."""
 

@@ -52,7 +52,7 @@ def evaluate_parameters(
         for name, expression in expressions.items()
     }
     values: dict[str, Quantity] = dict(given)
-    for name in _in_order(expressions, needs, found):
+    for name in in_order(expressions, needs, found):
         if len(found) - before > MAX_ERRORS:
             break
         if any(need in texts and need not in values for need in needs[name]):
@@ -99,10 +99,14 @@ def _scalar(
     return quantity
 
 
-def _in_order(
-    expressions: Mapping[str, Expression], needs: Names, errors: list[ExpressionError]
+def in_order(
+    expressions: Mapping[str, Expression],
+    needs: Names,
+    errors: list[ExpressionError],
+    kind: str = "parameters",
 ) -> list[str]:
-    """Names with what they need before them; the members of a cycle are left out with one error."""
+    """Names with what they need before them; the members of a cycle are left out with one error,
+    which says of what `kind` they are."""
     order: list[str] = []
     finished: set[str] = set()
     for root in expressions:
@@ -117,21 +121,25 @@ def _in_order(
                     order.append(name)
             elif need in path:
                 chain = list(path)[list(path).index(need) :]
-                errors.append(_cycle(expressions[name], chain))
+                errors.append(_cycle(expressions[name], chain, kind))
                 finished.update(chain)
             elif need in expressions and need not in finished:
                 path[need] = iter(needs[need])
     return order
 
 
-def _cycle(expression: Expression, chain: list[str]) -> ExpressionError:
+def _cycle(expression: Expression, chain: list[str], kind: str) -> ExpressionError:
     shown = chain
     if len(chain) > MAX_CHAIN:
         shown = [*chain[: MAX_CHAIN - 1], f"... ({len(chain)} names)"]
     return ExpressionError(
-        f"parameters depend on themselves: {' -> '.join([*shown, chain[0]])}",
+        f"{kind} depend on themselves: {' -> '.join([*shown, chain[0]])}",
         expression.offset_of(chain[0]),
-        "give one of them a value",
+        "give one of them a value"
+        if kind == "parameters"
+        else "give one of them a value"
+        if kind == "parameters"
+        else "write one without the others",
         chain[-1],
     )
 

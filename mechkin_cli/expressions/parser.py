@@ -11,7 +11,7 @@ import math
 
 from mechkin_cli.expressions.conditions import COMPARED
 from mechkin_cli.expressions.errors import ExpressionError
-from mechkin_cli.expressions.functions import FUNCTIONS, INSTEAD
+from mechkin_cli.expressions.functions import FORMS, FUNCTIONS, INSTEAD
 from mechkin_cli.expressions.limits import MAX_DEPTH, MAX_NODES, MAX_QUOTED
 from mechkin_cli.expressions.nodes import Name, Node, Number, Operation
 from mechkin_cli.expressions.number_unit import UnitReader
@@ -22,6 +22,7 @@ from mechkin_cli.nearest import nearest_hint
 _COMPARING = dict.fromkeys(COMPARED, 5)
 _BINDING = {"or": 1, "and": 2, **_COMPARING, "+": 10, "-": 10, "*": 20, "/": 20, "^": 40, "**": 40}
 _NOT_BINDING = 3
+_CALLED = FUNCTIONS | FORMS
 _SIGN_BINDING = 30
 _COMPONENTS = (".x", ".y", ".z")
 
@@ -136,7 +137,7 @@ class _Parser:
             self.call(token)
         elif token.text == "pi":
             self.emit(Number(read(math.pi, "pi"), None, "pi", token.start))
-        elif token.text in FUNCTIONS:
+        elif token.text in _CALLED:
             raise ExpressionError(
                 f"{token.text} is a function", token.start, f"write {token.text}(...)"
             )
@@ -164,14 +165,14 @@ class _Parser:
         self.emit(Operation("[]", 3, opening.start))
 
     def call(self, name: Token) -> None:
-        function = FUNCTIONS.get(name.text)
+        function = _CALLED.get(name.text)
         if function is None:
             raise ExpressionError(
                 f"there is no function {name.text[:MAX_QUOTED]}",
                 name.start,
                 INSTEAD.get(name.text)
-                or nearest_hint(name.text, FUNCTIONS)
-                or f"functions are {', '.join(FUNCTIONS)}",
+                or nearest_hint(name.text, _CALLED)
+                or f"functions are {', '.join(_CALLED)}",
             )
         count = self.arguments(")", self.take())
         if not function.accepts(count):

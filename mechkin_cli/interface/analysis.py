@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.diagnostics import Diagnostic, UsageError
-from mechkin_cli.expressions import Expression, Vector, parse
+from mechkin_cli.expressions import Expression, Vector
 from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.interface.plotted import Plotted
 from mechkin_cli.interface.reading import Reading
@@ -158,7 +158,7 @@ class Analysis(Reading, Summarized, Plotted):
         for given in (self.result.inputs, self.result.input_rates):
             if text in given:
                 return given[text].copy()
-        expression = parse(text)
+        expression = self.result.problem.definitions.parse(text)
         result = self._readable(expression.names)
         columns = self._columns(expression, result)
         others = [self._columns(expression, other) for other in result.alternatives]

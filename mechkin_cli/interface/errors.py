@@ -13,7 +13,6 @@ from mechkin_cli.analysis.errors.reasons import BALANCE, DENSE, SUMMARY, WORDS, 
 from mechkin_cli.analysis.errors.repeated import NotRepeated
 from mechkin_cli.building.columns import used_quantities
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.expressions import parse
 from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.mechanism.bearing_loads import read_for
@@ -171,7 +170,7 @@ class Errors(Listed):
         values = self._analysis[text]
         parts = values.T if values.ndim > 1 else values[None]
         try:
-            true = self._true(parse(text))
+            true = self._true(self._analysis.result.problem.definitions.parse(text))
         except NotRepeated as reason:
             raise UsageError(f"{text} is not repeated in double-double: {reason}") from None
         found = [

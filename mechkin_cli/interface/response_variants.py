@@ -10,7 +10,6 @@ import numpy as np
 
 from mechkin_cli.analysis.response import integrated, prepare, read
 from mechkin_cli.diagnostics import MechkinError
-from mechkin_cli.expressions import parse
 from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.asking import a_packing
 from mechkin_cli.interface.given import parameter_arrays
@@ -117,6 +116,7 @@ class _Study:
         count: int,
     ) -> None:
         known = result.problem.quantities()
+        parse = result.problem.definitions.parse
         used = (name for text in self.asked for name in sorted(parse(text).names))
         whole = (name if name in known else name.rpartition(".")[0] for name in used)
         read(result, [name for name in dict.fromkeys(whole) if name in known])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
-from mechkin_cli.expressions import Expression, ExpressionError, parse
+from mechkin_cli.expressions import Expression, ExpressionError
 from mechkin_cli.interface.arguments import a_whole_number, shown, texts
 from mechkin_cli.interface.given import parameter_arrays
 from mechkin_cli.interface.reduced_values import Reductions
@@ -162,7 +162,7 @@ def expressions_of(quantities: Iterable[str], problem: Problem) -> dict[str, Exp
         if text.strip() in ROW_TEXTS:
             raise UsageError(f"{text} is a text, no number; read .status of the result")
         try:
-            found[text] = parse(text)
+            found[text] = problem.definitions.parse(text)
             found[text].evaluate(sample_of(problem), problem.units)
         except ExpressionError as error:
             hint = error.hint or "write an expression of quantities and parameters"

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.expressions.definitions import Definitions
 from mechkin_cli.mechanism.bearing_loads import bearing_catalogue
 from mechkin_cli.mechanism.coefficient_quantities import coefficient_catalogue
 from mechkin_cli.mechanism.derived_quantities import derived_catalogue, ledger_catalogue
@@ -36,6 +37,7 @@ class Problem:
     assembly: Assembly
     units: UnitSystem
     parameters: Mapping[str, Quantity] = field(default_factory=dict)
+    definitions: Definitions = field(default_factory=Definitions)
     diagnostics: tuple[Diagnostic, ...] = ()
     load_laws: tuple[LoadLaw, ...] = ()
     hold_idle: bool = False

@@ -31,8 +31,8 @@ class MechanismFile(Section):
     """A mechanism in the format 1 of mechkin.
 
     All points, axes, mass centres and inertias are written in one drawing, the home pose, in ground
-    axes; every joint coordinate is zero there. Joints, links, points, directions and parameters
-    share one namespace.
+    axes; every joint coordinate is zero there. Joints, links, points, directions, parameters
+    and quantities share one namespace.
     """
 
     format: Annotated[Literal[1], Before(_format_number)]
@@ -45,6 +45,8 @@ class MechanismFile(Section):
     """Units of bare numbers and of the tables."""
     parameters: dict[Name, AnyDimension] = NOTHING
     """Named numbers, values with units, or expressions of one another."""
+    quantities: dict[Name, AnyDimension] = NOTHING
+    """Named expressions of quantities, used by name in columns, loads, stops and one another."""
     links: dict[Name, Link] = NOTHING
     """The moving bodies by name; `ground` always exists."""
     joints: dict[Name, Joint] = NOTHING

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 _WORDS = ("ground", "row", "time", "pi", "turn", "nan", "inf", "infinity")
-_OPERATORS = ("and", "or", "not", "if")
+_OPERATORS = ("and", "or", "not", "if", "derivative")
 _VECTOR_FUNCTIONS = ("dot", "cross", "det", "norm", "unit_vector", "angle_between")
 _ANGLE_FUNCTIONS = ("wrap", "sin", "cos", "tan", "asin", "acos", "atan", "atan2")
 _NUMBER_FUNCTIONS = ("sqrt", "abs", "sign", "min", "max", "exp", "log", "pow", "clip", "hypot")
@@ -23,7 +23,7 @@ RESERVED: Final = frozenset(
 )
 """Words that cannot be the name of anything in a file."""
 
-_SECTIONS = ("parameters", "links", "joints", "chain", "points", "directions")
+_SECTIONS = ("parameters", "quantities", "links", "joints", "chain", "points", "directions")
 
 
 def name_errors(data: object) -> list[dict[str, Any]]:
@@ -40,7 +40,8 @@ def name_errors(data: object) -> list[dict[str, Any]]:
         elif name in first_use:
             text = f"the name {name} is already used in {first_use[name]}:"
             hint = (
-                "joints, links, points, directions and parameters share one namespace; rename one"
+                "joints, links, points, directions, parameters and quantities share one namespace; "
+                "rename one"
             )
             errors.append(_error("name-clash", location, text, hint))
         else:

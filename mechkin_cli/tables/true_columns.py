@@ -77,7 +77,7 @@ def _evaluated(
     return [_in_file_units(part, found.dimension, source) for part in parts]
 
 
-_WITH_POLES = {"/", "^", "pow", "tan", "log"}
+_WITH_POLES = {"/", "^", "pow", "tan", "log", "mod", "atanh", "unit_vector", "angle_between"}
 """Operations that may make any number of a rounding."""
 
 OFF = float.fromhex("0x1p-98")
@@ -113,7 +113,7 @@ def _moved(value: Any, part: float) -> Any:
 
 def _off_literal(number: Number) -> Quantity:
     found = exact_literal(number)
-    if number.unit is None and isinstance(found.value, float) and found.value == int(found.value):
+    if number.unit is None and number.value == int(number.value):
         return found  # whole numbers are what they are: exponents, counts
     value: Any = exactly(found.value)
     return Quantity(value + OFF * value, found.dimension)
