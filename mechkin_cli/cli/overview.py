@@ -21,6 +21,7 @@ def overview_row(
 ) -> OverviewRow:
     """One file in a line."""
     from mechkin_cli.tables.errata import counts
+    from mechkin_cli.view.drawing.picture import NAME as PICTURE
 
     model = analyses[0].model
     solved = sum(int(analysis.result.solved.sum()) for analysis in analyses)
@@ -34,6 +35,7 @@ def overview_row(
         str(solved) if solved == rows else f"{solved} of {rows}",
         counts(one.agreement for one in printed) if printed else "",
         model.source,
+        PICTURE,
     )
 
 

@@ -58,7 +58,8 @@ def tables(
     """Regenerate the tables kept beside mechanism files.
 
     What mechkin wrote there for a table that the file has no more is removed; other files stay.
-    FOLDER/STEM.yaml has its tables in FOLDER/STEM/TABLE.csv and .md; where tables name printed
+    FOLDER/STEM.yaml has its tables in FOLDER/STEM/TABLE.csv and .md, and a small picture in
+    FOLDER/STEM/picture.svg; where tables name printed
     values, FOLDER/STEM/errata.md compares them, and disagreements.csv has every printed cell that
     does not agree. For a folder, FOLDER/README.md is an overview of
     its mechanisms; a README.md of your own is left alone.
@@ -166,7 +167,7 @@ def _made(
 def _fresh_files(
     model: Model, analyses: Sequence[Analysis], printed: Sequence[PrintedTable]
 ) -> dict[str, bytes]:
-    """All that stands beside a mechanism file, by name: tables, and the errata page."""
+    """All that stands beside a mechanism file, by name: tables, the picture, the errata page."""
     from mechkin_cli.tables.csv_writer import COMMITTED_DIGITS, csv_bytes
     from mechkin_cli.tables.disagreements import NAME, disagreements_csv
     from mechkin_cli.tables.errata import PAGE, errata_page
@@ -182,6 +183,10 @@ def _fresh_files(
                 below = summary_table(table.name, table.title, table.summary)
                 fresh[f"{below.name}.csv"] = csv_bytes(below, COMMITTED_DIGITS)
             fresh[f"{table.name}.md"] = markdown_bytes(table, analysis.result)
+    from mechkin_cli.view.drawing.picture import NAME as PICTURE
+    from mechkin_cli.view.drawing.picture import mechanism_picture
+
+    fresh[PICTURE] = mechanism_picture(analyses[0].result).encode()
     if printed:
         fresh[PAGE] = errata_page(model.name, model.source, printed).encode()
         if listed := disagreements_csv(printed):
@@ -195,7 +200,7 @@ def _compare(
     from mechkin_cli.tables.compare import compare_files, read_committed
     from mechkin_cli.tables.comparison_report import report
 
-    comparisons = compare_files(fresh, read_committed(folder))
+    comparisons = compare_files(fresh, read_committed(folder, fresh))
     same = all(c.verdict == "equal" for c in comparisons)
     if same and not quiet:
         say(f"{folder}: {len(fresh)} files as committed")

@@ -8,7 +8,7 @@ zero crossing from a change that matters.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
@@ -59,6 +59,10 @@ class FileComparison:
     largest_scaled_change: float | None = None
 
 
+TABLES = (".csv", ".md")
+"""Endings of table files."""
+
+
 def compare_files(
     fresh: Mapping[str, bytes], committed: Mapping[str, bytes]
 ) -> list[FileComparison]:
@@ -74,8 +78,9 @@ def compare_files(
     return found + [FileComparison(name, "extra", (cures[name],)) for name in sorted(cures)]
 
 
-def read_committed(folder: Path, suffixes: tuple[str, ...] = (".csv", ".md")) -> dict[str, bytes]:
-    """The table files that stand directly in `folder`, by name; none where it does not exist.
+def read_committed(folder: Path, also: Collection[str] = ()) -> dict[str, bytes]:
+    """The table files that stand directly in `folder`, and `also` those named, by name; none where
+    it does not exist.
 
     Raises:
         UsageError: the folder or a file in it cannot be read.
@@ -83,7 +88,9 @@ def read_committed(folder: Path, suffixes: tuple[str, ...] = (".csv", ".md")) ->
     try:
         if not folder.is_dir():
             return {}
-        paths = sorted(path for path in folder.iterdir() if path.suffix in suffixes)
+        paths = sorted(
+            path for path in folder.iterdir() if path.suffix in TABLES or path.name in also
+        )
         return {path.name: _content(path) for path in paths if path.is_file()}
     except OSError as error:
         place = error.filename or folder

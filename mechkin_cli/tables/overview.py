@@ -14,7 +14,8 @@ MARK = "<!-- written by `mechkin tables` -->"
 
 
 class OverviewRow(NamedTuple):
-    """What the page says of one file; `stem` names the file, other cells are words."""
+    """What the page says of one file; `stem` names the file, `picture` that of its drawing in the
+    folder of its tables, other cells are words."""
 
     stem: str
     name: str
@@ -24,20 +25,32 @@ class OverviewRow(NamedTuple):
     rows: str
     verdict: str
     source: str
+    picture: str
 
 
 def overview_page(rows: Sequence[OverviewRow]) -> str:
     """The whole page, with a newline at its end."""
-    labels = ("mechanism", "joints", "mobility", "modes", "rows", "against print", "source")
+    labels = (
+        "picture",
+        "mechanism",
+        "joints",
+        "mobility",
+        "modes",
+        "rows",
+        "against print",
+        "source",
+    )
     lines = [_line(labels), _line(["---"] * len(labels)), *(_line(_cells(row)) for row in rows)]
     return "\n".join([MARK, "", "# Mechanisms", "", _HEAD, "", *lines]) + "\n"
 
 
 _HEAD = """\
 Each file has its tables in the folder of its name, and a page `errata.md` where they are compared
-with print. Joints stand in the order of the file. Mobility is the true one; Kutzbach's count and
-idle freedoms stand beside it where they make a difference. Modes are the ways of assembling it that
-were found at the first row. Rows are those solved, of all where they differ."""
+with print. The picture shows its first position, seen from a corner: links in colours, joints by
+symbols of their types, the ways of its points. Joints stand in the order of the file. Mobility is
+the true one; Kutzbach's count and idle freedoms stand beside it where they make a difference. Modes
+are the ways of assembling it that were found at the first row. Rows are those solved, of all where
+they differ."""
 
 
 def _cells(row: OverviewRow) -> list[str]:
@@ -45,6 +58,7 @@ def _cells(row: OverviewRow) -> list[str]:
     link = f"[{_text(row.name)}]({stem}.yaml)"
     verdict = f"[{row.verdict}]({stem}/errata.md)" if row.verdict else ""
     return [
+        f"![{_text(row.name)}]({stem}/{link_target(row.picture)})",
         link,
         *map(_text, (row.joints, row.mobility, row.modes, row.rows)),
         verdict,

@@ -10,6 +10,7 @@ from mechkin_cli.mechanism.model import Joint, Mechanism, is_written
 from mechkin_cli.mechanism.vectors import scale
 
 if TYPE_CHECKING:
+    from mechkin_cli.mechanism.frames import Frame
     from mechkin_cli.mechanism.vectors import Vector
     from mechkin_cli.view.encoding import Plain
     from mechkin_cli.view.lengths import Lengths
@@ -60,16 +61,26 @@ def joint_records(
     return found
 
 
-def _half(joint: Joint, side: int, lengths: Lengths) -> Plain:
-    """The half on one link: `axis` is that of the pair where this link carries it, else z of the
-    pair's frame; `axis2` the pin that stands square to, or askew of, an axis of its own."""
-    frame = joint.on_first if side == FIRST else joint.on_second
+def half_axis(joint: Joint, side: int) -> Vector:
+    """The axis of the half on one link, as drawn: that of the pair where this link carries it, else
+    z of the pair's frame."""
     carries_axis = joint.type.axis is not None and joint.type.axis.side == side
-    axis: Vector = joint.axis.vector if carries_axis else frame.z
+    return joint.axis.vector if carries_axis else half_frame(joint, side).z
+
+
+def half_frame(joint: Joint, side: int) -> Frame:
+    """The frame of the half on one link, as drawn."""
+    return joint.on_first if side == FIRST else joint.on_second
+
+
+def _half(joint: Joint, side: int, lengths: Lengths) -> Plain:
+    """The half on one link; `axis2` is the pin that stands square to, or askew of, an axis of its
+    own."""
+    frame = half_frame(joint, side)
     has_pin = joint.type.parameter == "from axis to pin" and side == FIRST
     return {
         "point": lengths.vector(frame.o),
-        "axis": list(axis),
+        "axis": list(half_axis(joint, side)),
         "x": list(frame.x),
         "axis2": list(scale(-1.0, frame.y)) if has_pin else None,
     }

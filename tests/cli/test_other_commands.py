@@ -74,7 +74,8 @@ def test_tables_keeps_an_overview(mechkin, committed, folder) -> None:
     mechkin("tables")
     (row,) = (line for line in page.read_text(encoding="utf-8").splitlines() if "rcsr" in line)
     assert row.startswith(
-        "| [RCSR](rcsr.yaml) | R C S R | 1 | 2 (all) | 27 | [1479 of 2106 cells agree,"
+        "| ![RCSR](rcsr/picture.svg) | [RCSR](rcsr.yaml) | R C S R | 1 | 2 (all) | 27 | "
+        "[1479 of 2106 cells agree,"
     )
     assert mechkin("tables", "--check").code == 0
     page.write_text(page.read_text(encoding="utf-8").replace("| 27 |", "| 26 |"), encoding="utf-8")
@@ -227,7 +228,11 @@ def test_the_errata_go_with_the_print_that_they_compare(mechkin, write, folder) 
     assert pages <= {path.name for path in (folder / "crank").iterdir()}
     write("crank.yaml", text + table.format(""))
     assert mechkin("tables", "crank.yaml").code == 0
-    assert {path.name for path in (folder / "crank").iterdir()} == {"tip.csv", "tip.md"}
+    assert {path.name for path in (folder / "crank").iterdir()} == {
+        "picture.svg",
+        "tip.csv",
+        "tip.md",
+    }
 
 
 def test_tables_regenerates_what_is_committed(mechkin, committed) -> None:

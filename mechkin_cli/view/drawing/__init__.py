@@ -1,0 +1,1 @@
+"""Small line drawings of mechanisms: isometric, as SVG with fixed decimals."""

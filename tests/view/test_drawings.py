@@ -1,0 +1,161 @@
+"""Small pictures of mechanisms: projection, symbols, what stands where, the same bytes."""
+
+from __future__ import annotations
+
+import re
+from math import cos, radians, sin, sqrt
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from references import MECHANISMS, RCSR
+
+import mechkin_cli as mk
+from mechkin_cli.mechanism.joint_table import JOINT_TYPES
+from mechkin_cli.view.drawing.isometric import Isometric, isometric
+from mechkin_cli.view.drawing.picture import HEIGHT, WIDTH, mechanism_picture
+from mechkin_cli.view.drawing.strokes import Disc, Stroke
+from mechkin_cli.view.drawing.symbols import Half, symbol
+
+FOUR_BAR = """\
+format: 1
+links: {crank: {}, rod: {}, rocker: {}}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: R, links: [crank, rod], point: [0.4, 0, 0], axis: [0, 0, 1]}
+  C: {type: R, links: [rod, rocker], point: [1, 0.8, 0], axis: [0, 0, 1]}
+  D: {type: R, links: [ground, rocker], point: [1, 0, 0], axis: [0, 0, 1]}
+points: {tip: {link: rod, at: [0.8, 0.9, 0]}}
+motion: {inputs: {A.theta: {from: 0, to: 360, step: 10}}}
+"""
+
+
+def drawn(text: str) -> str:
+    return mechanism_picture(mk.loads(text).analyze(tables=[]).result)
+
+
+def test_the_three_axes_are_seen_alike():
+    """Each shortened by sqrt(2/3), 120 degrees apart, the upright one upwards."""
+    for up in range(3):
+        for down in (False, True):
+            seen = Isometric(up, down).seen(np.eye(3))
+            np.testing.assert_allclose(np.hypot(*seen.T[:2]), sqrt(2 / 3), rtol=1e-15)
+            np.testing.assert_allclose(seen @ seen.T, np.eye(3), atol=1e-15)
+            upright = seen[up] * (-1 if down else 1)
+            np.testing.assert_allclose(upright[:2], [0.0, sqrt(2 / 3)], atol=1e-15)
+            assert np.linalg.det(seen) == pytest.approx(1.0)
+
+
+def test_up_is_against_gravity_else_of_the_plane():
+    assert isometric(mk.loads(FOUR_BAR).problem.mechanism) == Isometric(1)
+    heavy = FOUR_BAR + "loads: [{type: gravity, g: [9.81, 0, 0]}]\n"
+    assert isometric(mk.loads(heavy).problem.mechanism) == Isometric(0, True)
+    assert isometric(mk.load(RCSR).problem.mechanism) == Isometric(2)
+
+
+def test_a_picture_is_svg_of_one_size_with_one_decimal_inside_its_frame():
+    for path in sorted(MECHANISMS.glob("*.yaml")):
+        text = (path.with_suffix("") / "picture.svg").read_text(encoding="utf-8")
+        root = ElementTree.fromstring(text)
+        assert root.get("viewBox") == f"0 0 {WIDTH:.0f} {HEIGHT:.0f}"
+        places = []
+        for element in root.iter():
+            numbers = re.findall(r"-?\d+(?:\.\d+)?", element.get("d", ""))
+            places += list(zip(numbers[::2], numbers[1::2], strict=True))
+            if element.get("cx") is not None:
+                places.append((element.get("cx"), element.get("cy")))
+        assert places, path
+        assert all(re.fullmatch(r"-?\d+\.\d", number) for place in places for number in place)
+        assert "-0.0" not in text
+        middle = np.array(places, dtype=float)
+        assert (middle >= -20.0).all(), path
+        assert (middle <= [WIDTH + 20.0, HEIGHT + 20.0]).all(), path
+
+
+def test_links_end_where_the_closed_form_has_them():
+    """The crank at 0 degrees, drawn upright: right is x/sqrt(2), up (2y - x)/sqrt(6)."""
+    text = FOUR_BAR.replace("points: {tip: {link: rod, at: [0.8, 0.9, 0]}}\n", "")
+    root = ElementTree.fromstring(drawn(text))
+    rods = [e for e in root.iter() if e.get("stroke-width") == "3.2"]
+    ends = [[float(n) for n in re.findall(r"-?\d+\.\d", rod.get("d", ""))] for rod in rods]
+    pins = np.array([[0, 0], [0.4, 0], [1, 0.8], [1, 0]])
+    seen = np.stack([pins[:, 0] / sqrt(2), (2 * pins[:, 1] - pins[:, 0]) / sqrt(6)], axis=1)
+    # one scale and one shift take them to the picture, y downwards
+    lines = {(0, 1), (1, 2), (2, 3)}
+    span = np.ptp(seen, axis=0)
+    scale = min((WIDTH - 48) / span[0], (HEIGHT - 48) / span[1])
+    middle = (seen.max(axis=0) + seen.min(axis=0)) / 2
+    places = (seen - middle) * [scale, -scale] + [WIDTH / 2, HEIGHT / 2 - 4]
+    expected = {tuple(np.round(sorted(places[list(pair)].tolist()), 1).ravel()) for pair in lines}
+    assert {tuple(np.round(end, 1)) for end in ends} == expected
+
+
+@pytest.mark.parametrize("letter", sorted(JOINT_TYPES))
+def test_every_joint_has_a_symbol_of_its_own(letter):
+    kind = JOINT_TYPES[letter]
+    if not kind.has_point or kind.is_free:
+        return
+    half = Half((50.0, 50.0), (0.6, 0.5), (0.7, -0.2), (0.1, -0.8))
+    moved = half._replace(place=(56.0, 55.0))
+    marks = symbol(kind, half, moved)
+    assert marks
+    assert all(isinstance(mark, Stroke | Disc) for mark in marks)
+    others = [
+        symbol(other, half, moved)
+        for name, other in JOINT_TYPES.items()
+        if name != letter and other.has_point and not other.is_free
+    ]
+    same = [other for other in others if other == marks]
+    # a slotted sphere is a universal joint in another shape
+    assert len(same) == (1 if letter in ("U", "Ss") else 0)
+
+
+def test_a_pin_seen_end_on_is_a_disc():
+    end_on = Half((0.0, 0.0), (0.01, 0.0), (1.0, 0.0), (0.0, 1.0))
+    assert all(isinstance(mark, Disc) for mark in symbol(JOINT_TYPES["R"], end_on, end_on))
+
+
+def test_size_place_units_names_and_order_change_nothing():
+    plain = drawn(FOUR_BAR)
+    larger = FOUR_BAR.replace("format: 1\n", "format: 1\nunits: {length: km}\n")
+    assert drawn(larger) == plain
+    renamed = re.sub(r"\b([ABCD])\b", r"J\1", FOUR_BAR).replace("rocker", "swing")
+    assert drawn(renamed) == plain
+    shift = {"[0, 0, 0]": "[3, 1, 0]", "[0.4, 0, 0]": "[3.4, 1, 0]", "[1, 0.8, 0]": "[4, 1.8, 0]"}
+    shift |= {"[1, 0, 0]": "[4, 1, 0]", "[0.8, 0.9, 0]": "[3.8, 1.9, 0]"}
+    moved = re.sub(r"\[[\d.]+, [\d.]+, 0\]", lambda at: shift.get(at[0], at[0]), FOUR_BAR)
+    assert moved != FOUR_BAR
+    assert drawn(moved) == plain
+
+
+def test_the_way_of_a_point_is_drawn_over_all_rows():
+    root = ElementTree.fromstring(drawn(FOUR_BAR))
+    (way,) = (e for e in root.iter() if "t" in e.get("class", "").split())
+    assert way.get("d", "").count("L") == 36
+
+
+def test_a_single_position_and_one_without_solution_are_drawn():
+    assert "<path" in drawn(FOUR_BAR.replace("from: 0, to: 360, step: 10", "at: 0"))
+    lost = FOUR_BAR.replace("point: [1, 0.8, 0]", "point: {rod: [0.5, 0, 0], rocker: [9, 9, 0]}")
+    analysis = mk.loads(lost).analyze(tables=[])
+    assert not analysis.result.solved.any()
+    assert "<path" in mechanism_picture(analysis.result)
+
+
+def test_a_turned_input_turns_the_crank():
+    """At 90 degrees the crank's end stands at y = 0.4."""
+
+    def crank_end(angle: float) -> tuple[float, float]:
+        text = "format: 1\nlinks: {arm: {}}\njoints: {A: {type: R, links: [ground, arm], point: "
+        text += "[0, 0, 0], axis: [0, 0, 1]}}\npoints: {tip: {link: arm, at: [0.4, 0, 0]}}\n"
+        found = drawn(text + f"motion: {{inputs: {{A.theta: {{at: {angle}}}}}}}\n")
+        rod = next(
+            e for e in ElementTree.fromstring(found).iter() if e.get("stroke-width") == "3.2"
+        )
+        a, b, c, d = (float(n) for n in re.findall(r"-?\d+\.\d", rod.get("d", "")))
+        return c - a, b - d
+
+    for angle in (10.0, 60.0):
+        x, y = cos(radians(angle)), sin(radians(angle))
+        right, up = crank_end(angle)
+        assert up / right == pytest.approx((2 * y - x) / sqrt(6) / (x / sqrt(2)), abs=0.01)
