@@ -179,7 +179,7 @@ class Analysis(Reading, Summarized, Plotted):
         a_text("a quantity or expression", text, '"O4.theta"')
         if text in row_texts(self.run):
             return ""
-        expression = parse(text)
+        expression = self.result.problem.definitions.parse(text)
         result = self._readable(expression.names)
         return result.units.label(expression.evaluate(result.quantity, result.units).dimension)
 

@@ -156,3 +156,7 @@ def test_a_derivative_stands_in_no_parameter_and_no_load() -> None:
     load = "loads: [{type: force, joint: S, value: 1 N*gain}]\ntables:"
     with pytest.raises(mk.InvalidFile, match="derivatives are known in columns and quantities"):
         mk.loads(SLIDER_CRANK.replace("tables:", load))
+
+
+def test_a_name_has_the_unit_of_what_it_stands_for(rows: Any) -> None:
+    assert rows.unit("stroke") == "mm"
