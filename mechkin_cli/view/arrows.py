@@ -2,8 +2,8 @@
 
 `J.force` and `J.moment` are what the first link exerts on the second, about the joint's point;
 `J.effort` is what a drive applies to the second link, along the joint's axis. Components that are
-not unique are left out, and the arrow's name says which; an arrow of which nothing is known in
-any row is not there.
+not unique are left out, and the arrow's name says which are there: `B.force (x, y)`; an arrow of
+which nothing is known in any row is not there.
 """
 
 from __future__ import annotations
@@ -108,5 +108,5 @@ def _known(arrow: Arrow) -> Iterator[Arrow]:
     name = arrow.name
     if not known.all():
         told = ", ".join(axis for axis, is_known in zip(AXES, known, strict=True) if is_known)
-        name = f"{name} ({told} alone: the rest is not unique)"
+        name = f"{name} ({told})"
     yield arrow._replace(name=name, values=values)

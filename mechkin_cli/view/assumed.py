@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def assumed(problem: Problem, runs: Sequence[ShownRun]) -> list[str]:
     """The sentences; those about a run are of its own branch."""
     sentences = [_units(problem.units), *_assemblies(runs), *_motion(problem, runs)]
-    sentences += [*_bodies(problem), *_idle(problem)]
+    sentences += [*_bodies(problem), *_arrows(runs), *_idle(problem)]
     return list(dict.fromkeys(sentences))
 
 
@@ -61,6 +61,15 @@ def _bodies(problem: Problem) -> Iterator[str]:
     yield "Bodies are rigid, and joints have no play."
     if not mechanism.frictions:
         yield "Joints do not rub."
+
+
+def _arrows(runs: Sequence[ShownRun]) -> Iterator[str]:
+    if any(run.branches[0].forces for run in runs):
+        yield (
+            "Arrows at joints are what the first link exerts on the second, without the drive; one "
+            "with axes behind its name, such as (x, y), has these components alone: redundant "
+            "constraints leave the others arbitrary."
+        )
 
 
 def _idle(problem: Problem) -> Iterator[str]:

@@ -15,6 +15,7 @@ from mechkin_cli.view.assumed import assumed
 from mechkin_cli.view.branch import BranchScene
 from mechkin_cli.view.joints import drawn_joints, joint_records, sliding_coordinate
 from mechkin_cli.view.lengths import Lengths
+from mechkin_cli.view.plane import plane_of_motion, upwards
 from mechkin_cli.view.poses import carried
 from mechkin_cli.view.settings import ViewSettings
 from mechkin_cli.view.shapes import link_shape
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 """Version of the data that pages read."""
+
+_Z = 2
 
 
 @dataclass(frozen=True)
@@ -101,7 +104,6 @@ class Scene:
         units, mechanism = problem.units, problem.mechanism
         low, high = self.box
         size = diagonal([tuple(low), tuple(high)])
-        camera = settings.camera
         arrow = settings.arrow_length
         return {
             "format": FORMAT,
@@ -116,8 +118,8 @@ class Scene:
             },
             "size": lengths.one(size),
             "centre": lengths.vector((low + high) / 2.0),
-            "up": self._up(),
-            "planar": False,
+            "up": [float(x) for x in upwards(self._gravity(), self.plane)],
+            "planar": self.plane == _Z,
             "links": [self._link(name, size) for name in self.links],
             "joints": joint_records(
                 mechanism, self.links, self._travels(), settings.joint_radius, lengths
@@ -131,23 +133,34 @@ class Scene:
             "notes": [_note(one) for one in self.notes],
             "assumed": assumed(problem, self.runs),
             "view": {
-                "camera": None if camera is None else list(camera),
+                "camera": self._camera(),
                 "speed": settings.speed,
                 "forces": settings.forces,
                 "arrow_length": None if arrow is None else lengths.one(arrow),
             },
         }
 
-    def _up(self) -> list[float]:
-        """Against gravity, of the sweep or else of a response; z where there is none."""
-        gravities = [self.problem.mechanism.gravity]
+    @cached_property
+    def plane(self) -> int | None:
+        """The ground axis square to the plane of the own branches, None where they have none."""
+        own = [run[0].poses for run in self.branches if run[0].poses.size]
+        return plane_of_motion(own, *self.box)
+
+    def _camera(self) -> list[float] | None:
+        """Direction to the eye: as asked for, or square to a plane of motion that holds z."""
+        if self.settings.camera is not None:
+            return list(self.settings.camera)
+        if self.plane is None or self.plane == _Z:
+            return None
+        # y to the eye would be a mirrored view: x is to the right
+        return [1.0, 0.0, 0.0] if self.plane == 0 else [0.0, -1.0, 0.0]
+
+    def _gravity(self) -> Floats:
+        """Gravity (m/s^2) of the sweep, or else of a response."""
+        found = [self.problem.mechanism.gravity]
         for run in self.runs:
-            gravities.append(run.branches[0].analysis.result.problem.mechanism.gravity)
-        for gravity in gravities:
-            if any(gravity):
-                down = np.array(gravity)
-                return [float(x) for x in 0.0 - down / np.linalg.norm(down)]
-        return [0.0, 0.0, 1.0]
+            found.append(run.branches[0].analysis.result.problem.mechanism.gravity)
+        return np.array(next((one for one in found if any(one)), (0.0, 0.0, 0.0)))
 
     def _link(self, name: str, size: float) -> Plain:
         settings, lengths = self.settings, self._lengths
