@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.given_file import STDIN_NAME, is_stdin, model_of, shown
+from mechkin_cli.cli.given_file import model_of, shown, stem_of
 from mechkin_cli.cli.messages import (
     FORMS,
     Progress,
@@ -50,6 +50,7 @@ class _Request:
     strict: bool
     errors: bool
     certify: bool
+    view: bool
 
 
 def analyze_files(
@@ -65,6 +66,7 @@ def analyze_files(
     certify: bool = False,
     strict: bool = False,
     errors: bool = False,
+    view: bool = False,
     explain: bool = False,
     messages: str | None = None,
     json: bool = False,
@@ -91,10 +93,11 @@ def analyze_files(
         units=units,
         explain=explain,
         json=json,
-        writes=not json or out is not None or bool(format),
+        writes=not json or out is not None or bool(format) or view,
         quiet=quiet,
         strict=strict,
         errors=errors,
+        view=view,
         certify=certify,
     )
     code = ExitCode.OK
@@ -152,7 +155,19 @@ def _run(
         if output is None:
             return analyses, notes, []
         results = [_results(analysis, request) for analysis in analyses]
-        return analyses, notes, output.write(written_files(results, request.formats))
+        files = written_files(results, request.formats)
+        if request.view:
+            notes = (*notes, *_add_page(files, analyses))
+        return analyses, notes, output.write(files)
+
+
+def _add_page(files: dict[str, bytes], analyses: list[Analysis]) -> list[Diagnostic]:
+    """Adds the page of some runs to the files; notes on what it leaves out."""
+    from mechkin_cli.interface.viewing import view_page
+    from mechkin_cli.view.html import NAME
+
+    files[NAME], notes = view_page(analyses)
+    return notes
 
 
 def _refuse_own_errors(model: Model, wanted: list[str] | None) -> None:
@@ -191,10 +206,7 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
     """The folder of each file; no two files share one."""
     folders: dict[Path, Path] = {}
     for path in files:
-        stem = STDIN_NAME if is_stdin(path) else path.stem
-        # a file called ...yaml has the stem .., which leads out of the folder
-        stem = stem if stem.strip(".") else path.name
-        folder = out if out and len(files) == 1 else (out or Path("out")) / stem
+        folder = out if out and len(files) == 1 else (out or Path("out")) / stem_of(path)
         twin = next((other for other, taken in folders.items() if taken == folder), None)
         if twin == path:
             raise UsageError(f"{path} is given twice; name it once")

@@ -62,6 +62,9 @@ def analyze(
         bool,
         typer.Option("--errors", help="Measure the true error of every cell; write errors.csv."),
     ] = False,
+    view: Annotated[
+        bool, typer.Option("--view", help="Write view.html, which shows all runs in motion, too.")
+    ] = False,
     explain: Annotated[
         bool, typer.Option("--explain", help="Show the solver graph and what is skipped.")
     ] = False,
@@ -86,6 +89,7 @@ def analyze(
         certify=certify,
         strict=strict,
         errors=errors,
+        view=view,
         explain=explain,
         messages=messages,
         json=json,

@@ -20,6 +20,7 @@ from mechkin_cli.cli.plot import plot
 from mechkin_cli.cli.ranges import ranges
 from mechkin_cli.cli.schema import schema
 from mechkin_cli.cli.tables import tables
+from mechkin_cli.cli.view import view
 from mechkin_cli.version import version as package_version
 
 app = typer.Typer(
@@ -30,7 +31,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (analyze, check, modes, ranges, mobility, plot, tables, schema, bench):
+for command in (analyze, view, check, modes, ranges, mobility, plot, tables, schema, bench):
     app.command()(command)
 
 

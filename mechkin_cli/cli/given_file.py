@@ -46,6 +46,13 @@ def shown(path: Path) -> str:
     return STDIN_NAME if is_stdin(path) else str(path)
 
 
+def stem_of(path: Path) -> str:
+    """What the folder of its results is called."""
+    stem = STDIN_NAME if is_stdin(path) else path.stem
+    # a file called ...yaml has the stem .., which leads out of the folder
+    return stem if stem.strip(".") else path.name
+
+
 def refuse_stdin(path: Path, why: str) -> None:
     """Refuses `-` where a command needs a file.
 

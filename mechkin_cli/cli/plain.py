@@ -34,6 +34,7 @@ OPTIONS = {
     "--certify": Option("certify", None),
     "--strict": Option("strict", None),
     "--errors": Option("errors", None),
+    "--view": Option("view", None),
     "--explain": Option("explain", None),
     "--json": Option("json", None),
     "--quiet": Option("quiet", None),

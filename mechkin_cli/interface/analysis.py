@@ -21,6 +21,9 @@ from mechkin_cli.tables.layout import CoefficientsLayout, TableLayout, row_texts
 from mechkin_cli.uniqueness import unique_cells
 
 if TYPE_CHECKING:
+    from os import PathLike
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
     from mechkin_cli.analysis.sweep import Result
@@ -140,6 +143,13 @@ class Analysis(Reading, Summarized, Plotted):
 
         found = [coefficient_tables(one, self.result) for one in self.chosen_coefficients]
         return tuple(table for pair in found for table in pair)
+
+    def view(self, path: str | PathLike[str], *, modes: bool = True) -> Path:
+        """Writes a page that shows this run in motion, with curves, tables and notes; arguments,
+        result and errors as those of `Model.view`."""
+        from mechkin_cli.interface.viewing import view_page, write_view
+
+        return write_view(path, view_page([self], modes)[0])
 
     def __getitem__(self, text: str) -> NDArray[Any]:
         """A quantity or an expression of quantities, in the file's units.

@@ -1,4 +1,5 @@
-"""What a page shows of a model: its runs, and in which other assembly modes."""
+"""`Model.view` and `Analysis.view`: a page that shows runs of a mechanism, and in which other
+assembly modes."""
 
 from __future__ import annotations
 
@@ -12,13 +13,18 @@ from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.interface.asking import run_name
 from mechkin_cli.interface.sweeps import refuse_loaded_spin
 from mechkin_cli.runs import SWEEP
+from mechkin_cli.tables.files import write_files
 from mechkin_cli.version import version
 from mechkin_cli.view.arrows import has_forces, reactions
-from mechkin_cli.view.limits import MOST_MODE_ROWS, MOST_MODES, MOST_POSES, MOST_ROWS
+from mechkin_cli.view.html import filled, template
+from mechkin_cli.view.limits import MOST_MODE_ROWS, MOST_MODES
 from mechkin_cli.view.readable import ShownBranch, ShownRun
 from mechkin_cli.view.scene import Scene
+from mechkin_cli.view.shares import shares
 
 if TYPE_CHECKING:
+    from os import PathLike
+
     from mechkin_cli.interface.analysis import Analysis
     from mechkin_cli.interface.model import Model
     from mechkin_cli.tables.columns import Columns
@@ -39,6 +45,24 @@ def analyses_of(model: Model, run: str | None, mode: str | None) -> list[Analysi
         model.analyze(mode=mode) if name == SWEEP else model.respond(name, mode=mode)
         for name in runs
     ]
+
+
+def write_view(path: str | PathLike[str], page: bytes) -> Path:
+    """Writes a page whole or not at all; its path.
+
+    Raises:
+        UsageError: it cannot be written there.
+    """
+    target = Path(path)
+    if not target.name:
+        raise UsageError(f"{path} names no file; write a name such as page.html")
+    return write_files(target.parent, {target.name: page})[0]
+
+
+def view_page(analyses: Sequence[Analysis], modes: bool = True) -> tuple[bytes, list[Diagnostic]]:
+    """The page of runs of one model, and the notes on what it leaves out."""
+    scene, notes = view_scene(analyses, modes)
+    return filled(template(), scene.record()), notes
 
 
 def view_scene(analyses: Sequence[Analysis], modes: bool = True) -> tuple[Scene, list[Diagnostic]]:
@@ -127,22 +151,15 @@ def _other_tables(analysis: Analysis, notes: list[Diagnostic]) -> tuple[Columns,
 
 
 def _left_out(runs: Sequence[ShownRun]) -> Iterator[Diagnostic]:
+    """Notes on runs of which not all rows are shown."""
     for run in runs:
-        rows = run.branches[0].analysis.rows
-        if rows > MOST_ROWS:
+        rows, own = run.branches[0].analysis.rows, shares(run)[0]
+        if rows > min(own):
             yield Diagnostic(
-                "view-rows-thinned",
+                "view-thinned",
                 "note",
-                f"{run.name}: curves and tables of the page show some of the rows, in even steps",
+                f"{run.name}: the page shows some of the rows, in even steps",
                 measured=f"{rows} rows",
-                limit=f"{MOST_ROWS}",
-                hint="the files that mechkin analyze writes have all",
-            )
-        if rows > MOST_POSES:
-            yield Diagnostic(
-                "view-poses-thinned",
-                "note",
-                f"{run.name}: the page draws the mechanism in some of the rows, in even steps",
-                measured=f"{rows} rows",
-                limit=f"{MOST_POSES} poses",
+                limit=f"{own.rows} in curves and tables, {own.poses} poses, fewer of other modes",
+                hint="the files that mechkin analyze writes have all rows",
             )

@@ -14,7 +14,6 @@ from mechkin_cli.tables.columns import Words
 from mechkin_cli.tables.rows_table import rows_table
 from mechkin_cli.view.arrows import arrow_records
 from mechkin_cli.view.encoding import packed
-from mechkin_cli.view.limits import MOST_POSES, MOST_ROWS
 from mechkin_cli.view.marks import run_marks
 from mechkin_cli.view.poses import continuous, link_poses
 from mechkin_cli.view.thinning import thinned, turning_points
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from mechkin_cli.view.encoding import Plain
     from mechkin_cli.view.lengths import Lengths
     from mechkin_cli.view.readable import Readable, ShownBranch
+    from mechkin_cli.view.shares import Share
 
 VERDICTS = ("residual", "condition", "power_error")
 """Columns of the rows' own table that are shown as curves."""
@@ -58,11 +58,13 @@ class BranchScene:
     Attributes:
         shown: the branch.
         links: names of all links, ground first.
+        share: the most rows and poses that are shown.
     """
 
-    def __init__(self, shown: ShownBranch, links: Sequence[str]) -> None:
+    def __init__(self, shown: ShownBranch, links: Sequence[str], share: Share) -> None:
         self.shown = shown
         self.links = links
+        self.share = share
 
     @property
     def analysis(self) -> Readable:
@@ -84,19 +86,14 @@ class BranchScene:
     @cached_property
     def rows(self) -> NDArray[np.intp]:
         """The rows that curves and tables show, counted from 0."""
-        return thinned(np.arange(self.analysis.rows), MOST_ROWS, self._notable)
+        return thinned(np.arange(self.analysis.rows), self.share.rows, self._notable)
 
     @cached_property
     def posed(self) -> NDArray[np.intp]:
         """Which of the shown rows have a pose, by their place among these."""
         solved = np.flatnonzero(self.analysis.result.solved[self.rows])
         notable = np.flatnonzero(np.isin(self.rows, self._notable))
-        return thinned(solved, MOST_POSES, notable)
-
-    @property
-    def is_thinned(self) -> bool:
-        """Whether curves and tables show fewer rows than there are."""
-        return bool(self.rows.size < self.analysis.rows)
+        return thinned(solved, self.share.poses, notable)
 
     @cached_property
     def poses(self) -> Floats:

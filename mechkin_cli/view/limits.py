@@ -5,14 +5,23 @@ MOST_POSES = 2000
 and 56 kB for each link."""
 
 MOST_ROWS = 20_000
-"""Rows of a branch that curves and tables show: more than any screen has points, and 0.2 MB for
-each column."""
+"""Rows of a branch that curves and tables show: more than any screen has points."""
+
+MOST_CELLS = 400_000
+"""Cells of the tables of a branch that are shown, and of those of all other modes together: 12 MB
+as texts and numbers."""
+
+LEAST_ROWS = 200
+"""Rows of a branch that are shown however many columns and modes there are."""
 
 MOST_MODES = 16
 """Assembly modes that are shown beside the file's own: more can hardly be told apart by eye."""
 
 MOST_MODE_ROWS = 100_000
 """Rows of all other assembly modes together: half a second of work for most mechanisms."""
+
+MOST_MODE_POSES = 8000
+"""Poses of all other assembly modes together, as many as of four runs."""
 
 POINTS_APART = 0.001
 """Points of a link nearer to each other than this part of the mechanism's size are one."""

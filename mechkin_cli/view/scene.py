@@ -19,6 +19,7 @@ from mechkin_cli.view.plane import plane_of_motion, upwards
 from mechkin_cli.view.poses import carried
 from mechkin_cli.view.settings import ViewSettings
 from mechkin_cli.view.shapes import link_shape
+from mechkin_cli.view.shares import shares
 from mechkin_cli.view.table_cells import table_record
 
 if TYPE_CHECKING:
@@ -63,7 +64,13 @@ class Scene:
     @cached_property
     def branches(self) -> list[list[BranchScene]]:
         """The branches of every run."""
-        return [[BranchScene(one, self.links) for one in run.branches] for run in self.runs]
+        return [
+            [
+                BranchScene(one, self.links, share)
+                for one, share in zip(run.branches, shares(run), strict=True)
+            ]
+            for run in self.runs
+        ]
 
     @cached_property
     def _lengths(self) -> Lengths:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from references import MECHANISMS
@@ -11,7 +13,8 @@ from view.seen import array, branch, column, data, moved, number_of, posed_rows,
 import mechkin_cli as mk
 from mechkin_cli.interface.viewing import analyses_of, view_scene
 from mechkin_cli.view.encoding import script_json
-from mechkin_cli.view.limits import MOST_MODES, MOST_POSES, MOST_ROWS
+from mechkin_cli.view.limits import MOST_CELLS, MOST_MODES, MOST_POSES, MOST_ROWS
+from mechkin_cli.view.shares import shares
 from mechkin_cli.view.thinning import thinned, turning_points
 
 ROCKING = (
@@ -113,9 +116,35 @@ def test_twenty_thousand_rows_keep_curves_and_thin_poses() -> None:
     assert posed.size == MOST_POSES
     assert (posed[0], posed[-1]) == (0, own["rows"] - 1)
     assert np.diff(posed).max() <= 12
-    assert {note.code for note in notes} == {"view-rows-thinned", "view-poses-thinned"}
-    assert all("20001 rows" in str(note) for note in notes)
-    assert len(script_json(shown)) < 12_000_000
+    (note,) = notes
+    assert note.code == "view-thinned"
+    assert "20001 rows (limit 20000 in curves and tables, 2000 poses" in str(note)
+    assert len(script_json(shown)) < 7_000_000
+
+
+def test_many_columns_and_modes_share_a_page() -> None:
+    """The RCSR's 92 columns in two modes, 20 001 rows: the cells of one branch, and as many of all
+    other modes together."""
+    text = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8")
+    model = mk.loads(text.replace("to: 202, step: 2", "to: 202, count: 20001"))
+    scene, _ = view_scene(analyses_of(model, None, None))
+    shown = scene.record()
+    columns = sum(len(table.columns) for table in model.analyze().tables)
+    for one in shown["runs"][0]["branches"]:
+        assert one["rows"] == MOST_CELLS // columns
+        assert array(one["poses"]["rows"]).size == MOST_POSES
+    (table, *_) = shown["tables"]
+    x = array(shown["runs"][0]["branches"][0]["x"])
+    assert [float(row[0]) for row in table["rows"]] == x.tolist()
+    assert len(script_json(shown)) < 22_000_000
+
+
+def test_shares_of_many_modes_are_never_nothing() -> None:
+    tables = (SimpleNamespace(columns=range(1000)),)
+    branch = SimpleNamespace(analysis=SimpleNamespace(tables=tables))
+    found = shares(SimpleNamespace(branches=(branch,) * 17))
+    assert found[0] == (400, MOST_POSES)
+    assert set(found[1:]) == {(200, 500)}
 
 
 def test_a_pose_is_kept_on_both_sides_of_what_happens() -> None:

@@ -1,0 +1,83 @@
+"""`mechkin view`: a page that shows a mechanism in motion."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.given_file import model_of, shown, stem_of
+from mechkin_cli.cli.messages import put, refusal, say, say_diagnostics, tell_as
+from mechkin_cli.cli.options import File, Messages, Quiet, Set
+from mechkin_cli.cli.parameters import parameters
+from mechkin_cli.diagnostics import InvalidFile, UsageError
+
+if TYPE_CHECKING:
+    from mechkin_cli.interface import Analysis
+
+
+def view(
+    file: File,
+    out: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", metavar="PAGE", help="File to write (out/STEM/view.html)."),
+    ] = None,
+    set_: Set = None,
+    mode: Annotated[
+        str | None, typer.Option("--mode", metavar="NAME", help="Assembly mode at the first row.")
+    ] = None,
+    run: Annotated[
+        str | None,
+        typer.Option("--run", metavar="NAME", help="Only this run: sweep, or a response."),
+    ] = None,
+    no_modes: Annotated[
+        bool, typer.Option("--no-modes", help="Leave out the other assembly modes.")
+    ] = False,
+    open_: Annotated[
+        bool, typer.Option("--open", help="Show the page in the browser, too.")
+    ] = False,
+    messages: Messages = None,
+    quiet: Quiet = False,
+) -> None:
+    """Write a page that shows a mechanism in motion.
+
+    One file of HTML that works offline: the mechanism in three dimensions along its sweep and its
+    responses, in all assembly modes, with curves, tables, verdicts and notes.
+    """
+    from mechkin_cli.interface.viewing import analyses_of, view_page, write_view
+    from mechkin_cli.view.html import NAME
+
+    tell_as(messages)
+    try:
+        model = model_of(file, parameters(set_))
+        analyses = analyses_of(model, run, mode)
+        page, notes = view_page(analyses, not no_modes)
+        target = write_view(out or Path("out", stem_of(file), NAME), page)
+    except (InvalidFile, UsageError) as error:
+        raise typer.Exit(refusal(file, error)[0]) from None
+    said = [found for analysis in analyses for found in analysis.diagnostics]
+    say_diagnostics(dict.fromkeys([*said, *notes]), shown(file))
+    put(f"{target}\n")
+    if not quiet:
+        say(_summary(analyses, len(page)))
+    if open_:
+        _show(target)
+    if not all(analysis.complete for analysis in analyses):
+        raise typer.Exit(ExitCode.ROWS_MISSING)
+
+
+def _summary(analyses: list[Analysis], size: int) -> str:
+    """What is on the page, and how large it is."""
+    model = analyses[0].model
+    runs = ", ".join(f"{one.run} ({one.rows} rows)" for one in analyses)
+    return f"{model.name}: {runs}; {size / 1000:.0f} kB, to be opened in a browser"
+
+
+def _show(page: Path) -> None:
+    """Opens a page in the user's browser, and says where there is none."""
+    import webbrowser
+
+    if not webbrowser.open(page.resolve().as_uri()):
+        say(f"no browser was found; open {page} by hand")
