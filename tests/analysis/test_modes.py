@@ -205,3 +205,10 @@ def test_a_triangle_that_cannot_close() -> None:
     found = mk.loads(drawn).modes()
     assert found.modes == ()
     assert "no mode found" in found.sentence
+
+
+def test_a_weld_alone_is_one_mode() -> None:
+    """Welds have neither points nor coordinates."""
+    text = "format: 1\nlinks: {one: {}}\njoints: {A: {type: W, links: [ground, one]}}\n"
+    (mode,) = mk.loads(text).modes().modes
+    assert (mode.name, mode.coordinates) == ("A", {})

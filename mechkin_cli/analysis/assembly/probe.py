@@ -39,8 +39,9 @@ class Probe:
         assert batch.outputs is not None
         out = batch.outputs
         coordinates = {name: out[self.readout.slots[name].first] for name in self.coordinates}
-        points = np.stack([out[slot : slot + 3] for slot in self.readout.points])
-        return coordinates, points
+        points = np.array([out[slot : slot + 3] for slot in self.readout.points])
+        # welds have no point
+        return coordinates, points.reshape(len(self.points), 3, states.shape[1])
 
     def size(self, inputs: Floats, state: Floats) -> float:
         """Diagonal of the box of all joint points, in m; 1 if they coincide."""
