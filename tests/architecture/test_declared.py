@@ -17,9 +17,9 @@ BY_HAND = {}
 
 def declared() -> set[str]:
     project = tomllib.loads((ROOT.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    # what the benchmark compares with and what draws are asked for by extras, and done without
+    # the benchmark, pictures and data frames ask for extras, and are done without
     extras = project["optional-dependencies"]
-    named = [*project["dependencies"], *extras["bench"], *extras["plot"]]
+    named = [*project["dependencies"], *extras["bench"], *extras["plot"], *extras["pandas"]]
     return {re.split(r"[<>=;\[ ]", text)[0] for text in named}
 
 
