@@ -365,8 +365,15 @@ def test_dark_and_light(show: Show) -> None:
 
 
 def test_print_shows_picture_and_all_panels(show: Show, tmp_path: Path) -> None:
-    browser = show(four_bar(), dark=True)
+    data = four_bar()
+    data["tables"][0]["rows"][0] = ["0.1234567890123", "-1.5", "1.23456789e-05"]
+    browser = show(data, dark=True)
+    first = (
+        "[...document.querySelector('tr[data-at=\"0\"]').children].map((each) => each.textContent)"
+    )
+    assert browser.evaluate(first)[:3] == data["tables"][0]["rows"][0]
     browser.media(media="print")
+    assert browser.evaluate(first)[:3] == ["0.123457", "-1.5", "0.0000123457"]
     shown = "getComputedStyle(document.querySelector('{0}')).display"
     assert browser.evaluate(shown.format("#printed")) == "block"
     assert browser.evaluate("document.querySelector('#printed').src.length") > 5000

@@ -16,7 +16,11 @@ import { Theatre } from "./scene/theatre.js";
 import { State } from "./state.js";
 import { Theme } from "./theme.js";
 
-const INK = { light: { background: "#f6f7f9", grid: "#c3c8d0" }, dark: { background: "#14171c", grid: "#3a414c" } };
+const INK = {
+  light: { background: "#f6f7f9", grid: "#c3c8d0" },
+  dark: { background: "#14171c", grid: "#3a414c" },
+  paper: { background: "#ffffff", grid: "#d5d9df" },
+};
 
 function start() {
   const theme = new Theme();
@@ -71,7 +75,7 @@ function raise(data, state, theme) {
   const host = find("#stage");
   try {
     const theatre = new Theatre(host, state);
-    const paint = () => theatre.stage.setTheme(INK[theme.dark ? "dark" : "light"]);
+    const paint = () => theatre.stage.setTheme(INK[theme.printing ? "paper" : theme.dark ? "dark" : "light"]);
     theme.addEventListener("change", paint);
     paint();
     const { domElement } = theatre.stage.renderer;

@@ -10,6 +10,7 @@ import { ColumnChoice } from "./column_choice.js";
 const FIRST_COLUMNS = 3;
 const LEAST_HEIGHT = 220;
 const MOST_HEIGHT = 420;
+const ON_PAPER = 690; // pixels: the width of an A4 or letter page between its margins
 const BESIDE = 110; // pixels of the panel that are no plot
 const DASHES = [[6, 4], [2, 3], [10, 3, 2, 3], [1, 4]];
 
@@ -96,7 +97,7 @@ export class Curves {
     }
     const { label, unit: xUnit } = run.x;
     const options = {
-      width: Math.max(260, this.plotted.clientWidth),
+      width: this.#width(),
       height: this.#height(count),
       cursor: { sync: { key: this.sync.key }, drag: { x: true, y: false }, focus: { prox: 24 } },
       legend: { show: false }, // the chips above the plots are the legend
@@ -193,6 +194,10 @@ export class Curves {
     if (at !== undefined && plot.line) plot.line.style.transform = `translateX(${plot.valToPos(this.axis.x[at], "x")}px)`;
   }
 
+  #width() {
+    return this.theme.printing ? ON_PAPER : Math.max(260, this.plotted.clientWidth);
+  }
+
   /** So high that the plots fill the panel, where there are few. */
   #height(count) {
     const each = (this.host.clientHeight - BESIDE) / Math.max(1, count) - 4;
@@ -200,8 +205,8 @@ export class Curves {
   }
 
   #fit() {
-    const width = this.plotted.clientWidth;
-    if (width < 50) return;
+    if (this.plotted.clientWidth < 50) return;
+    const width = this.#width();
     for (const plot of this.plots) if (plot.width !== width) plot.setSize({ width, height: this.#height(this.plots.length) });
   }
 }

@@ -24,7 +24,8 @@ export class Tools {
       type: "range", min: -ZOOMS, max: ZOOMS, step: 0.05, value: 0, "aria-label": "Length of the arrows",
       on: { input: () => theatre.setArrowZoom(10 ** Number(this.zoom.value)) },
     });
-    this.forces = element("details.forces", {}, element("summary", {}, "forces"), element("label", {}, "length ", this.zoom), this.arrows);
+    this.forces = element("details.forces", {}, element("summary", {}, "forces"),
+      element("div.list", {}, element("label", {}, "length ", this.zoom), this.arrows));
     host.append(
       press("⌂", "First view (0)", () => theatre.home()),
       ...["x", "y", "z"].map((axis, k) => press(axis, `Look along ${axis}`, () => this.look([0, 1, 2].map((each) => Number(each === k))))),

@@ -23,6 +23,7 @@ export class Theatre {
     this.labels = new Labels(host.querySelector(".names"));
     this.shown = { names: true, paths: true, floor: true };
     this.arrowNames = null;
+    this.ghosts = [];
     this.hidden = new Set(this.data.links.flatMap(({ hidden }, link) => (hidden ? [link] : [])));
     this.noPose = host.querySelector("#no-pose");
     this.stage.afterDraw = () => this.#name();
@@ -77,7 +78,7 @@ export class Theatre {
 
   /** The mechanism in the other modes, pale, each with its paths. */
   #compare() {
-    for (const { mechanism, paths } of this.ghosts ?? []) {
+    for (const { mechanism, paths } of this.ghosts) {
       dispose(mechanism.object);
       dispose(paths.object);
     }
@@ -106,7 +107,7 @@ export class Theatre {
       this.paths.show(this.mechanism);
       this.arrows.show(this.mechanism, index);
     }
-    for (const { branch: other, mechanism } of this.ghosts ?? []) {
+    for (const { branch: other, mechanism } of this.ghosts) {
       const at = other.poseNear(other.rows === branch.rows ? row : other.rowAt(branch.x[row]));
       mechanism.object.visible = at >= 0;
       if (at >= 0) mechanism.show(other, at);
@@ -167,7 +168,8 @@ export class Theatre {
   lookFrom(direction) {
     const room = 2.6 * this.unit;
     const back = direction instanceof Array ? vector(direction) : direction;
-    this.stage.look(back, withRoom(this.places, room));
+    const compared = this.ghosts.flatMap(({ branch }) => placesOf(this.data, branch));
+    this.stage.look(back, withRoom([...this.places, ...compared], room));
   }
 
   setShown(what, on) {
