@@ -16,6 +16,7 @@ from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import put, say
 from mechkin_cli.cli.mobility import mobility
 from mechkin_cli.cli.modes import modes
+from mechkin_cli.cli.new import new
 from mechkin_cli.cli.plot import plot
 from mechkin_cli.cli.ranges import ranges
 from mechkin_cli.cli.schema import schema
@@ -31,7 +32,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (analyze, view, check, modes, ranges, mobility, plot, tables, schema, bench):
+for command in (new, analyze, view, check, modes, ranges, mobility, plot, tables, schema, bench):
     app.command()(command)
 
 

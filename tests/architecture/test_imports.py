@@ -56,7 +56,8 @@ ALLOWED = {
     "plots": PLOTS,
     "interface": INTERFACE,
     "benchmark": BENCHMARK,
-    "cli": BENCHMARK | {"cli"},
+    "templates": BASE | {"templates"},
+    "cli": BENCHMARK | {"cli", "templates"},
     "__init__": INTERFACE,
     "__main__": {"cli"},
 }

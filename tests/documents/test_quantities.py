@@ -28,5 +28,5 @@ def test_the_suspension_of_the_page() -> None:
     y, z = rows["contact.position.y"], rows["contact.position.z"]
     slope = np.gradient(y, rows["strut.s"]) / np.gradient(z, rows["strut.s"])
     np.testing.assert_allclose(
-        rows["roll_centre"][1:-1], (z - y * slope)[1:-1], rtol=1e-2, atol=0.1
+        rows["roll_centre"][1:-1], (z + y * slope)[1:-1], rtol=1e-2, atol=0.1
     )

@@ -1,0 +1,203 @@
+"""Every template runs without a warning and has the answers of closed forms or known values."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import mp
+
+import mechkin_cli as mk
+from mechkin_cli.cli.main import main
+from mechkin_cli.templates import USUAL, purpose, template_names, template_text
+
+ROOT = Path(__file__).parents[2]
+TURNS = np.radians(np.arange(0.0, 361.0, 5.0))
+
+
+def rows_of(name: str) -> Any:
+    return mk.loads(template_text(name)).analyze()
+
+
+def off(found: Any, expected: Any) -> float:
+    return float(np.abs(np.asarray(found) - np.asarray(expected)).max())
+
+
+@pytest.mark.parametrize("name", template_names())
+def test_a_template_runs_without_a_warning(name: str) -> None:
+    model = mk.loads(template_text(name))
+    runs = [model.respond(run) if run != "sweep" else model.analyze() for run in model.runs]
+    for rows in runs:
+        assert set(rows["row.status"]) == {"ok"}
+        assert {d.severity for d in rows.diagnostics} <= {"note"}
+        assert rows.tables
+    text = template_text(name)
+    assert text.startswith("# ")
+    assert 20 < len(purpose(text)) < 100
+    assert max(map(len, text.splitlines())) <= 110
+
+
+def test_the_four_bar_is_freudensteins() -> None:
+    rows, (a, b, c, d) = rows_of("four-bar"), (40.0, 120.0, 80.0, 100.0)
+    t = TURNS
+    x, y = a * np.cos(t), a * np.sin(t)
+    reach = np.hypot(d - x, y)
+    rocker = np.arctan2(y, x - d) - np.arccos((c**2 + reach**2 - b**2) / (2 * c * reach))
+    start = rocker[0]
+    assert off(np.radians(rows["D.theta"]), np.unwrap(rocker) - start) < 1e-12
+    transmitted = np.arccos((b**2 + c**2 - reach**2) / (2 * b * c))
+    angle = np.degrees(np.minimum(transmitted, np.pi - transmitted))
+    assert off(rows["D.theta.transmission_angle"], angle) < 1e-9
+
+
+def test_the_slider_cranks_slider() -> None:
+    rows, r, rod = rows_of("slider-crank"), 40.0, 120.0
+    t = TURNS + np.pi / 2
+    s = r * np.cos(t) + np.sqrt(rod**2 - (r * np.sin(t)) ** 2) - np.sqrt(rod**2 - r**2)
+    assert off(rows["S.s"], s) < 1e-11
+    assert set(rows["pressure"]) == {5.0, 25.0}
+
+
+def test_the_inverted_sliders_swing() -> None:
+    rows = rows_of("inverted-slider")
+    t = np.radians(rows["O.theta"])
+    x, y = 80.0 + 30.0 * np.cos(t), 30.0 * np.sin(t)
+    assert off(np.radians(rows["swing"]), np.arctan2(y, x)) < 1e-13
+    assert off(np.abs(rows["S.s"]), np.abs(np.hypot(x, y) - 110.0)) < 1e-11
+
+
+def test_the_rssrs_rod_keeps_its_length_on_the_branch_of_the_drawing() -> None:
+    """The rocker's angle from A cos + B sin = C at 40 digits."""
+    rows = rows_of("rssr")
+    with mp.workdps(40):
+        tilt = mp.radians(15)
+        axis = mp.matrix([mp.sin(tilt), 0, mp.cos(tilt)])
+        pivot = mp.matrix([160, 0, 60])
+        arm = mp.matrix([140, 100, 60]) - pivot
+        along = (axis.T * arm)[0] * axis
+        radial = arm - along
+        across = mp.matrix(
+            [
+                axis[1] * arm[2] - axis[2] * arm[1],
+                axis[2] * arm[0] - axis[0] * arm[2],
+                axis[0] * arm[1] - axis[1] * arm[0],
+            ]
+        )
+        length = mp.mpf(100) ** 2 + mp.mpf(100) ** 2 + mp.mpf(60) ** 2
+        for theta, found in zip(rows["O1.theta"], rows["O4.theta"], strict=True):
+            t = mp.radians(mp.mpf(float(theta)))
+            crank = mp.matrix([40 * mp.cos(t), 40 * mp.sin(t), 0])
+            fixed = pivot + along - crank
+            a, b = 2 * (fixed.T * radial)[0], 2 * (fixed.T * across)[0]
+            rest = length - (fixed.T * fixed)[0] - (radial.T * radial)[0]
+            middle, spread = mp.atan2(b, a), mp.acos(rest / mp.hypot(a, b))
+            roots = [mp.degrees(middle + spread), mp.degrees(middle - spread)]
+            near = [abs(mp.mpf(float(found)) - root) for root in roots]
+            assert min(near) < mp.mpf("1e-11")
+    assert rows["O4.theta"][0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_rcsr_is_that_of_the_dissertation() -> None:
+    known = mk.load(ROOT / "mechanisms" / "rcsr.yaml").analyze()
+    rows = rows_of("rcsr")
+    shared = [
+        (i, int(np.flatnonzero(known["O1.theta"] == t)[0]))
+        for i, t in enumerate(rows["O1.theta"])
+        if t in known["O1.theta"]
+    ]
+    assert len(shared) > 3
+    for name in ("O4.theta", "O2.s"):
+        for i, k in shared:
+            assert rows[name][i] == pytest.approx(known[name][k], rel=1e-11)
+
+
+def test_the_cylinder_arms_triangle_and_moments() -> None:
+    rows = rows_of("cylinder-arm")
+    foot, grip = np.hypot(800.0, 300.0), 1000.0
+    length = np.hypot(200.0, 300.0) + rows["cylinder.s"]
+    at_bearing = np.arccos((foot**2 + grip**2 - length**2) / (2 * foot * grip))
+    boom = at_bearing - np.arctan2(300.0, 800.0)
+    assert off(np.radians(rows["O.theta"]), boom) < 1e-12
+    lever = foot * grip * np.sin(at_bearing) / length
+    weight = 150.0 * 9.81 * 1250.0 + 400.0 * 9.80665 * 2500.0
+    assert off(rows["cylinder.effort"] / (weight * np.cos(boom) / lever), 1.0) < 1e-12
+
+
+def test_the_suspensions_links_keep_their_lengths_and_its_roll_centre() -> None:
+    rows = rows_of("suspension")
+    for one, other in (("rod_inner", "rod_outer"), ("lower_ball", "upper_ball")):
+        lengths = np.linalg.norm(rows[f"{one}.point"] - rows[f"{other}.point"], axis=1)
+        assert np.ptp(lengths) < 1e-11
+    # the tangent of the contact point's path, from a spline through finely spaced rows
+    fine = mk.loads(template_text("suspension").replace("step: 1}", "step: 0.05}")).analyze()
+    y, z = fine["contact.position.y"], fine["contact.position.z"]
+    roll = z + y * np.gradient(y) / np.gradient(z)
+    assert off(fine["roll_centre"][1:-1], roll[1:-1]) < 0.05
+    assert rows["camber"][12] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_platforms_legs_reach_from_foot_to_head() -> None:
+    rows = rows_of("platform")
+    feet, heads = (-12, 12, 108, 132, 228, 252), (-50, 50, 70, 170, 190, 290)
+    for k, (foot, head) in enumerate(zip(np.radians(feet), np.radians(heads), strict=True), 1):
+        home = np.linalg.norm(
+            [0.6 * np.cos(head) - np.cos(foot), 0.6 * np.sin(head) - np.sin(foot), 1.0]
+        )
+        legs = np.linalg.norm(rows[f"B{k}.point"] - rows[f"A{k}.point"], axis=1)
+        assert off(legs, home + rows[f"L{k}.s"]) < 1e-13
+    weights = 60.0 * 9.81
+    pushed = sum(
+        rows[f"L{k}.effort"]
+        * (rows[f"B{k}.point"] - rows[f"A{k}.point"])[:, 2]
+        / np.linalg.norm(rows[f"B{k}.point"] - rows[f"A{k}.point"], axis=1)
+        for k in range(1, 7)
+    )
+    assert off(pushed / weights, 1.0) < 0.1
+
+
+def test_the_pendulum_is_jacobis() -> None:
+    rows = mk.loads(template_text("pendulum")).respond("swing")
+    with mp.workdps(30):
+        k, rate = mp.sin(mp.radians(30)), mp.sqrt(mp.mpf("9.80665"))
+        quarter = mp.ellipk(k * k)
+        angles = [
+            float(
+                mp.degrees(2 * mp.asin(k * mp.ellipfun("sn", quarter - rate * mp.mpf(t), m=k * k)))
+            )
+            for t in map(float, rows["time"])
+        ]
+    assert off(rows["A.theta"], angles) < 1e-7
+
+
+def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr("sys.argv", ["mechkin", *arguments])
+    with pytest.raises(SystemExit) as left:
+        main()
+    return int(left.value.code or 0)
+
+
+def test_the_command_writes_a_file_and_never_over_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(monkeypatch, "new", "arm") == 0
+    assert (tmp_path / "arm.yaml").read_text(encoding="utf-8") == template_text(USUAL)
+    (tmp_path / "arm.yaml").write_text("mine", encoding="utf-8")
+    assert run(monkeypatch, "new", "arm", "--template", "rssr") == 2
+    assert (tmp_path / "arm.yaml").read_text(encoding="utf-8") == "mine"
+    assert "arm.yaml is there already" in capsys.readouterr().err
+    assert run(monkeypatch, "new", "b", "--template", "fourbar") == 2
+    assert "did you mean four-bar" in capsys.readouterr().err
+    assert run(monkeypatch, "new") == 2
+    assert run(monkeypatch, "new", "no/such/folder") == 2
+    assert [one.name for one in tmp_path.iterdir()] == ["arm.yaml"]
+
+
+def test_the_list_has_all_templates(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(monkeypatch, "new", "--list") == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == template_names()
