@@ -12,7 +12,6 @@ from mechkin_cli.cli.messages import put, refusal, say_diagnostics
 from mechkin_cli.cli.options import File, Quiet, Set
 from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import InvalidFile, UsageError
-from mechkin_cli.expressions import ExpressionError
 from mechkin_cli.runs import SWEEP
 
 if TYPE_CHECKING:
@@ -57,6 +56,7 @@ def plot(
     vectors are drawn in a plane: a point's position as its coupler curve, a force as its polar
     diagram. Without -o the pictures are out/STEM/TABLE.svg. Needs matplotlib: the extra plot.
     """
+    from mechkin_cli.expressions import ExpressionError
     from mechkin_cli.interface import load
     from mechkin_cli.plots.figure import format_of, image
 

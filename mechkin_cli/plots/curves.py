@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.expressions import parse
 from mechkin_cli.tables.columns import Column, Words
 from mechkin_cli.tables.layout import row_texts
 from mechkin_cli.tables.run_parameter import run_parameter
@@ -50,7 +49,7 @@ def curve_of(analysis: Readable, name: str) -> Curve:
     if name in row_texts(analysis.run):
         raise _words(name)
     result = analysis.result
-    found = parse(name).evaluate(result.quantity, result.units)
+    found = result.problem.definitions.parse(name).evaluate(result.quantity, result.units)
     return Curve(name, result.units.label(found.dimension), analysis[name])
 
 

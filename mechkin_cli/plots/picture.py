@@ -147,9 +147,10 @@ def _in_plane(
 
 
 def _widest(values: NDArray[np.float64]) -> tuple[int, int]:
-    """The two components with the widest spread, in order; those without a number last."""
-    spreads = [_spread(values[:, k]) for k in range(3)]
-    ranked = sorted(range(3), key=lambda k: -spreads[k])
+    """The two components with the widest spread, in order; those without a number last. A vector
+    of a plane has two."""
+    spreads = [_spread(component) for component in values.T]
+    ranked = sorted(range(len(spreads)), key=lambda k: -spreads[k])
     first, second = sorted(ranked[:2])
     return first, second
 

@@ -11,7 +11,9 @@ import pytest
 from references import RCSR
 
 import mechkin_cli as mk
+from mechkin_cli.plots.curves import Curve
 from mechkin_cli.plots.figure import drawn, image
+from mechkin_cli.plots.picture import picture
 
 FOUR_BAR = """\
 format: 1
@@ -74,6 +76,21 @@ def test_a_point_is_drawn_in_the_plane_of_its_curve(analysis):
     (axes,) = drawn(found).axes
     assert axes.get_aspect() == 1.0
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("tip.position.x [mm]", "tip.position.y [mm]")
+
+
+def test_named_expressions_are_drawn_by_their_names():
+    named = mk.loads(FOUR_BAR + "quantities: {both: A.radial_force + B.radial_force}\n").analyze()
+    (panel,) = named.picture(["both"]).panels
+    assert panel.unit == "N"
+    expected = named["A.radial_force"] + named["B.radial_force"]
+    np.testing.assert_allclose(panel.curves[0].values, expected, rtol=1e-15)
+
+
+def test_a_vector_of_a_plane_has_two_components(analysis):
+    places = analysis["tip.position"][:, :2]
+    found = picture(analysis, "tip", [Curve("tip.position", "mm", places)])
+    np.testing.assert_array_equal(found.x[0].values, places[:, 0])
+    np.testing.assert_array_equal(found.panels[0].curves[0].values, places[:, 1])
 
 
 def test_forces_of_a_plane_linkage_have_a_polar_diagram_without_their_arbitrary_part(analysis):
