@@ -6,16 +6,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from mechkin_cli.building.build import Built, build
-from mechkin_cli.building.source import open_data, open_text
+from mechkin_cli.building.build import Built
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.arguments import Setting, a_text, texts
 from mechkin_cli.interface.asking import run_name
 from mechkin_cli.interface.certified import Certified
+from mechkin_cli.interface.kept import Kept
 from mechkin_cli.interface.settings import input_values
 from mechkin_cli.interface.viewed import Viewed
-from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.named import Named
 from mechkin_cli.runs import SWEEP
@@ -24,7 +23,6 @@ from mechkin_cli.solver.session import Session
 from mechkin_cli.tables.layout import TableLayout
 
 if TYPE_CHECKING:
-    from pathlib import Path
     from typing import Any
 
     from mechkin_cli.analysis.mobility import Mobility
@@ -37,7 +35,7 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.precise import Precise
 
 
-class Model(Listed, Certified, Viewed):
+class Model(Kept, Certified, Viewed):
     """A checked mechanism file."""
 
     def __init__(self, built: Built, stem: str) -> None:
@@ -45,34 +43,6 @@ class Model(Listed, Certified, Viewed):
         self.stem = stem
         self._solvers: dict[tuple[str, ...] | None, Solver] = {}
         self._sessions: dict[str, Session] = {}
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Pickled and copied as the text of the file; tables that it names are read again."""
-        document = self.built.read.document
-        given = (document.text, document.file, dict(document.overrides), document.folder)
-        return _rebuilt, (*given, self.stem, document.is_data)
-
-    @property
-    def listing(self) -> Listing:
-        """Links, joints, inputs and tables; nothing is solved for it."""
-        mechanism = self.problem.mechanism
-        joints = tuple(
-            (
-                joint.name,
-                joint.letter,
-                ", ".join(f"{joint.name}.{c}" for c in joint.type.coordinates),
-            )
-            for joint in mechanism.joints.values()
-        )
-        inputs = ", ".join(driven.name for driven in self.problem.motion.inputs)
-        found = {
-            "loops": str(mechanism.loops),
-            "inputs": inputs or "none",
-            "runs": ", ".join(self.runs),
-            "tables": ", ".join(table.name for table in self.tables),
-        }
-        notes = tuple(f"{name}: {text}" for name, text in found.items() if text)
-        return Listing(f"Model of {self.name}", ("joint", "type", "coordinates"), joints, notes)
 
     @property
     def name(self) -> str:
@@ -416,19 +386,3 @@ class Model(Listed, Certified, Viewed):
 
         solvable = not isinstance(self.built.graph, Diagnostic)
         return find_mobility(self.problem, self.session if solvable else None)
-
-
-def _rebuilt(
-    text: str,
-    file: str,
-    overrides: Mapping[str, str],
-    folder: Path | None,
-    stem: str,
-    is_data: bool,
-) -> Model:
-    """A model of the text that another had, or of the data that its text was made from."""
-    if is_data:
-        import json
-
-        return Model(build(open_data(json.loads(text), file, overrides, folder)), stem)
-    return Model(build(open_text(text, file, overrides, folder)), stem)

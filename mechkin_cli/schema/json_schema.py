@@ -12,20 +12,38 @@ import json
 from types import NoneType, UnionType
 from typing import Annotated, Any, Final, Literal, Union, get_args, get_origin
 
+from mechkin_cli.schema.alternatives import Choice
 from mechkin_cli.schema.base import Section, fields_of
+from mechkin_cli.schema.decisions import decided
 from mechkin_cli.schema.descriptions import field_descriptions
+from mechkin_cli.schema.examples import example
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.schema.names import RESERVED
 from mechkin_cli.schema.rules import Barred, Dimension, Limits, Named, ShortForm, Shown
 from mechkin_cli.schema.runs import TAKEN_FOR_EDITORS
 
+IDENTITY: Final = "urn:mechkin:schema:mechanism:1"
+"""The name of the schema of format 1, wherever its file lies."""
+
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
-_FIRST_KEYS = ("$schema", "title", "description", "$ref", "type", "const", "enum", "required")
+_FIRST_KEYS = (
+    "$schema",
+    "$id",
+    "title",
+    "description",
+    "$ref",
+    "type",
+    "const",
+    "enum",
+    "required",
+)
 _NAMED_SECTIONS = ("parameters", "links", "joints", "points", "directions")
 _BY_NAME = ("properties", "patternProperties", "$defs")
 _JSON_TYPES = {str: "string", int: "integer"}
 # JSON Schema has no flag for ignoring case
 _NOT_A_NUMBER = r"^[+-]?\.?([Nn][Aa][Nn]|[Ii][Nn][Ff]([Ii][Nn][Ii][Tt][Yy])?)$"
+
+_MEASURED = ": a number in the file's units"
 
 Schema = dict[str, Any]
 
@@ -37,7 +55,7 @@ def json_schema() -> Schema:
     places per link that name the joint's own links, laws that need `time`.
     """
     definitions: Schema = {"ReservedName": {"enum": sorted(RESERVED)}}
-    top: Schema = {"$schema": DIALECT, "title": "mechkin mechanism file, format 1"}
+    top: Schema = {"$schema": DIALECT, "$id": IDENTITY, "title": "mechkin mechanism file, format 1"}
     top |= _section(MechanismFile, definitions)
     for name in _NAMED_SECTIONS:
         reserved = {"not": {"$ref": "#/$defs/ReservedName"}}
@@ -65,17 +83,53 @@ def _section(section: type[Section], definitions: Schema) -> Schema:
     for key, field in fields_of(section).items():
         schema = _value(field.annotation, definitions)
         if field.name in texts:
-            schema["description"] = texts[field.name]
+            measure = _measure(schema, definitions)
+            of_what = f" Unit: that of {measure}, the file's or its own." if measure else ""
+            schema["description"] = texts[field.name] + of_what
+        elif "const" in schema:
+            schema["description"] = _paragraphs(section)[0]
         if field.required:
             required.append(key)
         elif isinstance(field.default, (str, int)):
             schema["default"] = field.default
+        if not has_example(schema, definitions) and (shown := example(section.__name__, key)):
+            schema = schema | {"examples": [shown]}
         properties[key] = schema
-    paragraphs = inspect.cleandoc(section.__doc__ or "").split("\n\n")
-    words = "\n\n".join(text.replace("\n", " ") for text in paragraphs)
+    words = "\n\n".join(_paragraphs(section))
     found = {"description": words, "type": "object", "additionalProperties": False}
     found |= {"properties": properties} | ({"required": required} if required else {})
     return found | section.editors
+
+
+def _measure(schema: Schema, definitions: Schema) -> str | None:
+    """What a number, or each number of a list, measures; None where it is no measured number."""
+    while "$ref" in schema or "if" in schema:
+        schema = (
+            definitions[schema["$ref"].rpartition("/")[2]] if "$ref" in schema else schema["then"]
+        )
+    if "items" in schema:
+        return _measure(schema["items"], definitions)
+    name, mark, _ = str(schema.get("description", "")).partition(_MEASURED)
+    return name if mark and not name.startswith(("dimensionless", "any")) else None
+
+
+def _paragraphs(section: type[Section]) -> list[str]:
+    """What the section is, in words."""
+    paragraphs = inspect.cleandoc(section.__doc__ or "").split("\n\n")
+    return [text.replace("\n", " ") for text in paragraphs]
+
+
+def has_example(schema: Schema, definitions: Schema) -> bool:
+    """Whether an editor has something to show for a value: an example, or the words it may be."""
+    while not schema.keys() & {"examples", "enum", "const", "default"}:
+        if "$ref" not in schema:
+            return any(
+                has_example(schema[form], definitions)
+                for form in ("then", "else")
+                if form in schema
+            )
+        schema = definitions[schema["$ref"].rpartition("/")[2]]
+    return True
 
 
 def _value(annotation: Any, definitions: Schema) -> Schema:
@@ -106,7 +160,12 @@ def _value(annotation: Any, definitions: Schema) -> Schema:
 
 
 def _with_rules(inner: Any, rules: tuple[Any, ...], definitions: Schema) -> Schema:
-    schema = _value(inner, definitions)
+    choice = next((rule for rule in rules if isinstance(rule, Choice)), None)
+    if choice is None:
+        schema = _value(inner, definitions)
+    else:
+        forms = [_value(member, definitions) for member in get_args(inner)]
+        schema = decided(forms, choice.key, definitions)
     for rule in rules:
         if isinstance(rule, Named):
             definitions[rule.name] = schema
@@ -142,10 +201,7 @@ def _shown(rule: Shown) -> Schema:
 
 
 def _dimension(rule: Dimension) -> Schema:
-    text = (
-        f"{rule.name}: a number in the file's units, a number with its unit, "
-        "or an expression of parameters"
-    )
+    text = f"{rule.name}{_MEASURED}, a number with its unit, or an expression of parameters"
     not_finite = {"type": "string", "pattern": _NOT_A_NUMBER}
     shown = _shown(Shown(("number", "string"), text, rule.examples))
     return shown | {"minLength": 1, "not": not_finite}

@@ -27,11 +27,17 @@ class LinkInertia(Section):
     """
 
     xx: Inertia = "0"
+    """Moment of inertia about x through the mass centre."""
     yy: Inertia = "0"
+    """Moment of inertia about y through the mass centre."""
     zz: Inertia = "0"
+    """Moment of inertia about z through the mass centre."""
     xy: Inertia = "0"
+    """Entry xy of the tensor: minus the integral of x*y."""
     xz: Inertia = "0"
+    """Entry xz of the tensor: minus the integral of x*z."""
     yz: Inertia = "0"
+    """Entry yz of the tensor: minus the integral of y*z."""
     axes: InertiaAxes | None = None
     """Axes of the tensor; left out, those of the ground in the home drawing."""
 

@@ -10,7 +10,8 @@ import pytest
 import yaml
 from reading.bad_files import BAD_FILES, BadFile
 
-from mechkin_cli.schema.json_schema import json_schema, json_schema_text
+from mechkin_cli.schema.examples import BY_KEY, BY_SECTION
+from mechkin_cli.schema.json_schema import has_example, json_schema, json_schema_text
 
 TESTS = Path(__file__).parent.parent
 # to editors, which are written in JavaScript, $ is the end; to Python also a line break before it
@@ -97,9 +98,61 @@ def test_mappings_with_fixed_keys_are_closed() -> None:
     open_ones = [
         part
         for part in parts(json_schema())
-        if part.get("type") == "object" and part.get("additionalProperties") is not False
+        if part.get("type") == "object"
+        and part.get("additionalProperties") is not False
+        # a word decides which of the closed forms is meant
+        and not all("if" in rule for rule in part.get("allOf", [{}]))
     ]
     assert open_ones == []
+
+
+def test_no_editor_has_to_guess_which_form_is_meant() -> None:
+    alternatives = [form for part in parts(json_schema()) for form in part.get("oneOf", [])]
+    assert alternatives
+    assert all(form.keys() == {"required"} for form in alternatives)
+
+
+def test_every_key_has_words_and_an_example_that_fits() -> None:
+    schema = json_schema()
+    definitions = schema["$defs"]
+    sections = {"MechanismFile": schema} | definitions
+    checked = 0
+    for name, section in sections.items():
+        for key, value in section.get("properties", {}).items():
+            assert value.get("description"), (name, key)
+            assert has_example(value, definitions), (name, key)
+            for example in value.get("examples", []):
+                whole = {"$defs": definitions} | value
+                jsonschema.Draft202012Validator(whole).validate(example)
+                checked += 1
+    assert checked > 90
+
+
+def test_every_measured_key_says_its_unit() -> None:
+    definitions = json_schema()["$defs"]
+    lead = definitions["HelicalJoint"]["properties"]["lead"]["description"]
+    assert lead.endswith("Unit: that of length, the file's or its own.")
+    force = definitions["ForceOnLink"]["properties"]["force"]["description"]
+    assert force.endswith("Unit: that of force, the file's or its own.")
+    measures = ("length", "mass", "moment of inertia", "force", "moment", "time", "angle")
+    for name, definition in definitions.items():
+        for key, value in definition.get("properties", {}).items():
+            kind = value.get("$ref", "").rpartition("/")[2]
+            said = definitions.get(kind, {}).get("description", "").partition(":")[0]
+            if said in measures:
+                assert f"Unit: that of {said}," in value["description"], (name, key)
+
+
+def test_every_example_of_the_table_stands_at_a_key() -> None:
+    sections = {"MechanismFile": json_schema()} | json_schema()["$defs"]
+    keys = {key for section in sections.values() for key in section.get("properties", {})}
+    assert set(BY_KEY) <= keys
+    for section, key in BY_SECTION:
+        assert key in sections[section]["properties"]
+
+
+def test_the_schema_has_a_name_of_its_own() -> None:
+    assert json_schema()["$id"] == "urn:mechkin:schema:mechanism:1"
 
 
 def test_numbers_may_be_texts() -> None:
