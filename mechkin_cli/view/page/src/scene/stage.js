@@ -44,7 +44,8 @@ export class Stage {
     this.scene = new Scene();
     this.up = vector(data.up).normalize();
     this.centre = vector(data.centre);
-    this.camera = new PerspectiveCamera(FIELD, 1, 2e-3 * data.size, 60 * data.size);
+    this.size = data.size || 1; // one point has no size
+    this.camera = new PerspectiveCamera(FIELD, 1, 2e-3 * this.size, 60 * this.size);
     this.camera.up.copy(this.up);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.ask());
@@ -93,8 +94,8 @@ export class Stage {
       this.floor = null;
     }
     if (height === null || height === undefined || this.data.planar) return;
-    const step = 10 ** Math.floor(Math.log10(this.data.size / 4));
-    const cells = 2 * Math.ceil(this.data.size / step);
+    const step = 10 ** Math.floor(Math.log10(this.size / 4));
+    const cells = 2 * Math.ceil(this.size / step);
     this.floor = new GridHelper(cells * step, cells, this.gridColour, this.gridColour);
     this.floor.material.transparent = true;
     this.floor.material.opacity = 0.45;
@@ -123,7 +124,7 @@ export class Stage {
       }));
     const sides = [[right, wide], [right.clone().negate(), wide], [above, over], [above.clone().negate(), under]]
       .map(([across, slope]) => side(across, slope));
-    const distance = Math.max((sides[0] + sides[1]) / (2 * wide), (sides[2] + sides[3]) / (over + under), 1e-3 * this.data.size);
+    const distance = Math.max((sides[0] + sides[1]) / (2 * wide), (sides[2] + sides[3]) / (over + under), 1e-3 * this.size);
     const target = this.centre.clone()
       .addScaledVector(right, (sides[0] - sides[1]) / 2)
       .addScaledVector(above, (sides[2] - sides[3] - (over - under) * distance) / 2);

@@ -13,12 +13,13 @@ from references import RCSR
 from view import seen
 from view.browser import Browser
 from view.page_data import write_page
+from view.watching import SINGLE
 
 import mechkin_cli as mk
 
 MECHANISMS = RCSR.parent
 NAMES = ["rcsr", "stewart", "rchch", "five_link_suspension", "slider_crank", "rcsr_response"]
-SINGLE = 2.0**-22
+
 
 Open = Callable[[str], dict[str, Any]]
 

@@ -1,0 +1,113 @@
+"""The page in a real browser: what is drawn is the data."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from view.page_data import (
+    TYPES,
+    FourBar,
+    four_bar,
+    one_of_every_type,
+    slider,
+)
+from view.watching import CURVES, SINGLE, Show, colours, moved, pose, row
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0], ids=["own mode", "other mode"])
+def test_links_are_drawn_where_closed_forms_have_them(show: Show, sign: float) -> None:
+    browser = show(four_bar())
+    home = FourBar(np.array([0.0]))
+    if sign < 0:
+        browser.evaluate("window.mechkin.setBranch('mode 2')")
+    for at in (0, 7, 36, 51, 72):
+        browser.evaluate(f"window.mechkin.seek({at})")
+        bar = FourBar(np.radians([5.0 * at]), sign)
+        drawn = [
+            (moved(pose(browser, "crank"), home.crank[0]), bar.crank[0]),
+            (moved(pose(browser, "coupler"), home.crank[0]), bar.crank[0]),
+            (moved(pose(browser, "coupler"), home.rocker[0]), bar.rocker[0]),
+            (moved(pose(browser, "rocker"), home.rocker[0]), bar.rocker[0]),
+            (moved(pose(browser, "rocker"), home.pivot), home.pivot),
+            (moved(pose(browser, "ground"), home.pivot), home.pivot),
+        ]
+        for found, expected in drawn:
+            np.testing.assert_allclose(found, expected, rtol=0, atol=SINGLE * 300)
+
+
+def test_something_is_drawn_and_each_link_in_its_colour(show: Show) -> None:
+    browser = show(four_bar())
+    full = colours(browser)
+    assert len(full) > 12
+    for link in range(1, 4):
+        browser.evaluate(f"window.mechkin.theatre.setLinkVisible({link}, false)")
+        assert colours(browser) != full
+    browser.evaluate("window.mechkin.theatre.setLinkVisible(0, false)")
+    browser.evaluate("window.mechkin.theatre.setShown('paths', false)")
+    assert len(colours(browser)) <= 2, "an empty stage has one colour"
+
+
+@pytest.mark.parametrize("letter", [letter for letter in TYPES if letter != "F"])
+def test_both_halves_of_every_type_are_drawn(show: Show, letter: str) -> None:
+    browser = show(one_of_every_type())
+    bulk = browser.evaluate(f"""['holder_', 'mover_'].map((side) => {{
+      const {{data, theatre}} = window.mechkin;
+      const at = (name) => data.links.findIndex((each) => each.name === name);
+      const count = (name) =>
+        theatre.mechanism.links[at(name)].children[0].geometry.attributes.position.count;
+      return count(side + {letter!r}) - count(side + 'F');
+    }})""")
+    assert min(bulk) > 30, "no more than the rod of a link without a joint"
+
+
+def test_a_row_without_position_is_told_and_pale(show: Show) -> None:
+    browser = show(slider())
+    opacity = "window.mechkin.theatre.mechanism.links[1].children[0].material.opacity"
+    assert browser.evaluate(opacity) == 1
+    browser.press("End")
+    assert row(browser) == 40
+    assert (
+        browser.evaluate("document.querySelector('.reading .verdict').textContent")
+        == "beyond-dead-centre"
+    )
+    assert browser.evaluate(opacity) < 0.5
+    np.testing.assert_allclose(pose(browser, "block")[0], [50 * 35 / 40, 0, 0], atol=1e-5)
+    browser.press("Home")
+    assert browser.evaluate(opacity) == 1
+
+
+def test_arrows_are_to_scale(show: Show) -> None:
+    browser = show(four_bar())
+    browser.press("f")
+    lengths = []
+    for at in (0, 18):  # 100 N along x, 60 N along y
+        browser.evaluate(f"window.mechkin.seek({at})")
+        lengths.append(
+            browser.evaluate("""(() => {
+          const {group, tip} = window.mechkin.theatre.arrows.all[0];
+          return tip.clone().sub(group.position).toArray();
+        })()""")
+        )
+    along, across = (np.array(each) for each in lengths)
+    np.testing.assert_allclose(along[1:], 0, atol=1e-4)
+    np.testing.assert_allclose(across[0], 0, atol=1e-4)
+    np.testing.assert_allclose(across[1] / along[0], 0.6, rtol=1e-5)
+
+
+def test_modes_are_switched_and_compared(show: Show) -> None:
+    browser = show(four_bar())
+    browser.evaluate("window.mechkin.seek(10)")
+    browser.select(".modes select", "mode 2")
+    assert (row(browser), browser.evaluate("window.mechkin.state.branch.name")) == (10, "mode 2")
+    alone = browser.evaluate(CURVES)
+    before = colours(browser)
+    browser.click(".modes input")
+    assert browser.evaluate("window.mechkin.theatre.ghosts.length") == 1
+    assert browser.evaluate(CURVES) > alone
+    assert colours(browser) != before
+    ghost = browser.evaluate(
+        "window.mechkin.theatre.ghosts[0].mechanism.links[3].quaternion.toArray()"
+    )
+    bar, home = FourBar(np.radians([50.0])), FourBar(np.array([0.0]))
+    half = (bar.psi - home.psi)[0] / 2
+    np.testing.assert_allclose(ghost, [0, 0, np.sin(half), np.cos(half)], atol=1e-6)

@@ -1,0 +1,102 @@
+"""The page in a real browser: light and dark, paper, phones, many rows."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+from view.browser import Browser
+from view.page_data import (
+    four_bar,
+)
+from view.watching import Show, colours, row
+
+
+def test_dark_and_light(show: Show) -> None:
+    def background(browser: Browser) -> int:
+        text = browser.evaluate("getComputedStyle(document.body).backgroundColor")
+        return int(text.split("(")[1].split(",")[0])
+
+    browser = show(four_bar(), dark=True)
+    assert background(browser) < 60
+    dark = max(colours(browser).items(), key=lambda each: each[1])[0]
+    browser.click(".theme")
+    assert background(browser) > 200
+    assert max(colours(browser).items(), key=lambda each: each[1])[0] != dark
+    browser.click(".theme")
+    browser.media(media="print")
+    assert background(browser) > 200, "paper is light"
+
+
+def test_print_shows_picture_and_all_panels(show: Show, tmp_path: Path) -> None:
+    data = four_bar()
+    data["tables"][0]["rows"][0] = ["0.1234567890123", "-1.5", "1.23456789e-05"]
+    browser = show(data, dark=True)
+    first = (
+        "[...document.querySelector('tr[data-at=\"0\"]').children].map((each) => each.textContent)"
+    )
+    assert browser.evaluate(first)[:3] == data["tables"][0]["rows"][0]
+    browser.media(media="print")
+    assert browser.evaluate(first)[:3] == ["0.123457", "-1.5", "0.0000123457"]
+    shown = "getComputedStyle(document.querySelector('{0}')).display"
+    assert browser.evaluate(shown.format("#printed")) == "block"
+    assert browser.evaluate("document.querySelector('#printed').src.length") > 5000
+    assert [
+        browser.evaluate(shown.format(each)) for each in ("#curves", "#tables", "#notes", "#tools")
+    ] == ["block"] * 3 + ["none"]
+    assert browser.evaluate("document.querySelectorAll('#tables tr[data-at]').length") == 73
+    browser.pdf(tmp_path / "page.pdf")
+    assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
+    browser.media(media="screen")
+    assert browser.evaluate(shown.format("#printed")) == "none"
+
+
+@pytest.mark.parametrize("width", [360, 768])
+def test_a_phone_has_all_of_it_by_touch(show: Show, width: int) -> None:
+    browser = show(four_bar(), width=width, height=740, touch=True)
+    assert browser.evaluate("document.documentElement.scrollWidth") <= width
+    browser.tap(".play")
+    deadline = time.monotonic() + 20
+    while row(browser) == 0 and time.monotonic() < deadline:
+        time.sleep(0.05)
+    browser.tap(".play")
+    assert row(browser) > 0
+    browser.tap("#tab-tables")
+    assert browser.evaluate("document.documentElement.scrollWidth") <= width
+    browser.tap("tr[data-at='3'] td")
+    assert row(browser) == 3
+
+
+@pytest.mark.parametrize(("rows", "seconds"), [(361, 10), (20_000, 20)])
+def test_it_loads_and_plays_fast(
+    show: Show, capsys: pytest.CaptureFixture[str], rows: int, seconds: float
+) -> None:
+    data = four_bar(rows, min(rows, 2000))
+    start = time.monotonic()
+    browser = show(data)
+    loaded = time.monotonic() - start
+    browser.click("#tab-tables")
+    count = browser.evaluate("document.querySelectorAll('tr[data-at]').length")
+    assert count < 80, "only the rows that are seen are elements"
+    browser.click("#tab-curves")
+    frames = browser.evaluate("""(async () => {
+      const {info} = window.mechkin.theatre.stage.renderer;
+      window.mechkin.play();
+      const [first, start] = [info.render.frame, performance.now()];
+      await new Promise((done) => setTimeout(done, 3000));
+      window.mechkin.pause();
+      return (info.render.frame - first) / (performance.now() - start) * 1000;
+    })()""")
+    with capsys.disabled():
+        print(f"\n{rows} rows: loaded in {loaded:.2f} s, {frames:.1f} frames a second by software")
+    assert loaded < seconds
+    assert frames > 0
+    each = browser.evaluate("""(() => {
+      const start = performance.now();
+      for (let k = 0; k < 100; k += 1) window.mechkin.seek(3 * k + 0.5);
+      return (performance.now() - start) / 100;
+    })()""")
+    assert each < 16, "a row must be shown within a frame, whatever else the machine does"
+    browser.press("End")
+    assert row(browser) == rows - 1
