@@ -16,14 +16,21 @@ from mechkin_cli.building.fields import Path as KeyPath
 from mechkin_cli.diagnostics import Diagnostic, Place
 from mechkin_cli.expressions import literal, number_of
 from mechkin_cli.expressions.limits import MAX_QUOTED
-from mechkin_cli.mechanism.curve import Curve, smooth_curve
+from mechkin_cli.mechanism.curve import Curve
+from mechkin_cli.mechanism.joined_curve import Joining, joined_curve
 from mechkin_cli.reading.limits import MOST_BYTES
 from mechkin_cli.regular_file import NotRegular, read_regular
+from mechkin_cli.schema.joining import JoinedTable
+from mechkin_cli.tape.rows import is_traced
 from mechkin_cli.tape.scalars import is_finite, plain
-from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
+from mechkin_cli.tolerances import LARGEST_NUMBER, OVERSHOOT, SMALLEST_SIZE
 from mechkin_cli.units import Dimension
 
 CODE = "csv-table"
+
+
+SMOOTH = Joining()
+"""As points are joined where nothing else is asked for."""
 
 
 class Rows(NamedTuple):
@@ -42,9 +49,14 @@ class _BadTable(Exception):
 
 
 def read_curve(
-    fields: Fields, path: KeyPath, file_text: str, x_dimension: Dimension, y_dimension: Dimension
+    fields: Fields,
+    path: KeyPath,
+    file_text: str,
+    x_dimension: Dimension,
+    y_dimension: Dimension,
+    joining: Joining = SMOOTH,
 ) -> Curve | None:
-    """The smooth curve through a table, in SI; None where an error was noted in `fields`.
+    """The curve through a table, in SI; None where an error was noted in `fields`.
 
     Args:
         fields: knows the units and the mechanism file, from whose folder `file_text` leads.
@@ -52,20 +64,31 @@ def read_curve(
         file_text: the path of the CSV file as written.
         x_dimension: dimension of the first column, strictly increasing.
         y_dimension: dimension of the second column.
+        joining: how its points are joined.
     """
     rows = read_rows(fields, path, file_text, x_dimension, y_dimension)
     if rows is None:
         return None
     to_si = fields.units.to_si
     x = [plain(to_si(value, x_dimension)) for value in rows.x]
-    return smooth(fields, path, x, [plain(to_si(value, y_dimension)) for value in rows.y])
+    curve = join(fields, path, x, [plain(to_si(value, y_dimension)) for value in rows.y], joining)
+    if curve is not None:
+        note_overshoot(fields, path, curve, (x_dimension, y_dimension))
+    return curve
 
 
-def smooth(fields: Fields, path: KeyPath, x: list[float], y: list[float]) -> Curve | None:
-    """The smooth curve through points; None where it is too steep for numbers, which is noted."""
+def joining_of(table: JoinedTable) -> Joining:
+    """How the points of a table of the file are joined."""
+    return Joining(table.interpolation, table.ends or "not-a-knot")
+
+
+def join(
+    fields: Fields, path: KeyPath, x: list[float], y: list[float], joining: Joining
+) -> Curve | None:
+    """The curve through points; None where it is too steep for numbers, which is noted."""
     try:
         with np.errstate(all="ignore"):
-            curve = smooth_curve(x, y)
+            curve = joined_curve(x, y, joining)
     except ZeroDivisionError:  # two x that are one number in SI
         curve = None
     if curve is not None and all(map(is_finite, curve.coefficients.flat)):
@@ -73,6 +96,40 @@ def smooth(fields: Fields, path: KeyPath, x: list[float], y: list[float]) -> Cur
     text = "the curve through this table is too steep to compute"
     fields.error(CODE, path, text, "leave out rows that lie too close together")
     return None
+
+
+def note_overshoot(
+    fields: Fields, path: KeyPath, curve: Curve, dimensions: tuple[Dimension, Dimension] | None
+) -> None:
+    """A note where a curve leaves the range of its points by more than `OVERSHOOT`, with the place
+    at which it goes farthest; `dimensions` of a curve in SI, None of one in the file's units."""
+    if is_traced(curve.x) or is_traced(curve.coefficients):
+        return  # the note was given when the file was read
+    least, most = float(curve.coefficients[0].min()), float(curve.coefficients[0].max())
+    places = curve.turning_places()
+    values = curve.evaluate(places)[0]
+    beyond = np.maximum(values - most, least - values)
+    if not beyond.size or not beyond.max() > OVERSHOOT * (most - least):
+        return
+    farthest = int(beyond.argmax())
+    x, y, limit = places[farthest], values[farthest], most if values[farthest] > most else least
+    if dimensions is not None:
+        from_si = fields.units.from_si
+        x, y, limit = (
+            float(from_si(one, of))
+            for one, of in ((x, dimensions[0]), (y, dimensions[1]), (limit, dimensions[1]))
+        )
+    word = "above" if values[farthest] > most else "below"
+    fields.note(
+        Diagnostic(
+            "table-overshoot",
+            "note",
+            f"the curve through this table goes to {y:.6g} at {x:.6g}, {word} all its values",
+            fields.document.place(path),
+            limit=f"{limit:.6g}",
+            hint="write interpolation: monotone to keep it within them",
+        )
+    )
 
 
 def read_rows(

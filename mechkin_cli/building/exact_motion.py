@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.building.coordinates import dimension_of
-from mechkin_cli.building.curves import read_rows
+from mechkin_cli.building.curves import joining_of, read_rows
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.law_numbers import Clock, PowerLaw, coefficients, over_time, span
 from mechkin_cli.exact import PI, TURN, Exact
 from mechkin_cli.expressions import Expression, Quantity, literal, parse
 from mechkin_cli.expressions.fields import scalar
-from mechkin_cli.mechanism.curve import smooth_curve
 from mechkin_cli.mechanism.exact_motion import ExactMotion
+from mechkin_cli.mechanism.joined_curve import joined_curve
 from mechkin_cli.schema.laws import Cycloidal, Harmonic, Law, TableLaw
 from mechkin_cli.schema.motion import (
     FollowingInput,
@@ -275,7 +275,7 @@ class _Reading:
         table = read_rows(self.fields, (*path, "file"), law.file, TIME, dimension_of(coordinate))
         assert table is not None
         assert self.clock is not None
-        curve = smooth_curve(table.x, table.y)
+        curve = joined_curve(table.x, table.y, joining_of(law))
         knots = np.array([as_recorded(x) for x in table.x])
         piece = np.searchsorted(knots, self.clock.moments, side="right") - 1
         piece = np.clip(piece, 0, knots.size - 1)

@@ -13,10 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mechkin_cli.building.coordinates import dimension_of
-from mechkin_cli.building.curves import read_rows
+from mechkin_cli.building.curves import joining_of, read_rows
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.law_numbers import Clock, PowerLaw, coefficients, over_time, span
-from mechkin_cli.mechanism.curve import smooth_curve
+from mechkin_cli.mechanism.joined_curve import joined_curve
 from mechkin_cli.schema.laws import Cycloidal, Harmonic, Law, TableLaw
 from mechkin_cli.tape.scalars import cos, sin
 from mechkin_cli.units import TIME
@@ -89,7 +89,7 @@ def _rise(
 def _table(fields: Fields, path: Path, law: TableLaw, coordinate: str) -> LawPieces:
     rows = read_rows(fields, (*path, "file"), law.file, TIME, dimension_of(coordinate))
     assert rows is not None  # it was read before
-    curve = smooth_curve(rows.x, rows.y)
+    curve = joined_curve(rows.x, rows.y, joining_of(law))
     last = curve.x.size - 1
 
     def constants(moment: float) -> list[float]:

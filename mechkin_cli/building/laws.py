@@ -8,7 +8,7 @@ first moment of `time` and u = (moment - start)/duration:
 - harmonic: x = from + (to - from) (1 - cos(pi u))/2
 - cycloidal: x = from + (to - from) (u - sin(2 pi u)/(2 pi)); both rest before and after, and the
   first and the last moment of the rise belong to it
-- table: the smooth curve through the rows of a CSV file.
+- table: the curve through the rows of a CSV file.
 """
 
 from __future__ import annotations
@@ -127,14 +127,16 @@ def _rise(
 
 
 def _table(fields: Fields, path: Path, law: TableLaw, coordinate: str, clock: Clock) -> Floats:
-    from mechkin_cli.building.curves import read_rows, smooth
+    from mechkin_cli.building.curves import join, joining_of, note_overshoot, read_rows
 
     orders = np.zeros((4, clock.moments.size))
     place = (*path, "file")
     rows = read_rows(fields, place, law.file, TIME, dimension_of(coordinate))
-    curve = None if rows is None else smooth(fields, place, rows.x, rows.y)
+    joining = joining_of(law)
+    curve = None if rows is None else join(fields, place, rows.x, rows.y, joining)
     if curve is None:
         return orders
+    note_overshoot(fields, place, curve, None)
     unit = fields.units.label(TIME)
     for moment in (float(clock.moments[0]), float(clock.moments[-1])):
         if not curve.first <= moment <= curve.last:

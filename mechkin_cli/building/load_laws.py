@@ -107,9 +107,11 @@ class LoadLaws:
         path, wanted = (*path, "table"), self._runs_over(path, value, over)
         if wanted is None:
             return Varying(0)
-        from mechkin_cli.building.curves import read_curve
+        from mechkin_cli.building.curves import joining_of, read_curve
 
-        curve = read_curve(self.fields, path, value.table, wanted.dimension, dimension)
+        curve = read_curve(
+            self.fields, path, value.table, wanted.dimension, dimension, joining_of(value)
+        )
         if curve is not None:
             place = self.fields.document.place(path)
             self.laws.append(LoadLaw((wanted.name,), place, curve=curve))

@@ -1,4 +1,4 @@
-"""A smooth curve through points of a table: the cubic spline with not-a-knot ends.
+"""A smooth curve through points of a table: the cubic spline, usually with not-a-knot ends.
 
 Between the points x_i the curve is y_i + b_i u + c_i u^2 + d_i u^3 with u = x - x_i; value, slope
 and curvature are continuous, so a motion law has a continuous acceleration. At either end the first
@@ -9,9 +9,9 @@ Source: C. de Boor, A Practical Guide to Splines, chapter IV.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from mechkin_cli.tape.scalars import plain
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
+
+
+Ends = Literal["not-a-knot", "natural", "clamped"]
 
 
 class Curve(NamedTuple):
@@ -43,6 +46,19 @@ class Curve(NamedTuple):
         last: float = plain(self.x[-1])
         return last
 
+    def turning_places(self) -> Floats:
+        """Where the slope is zero inside a piece, in no order."""
+        _, b, c, d = self.coefficients[:, :-1]
+        width = np.diff(self.x)
+        with np.errstate(all="ignore"):
+            root = np.sqrt(c * c - 3.0 * b * d)
+            # of the two forms of a root the one that does not cancel
+            larger = -(c + np.where(c < 0.0, -root, root))
+            inside = np.concatenate([larger / (3.0 * d), b / larger])
+        starts, widths = np.tile(self.x[:-1], 2), np.tile(width, 2)
+        found: Floats = (starts + inside)[(inside > 0.0) & (inside < widths)]
+        return found
+
     def evaluate(self, x: Floats) -> Floats:
         """Value and first three derivatives at x (rows,), shape (4, rows).
 
@@ -61,9 +77,11 @@ class Curve(NamedTuple):
         )
 
 
-def smooth_curve(x: Sequence[float], y: Sequence[float]) -> Curve:
-    """The curve through two or more points with strictly increasing x; through two a straight line,
-    through three a parabola.
+def smooth_curve(x: Sequence[float], y: Sequence[float], ends: Ends = "not-a-knot") -> Curve:
+    """The curve through two or more points with strictly increasing x.
+
+    Its ends are natural (no curvature), clamped (no slope) or not-a-knot: through two points a
+    straight line then, through three a parabola.
 
     Example:
         >>> smooth_curve([0, 1, 3], [0, 1, 9]).evaluate(np.array([2.0])).tolist()
@@ -71,7 +89,7 @@ def smooth_curve(x: Sequence[float], y: Sequence[float]) -> Curve:
     """
     h = [b - a for a, b in pairwise(x)]
     slopes = [(b - a) / step for (a, b), step in zip(pairwise(y), h, strict=True)]
-    m = _curvatures(h, slopes)
+    m = _CURVATURES[ends](h, slopes)
     pieces = [
         (y[i], slopes[i] - h[i] * (2.0 * m[i] + m[i + 1]) / 6.0, m[i] / 2.0, _third(m, h, i))
         for i in range(len(h))
@@ -107,6 +125,29 @@ def _curvatures(h: list[float], slopes: list[float]) -> list[float]:
     first = inner[0] + (inner[0] - inner[1]) * (h[0] / h[1])
     last = inner[-1] + (inner[-1] - inner[-2]) * (h[-1] / h[-2])
     return [first, *inner, last]
+
+
+def _natural(h: list[float], slopes: list[float]) -> list[float]:
+    """As `_curvatures`, zero at the ends."""
+    if len(h) == 1:
+        return [0.0, 0.0]
+    jumps = [6.0 * (b - a) for a, b in pairwise(slopes)]
+    diagonal = [2.0 * (a + b) for a, b in pairwise(h)]
+    return [0.0, *_tridiagonal([0.0, *h[1:-1]], diagonal, [*h[1:-1], 0.0], jumps), 0.0]
+
+
+def _clamped(h: list[float], slopes: list[float]) -> list[float]:
+    """As `_curvatures`, with slopes of zero at the ends."""
+    jumps = [6.0 * (b - a) for a, b in pairwise([0.0, *slopes, 0.0])]
+    diagonal = [2.0 * (a + b) for a, b in pairwise([0.0, *h, 0.0])]
+    return _tridiagonal([0.0, *h], diagonal, [*h, 0.0], jumps)
+
+
+_CURVATURES: dict[Ends, Callable[[list[float], list[float]], list[float]]] = {
+    "not-a-knot": _curvatures,
+    "natural": _natural,
+    "clamped": _clamped,
+}
 
 
 def _tridiagonal(

@@ -3,7 +3,8 @@
 from typing import Annotated, Any, Final, Literal
 
 from mechkin_cli.schema.alternatives import Tag
-from mechkin_cli.schema.base import Key, Section
+from mechkin_cli.schema.base import Key, Section, refuse
+from mechkin_cli.schema.joining import JoinedTable
 from mechkin_cli.schema.rules import Limits
 from mechkin_cli.schema.scalars import (
     AngleOrLength,
@@ -73,12 +74,19 @@ class Cycloidal(_Rise):
     """Value after the rise."""
 
 
-class TableLaw(Section):
-    """x as a table of time and value, joined by a smooth curve."""
+class TableLaw(JoinedTable):
+    """x as a table of time and value, joined by a curve: a spline, or a monotone one."""
 
     law: Literal["table"]
     file: CsvPath
     """CSV file with a header and two columns: time, value; relative to the mechanism file."""
+
+    def check(self) -> None:
+        """The rate does not jump."""
+        super().check()
+        if self.interpolation == "linear":
+            text = "the rate of a linear law jumps at every point, where forces would be infinite"
+            raise refuse("linear-law", text, "write interpolation: monotone", "interpolation")
 
 
 Law = ConstantRate | ConstantAcceleration | Polynomial | Harmonic | Cycloidal | TableLaw

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from mechkin_cli.schema.alternatives import Choice, Tag, by_word
 from mechkin_cli.schema.base import Section, refuse
+from mechkin_cli.schema.joining import JoinedTable
 from mechkin_cli.schema.rules import Limits, Named
 from mechkin_cli.schema.runs import RunNames
 from mechkin_cli.schema.scalars import (
@@ -29,7 +30,7 @@ from mechkin_cli.schema.scalars import (
 )
 
 
-class TableValue(Section):
+class TableValue(JoinedTable):
     """A value read from a CSV file."""
 
     table: CsvPath

@@ -27,6 +27,10 @@ doubles any more."""
 
 # --- rows and tables -----------------------------------------------------------------------------
 
+OVERSHOOT: Final = 0.01
+"""Parts of the range of a table's values by which the curve through them may leave it before a note
+says so: less is not seen in a figure, and smooth data sampled coarsely do as much."""
+
 LAST_ROW: Final = 1e-9
 """Steps by which the last row may lie beyond the end of a sweep, part of format 1: the quotient of
 written numbers is wrong by 1e-16 times the number of rows, of which there are at most 1e7."""
