@@ -11,7 +11,6 @@ from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.given_file import model_of, shown, stem_of
 from mechkin_cli.cli.messages import (
     FORMS,
-    Progress,
     Record,
     put,
     put_json,
@@ -21,6 +20,7 @@ from mechkin_cli.cli.messages import (
     tell_as,
 )
 from mechkin_cli.cli.parameters import parameters
+from mechkin_cli.cli.progress import Tell, working
 from mechkin_cli.cli.runs import certify_sweeps, run_all
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.runs import SWEEP
@@ -102,27 +102,33 @@ def analyze_files(
     )
     code = ExitCode.OK
     records: list[Record] = []
-    progress = Progress(len(files), "files", quiet)
-    for number, (path, folder) in enumerate(_folders(files, out).items(), 1):
-        outcome, record = _one(path, folder, request)
-        code = max(code, outcome)
-        records.append(record)
-        progress.step(number)
-    progress.end()
+    folders = _folders(files, out)
+    with working("", quiet) as tell:
+        for number, (path, folder) in enumerate(folders.items(), 1):
+            count = f" ({number} of {len(files)})" if len(files) > 1 else ""
+            words = f"{shown(path)}{count}"
+
+            def at(what: str, words: str = words) -> None:
+                tell(f"{words}: {what}")
+
+            outcome, record = _one(path, folder, request, at)
+            code = max(code, outcome)
+            records.append(record)
     if json:
         put_json(records[0] if len(files) == 1 else {"files": records})
     return code
 
 
-def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]:
+def _one(path: Path, folder: Path, request: _Request, tell: Tell) -> tuple[ExitCode, Record]:
     """Runs one file; what is wrong with it does not stop the others."""
     from mechkin_cli.tables.json_writer import runs_record
 
     try:
+        tell("reading")
         model = model_of(path, request.settings)
         if request.errors:
             _refuse_own_errors(model, request.tables)
-        analyses, notes, written = _run(model, folder, request)
+        analyses, notes, written = _run(model, folder, request, tell)
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
     said = dict.fromkeys(found for analysis in analyses for found in analysis.diagnostics)
@@ -143,17 +149,19 @@ def _one(path: Path, folder: Path, request: _Request) -> tuple[ExitCode, Record]
 
 
 def _run(
-    model: Model, folder: Path, request: _Request
+    model: Model, folder: Path, request: _Request, tell: Tell
 ) -> tuple[list[Analysis], tuple[Diagnostic, ...], list[Path]]:
     """The runs, notes on what is not proven, and the files written: alone in their folder from
     before the work on, so that nothing is computed that cannot be written."""
     from mechkin_cli.tables.files import OutputFolder
 
     with OutputFolder(folder) if request.writes else nullcontext() as output:
-        analyses = run_all(model, request.tables, request.mode)
+        analyses = run_all(model, request.tables, request.mode, tell)
+        tell("proving rows" if request.certify else "evaluating tables")
         notes = certify_sweeps(analyses) if request.certify else ()
         if output is None:
             return analyses, notes, []
+        tell("measuring true errors" if request.errors else "writing tables")
         results = [_results(analysis, request) for analysis in analyses]
         files = written_files(results, request.formats)
         if request.view:

@@ -13,6 +13,7 @@ from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.given_file import model_of, shown
 from mechkin_cli.cli.messages import Record, put_json, refusal, say_diagnostics
 from mechkin_cli.cli.parameters import parameters
+from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 
 if TYPE_CHECKING:
@@ -29,12 +30,14 @@ Found = TypeVar("Found", bound=_Answer)
 
 @dataclass(frozen=True)
 class Question(Generic[Found]):
-    """What is asked of a model, whether the answer holds anything, and both ways to tell it."""
+    """What is asked of a model (`words` for a person who waits), whether the answer holds anything,
+    and both ways to tell it."""
 
     ask: Callable[[Model], Found]
     is_answered: Callable[[Found], bool]
     record: Callable[[Model, Found], Record]
     show: Callable[[Model, Found], None]
+    words: str
 
 
 def answer(file: Path, settings: list[str] | None, json: bool, question: Question[Found]) -> None:
@@ -46,7 +49,8 @@ def answer(file: Path, settings: list[str] | None, json: bool, question: Questio
     record: Record = {}
     try:
         model = model_of(file, parameters(settings))
-        found = question.ask(model)
+        with working(f"{shown(file)}: {question.words}"):
+            found = question.ask(model)
     except (InvalidFile, UsageError) as error:
         code, record = refusal(file, error)
     else:

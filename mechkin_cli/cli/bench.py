@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,6 +14,7 @@ from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.given_file import refuse_stdin
 from mechkin_cli.cli.messages import Record, put, put_json, refusal
 from mechkin_cli.cli.options import Json
+from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ def _benches(scenes: Sequence[Scene], rounds: Rounds, *, shown: bool) -> Iterato
     from mechkin_cli.benchmark.tables import bench_table
 
     for number, scene in enumerate(scenes, 1):
-        with _progress(f"{scene.name}: {number} of {len(scenes)}"):
+        with working(f"measuring {scene.name}: {number} of {len(scenes)}"):
             found = measure(scene, rounds)
         if shown:
             _show(bench_table(found))
@@ -182,28 +182,13 @@ def _tables(
 
     found = tables(subjects, scenes, rounds, whole=whole) if scenes else iter(())
     while True:
-        with _progress("demand plan, threads, variants, responses"):
+        with working("measuring demand plan, threads, variants, responses"):
             table = next(found, None)
         if table is None:
             return
         if shown:
             _show(table)
         yield table
-
-
-@contextmanager
-def _progress(words: str) -> Iterator[None]:
-    """What is measured now, on a terminal alone."""
-    if not sys.stderr.isatty():
-        yield
-        return
-    sys.stderr.write(f"measuring {words} ...")
-    sys.stderr.flush()
-    try:
-        yield
-    finally:
-        sys.stderr.write("\r\x1b[K")
-        sys.stderr.flush()
 
 
 def _show(table: Table) -> None:

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import Progress, put, put_json, say
+from mechkin_cli.cli.messages import put, put_json, say
+from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.nearest import nearest_hint
 
@@ -78,22 +79,19 @@ def _run(asked: Stress, rows: int, seed: int, names: Sequence[str]) -> list[Tall
     from mechkin_cli.benchmark.stress.run import stress
 
     processes = asked.processes or os.cpu_count() or 1
-    progress: Progress | None = None
     told = asked.json
 
     def step(done: int, count: int, left: float | None) -> None:
-        nonlocal progress, told
-        progress = progress or Progress(count, "blocks", asked.json)
-        progress.step(done, "" if left is None else f", about {_span(left)} left")
+        nonlocal told
+        more = "" if left is None else f", about {_span(left)} left"
+        tell(f"{done} of {count} blocks{more}")
         if left is not None and not told:
             told = True
             if left > LONG:
                 say(f"{rows} rows: about {_span(left)} more with {processes} at once")
 
-    tallies = stress(rows, seed, names, processes, step)
-    if progress is not None:
-        progress.end()
-    return tallies
+    with working(f"{rows} rows", asked.json) as tell:
+        return stress(rows, seed, names, processes, step)
 
 
 def _span(seconds: float) -> str:

@@ -56,5 +56,9 @@ def _interrupted(number: int, frame: FrameType | None) -> None:
     claims = sys.modules.get("mechkin_cli.tables.claim")
     for claim in tuple(getattr(claims, "held", ())):
         claim.release()
+    progress = sys.modules.get("mechkin_cli.cli.progress")
+    if getattr(progress, "shown", None):
+        with contextlib.suppress(OSError):
+            os.write(2, progress.RESTORED)  # type: ignore[union-attr]
     said()
     os._exit(INTERRUPTED)

@@ -49,6 +49,7 @@ def put(text: str) -> None:
     """
     if sys.stdout is None:
         return
+    _clear_progress()
     try:
         try:
             sys.stdout.write(text)
@@ -101,11 +102,19 @@ def say(text: str = "") -> None:
 def _say(text: str, end: str = "\n") -> None:
     if sys.stderr is None:
         return
+    _clear_progress()
     try:
         sys.stderr.write(text + end)
         sys.stderr.flush()
     except OSError:
         _discard(sys.stderr)
+
+
+def _clear_progress() -> None:
+    """Clears what is shown of the work that goes on."""
+    progress = sys.modules.get("mechkin_cli.cli.progress")
+    if progress is not None:
+        progress.pause()
 
 
 def _discard(stream: TextIO) -> None:
@@ -163,28 +172,3 @@ def _coloured(text: str, severity: str) -> str:
         return text
     word = f"{severity}:"
     return text.replace(word, f"{_COLOURS[severity]}{word}{_PLAIN}", 1)
-
-
-class Progress:
-    """A counter on stderr, only on a terminal and only once the work has taken a second."""
-
-    def __init__(self, total: int, what: str, quiet: bool) -> None:
-        from time import monotonic
-
-        self._clock = monotonic
-        self._start = monotonic()
-        self._total = total
-        self._what = what
-        self._on = not quiet and total > 1 and _on_terminal()
-        self._shown = False
-
-    def step(self, done: int, more: str = "") -> None:
-        """Shows how far the work is, and `more` behind it."""
-        if self._on and self._clock() - self._start > 1.0:
-            _say(f"\r{done} of {self._total} {self._what}{more}\x1b[K", end="")
-            self._shown = True
-
-    def end(self) -> None:
-        """Clears the counter."""
-        if self._shown:
-            _say("\r\x1b[K", end="")

@@ -23,6 +23,7 @@ def mobility(file: File, set_: Set = None, json: Json = False, quiet: Quiet = Fa
         is_answered=lambda found: found.mobility is not None,
         record=lambda _, found: _record(found),
         show=lambda _, found: put("\n".join(_lines(found, quiet)) + "\n"),
+        words="looking for what can move",
     )
     answer(file, set_, json, question)
 

@@ -51,6 +51,7 @@ def modes(
         is_answered=lambda found: bool(found.modes),
         record=_record,
         show=lambda model, found: _print(model, found, quiet),
+        words="searching for assembly modes",
     )
     answer(file, set_, json, question)
 

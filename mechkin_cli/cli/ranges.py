@@ -60,6 +60,7 @@ def ranges(
         is_answered=lambda found: bool(found.ranges),
         record=_record,
         show=lambda model, found: _print(model, found, quiet),
+        words="following each mode to its ends",
     )
     answer(file, set_, json, question)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
@@ -13,9 +13,13 @@ if TYPE_CHECKING:
 
 
 def run_all(
-    model: Model, tables: Sequence[str] | None = None, mode: str | None = None
+    model: Model,
+    tables: Sequence[str] | None = None,
+    mode: str | None = None,
+    tell: Callable[[str], None] = lambda _: None,
 ) -> list[Analysis]:
-    """Every run that has one of the tables wanted (None: all), the sweep first.
+    """Every run that has one of the tables wanted (None: all), the sweep first; `tell` hears which
+    is under way.
 
     Raises:
         UsageError: no run has a table of a name.
@@ -29,11 +33,18 @@ def run_all(
     found = []
     for run in runs:
         chosen = None if wanted is None else wanted[run]
+        tell(_words(model, run))
         if run == SWEEP:
             found.append(model.analyze(tables=chosen, mode=mode))
         else:
             found.append(model.respond(run, tables=chosen, mode=mode))
     return found
+
+
+def _words(model: Model, run: str) -> str:
+    if run != SWEEP:
+        return f"integrating {run}"
+    return f"following {model.problem.motion.rows} rows"
 
 
 def certify_sweeps(analyses: Sequence[Analysis]) -> tuple[Diagnostic, ...]:

@@ -13,7 +13,6 @@ from mechkin_cli.cli.completion import mechanism_files
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.given_file import refuse_stdin
 from mechkin_cli.cli.messages import (
-    Progress,
     Record,
     put,
     put_json,
@@ -23,6 +22,7 @@ from mechkin_cli.cli.messages import (
     tell_as,
 )
 from mechkin_cli.cli.options import Json, Messages, Quiet
+from mechkin_cli.cli.progress import working
 from mechkin_cli.cli.runs import run_all
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
@@ -77,17 +77,16 @@ def tables(
     code = ExitCode.OK
     records: list[Record] = []
     rows: list[OverviewRow] = []
-    progress = Progress(len(files), "files", quiet)
-    for number, file in enumerate(files, 1):
-        try:
-            outcome, record, row = _one(file, check, json, quiet, overview=path.is_dir())
-            rows += [row] if row else []
-        except (InvalidFile, UsageError) as error:
-            outcome, record = refusal(file, error)
-        code = max(code, outcome)
-        records.append(record)
-        progress.step(number)
-    progress.end()
+    with working("", quiet) as tell:
+        for number, file in enumerate(files, 1):
+            tell(f"{file} ({number} of {len(files)})")
+            try:
+                outcome, record, row = _one(file, check, json, quiet, overview=path.is_dir())
+                rows += [row] if row else []
+            except (InvalidFile, UsageError) as error:
+                outcome, record = refusal(file, error)
+            code = max(code, outcome)
+            records.append(record)
     found: Record = {"files": records}
     if len(rows) == len(files):
         from mechkin_cli.cli.overview import keep_overview

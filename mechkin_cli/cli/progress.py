@@ -1,0 +1,123 @@
+"""What the program is at, on a terminal's stderr, once a piece of work has taken a second.
+
+Before that, in a pipe and with `--quiet` nothing is shown, and what was shown is gone when the work
+ends. What is printed meanwhile clears the line first (`pause`), which comes back after another
+second.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import threading
+
+AFTER = 1.0
+"""Seconds of work before anything is shown."""
+
+RESTORED = b"\r\x1b[2K\x1b[?25h"
+"""Clears the line and brings the cursor back: for a process that ends at once."""
+
+Tell = Callable[[str], None]
+
+running: set[_Display] = set()
+"""The work that is under way."""
+
+shown: set[_Display] = set()
+"""What is on the terminal now: an interrupt must clear it."""
+
+
+@contextmanager
+def working(words: str, quiet: bool = False) -> Iterator[Tell]:
+    """Shows the words, and for how long, while the work inside goes on; gives what changes them."""
+    if quiet or not _can_show():
+        yield lambda _: None
+        return
+    import threading
+
+    display = _Display(words, threading.RLock())
+    running.add(display)
+    try:
+        display.wait()
+        yield display.tell
+    finally:
+        running.discard(display)
+        display.clear()
+
+
+def pause() -> None:
+    """Clears the terminal's line for what is printed next."""
+    for display in tuple(running):
+        display.clear()
+        display.wait()
+
+
+def _can_show() -> bool:
+    """Whether stderr is a terminal that can clear a line."""
+    is_plain = os.environ.get("TERM", "") in ("dumb", "unknown")
+    return sys.stderr is not None and sys.stderr.isatty() and not is_plain
+
+
+class _Display:
+    """A line with a turning mark, the words and the time, drawn by rich in a thread of its own."""
+
+    def __init__(self, words: str, lock: threading.RLock) -> None:
+        self._words = words
+        self._lock = lock
+        self._timer: threading.Timer | None = None
+        self._bar: Any = None
+
+    def wait(self) -> None:
+        """Draws when a second has passed."""
+        import threading
+
+        with self._lock:
+            self._timer = threading.Timer(AFTER, self._show)
+            self._timer.daemon = True
+            self._timer.start()
+
+    def _show(self) -> None:
+        from rich.console import Console
+        from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+        columns = SpinnerColumn("line"), TextColumn("{task.description}"), TimeElapsedColumn()
+        bar = Progress(*columns, console=Console(stderr=True), transient=True)
+        with self._lock:
+            if self._timer is None:  # the work has ended meanwhile
+                return
+            bar.add_task(_plain(self._words), total=None)
+            bar.tasks[0].start_time = bar.get_time() - AFTER
+            self._bar = bar
+            shown.add(self)
+            bar.start()
+
+    def tell(self, words: str) -> None:
+        """Changes the words."""
+        with self._lock:
+            self._words = words
+            if self._bar is not None:
+                self._bar.update(self._bar.tasks[0].id, description=_plain(words))
+
+    def clear(self) -> None:
+        """Clears the line, or sees to it that none comes."""
+        with self._lock:
+            if self._timer is not None:
+                self._timer.cancel()
+            self._timer = None
+            if self._bar is not None:
+                self._bar.stop()
+            self._bar = None
+            shown.discard(self)
+
+
+def _plain(words: str) -> str:
+    """The words in one line, without rich's markup."""
+    from rich.markup import escape
+
+    from mechkin_cli.legible import legible
+
+    return escape(legible(words, also=""))

@@ -1,0 +1,89 @@
+"""Progress: on a terminal alone, after a second, and gone at the end however that comes."""
+
+from __future__ import annotations
+
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+HIDE, SHOW = b"\x1b[?25l", b"\x1b[?25h"
+WORK = """
+import sys, time
+from mechkin_cli.cli.interrupts import end_quietly
+from mechkin_cli.cli.messages import say
+from mechkin_cli.cli.progress import working
+end_quietly()
+with working("searching [bold]x[/bold]", quiet=sys.argv[2:] == ["quiet"]) as tell:
+    time.sleep(float(sys.argv[1]))
+    say("a message")
+    tell("still at it")
+    time.sleep(float(sys.argv[1]))
+"""
+
+
+def on_terminal(*words: str, stop_after: float | None = None, **settings: str) -> tuple[int, bytes]:
+    """Exit code, and what a terminal of 80 columns gets on stderr."""
+    master, slave = pty.openpty()
+    environment = os.environ | {"TERM": "xterm", "COLUMNS": "80"} | settings
+    process = subprocess.Popen(
+        [sys.executable, "-P", "-c", WORK, *words], stderr=slave, env=environment
+    )
+    os.close(slave)
+    if stop_after is not None:
+        time.sleep(stop_after)
+        process.send_signal(signal.SIGINT)
+    text = b""
+    while True:
+        try:
+            piece = os.read(master, 4096)
+        except OSError:  # how a terminal of Linux ends
+            break
+        if not piece:
+            break
+        text += piece
+    os.close(master)
+    return process.wait(), text
+
+
+def test_after_a_second_on_a_terminal() -> None:
+    code, text = on_terminal("2.2")
+    assert code == 0
+    assert b"searching [bold]x[/bold]" in text
+    assert b"still at it" in text
+    assert b"a message\r\n" in text
+    assert text.count(HIDE) == text.count(SHOW) == 2
+    assert text.rindex(SHOW) > text.rindex(HIDE)
+
+
+@pytest.mark.parametrize("words", [("0.2",), ("1.6", "quiet")])
+def test_nothing_of_short_work_or_when_quiet(words: tuple[str, ...]) -> None:
+    assert on_terminal(*words) == (0, b"a message\r\n")
+
+
+def test_nothing_in_a_pipe_or_on_a_dumb_terminal() -> None:
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", WORK, "1.4"], capture_output=True, timeout=60, check=True
+    )
+    assert done.stderr == b"a message\n"
+    assert on_terminal("1.4", TERM="dumb") == (0, b"a message\r\n")
+
+
+def test_no_colour_where_none_is_wanted() -> None:
+    _, plain = on_terminal("1.8", NO_COLOR="1")
+    assert b"searching" in plain
+    assert b"\x1b[3" not in plain
+
+
+def test_an_interrupt_brings_the_line_and_the_cursor_back() -> None:
+    code, text = on_terminal("5", stop_after=3.0)
+    assert code == 130
+    assert text.count(HIDE) == 1
+    assert SHOW in text
+    assert text.endswith(
+        b"\x1b[2K\x1b[?25hmechkin: interrupted; files written so far are whole\r\n"
+    )
