@@ -142,7 +142,7 @@ def _view(fields: Fields, file: MechanismFile, problem: Problem) -> ViewSettings
 def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fields:
     """Units and parameters of a file, `given` as in `build`; what is wrong is noted."""
     units, wrong_units = read_units(source.document, source.file.units)
-    fields = Fields(source.document, units, diagnostics=wrong_units)
+    fields = Fields(source.document, units, diagnostics=wrong_units, plane=source.file.in_plane)
     read_parameters(fields, source.file.parameters, given)
     if source.file.quantities:
         from mechkin_cli.building.quantities import read_quantities
@@ -171,7 +171,9 @@ def build_problem(
     assembly = build_assembly(fields, file.assembly, joints)
     name = file.name or fields.document.file
     drives = build_drives(fields, file.actuators, file.motion, joints, motion)
-    mechanism = Mechanism(name, links, joints, points, directions, drives=drives)
+    mechanism = Mechanism(
+        name, links, joints, points, directions, drives=drives, plane=fields.plane
+    )
     problem = Problem(mechanism, motion, assembly, fields.units, dict(fields.parameters))
     loads = LoadBuilder(fields, links, joints, points, _quantities_of_runs(file, problem))
     loads.add_all(file.loads)

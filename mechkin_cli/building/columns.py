@@ -10,7 +10,7 @@ from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
 from mechkin_cli.building.run_names import runs_of, unknown_run
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector
-from mechkin_cli.mechanism.derived_quantities import hint_of
+from mechkin_cli.mechanism.derived_quantities import hint_in_plane, hint_of
 from mechkin_cli.mechanism.drives import Drives, without_effort
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
@@ -193,10 +193,10 @@ class Sample:
                 *self.texts,
             ]
             passive = without_effort(self.drives, name)
-            raise UnknownName(name, known, passive or hint_of(name))
+            held = hint_in_plane(name) if self.fields.plane else None
+            raise UnknownName(name, known, passive or held or hint_of(name))
         one = np.ones(1)
-        value = Vector(one, one, one) if wanted.vector else one
-        return Quantity(value, wanted.dimension)
+        return Quantity(wanted.value([one] * 3), wanted.dimension)
 
 
 def used_quantities(tables: Sequence[TableLayout], quantities: Mapping[str, Wanted]) -> list[str]:

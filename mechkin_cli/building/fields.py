@@ -53,7 +53,8 @@ class Fields:
     zeros.
 
     `refused` holds names whose definitions have errors: what uses them is not reported again.
-    `definitions` are the file's named expressions.
+    `definitions` are the file's named expressions. `plane`: of a file in a plane, whose z the user
+    never sees.
     """
 
     document: Document
@@ -62,6 +63,7 @@ class Fields:
     diagnostics: list[Diagnostic] = field(default_factory=list)
     refused: set[str] = field(default_factory=set)
     definitions: Definitions = field(default_factory=Definitions)
+    plane: bool = False
 
     def note(self, diagnostic: Diagnostic) -> None:
         """Notes something.

@@ -47,7 +47,7 @@ def _check_unit(fields: Fields, path: Path, texts: tuple[str, ...]) -> None:
     if fields.error_count or _like_gravity(in_si) or not units:
         return
     own = fields.units.label(ACCELERATION)
-    pairs = zip(bare, texts, strict=True)
+    pairs = list(zip(bare, texts, strict=True))[: 2 if fields.plane else 3]
     meant = ", ".join(f"{text.strip()} {units[0]}" if value else text for value, text in pairs)
     fields.note(
         Diagnostic(

@@ -66,14 +66,15 @@ def _links_known(
 
 def _build(fields: Fields, name: str, section: AnyJoint) -> Joint:
     path: Path = ("joints", name)
-    kind = joint_type(section.type)
+    kind = joint_type(section.type, fields.plane)
     halves = _DRAWINGS[kind.drawing.kind](fields, path, section, kind.drawing)
     first, second = section.links
     lead = 0.0
     if isinstance(section, HelicalJoint):
         lead = lead_of(fields, (*path, "lead"), section.lead)
     parts = parts_of(kind, halves)
-    return Joint(name, kind.letter, first, second, halves.on_first, halves.on_second, parts, lead)
+    frames = halves.on_first, halves.on_second
+    return Joint(name, kind.letter, first, second, *frames, parts, lead, fields.plane)
 
 
 def parts_of(kind: JointType, halves: Halves) -> tuple[Part, ...]:

@@ -32,6 +32,8 @@ def build_links(
             centre = fields.vector((*path, "center_of_mass"), section.center_of_mass, LENGTH)
         if section.inertia is not None:
             tensor = _tensor(fields, (*path, "inertia"), section.inertia)
+            if fields.plane:
+                tensor = _about_normal(tensor)
             if not accepted:
                 _check_physical(fields, (*path, "inertia"), name, tensor)
         links[name] = Link(name, mass, centre, tensor)
@@ -81,6 +83,12 @@ def _in_ground_axes(entries: tuple[float, ...], axes: tuple[Vector, Vector, Vect
         return total
 
     return (entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2))
+
+
+def _about_normal(tensor: Tensor) -> Tensor:
+    """The tensor of a ball with its moment about the normal: a plane asks for no other."""
+    normal = tensor[2]
+    return (normal, normal, normal, 0.0, 0.0, 0.0)
 
 
 def _is_surely_physical(tensor: tuple[float, ...]) -> bool:

@@ -169,7 +169,7 @@ class LoadLaws:
             why = "it is an acceleration" if accelerated else "it follows from the loads"
             raise ExpressionError(f"{self.reader} cannot read {name}: {why}", 0, allowed)
         one = np.ones(1)
-        return Quantity(Vector(one, one, one) if wanted.vector else one, wanted.dimension)
+        return Quantity(wanted.value([one] * 3), wanted.dimension)
 
 
 def is_known(wanted: Wanted) -> bool:

@@ -1,8 +1,9 @@
 """`motion.inputs: {p.position.z: ...}` - one, two or three coordinates of a point as inputs.
 
 A slide that no drawing has runs along those axes of the ground and carries a ball on a plane, in a
-groove or in a socket, whose centre is the point: one equation for each coordinate and no unknown
-more. Its coordinates are those of the point; in the drawing they are not zero.
+groove or in a socket, in a plane a pin in a slot or in a hole, whose centre is the point: one
+equation for each coordinate and no unknown more. Its coordinates are those of the point; in the
+drawing they are not zero.
 """
 
 from __future__ import annotations
@@ -12,9 +13,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.building.halves import Halves
+from mechkin_cli.building.joints import parts_of
 from mechkin_cli.mechanism.elementary import Part
 from mechkin_cli.mechanism.frames import GROUND, Frame, frame_about, perpendicular, upright
-from mechkin_cli.mechanism.joint_table import guide_letter, joint_type, seat_letter
+from mechkin_cli.mechanism.joint_table import (
+    guide_letter,
+    joint_type,
+    pin_letter,
+    seat_letter,
+)
 from mechkin_cli.mechanism.joint_type import JointType
 from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Link
 from mechkin_cli.mechanism.vectors import Vector, scale
@@ -28,6 +36,7 @@ _NAME = re.compile(r"(?P<point>\w+)\.position\.(?P<axis>[xyz])")
 class Guides:
     """Links and joints that guide points, by name."""
 
+    plane: bool = False
     links: dict[str, Link] = field(default_factory=dict)
     joints: dict[str, Joint] = field(default_factory=dict)
 
@@ -40,7 +49,8 @@ class Guides:
         parts = tuple(_slide_part(axis, at.vector) for axis in axes)
         self.joints[guide] = Joint(guide, slide.letter, GROUND_NAME, guide, place, place, parts)
         held = f"{guide} of {at.link}"
-        self.joints[held] = _held_ball(held, at, guide, axes)
+        hold = _held_pin if self.plane else _held_ball
+        self.joints[held] = hold(held, at, guide, axes)
 
 
 def point_guides(
@@ -49,15 +59,26 @@ def point_guides(
     points: Mapping[str, Attached],
 ) -> Guides:
     """What guides the points whose coordinates are inputs; what is wrong is noted in `fields`."""
-    guides = Guides()
+    guides = Guides(fields.plane)
     wanted: dict[str, str] = {}
     for name in section.inputs if section is not None else ():
         found = _NAME.fullmatch(name)
+        if found and fields.plane and _leaves_plane(fields, name, found["axis"]):
+            continue
         if found and _is_moving_point(fields, ("motion", "inputs", name), found["point"], points):
             wanted[found["point"]] = wanted.get(found["point"], "") + found["axis"]
     for name, axes in wanted.items():
         guides.add(name, points[name], "".join(sorted(axes)))
     return guides
+
+
+def _leaves_plane(fields: Fields, name: str, axis: str) -> bool:
+    if axis in "xy":
+        return False
+    text = f"{name} is not free in a plane file"
+    fields.key_error("spatial", ("motion", "inputs", name), text, "drive x and y")
+    fields.refused.add(name.rpartition(".")[0])
+    return True
 
 
 def _is_moving_point(fields: Fields, path: Path, name: str, points: Mapping[str, Attached]) -> bool:
@@ -110,6 +131,16 @@ def _held_ball(name: str, at: Attached, guide: str, axes: str) -> Joint:
         )
         parts.append(Part(step.letter, still, still))
     return Joint(name, kind.letter, at.link, guide, centre, second, tuple(parts))
+
+
+def _held_pin(name: str, at: Attached, guide: str, axes: str) -> Joint:
+    """The pin about the point, of its link, in a hole of what the slide carries; where one axis
+    alone is guided in a slot square to it."""
+    kind = joint_type(pin_letter(axes), plane=True)
+    along = GROUND.y if axes == "x" else GROUND.x
+    pin = frame_about(GROUND.z, along, at.vector)
+    halves = Halves(pin, pin, (pin, pin))
+    return Joint(name, kind.letter, at.link, guide, pin, pin, parts_of(kind, halves), plane=True)
 
 
 def _seat(kind: JointType, at: Vector, axes: str) -> Frame:

@@ -17,7 +17,8 @@ _NONE: Mapping[str, str] = MappingProxyType({})
 
 
 class Source(NamedTuple):
-    """The content of a mechanism file, and the document that knows the place of each value."""
+    """The content of a mechanism file, of one in a plane as in space, and the document that knows
+    the place of each value."""
 
     file: MechanismFile
     document: Document
@@ -55,8 +56,13 @@ def open_data(
 
 def _checked(document: Document) -> Source:
     try:
-        return Source(validate(document.data), document)
+        file = validate(document.data)
     except InvalidDataError as invalid:
         from mechkin_cli.reading.explain import explain  # only on the way to messages
 
         raise InvalidFile(explain(invalid.errors, document)) from None
+    if isinstance(file, MechanismFile):
+        return Source(file, document)
+    from mechkin_cli.building.plane import in_space  # only for files in a plane
+
+    return Source(in_space(file), document)

@@ -107,7 +107,7 @@ def _driven(analysis: Analysis) -> str:
     told too."""
     mechanism = analysis.model.problem.mechanism
     freedoms = sum(joint.type.freedoms for joint in mechanism.joints.values())
-    count = freedoms - 6 * mechanism.loops
+    count = freedoms - mechanism.space * mechanism.loops
     inputs = [driven.name for driven in analysis.model.problem.motion.inputs]
     plural = "freedom" if len(inputs) == 1 else "freedoms"
     text = f"{len(inputs)} {plural} by {', '.join(inputs)}" if inputs else "nothing"

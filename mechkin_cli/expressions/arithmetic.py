@@ -43,7 +43,24 @@ def common_dimension(site: Site, action: str, left: Operand, right: Operand) -> 
     if isinstance(left.value, Vector) is not isinstance(right.value, Vector):
         words = action.format(left=left.phrase, right=right.phrase)
         raise site.error(f"cannot {words}", "take a component with .x, .y or .z, or norm(...)")
+    require_alike(site, left, right)
     return dimension
+
+
+def require_alike(site: Site, left: Operand, right: Operand) -> None:
+    """Check that two vectors have as many components.
+
+    Raises:
+        ExpressionError: one is of a plane and the other of space.
+    """
+    one, other = left.value, right.value
+    if not isinstance(one, Vector) or not isinstance(other, Vector):
+        return
+    counts = len(one.components), len(other.components)
+    if counts[0] != counts[1]:
+        words = f"a vector of {counts[0]} components and one of {counts[1]}"
+        hint = "with plane: xy all vectors have two, in space three"
+        raise site.error(f"{site.symbol} does not take {words}", hint, right)
 
 
 def add_or_subtract(site: Site, left: Operand, right: Operand) -> Quantity:
@@ -75,7 +92,7 @@ def negate(site: Site, operand: Operand) -> Quantity:
     """The opposite scalar or vector."""
     value = operand.value
     if isinstance(value, Vector):
-        return Quantity(Vector(-value.x, -value.y, -value.z), operand.dimension)
+        return Quantity(Vector(*(-item for item in value.components)), operand.dimension)
     return Quantity(-value, operand.dimension)
 
 
@@ -117,14 +134,21 @@ def component(site: Site, operand: Operand) -> Quantity:
             f"{site.symbol} takes a component of a vector, not of {operand.phrase}",
             f"leave out {site.symbol}",
         )
-    return Quantity(getattr(operand.value, site.symbol[1]), operand.dimension)
+    found = getattr(operand.value, site.symbol[1])
+    if found is None:
+        raise site.error(
+            f"a vector of a plane file has no {site.symbol}",
+            "it has .x and .y; what the plane holds, forces along z and moments about x and y, is "
+            "not computed",
+        )
+    return Quantity(found, operand.dimension)
 
 
-def vector(site: Site, x: Operand, y: Operand, z: Operand) -> Quantity:
-    """A vector of three scalars of one dimension."""
-    components = [site.scalar(operand) for operand in (x, y, z)]
+def vector(site: Site, x: Operand, *others: Operand) -> Quantity:
+    """A vector of two or three scalars of one dimension."""
+    components = [site.scalar(operand) for operand in (x, *others)]
     dimension = x.dimension
-    for operand in (y, z):
+    for operand in others:
         partial = Operand(Quantity(x.value, dimension), x.offset, x.number)
         action = "make a vector of {left} and {right}"
         dimension = common_dimension(site, action, partial, operand)
@@ -135,8 +159,9 @@ def elementwise(function: Callable[[Scalar, Scalar], Scalar], left: Value, right
     """The function on two scalars, or on components; a scalar goes with every component."""
     if not isinstance(left, Vector) and not isinstance(right, Vector):
         return function(left, right)
-    return Vector(*map(function, _components(left), _components(right)))
+    count = min(len(_components(left)), len(_components(right)))
+    return Vector(*map(function, _components(left)[:count], _components(right)[:count]))
 
 
-def _components(value: Value) -> tuple[Scalar, Scalar, Scalar]:
+def _components(value: Value) -> tuple[Scalar, ...]:
     return value.components if isinstance(value, Vector) else (value, value, value)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import reduce
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from mechkin_cli.expressions.jets import Jet
 from mechkin_cli.expressions.nodes import Number, Operation
 from mechkin_cli.units import conversion
 
-JetVector = tuple[Jet, Jet, Jet]
+JetVector = tuple[Jet, ...]
 
 
 def derivatives(expression: Expression, names: Mapping[str, Jet]) -> Jet:
@@ -57,7 +58,8 @@ def _on_each(rule: Callable[[Jet, Jet], Jet]) -> Callable[[Any, Any], Any]:
     def apply(a: Any, b: Any) -> Any:
         if not isinstance(a, tuple) and not isinstance(b, tuple):
             return rule(a, b)
-        left, right = (each if isinstance(each, tuple) else (each,) * 3 for each in (a, b))
+        count = len(a if isinstance(a, tuple) else b)
+        left, right = (each if isinstance(each, tuple) else (each,) * count for each in (a, b))
         return tuple(rule(p, q) for p, q in zip(left, right, strict=True))
 
     return apply
@@ -197,15 +199,14 @@ def _wrap(a: Jet) -> Jet:
 
 
 def _dot(a: JetVector, b: JetVector) -> Jet:
-    x, y, z = (jets.product(p, q) for p, q in zip(a, b, strict=True))
-    return x + y + z
+    return reduce(add, (jets.product(p, q) for p, q in zip(a, b, strict=True)))
 
 
-def _cross(a: JetVector, b: JetVector) -> JetVector:
+def _cross(a: JetVector, b: JetVector) -> Any:
     def minor(i: int, j: int) -> Jet:
         return jets.product(a[i], b[j]) - jets.product(a[j], b[i])
 
-    return minor(1, 2), minor(2, 0), minor(0, 1)
+    return minor(0, 1) if len(a) == 2 else (minor(1, 2), minor(2, 0), minor(0, 1))
 
 
 RULES: dict[str, Callable[..., Any]] = {
@@ -215,7 +216,7 @@ RULES: dict[str, Callable[..., Any]] = {
     "/": _on_each(jets.quotient),
     "^": _power,
     "negate": _negative,
-    "[]": lambda x, y, z: (x, y, z),
+    "[]": lambda *components: components,
     ".x": lambda a: a[0],
     ".y": lambda a: a[1],
     ".z": lambda a: a[2],
@@ -259,4 +260,4 @@ RULES: dict[str, Callable[..., Any]] = {
     "acosh": _through(slopes.acosh),
     "atanh": _through(slopes.atanh),
 }
-"""Every operation's rule for jets; a vector is a tuple of three jets."""
+"""Every operation's rule for jets; a vector is a tuple of jets."""

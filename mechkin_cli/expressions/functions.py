@@ -13,9 +13,14 @@ from math import inf, nextafter
 from typing import NamedTuple
 
 from mechkin_cli.expressions import conditions, hyperbolic, scalar_functions, steps
-from mechkin_cli.expressions.arithmetic import common_dimension, divide, raise_to_power
+from mechkin_cli.expressions.arithmetic import (
+    common_dimension,
+    divide,
+    raise_to_power,
+    require_alike,
+)
 from mechkin_cli.expressions.operand import Operand, Site
-from mechkin_cli.expressions.quantity import Quantity, Scalar, Vector
+from mechkin_cli.expressions.quantity import Quantity, Scalar, Value, Vector
 from mechkin_cli.tape.scalars import is_number, of_one
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, Dimension
 
@@ -57,16 +62,16 @@ _OVER_ROWS = {
 
 def dot_product(a: Vector, b: Vector) -> Scalar:
     """The sum of the components' products, in order x, y, z."""
-    return a.x * b.x + a.y * b.y + a.z * b.z
+    products = [one * other for one, other in zip(a.components, b.components, strict=True)]
+    return reduce(operator.add, products)
 
 
-def cross_product(a: Vector, b: Vector) -> Vector:
-    """The vector product."""
-    return Vector(
-        a.y * b.z - a.z * b.y,
-        a.z * b.x - a.x * b.z,
-        a.x * b.y - a.y * b.x,
-    )
+def cross_product(a: Vector, b: Vector) -> Value:
+    """The vector product; in a plane its one component, along the normal."""
+    normal = a.x * b.y - a.y * b.x
+    if a.z is None or b.z is None:
+        return normal
+    return Vector(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, normal)
 
 
 def _elementary(
@@ -177,17 +182,22 @@ def _wrap(site: Site, operand: Operand) -> Quantity:
 
 
 def _dot(site: Site, a: Operand, b: Operand) -> Quantity:
-    value = dot_product(site.vector(a), site.vector(b))
-    return Quantity(value, a.dimension * b.dimension)
+    one, other = site.vector(a), site.vector(b)
+    require_alike(site, a, b)
+    return Quantity(dot_product(one, other), a.dimension * b.dimension)
 
 
 def _cross(site: Site, a: Operand, b: Operand) -> Quantity:
-    value = cross_product(site.vector(a), site.vector(b))
-    return Quantity(value, a.dimension * b.dimension)
+    one, other = site.vector(a), site.vector(b)
+    require_alike(site, a, b)
+    return Quantity(cross_product(one, other), a.dimension * b.dimension)
 
 
 def _determinant(site: Site, a: Operand, b: Operand, c: Operand) -> Quantity:
-    value = dot_product(site.vector(a), cross_product(site.vector(b), site.vector(c)))
+    across = cross_product(site.vector(b), site.vector(c))
+    if not isinstance(across, Vector) or site.vector(a).z is None:
+        raise site.error("det takes three vectors of space", "in a plane write cross(a, b)")
+    value = dot_product(site.vector(a), across)
     return Quantity(value, a.dimension * b.dimension * c.dimension)
 
 

@@ -158,11 +158,13 @@ class _Parser:
 
     def vector(self, opening: Token) -> None:
         count = self.arguments("]", opening)
-        if count != 3:
+        if count not in (2, 3):
             raise ExpressionError(
-                f"a vector has three components, not {count}", opening.start, "write [x, y, z]"
+                f"a vector has three components, in a plane two, not {count}",
+                opening.start,
+                "write [x, y, z], with plane: xy [x, y]",
             )
-        self.emit(Operation("[]", 3, opening.start))
+        self.emit(Operation("[]", count, opening.start))
 
     def call(self, name: Token) -> None:
         function = _CALLED.get(name.text)

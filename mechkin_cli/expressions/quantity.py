@@ -1,7 +1,7 @@
 """Values with dimensions, always in SI (m, kg, s, rad).
 
 A scalar is a float, or a float64 array of shape (rows,) with one value per row. A vector is three
-scalars in one frame. The same operations serve both.
+scalars in one frame, in a plane two. The same operations serve all.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ Scalar = float | Rows
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Vector:
-    """Components along the axes of ground."""
+    """Components along the axes of ground; a vector in a plane has no z."""
 
     x: Scalar
     y: Scalar
-    z: Scalar
+    z: Scalar | None = None
 
     @property
-    def components(self) -> tuple[Scalar, Scalar, Scalar]:
+    def components(self) -> tuple[Scalar, ...]:
         """The components in order."""
-        return (self.x, self.y, self.z)
+        return (self.x, self.y) if self.z is None else (self.x, self.y, self.z)
 
 
 Value = Scalar | Vector

@@ -72,7 +72,15 @@ class Motions:
     @cached_property
     def stresses(self) -> Floats:
         """Stresses (6 cuts, redundant) at the general configuration."""
-        return rank_of(self.general.jacobian, tolerances.MOBILITY_RANK_REACHED).stresses
+        jacobian = self.general.jacobian
+        if not self.body.mechanism.plane:
+            return rank_of(jacobian, tolerances.MOBILITY_RANK_REACHED).stresses
+        # what the plane holds is no constraint: of each cut the moment about z, forces along x, y
+        rows = (6 * np.arange(len(jacobian) // 6)[:, None] + (2, 3, 4)).ravel()
+        inside = rank_of(jacobian[rows], tolerances.MOBILITY_RANK_REACHED).stresses
+        found = np.zeros((len(jacobian), inside.shape[1]))
+        found[rows] = inside
+        return found
 
     @cached_property
     def tangents(self) -> Floats:

@@ -194,10 +194,10 @@ class Analysis(Reading, Summarized, Plotted):
         return result.units.label(expression.evaluate(result.quantity, result.units).dimension)
 
     def _columns(self, expression: Expression, result: Result) -> list[NDArray[np.float64]]:
-        """The value of an expression in the file's units: one column, or three of a vector."""
+        """The value of an expression in the file's units: one column, or those of a vector."""
         found = expression.evaluate(result.quantity, result.units)
         value = found.value
-        parts = [value.x, value.y, value.z] if isinstance(value, Vector) else [value]
+        parts = value.components if isinstance(value, Vector) else [value]
         return [self._column(part, found.dimension) for part in parts]
 
     def _column(self, value: object, dimension: object) -> NDArray[np.float64]:

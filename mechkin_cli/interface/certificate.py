@@ -162,7 +162,7 @@ class Certificate(Listed):
             raise UsageError(f"{wanted.name} is not enclosed: {unknown}")
         known = np.asarray(result.units.to_si(self.analysis[wanted.name], wanted.dimension))
         low, high = (part.T for part in bounds(result.problem, wanted, found, known.T))
-        return (low, high) if wanted.vector else (low[:, 0], high[:, 0])
+        return (low, high) if len(wanted.places) > 1 else (low[:, 0], high[:, 0])
 
     def _told(self, gap: Gap) -> Diagnostic:
         rows = (

@@ -120,7 +120,7 @@ class DeadCentre:
                 known = known + turned.of_angle(result.session, wanted)
             found = dead_centre_enclosure(result.session, self._found, wanted)
             low, high = bounds(result.problem, wanted, found, known)
-        return (low[:, 0], high[:, 0]) if wanted.vector else (low[0, 0], high[0, 0])
+        return (low[:, 0], high[:, 0]) if len(wanted.places) > 1 else (low[0, 0], high[0, 0])
 
     def is_same_as(self, other: DeadCentre) -> bool:
         """Whether two that are proven, of sweeps of one model, are proven to be the same: then the

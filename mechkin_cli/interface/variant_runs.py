@@ -49,7 +49,7 @@ def sample_of(problem: Problem) -> Any:
         if name not in known:
             raise UnknownName(name, [*problem.parameters, *known])
         wanted = known[name]
-        return Quantity(Vector(one, one, one) if wanted.vector else one, wanted.dimension)
+        return Quantity(wanted.value([one] * 3), wanted.dimension)
 
     return resolve
 
@@ -111,7 +111,7 @@ class Study:
         kept = len(self.names) + -(-self.rows // 8)
         for text, expression in self.asked.items():
             value = expression.evaluate(sample_of(self.problem), self.problem.units).value
-            width = 3 if isinstance(value, Vector) else 1
+            width = len(value.components) if isinstance(value, Vector) else 1
             reduction = self.reductions[text]
             each = len(reduction) if isinstance(reduction, tuple) else 1
             kept += width * (self.rows if reduction is None else each)
@@ -270,8 +270,8 @@ class Study:
 
     def _empty(self, expression: Expression, count: int) -> Floats:
         value = expression.evaluate(sample_of(self.problem), self.problem.units).value
-        shape = (count, self.rows, 3) if isinstance(value, Vector) else (count, self.rows)
-        return np.full(shape, np.nan)
+        width = (len(value.components),) if isinstance(value, Vector) else ()
+        return np.full((count, self.rows, *width), np.nan)
 
 
 class _Resolve:
@@ -315,7 +315,7 @@ class _Resolve:
         slot = self.reading.slots[name]
         columns = [self._column(wanted, slot.first + k) for k in range(slot.width)]
         if wanted.vector:
-            return Quantity(Vector(*columns), wanted.dimension)
+            return Quantity(wanted.value(columns), wanted.dimension)
         place = self.reading.slots.get(name + REST)
         within = None if place is None else self._column(wanted, place.first)
         return Quantity(columns[0], wanted.dimension, within)

@@ -97,7 +97,9 @@ def _coefficient(quantity: Wanted, kind: Kind, name: str, dimension: Dimension, 
     # order 2 says that it is of a motion, and needs no forces
     order = 0 if quantity.kind in _FORCES else 2
     base = f"{quantity.name}{by}"
-    return Wanted(name, kind, quantity.owner, dimension, quantity.vector, base, order)
+    return quantity._replace(
+        name=name, kind=kind, dimension=dimension, coordinate=base, order=order
+    )
 
 
 def _acceleration(coordinate: str) -> Dimension:

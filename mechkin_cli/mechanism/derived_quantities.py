@@ -14,7 +14,7 @@ from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
 from mechkin_cli.mechanism.joint_table import JOINT_TYPES, dimension_of
 from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism, is_written
 from mechkin_cli.mechanism.motion import ORDERS
-from mechkin_cli.mechanism.quantities import Kind, Wanted
+from mechkin_cli.mechanism.quantities import Kind, Wanted, in_plane
 from mechkin_cli.mechanism.vectors import ZERO
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, ENERGY, LENGTH, Dimension
 
@@ -91,6 +91,19 @@ _HINTS: dict[str, str] = {
 } | dict.fromkeys(QUATERNION, f"joints of type {', '.join(_ORIENTED)} have an orientation")
 
 
+_HELD = {
+    "z": "a plane file has x and y; what the plane holds is not computed",
+    "axis": "a pin turns about the plane's normal; P and Ps have an axis",
+    **dict.fromkeys(
+        ("screw_axis", "finite_axis"), "every link turns about the plane's normal: omega tells it"
+    ),
+    **dict.fromkeys(
+        ("screw_pitch", "finite_slide", "axial_force", "tilting_moment"),
+        "it is along the plane's normal, and not computed in a plane file",
+    ),
+}
+
+
 def derived_catalogue(
     mechanism: Mechanism,
     inputs: Sequence[tuple[str, str]],
@@ -102,7 +115,8 @@ def derived_catalogue(
     if leading is not None:
         found += _of_advantages(mechanism, inputs, leading[1])
     found += _of_transmissions(mechanism, inputs)
-    return {wanted.name: wanted for wanted in found}
+    known = {wanted.name: wanted for wanted in found}
+    return in_plane(known) if mechanism.plane else known
 
 
 def ledger_catalogue() -> dict[str, Wanted]:
@@ -124,6 +138,11 @@ def hint_of(name: str) -> str | None:
     if words and (words[-1] == "jerk" or words[-1].endswith(ORDERS[3])):
         return "a jerk is known where a motion is prescribed; a response has none"
     return next((_HINTS[word] for word in reversed(words) if word in _HINTS), None)
+
+
+def hint_in_plane(name: str) -> str | None:
+    """What a plane file has instead of a quantity of space; None for other names."""
+    return _HELD.get(name.rpartition(".")[2])
 
 
 def driving_joint(mechanism: Mechanism, joint: Joint) -> Joint | None:

@@ -204,6 +204,39 @@ _TABLE = (
 JOINT_TYPES = {entry.letter: entry for entry in _TABLE}
 """The pairs that a file may have, by letter."""
 
+_IN_PLANE = (
+    replace(
+        JOINT_TYPES["R"],
+        axis=None,
+        closing="R2",
+        softer=(),
+        friction=FrictionLaw(friction.journal, turns="along", needs=("radius",)),
+    ),
+    replace(
+        JOINT_TYPES["P"],
+        closing="P2",
+        softer=(),
+        friction=FrictionLaw(
+            friction.guide, slides="along", may=("length",), missed=(("length", "tilting moment"),)
+        ),
+    ),
+    # as with Sg, the second link runs back along its slot where s grows
+    JointType(
+        "Ps",
+        (Step("R"), Step("P", Drawn(SECOND, "x", reverse=True))),
+        (_angle("theta", 0), _length("s", 1, Drawn(SECOND, "x", reverse=True))),
+        Drawing("plane", ("normal", "slot")),
+        axis=_X2,
+        point_on=FIRST,
+        closing="Ps2",
+    ),
+    replace(JOINT_TYPES["W"], closing="W2"),
+)
+
+PLANE_JOINT_TYPES = {entry.letter: replace(entry, space=3) for entry in _IN_PLANE}
+"""The pairs that a plane file may have, by letter: what their links do in the plane z = 0, turns
+about z and slides square to it, and closing equations of that plane alone."""
+
 FREE = JointType(
     "free",
     (Step("P", _X1), Step("P", _Y1), Step("P", _Z1), Step("S")),
@@ -249,9 +282,16 @@ def seat_letter(axes: str) -> str:
     return f"seat {_SEATS[len(axes)]}"
 
 
+def pin_letter(axes: str) -> str:
+    """The pair of a plane by which that slide carries the point: in a slot or in a hole."""
+    return "Ps" if len(axes) == 1 else "R"
+
+
 @cache
-def joint_type(letter: str) -> JointType:
-    """The entry of a letter."""
+def joint_type(letter: str, plane: bool = False) -> JointType:
+    """The entry of a letter; in a plane, that of its links in the plane."""
+    if plane:
+        return PLANE_JOINT_TYPES[letter]
     kind, _, rest = letter.partition(" ")
     if kind == "along":
         return _guide(rest)
@@ -286,4 +326,5 @@ def is_angle(coordinate: str) -> bool:
 
 @cache
 def _angles() -> frozenset[str]:
-    return frozenset(c.name for entry in _TABLE for c in entry.named if c.is_angle)
+    entries = (*_TABLE, *_IN_PLANE)
+    return frozenset(c.name for entry in entries for c in entry.named if c.is_angle)

@@ -85,7 +85,8 @@ class JointType:
     one; `point_on`: the link that carries its point, None without one; `closing`: its kernel
     entry, None where it closes no loop; `parameter`: what that entry has to know of the drawing
     (`Joint.parameter`); `softer`: pairs on the same frames that cure a redundant constraint;
-    `friction`: how it rubs, None where no law is known.
+    `friction`: how it rubs, None where no law is known; `space`: freedoms of a body where the pair
+    works, six, or three in a plane.
     """
 
     letter: str
@@ -98,6 +99,7 @@ class JointType:
     parameter: Literal["", "between axes", "from axis to pin"] = ""
     softer: tuple[str, ...] = ()
     friction: FrictionLaw | None = None
+    space: int = 6
 
     @cached_property
     def parts(self) -> tuple[str, ...]:
@@ -117,7 +119,7 @@ class JointType:
     @cached_property
     def equations(self) -> int:
         """Number of closing equations, 0 for a pair that closes no loop."""
-        return 6 - self.freedoms if self.closing else 0
+        return self.space - self.freedoms if self.closing else 0
 
     @cached_property
     def code(self) -> int:

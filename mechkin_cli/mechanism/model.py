@@ -52,7 +52,8 @@ class Joint(NamedTuple):
     `on_first` and `on_second` are the pair's frames as drawn on either link: z the axis (normal,
     groove); they coincide where all coordinates are zero. U, Ss, Sc and Cp turn about z of the
     first, then about z of the second, and x, square to both, is what coincides. `parts` is the
-    same as a chain of elementary displacements. `lead` (H) is the slide per turn in m.
+    same as a chain of elementary displacements. `lead` (H) is the slide per turn in m. `plane`: its
+    links stay in the plane z = 0, and it holds them in that plane alone.
     """
 
     name: str
@@ -63,11 +64,12 @@ class Joint(NamedTuple):
     on_second: Frame
     parts: tuple[Part, ...]
     lead: float = 0.0
+    plane: bool = False
 
     @property
     def type(self) -> JointType:
         """The joint's row of the joint table."""
-        return joint_type(self.letter)
+        return joint_type(self.letter, self.plane)
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -254,7 +256,7 @@ def _renumbered(amount: Amount, numbers: Mapping[int, int]) -> Amount:
 @dataclass(frozen=True)
 class Mechanism:
     """Links and joints by name in the order written; gravity in m/s^2; what drives it, where it is
-    known."""
+    known. `plane`: everything stays in the plane z = 0."""
 
     name: str
     links: Mapping[str, Link]
@@ -265,6 +267,12 @@ class Mechanism:
     gravity: Vector = ZERO
     drives: Drives | None = None
     frictions: tuple[Rubbing, ...] = ()
+    plane: bool = False
+
+    @property
+    def space(self) -> int:
+        """Freedoms of a free link: six, or three in a plane."""
+        return 3 if self.plane else 6
 
     @property
     def coordinates(self) -> tuple[str, ...]:

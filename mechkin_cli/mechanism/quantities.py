@@ -7,9 +7,10 @@ names; those that are computed from others after a run stand in `derived_quantit
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import Literal, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Literal, NamedTuple
 
+from mechkin_cli.expressions.quantity import Value, Vector
 from mechkin_cli.mechanism.held import Held
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.legs import find_legs
@@ -101,7 +102,8 @@ are judged by."""
 
 
 class Wanted(NamedTuple):
-    """One quantity: its kind, whose it is, which derivative, dimension, whether it is a vector."""
+    """One quantity: its kind, whose it is, which derivative, dimension, whether it is a vector, and
+    which of a vector's components users see: in a plane x and y, or z alone."""
 
     name: str
     kind: Kind
@@ -110,6 +112,17 @@ class Wanted(NamedTuple):
     vector: bool
     coordinate: str = ""
     order: int = 0
+    told: str = "xyz"
+
+    @property
+    def places(self) -> tuple[int, ...]:
+        """Which of its numbers users see."""
+        return tuple("xyz".index(axis) for axis in self.told) if self.vector else (0,)
+
+    def value(self, numbers: Any) -> Value:
+        """What users see of its numbers."""
+        seen = [numbers[place] for place in self.places]
+        return Vector(*seen) if len(seen) > 1 else seen[0]
 
 
 TIME_OF_ROW = Wanted("time", "time", "row", TIME, False)
@@ -169,9 +182,33 @@ def catalogue(
         *_of_ground(),
     ):
         found[wanted.name] = wanted
+    if mechanism.plane:
+        found = in_plane(found)
     if timed:
         found["time"] = TIME_OF_ROW
     return found
+
+
+_IN_PLANE: tuple[Kind, ...] = (
+    *("point", "direction", "joint_point", "slip", "axis", "screw_point", "finite_point"),
+    *("force", "total_force", "friction_force", "shaking_force", "inertia_force"),
+)
+_ALONG_NORMAL: tuple[Kind, ...] = (
+    *("omega", "alpha", "moment", "total_moment", "moment_about_origin", "friction_moment"),
+    *("shaking_moment", "inertia_moment"),
+)
+_WITHOUT_MEANING: tuple[Kind, ...] = ("screw_pitch", "finite_slide")
+_TOLD = dict.fromkeys(_IN_PLANE, "xy") | dict.fromkeys(_ALONG_NORMAL, "z")
+
+
+def in_plane(found: Mapping[str, Wanted]) -> dict[str, Wanted]:
+    """What users see of quantities in a plane: two components of what lies in it, of turns and
+    moments that about its normal. What the plane holds is not computed, and has no name."""
+    return {
+        name: wanted._replace(told=_TOLD.get(wanted.kind, wanted.told))
+        for name, wanted in found.items()
+        if wanted.kind not in _WITHOUT_MEANING and (wanted.kind in _TOLD or not wanted.vector)
+    }
 
 
 def coordinate_quantities(mechanism: Mechanism) -> list[Wanted]:

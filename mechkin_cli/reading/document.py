@@ -77,10 +77,12 @@ class Document:
         return self._at(path, entry.mark) if depth == len(path) else self.place(path)
 
     def place_in(self, path: KeyPath, offset: int) -> Place:
-        """Where the character `offset` (from 0) of the scalar at a path stands in the source."""
+        """Where the character `offset` (from 0) of the scalar at a path, or at its nearest ancestor
+        that exists, stands in the source."""
         if override := self._override(path):
             return self._outside(override, offset)
-        node = self.node(path)
+        # of a number that stands for several, the text is the number's
+        node = self._reach(path)[0].value
         if not isinstance(node, Scalar):
             return self.place(path)
         if self.is_data:

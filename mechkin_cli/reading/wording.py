@@ -115,7 +115,8 @@ def _wrong_length(context: dict[str, Any], found: Node | None) -> Wording:
         count = len(found.entries)
     what = "entry" if count == 1 else "entries"
     limit = f"at least {least}" if most is None else f"at most {most}"
-    hint = "a vector has three: [x, y, z]" if 3 in (least, most) else None
+    is_vector = 3 in (least, most)
+    hint = "a vector has three: [x, y, z]; with plane: xy two" if is_vector else None
     return Wording("wrong-length", f"found {count} {what}, expected {limit}", hint)
 
 

@@ -5,7 +5,7 @@ when the first value of that section is met, so that a run pays only for what it
 """
 
 from inspect import get_annotations
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple, TypeVar
 
 from pydantic_core import PydanticCustomError
 
@@ -35,6 +35,19 @@ class Section:
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"{type(self).__name__}.{name} is frozen")
+
+
+AnySection = TypeVar("AnySection", bound=Section)
+
+
+def section_of(kind: type[AnySection], **values: Any) -> AnySection:
+    """A section made of values that are known to be valid, and of the defaults of the others."""
+    found = object.__new__(kind)
+    for key, field in fields_of(kind).items():
+        found.__dict__[field.name] = values.pop(key) if key in values else field.default
+    if values:
+        raise TypeError(f"{kind.__name__} has no {', '.join(values)}")
+    return found
 
 
 class Key(NamedTuple):

@@ -74,10 +74,11 @@ def _schema(annotation: Any) -> core.CoreSchema:
 
 def _with_rules(inner: Any, rules: tuple[Any, ...]) -> core.CoreSchema:
     choice = next((rule for rule in rules if isinstance(rule, Choice)), None)
-    if choice is not None:
-        return _one_of(inner, choice)
     limits = next((rule for rule in rules if isinstance(rule, Limits)), None)
-    schema = _schema(inner) if limits is None else _plain(inner, limits)
+    if choice is not None:
+        schema: core.CoreSchema = _one_of(inner, choice)
+    else:
+        schema = _schema(inner) if limits is None else _plain(inner, limits)
     for rule in rules:
         if isinstance(rule, Before):
             schema = core.no_info_before_validator_function(rule.function, schema)

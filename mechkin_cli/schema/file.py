@@ -1,4 +1,4 @@
-"""The whole file: format 1."""
+"""The whole file: format 1, of a mechanism in space; what it has in common with one in a plane."""
 
 from typing import Annotated, Any, Literal
 
@@ -27,13 +27,10 @@ def _format_number(value: Any) -> int:
     raise refuse("unknown-format", "this version of mechkin reads format 1", "write format: 1")
 
 
-class MechanismFile(Section):
-    """A mechanism in the format 1 of mechkin.
+class AnyFile(Section):
+    """What files of mechanisms in space and in a plane have in common."""
 
-    All points, axes, mass centres and inertias are written in one drawing, the home pose, in ground
-    axes; every joint coordinate is zero there. Joints, links, points, directions, parameters
-    and quantities share one namespace.
-    """
+    in_plane = False
 
     format: Annotated[Literal[1], Before(_format_number)]
     """Version of the file format."""
@@ -47,16 +44,6 @@ class MechanismFile(Section):
     """Named numbers, values with units, or expressions of one another."""
     quantities: dict[Name, AnyDimension] = NOTHING
     """Named expressions of quantities, used by name in columns, loads, stops and one another."""
-    links: dict[Name, Link] = NOTHING
-    """The moving bodies by name; `ground` always exists."""
-    joints: dict[Name, Joint] = NOTHING
-    """The joints by name."""
-    chain: tuple[ChainRow, ...] = ()
-    """A loop as rows (theta, s, alpha, a), beside or instead of `joints`."""
-    points: dict[Name, PointOfLink] = NOTHING
-    """Points that move with links, by name."""
-    directions: dict[Name, DirectionOfLink] = NOTHING
-    """Directions that turn with links, by name."""
     motion: MotionSection | None = None
     """The driven coordinates and their values."""
     assembly: AssemblySection | None = None
@@ -65,8 +52,6 @@ class MechanismFile(Section):
     """Motions under forces, by name."""
     actuators: tuple[Coordinate, ...] = ()
     """Where efforts act, when not at the inputs: [leg1.s, leg2.s]; at least as many as freedoms."""
-    loads: tuple[Load, ...] = ()
-    """Gravity, forces, torques, springs and dampers."""
     tables: Annotated[tuple[Table, ...], After(differing_names)] = ()
     """The tables a run writes; left out, one table of all coordinates, their rates and efforts."""
     coefficients: Annotated[tuple[Coefficients, ...], After(differing_names)] = ()
@@ -77,6 +62,32 @@ class MechanismFile(Section):
     """Joints whose loops are followed beside those the outputs need; left out, all loops are."""
     accept: tuple[Literal["unphysical-inertia"], ...] = ()
     """Warnings that the file acknowledges."""
+
+    def check(self) -> None:
+        """No two tables are written to the same files."""
+        refuse_clashes(self.balances, (*self.tables, *self.coefficients))
+
+
+class MechanismFile(AnyFile):
+    """A mechanism in the format 1 of mechkin.
+
+    All points, axes, mass centres and inertias are written in one drawing, the home pose, in ground
+    axes; every joint coordinate is zero there. Joints, links, points, directions, parameters
+    and quantities share one namespace.
+    """
+
+    links: dict[Name, Link] = NOTHING
+    """The moving bodies by name; `ground` always exists."""
+    joints: dict[Name, Joint] = NOTHING
+    """The joints by name."""
+    chain: tuple[ChainRow, ...] = ()
+    """A loop as rows (theta, s, alpha, a), beside or instead of `joints`."""
+    points: dict[Name, PointOfLink] = NOTHING
+    """Points that move with links, by name."""
+    directions: dict[Name, DirectionOfLink] = NOTHING
+    """Directions that turn with links, by name."""
+    loads: tuple[Load, ...] = ()
+    """Gravity, forces, torques, springs and dampers."""
     idle: Literal["hold"] | None = None
     """`hold`: idle freedoms that loads would move are held, and the holding moment is reported."""
     view: ViewSection | None = None
@@ -86,4 +97,4 @@ class MechanismFile(Section):
         """There is a joint, and no two tables are written to the same files."""
         if not self.joints and not self.chain:
             raise refuse("no-joints", "the file has no joints", "add joints: (or chain:)")
-        refuse_clashes(self.balances, (*self.tables, *self.coefficients))
+        super().check()

@@ -15,7 +15,8 @@ JOINT_TYPES: Final = ("R", "P", "C", "H", "S", "Sp", "Sg", "U", "E", "Ss", "Sc",
 _PER_LINK_FIELDS = ("point", "axis", "normal", "groove", "slot", "pin", "x", "zero")
 
 
-def _vector_or_per_link(value: Any) -> str:
+def vector_or_per_link(value: Any) -> str:
+    """The form of a place or direction of a joint."""
     return "(per link)" if isinstance(value, dict) else "(vector)"
 
 
@@ -25,13 +26,13 @@ PerLink = Annotated[dict[Name, _Vector], Limits(min_length=2, max_length=2)]
 
 Point = Annotated[
     Annotated[LengthVector, Tag("(vector)")] | Annotated[PerLink[LengthVector], Tag("(per link)")],
-    Choice(_vector_or_per_link),
+    Choice(vector_or_per_link),
     Named("Point"),
 ]
 Direction = Annotated[
     Annotated[DirectionVector, Tag("(vector)")]
     | Annotated[PerLink[DirectionVector], Tag("(per link)")],
-    Choice(_vector_or_per_link),
+    Choice(vector_or_per_link),
     Named("Direction"),
 ]
 ZeroReference = Annotated[PerLink[DirectionVector], Named("ZeroReference")]

@@ -17,8 +17,9 @@ from mechkin_cli.schema.base import Section, fields_of
 from mechkin_cli.schema.decisions import decided
 from mechkin_cli.schema.descriptions import field_descriptions
 from mechkin_cli.schema.examples import example
-from mechkin_cli.schema.file import MechanismFile
+from mechkin_cli.schema.file import AnyFile, MechanismFile
 from mechkin_cli.schema.names import RESERVED
+from mechkin_cli.schema.plane import PlaneFile
 from mechkin_cli.schema.rules import Barred, Dimension, Limits, Named, ShortForm, Shown
 from mechkin_cli.schema.runs import TAKEN_FOR_EDITORS
 
@@ -55,20 +56,36 @@ def json_schema() -> Schema:
     places per link that name the joint's own links, laws that need `time`.
     """
     definitions: Schema = {"ReservedName": {"enum": sorted(RESERVED)}}
+    space, plane = (_file(form, definitions) for form in (MechanismFile, PlaneFile))
+    space["anyOf"] = [_non_empty("joints", "minProperties"), _non_empty("chain", "minItems")]
+    plane["anyOf"] = [_non_empty("joints", "minProperties")]
+    # offered while writing; where it stands the other form is meant
+    space["properties"]["plane"] = plane["properties"]["plane"]
+    definitions |= {form.__name__: s for form, s in ((MechanismFile, space), (PlaneFile, plane))}
     top: Schema = {"$schema": DIALECT, "$id": IDENTITY, "title": "mechkin mechanism file, format 1"}
-    top |= _section(MechanismFile, definitions)
-    for name in _NAMED_SECTIONS:
-        reserved = {"not": {"$ref": "#/$defs/ReservedName"}}
-        top["properties"][name]["propertyNames"] = reserved
-    barred = {"not": {"pattern": TAKEN_FOR_EDITORS}}
-    top["properties"]["responses"]["propertyNames"] = barred
-    top["anyOf"] = [_non_empty("joints", "minProperties"), _non_empty("chain", "minItems")]
+    top |= {
+        "description": "A mechanism in space, or with `plane: xy` in a plane.",
+        "if": {"required": ["plane"]},
+        "then": {"$ref": f"#/$defs/{PlaneFile.__name__}"},
+        "else": {"$ref": f"#/$defs/{MechanismFile.__name__}"},
+    }
     return dict(_ordered(top)) | {"$defs": _ordered(dict(sorted(definitions.items())), True)}
 
 
 def json_schema_text() -> str:
     """The JSON Schema as the text of `schemas/mechanism.schema.json`."""
     return json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n"
+
+
+def _file(form: type[AnyFile], definitions: Schema) -> Schema:
+    """One form of the file, with the rules for its names."""
+    found = _section(form, definitions)
+    for name in _NAMED_SECTIONS:
+        reserved = {"not": {"$ref": "#/$defs/ReservedName"}}
+        found["properties"][name]["propertyNames"] = reserved
+    barred = {"not": {"pattern": TAKEN_FOR_EDITORS}}
+    found["properties"]["responses"]["propertyNames"] = barred
+    return found
 
 
 def _non_empty(key: str, least: str) -> Schema:

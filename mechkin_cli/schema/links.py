@@ -42,8 +42,8 @@ class LinkInertia(Section):
     """Axes of the tensor; left out, those of the ground in the home drawing."""
 
 
-class Link(Section):
-    """A rigid body. All its keys may be left out: `{}` is a link without mass."""
+class BodyWithMass(Section):
+    """What links in space and in a plane have in common."""
 
     editors: ClassVar[dict[str, Any]] = {
         "dependentRequired": {"mass": ["center_of_mass"], "center_of_mass": ["mass"]}
@@ -55,17 +55,23 @@ class Link(Section):
 
     mass: Mass | None = None
     """Mass of the link."""
-    center_of_mass: LengthVector | None = None
-    """Mass centre in the home drawing, [x, y, z] in ground axes."""
-    inertia: LinkInertia | None = None
-    """Inertia tensor about the mass centre."""
 
     def check(self) -> None:
         """Mass and centre come together."""
-        if self.mass is not None and self.center_of_mass is None:
+        centre = getattr(self, "center_of_mass", None)
+        if self.mass is not None and centre is None:
             raise refuse("mass-without-centre", "a mass needs a center_of_mass", "add it", "mass")
-        if self.mass is None and self.center_of_mass is not None:
+        if self.mass is None and centre is not None:
             hint = "add the mass (0 for none)"
             raise refuse(
                 "centre-without-mass", "a center_of_mass needs a mass", hint, "center_of_mass"
             )
+
+
+class Link(BodyWithMass):
+    """A rigid body. All its keys may be left out: `{}` is a link without mass."""
+
+    center_of_mass: LengthVector | None = None
+    """Mass centre in the home drawing, [x, y, z] in ground axes."""
+    inertia: LinkInertia | None = None
+    """Inertia tensor about the mass centre."""

@@ -59,7 +59,8 @@ Axes = Literal["ground", "link"]
 Between = Annotated[tuple[Name, ...], Limits(min_length=2, max_length=2)]
 
 
-def _standard_or_vector(value: Any) -> str:
+def standard_or_vector(value: Any) -> str:
+    """The form of free fall."""
     is_word = isinstance(value, str) and value.strip()[:1].isalpha()
     return "(standard)" if is_word else "(vector)"
 
@@ -67,19 +68,19 @@ def _standard_or_vector(value: Any) -> str:
 FreeFall = Annotated[
     Annotated[AccelerationVector, Tag("(vector)")]
     | Annotated[Literal["standard"], Tag("(standard)")],
-    Choice(_standard_or_vector),
+    Choice(standard_or_vector),
     Named("FreeFall"),
 ]
 
 
-class _InRuns(Section):
+class InRuns(Section):
     """What all loads have."""
 
     runs: RunNames | None = None
     """The runs it acts in, `sweep` or names of responses; left out, all."""
 
 
-class Gravity(_InRuns):
+class Gravity(InRuns):
     """Acts at the mass centre of every link with mass."""
 
     type: Literal["gravity"]
@@ -95,7 +96,7 @@ class Gravity(_InRuns):
             raise refuse("two-choices", text, "write g: standard, or no direction", "direction")
 
 
-class ForceOnLink(_InRuns):
+class ForceOnLink(InRuns):
     """A force at a point of a link."""
 
     type: Literal["force"]
@@ -109,7 +110,7 @@ class ForceOnLink(_InRuns):
     """Whether the components are in ground axes or turn with the link (its axes in the drawing)."""
 
 
-class TorqueOnLink(_InRuns):
+class TorqueOnLink(InRuns):
     """A couple on a link."""
 
     type: Literal["torque"]
@@ -121,7 +122,7 @@ class TorqueOnLink(_InRuns):
     """Whether the components are in ground axes or turn with the link (its axes in the drawing)."""
 
 
-class ForceOnJoint(_InRuns):
+class ForceOnJoint(InRuns):
     """A force on the coordinate s of a joint: it acts on the second link, against the first."""
 
     type: Literal["force"]
@@ -131,7 +132,7 @@ class ForceOnJoint(_InRuns):
     """The force, positive in the direction of s."""
 
 
-class TorqueOnJoint(_InRuns):
+class TorqueOnJoint(InRuns):
     """A torque on the coordinate theta of a joint: on the second link, against the first."""
 
     type: Literal["torque"]
@@ -141,7 +142,7 @@ class TorqueOnJoint(_InRuns):
     """The torque, positive in the direction of theta."""
 
 
-class SpringBetweenPoints(_InRuns):
+class SpringBetweenPoints(InRuns):
     """A straight spring; its pull is preload + stiffness * (distance - free)."""
 
     type: Literal["spring"]
@@ -155,7 +156,7 @@ class SpringBetweenPoints(_InRuns):
     """Pull at the free length."""
 
 
-class SpringAtJoint(_InRuns):
+class SpringAtJoint(InRuns):
     """A spring on a coordinate; it resists with preload + stiffness * (coordinate - free)."""
 
     type: Literal["spring"]
@@ -171,7 +172,7 @@ class SpringAtJoint(_InRuns):
     """Force or moment at the free coordinate."""
 
 
-class DamperBetweenPoints(_InRuns):
+class DamperBetweenPoints(InRuns):
     """A straight damper; it resists the rate of the distance."""
 
     type: Literal["damper"]
@@ -181,7 +182,7 @@ class DamperBetweenPoints(_InRuns):
     """Force per speed."""
 
 
-class DamperAtJoint(_InRuns):
+class DamperAtJoint(InRuns):
     """A damper on a coordinate; it resists the rate of the coordinate."""
 
     type: Literal["damper"]
@@ -215,14 +216,19 @@ Coefficient = Annotated[
 ]
 
 
-class FrictionAtJoint(_InRuns):
-    """Coulomb friction of a joint, from the joint's own reaction."""
+class FrictionLoad(InRuns):
+    """What friction in space and in a plane have in common."""
 
     type: Literal["friction"]
     joint: Name
-    """The joint: R, P, C, H, S, Sp or Sg."""
+    """The joint that rubs."""
     coefficient: Coefficient
     """Friction force per normal load; or static, sliding and the speed between them."""
+
+
+class FrictionAtJoint(FrictionLoad):
+    """Coulomb friction of a joint R, P, C, H, S, Sp or Sg, from the joint's own reaction."""
+
     radius: Length | None = None
     """R, C, S: radius of the surfaces that turn; H: mean radius of the thread."""
     length: Length | None = None
@@ -261,6 +267,9 @@ def _tag(mapping: dict[str, Any]) -> str | None:
     return f"({word} at joint)" if "joint" in mapping else f"({word})"
 
 
+tag_of_load = by_word("type", _tag, ", ".join(_WORDS))
+"""Which form a load has."""
+
 Load = Annotated[
     Annotated[Gravity, Tag("(gravity)")]
     | Annotated[ForceOnLink, Tag("(force)")]
@@ -272,5 +281,5 @@ Load = Annotated[
     | Annotated[DamperBetweenPoints, Tag("(damper)")]
     | Annotated[DamperAtJoint, Tag("(damper at joint)")]
     | Annotated[FrictionAtJoint, Tag("(friction)")],
-    by_word("type", _tag, ", ".join(_WORDS)),
+    tag_of_load,
 ]

@@ -36,7 +36,7 @@ TOP_KEYS: Final = {
     **dict.fromkeys(("start", "driven", "response", "free_motion", "integrate"), RESPONSE),
     **dict.fromkeys(("gravity", "force", "forces", "torque", "torques", "springs"), LOAD),
     **dict.fromkeys(("g", "spring", "damper", "dampers", "moment", "moments"), LOAD),
-    **dict.fromkeys(("plane", "planar", "dimension", "2d", "dimensions"), PLANE),
+    **dict.fromkeys(("planar", "dimension", "2d", "dimensions"), PLANE),
     **dict.fromkeys(("mu", "coulomb", "stiction", "friction_coefficient"), COEFFICIENT),
     "frictions": FRICTION,
     **dict.fromkeys(("viscous", "damping", "dissipation"), DAMPER),
@@ -91,7 +91,7 @@ JOINT_KEYS: Final = {
         "the two links stand in links: [first, second]; coordinates are of the second against the "
         "first",
     ),
-    **dict.fromkeys(("at", "position", "location", "origin"), "the place is point: [x, y, z]"),
+    **dict.fromkeys(("at", "position", "location", "origin"), "the place is point:, a vector"),
     **dict.fromkeys(
         ("initial", "initial_value", "value", "theta0", "angle"),
         "every coordinate is zero as drawn; which assembly is meant says assembly: {near: ...}",
@@ -182,7 +182,9 @@ TABLE_KEYS: Final = {
 
 _SECTIONS: Final = {
     "MechanismFile": TOP_KEYS,
+    "PlaneFile": TOP_KEYS,
     "FrictionAtJoint": FRICTION_KEYS,
+    "PlaneFriction": FRICTION_KEYS,
     "Response": RESPONSE_KEYS,
     "MotionSection": MOTION_KEYS,
     "Table": TABLE_KEYS,

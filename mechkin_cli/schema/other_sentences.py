@@ -31,8 +31,8 @@ RESPONSE = (
     "to: 2, step: 0.1}}}"
 )
 PLANE = (
-    "mechanisms stand in space: write points as [x, y, 0] and hinges as R with axis: [0, 0, 1]; "
-    "what such a loop leaves arbitrary is said"
+    "write plane: xy, then points and forces as [x, y], inertias and torques as one number, and "
+    "hinges as R without an axis"
 )
 COEFFICIENT = (
     "give it to a friction of its joint: loads: [{type: friction, joint: A, coefficient: 0.1, "

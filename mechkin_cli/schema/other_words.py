@@ -42,7 +42,23 @@ JOINT_TYPES: Final = {
 """Types of a joint."""
 
 
-def advice_for_type(section: str, word: str) -> str | None:
+_SPATIAL = "it is a pair in space: without plane: xy it may be written, in a plane not"
+PLANE_JOINT_TYPES: Final = {
+    **JOINT_TYPES,
+    **dict.fromkeys(("c", "h", "s", "sp", "u", "e", "ss", "sc", "cp", "f"), _SPATIAL),
+    "sg": "a pin in a slot is Ps, with slot: [x, y]",
+    **dict.fromkeys(
+        ("pin_in_slot", "slot", "half", "pinslot"), "a pin in a slot is Ps, with slot: [x, y]"
+    ),
+    **dict.fromkeys(("cylindrical", "cylindric", "cylinder", "spherical"), _SPATIAL),
+    **dict.fromkeys(("helical", "screw", "thread", "universal", "cardan"), _SPATIAL),
+    **dict.fromkeys(("hooke", "ball", "sphere", "globe", "planar", "plane"), _SPATIAL),
+}
+"""Types of a joint in a plane file."""
+
+
+def advice_for_type(section: str, word: str, in_plane: bool = False) -> str | None:
     """What to do instead of a type that `loads` or `joints` do not have."""
-    found = {"loads": LOAD_TYPES, "joints": JOINT_TYPES}.get(section, {})
+    joints = PLANE_JOINT_TYPES if in_plane else JOINT_TYPES
+    found = {"loads": LOAD_TYPES, "joints": joints}.get(section, {})
     return found.get(word.casefold())

@@ -1,4 +1,4 @@
-"""Plain data -> `MechanismFile`, or every independent error as a plain record.
+"""Plain data -> `MechanismFile` or `PlaneFile`, or every independent error as a plain record.
 
 A record has `type`, `loc` (keys, list indices and tags in parentheses), `msg` and `ctx`. To the
 records of pydantic are added the reserved and clashing names, and what a mapping's keys could have
@@ -12,7 +12,7 @@ from typing import Any
 from pydantic_core import ValidationError
 
 from mechkin_cli.schema.compiled import validated
-from mechkin_cli.schema.file import MechanismFile
+from mechkin_cli.schema.file import AnyFile, MechanismFile
 from mechkin_cli.schema.names import name_errors
 from mechkin_cli.schema.scalars import FORMS
 
@@ -25,33 +25,43 @@ class InvalidDataError(Exception):
         super().__init__(f"{len(errors)} errors in the data of a mechanism file")
 
 
-def validate(data: object) -> MechanismFile:
-    """The mechanism file that plain data describes; raises `InvalidDataError`."""
+def validate(data: object) -> AnyFile:
+    """The mechanism file that plain data describes, with `plane:` one in a plane; raises
+    `InvalidDataError`."""
     errors = name_errors(data)
+    form = _form(data)
     try:
-        file = validated(MechanismFile, data)
+        file = validated(form, data)
     except ValidationError as failure:
         found = failure.errors(include_url=False, include_input=False)
-        errors = [_completed(dict(error), data) for error in found] + errors
+        errors = [_completed(dict(error), data, form) for error in found] + errors
     if errors:
         raise InvalidDataError(errors)
     return file
 
 
-def _completed(error: dict[str, Any], data: object) -> dict[str, Any]:
+def _form(data: object) -> type[AnyFile]:
+    if isinstance(data, dict) and "plane" in data:
+        from mechkin_cli.schema.plane import PlaneFile
+
+        return PlaneFile
+    return MechanismFile
+
+
+def _completed(error: dict[str, Any], data: object, form: type[AnyFile]) -> dict[str, Any]:
     """The record with what a message needs beyond pydantic's own context."""
     if error["type"] == "string_pattern_mismatch":
         expected, hint = FORMS[error["ctx"]["pattern"]]
         return error | {"ctx": {"expected": expected, "hint": hint}}
     if error["type"] == "unknown-word":
-        return _with_advice(error, data)
+        return _with_advice(error, data, form)
     if error["type"] not in ("missing", "extra_forbidden"):
         return error
     from mechkin_cli.schema.known_keys import known_keys  # reads sources: only for messages
     from mechkin_cli.schema.other_keys import advice_for_key
 
     *mapping, key = error["loc"]
-    known = known_keys(MechanismFile, tuple(mapping))
+    known = known_keys(form, tuple(mapping))
     if known is None:
         return error
     context = {
@@ -62,7 +72,7 @@ def _completed(error: dict[str, Any], data: object) -> dict[str, Any]:
     return error | {"ctx": context}
 
 
-def _with_advice(error: dict[str, Any], data: object) -> dict[str, Any]:
+def _with_advice(error: dict[str, Any], data: object, form: type[AnyFile]) -> dict[str, Any]:
     """The record of an unknown type, with what to write instead where that is known."""
     from mechkin_cli.schema.other_words import advice_for_type
 
@@ -73,5 +83,5 @@ def _with_advice(error: dict[str, Any], data: object) -> dict[str, Any]:
         word = found[error["ctx"]["key"]]
     except (KeyError, IndexError, TypeError):
         return error
-    advice = advice_for_type(str(error["loc"][0]), str(word))
+    advice = advice_for_type(str(error["loc"][0]), str(word), form.in_plane)
     return error | {"ctx": error["ctx"] | {"advice": advice}}

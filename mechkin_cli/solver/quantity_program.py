@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from mechkin_cli.expressions import Expression, Quantity, UnknownName, Vector
+from mechkin_cli.expressions import Expression, Quantity, UnknownName
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.model import varying
@@ -204,8 +204,7 @@ class _Recording:
         wanted, first = self._first[name]
         number = self.recorder.number
         if wanted.vector:
-            value: Any = Vector(*(number(first + k) for k in range(3)))  # type: ignore[arg-type]
-            return Quantity(value, wanted.dimension)
+            return Quantity(wanted.value([number(first + k) for k in range(3)]), wanted.dimension)
         rest: Any = number(first + 1) if _turns(wanted) else None
         return Quantity(number(first), wanted.dimension, rest)  # type: ignore[arg-type]
 

@@ -75,7 +75,8 @@ def cut_link(reduction: Reduction, link: str, loop: Sequence[str]) -> Reduction:
     while half in joints:  # a link may be cut in several loops
         half += HALF
     joints[own[-1].name] = _moved(own[-1], link, half)
-    joints[half] = Joint(half, "W", link, half, GROUND, GROUND, (Part("W", GROUND, GROUND),))
+    parts = (Part("W", GROUND, GROUND),)
+    joints[half] = Joint(half, "W", link, half, GROUND, GROUND, parts, plane=own[-1].plane)
     return Reduction(joints, (*reduction.links, half), reduction.legs, reduction.cut.union(loop))
 
 

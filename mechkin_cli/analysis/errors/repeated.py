@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from mechkin_cli.analysis.errors.reasons import reason_of
-from mechkin_cli.expressions import Quantity, UnknownName, Vector
+from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.mechanism.bearing_loads import BEARING_KINDS, bearing_load
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.mechanism.joint_table import is_angle
@@ -156,8 +156,7 @@ class Repeated:
             self.read([wanted])
         columns = self._columns[name]
         if wanted.vector:
-            parts: Any = (columns[0], columns[1], columns[2])
-            return Quantity(Vector(*parts), wanted.dimension)
+            return Quantity(wanted.value(columns), wanted.dimension)
         value: Any = columns[0]
         rest: Any = self._rests.get(name)
         return Quantity(value, wanted.dimension, rest)

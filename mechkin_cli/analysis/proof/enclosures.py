@@ -112,7 +112,8 @@ def bounds(
     """Bounds of a quantity in the file's units, two arrays (width, places); nan where nothing is
     known. Angles are those next to what is `known` in SI, of the same shape; those of threads, of
     which a turn more is another place, are as they are enclosed."""
-    middle, radius = enclosure.high, enclosure.about_high
+    seen = list(wanted.places)
+    middle, radius = enclosure.high[seen], enclosure.about_high[seen]
     scale = np.abs(middle)
     if is_angle_of_place(wanted) and _is_cyclic(problem, wanted):
         turns = FULL_TURN * np.rint((known - middle) / FULL_TURN)

@@ -25,7 +25,7 @@ from mechkin_cli.analysis.sweep.error_bound import error_bound
 from mechkin_cli.analysis.sweep.friction_rows import FrictionRows
 from mechkin_cli.analysis.sweep.proven import Proven
 from mechkin_cli.analysis.sweep.read_off import read_off
-from mechkin_cli.expressions import Quantity, UnknownName, Vector
+from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.mechanism.bearing_loads import BEARING_KINDS, bearing_load
 from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
 from mechkin_cli.mechanism.drives import without_effort
@@ -252,7 +252,7 @@ class Result(Proven):
             unit = self.session.layout.length
             columns = disturbed(columns, wanted, self._rounding, unit, self._disturbance)
         if wanted.vector:
-            return Quantity(Vector(columns[0], columns[1], columns[2]), wanted.dimension)
+            return Quantity(wanted.value(columns), wanted.dimension)
         return Quantity(columns[0], wanted.dimension, self._rests.get(name))
 
     def _given(self, name: str) -> Floats | None:

@@ -70,6 +70,26 @@ struct CylinderOnPlane : Pair<Conditions<InPlane<BZ>, KeptAngle<Square>>,
   static constexpr char letter[] = "Cp";
 };
 
+// The pairs of links that stay in the plane x y of the ground, by which two numbers tell every point: what the plane holds
+// is no equation of theirs. A revolute pair is then a sphere in a groove along z.
+struct RevoluteInPlane : Pair<Conditions<CommonPointInPlane>, Coordinates<About>> {
+  static constexpr char letter[] = "R2";
+};
+
+// z along the axis, x the plane's normal.
+struct PrismaticInPlane : Pair<Conditions<InPlane<AY>, SameHeading>, Coordinates<Along<AZ>>> {
+  static constexpr char letter[] = "P2";
+};
+
+// A pin of the first link in a slot of the second along x_B, z the plane's normal.
+struct PinInSlot : Pair<Conditions<InPlane<BY>>, Coordinates<About, Along<Reverse<BX>>>> {
+  static constexpr char letter[] = "Ps2";
+};
+
+struct WeldInPlane : Pair<Conditions<CommonPointInPlane, SameHeading>, Coordinates<>> {
+  static constexpr char letter[] = "W2";
+};
+
 // Two spheres with a leg between them: no pair of the file format.
 struct LegEnds : Pair<Conditions<Distance>, Coordinates<>> {
   static constexpr char letter[] = "";
@@ -77,7 +97,8 @@ struct LegEnds : Pair<Conditions<Distance>, Coordinates<>> {
 
 // The code of a pair is its place; LegEnds is PAIR_LEG.
 using Pairs = Entries<LegEnds, Revolute, Prismatic, Cylindric, Spheric, SphereOnPlane, SphereInGroove, Universal, Planar,
-                      Weld, SphereInSlottedCylinder, CylinderOnPlane>;
+                      Weld, SphereInSlottedCylinder, CylinderOnPlane, RevoluteInPlane, PrismaticInPlane, PinInSlot,
+                      WeldInPlane>;
 
 // Calls f with the entry of what closes a loop.
 template <class F>

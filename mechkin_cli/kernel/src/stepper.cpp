@@ -25,8 +25,8 @@ std::vector<ClosingTurn> closing_turns(const Plan& plan, const KernelUnit& unit)
   for (int c = 0; c < plan.closings; ++c) {
     if (plan.closing[c].type == PAIR_LEG) continue;
     const PairType& pair = unit.pair_types[plan.closing[c].type];
-    // without conditions on directions an orientation is free, and has no coordinates of its own
-    if (pair.equations == pair.lengths) add(c, -1, 4);
+    // without conditions on directions an orientation is free; it is carried along where no angle tells it
+    if (pair.equations == pair.lengths && !pair.turns) add(c, -1, 4);
     for (int freedom = 0; freedom < 6; ++freedom)
       if (pair.turns >> freedom & 1) add(c, freedom, 1);
   }

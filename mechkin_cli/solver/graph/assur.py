@@ -6,7 +6,7 @@ one. The Dulmage-Mendelsohn parts of that system are the Assur groups, whatever 
 through them later (Assur 1914; for the matching Shai 2010). Regions of lower order (regions.py)
 have their own count: `d_r` freedoms a link beside the pose of the region's frame.
 
-What the screws as drawn leave undetermined is counted once more with six freedoms a link: a
+What the screws as drawn leave undetermined is counted once more with all freedoms of a link: a
 drawing can be special, and the dimensions of an overconstrained loop decide later. If that is
 enough, all that hangs together is one group; what is undetermined even then is not driven.
 
@@ -25,7 +25,7 @@ from mechkin_cli.solver.graph.determined import Found, determined_sets
 from mechkin_cli.solver.graph.matching import Matching, Row
 from mechkin_cli.solver.graph.network import Connection, distances, incidence
 from mechkin_cli.solver.graph.rates import Rates
-from mechkin_cli.solver.graph.regions import SPACE, Region, find_regions, order_of
+from mechkin_cli.solver.graph.regions import Region, find_regions, order_of
 
 
 class Group(NamedTuple):
@@ -62,7 +62,7 @@ def assur_groups(
     placed = {link for group in groups for link in group.links}
     rest = _rest(component, placed)
     if rest is not None:
-        loose = _System(rest, SPACE, []).undriven()
+        loose = _System(rest, rest.space, []).undriven()
         if loose is not None:
             return groups, Undriven(_own_names(component, loose.connections), loose.missing)
         groups += _pieces(component, rest)
@@ -107,7 +107,7 @@ def _with_connections(component: Component, sets: Iterable[tuple[str, ...]]) -> 
 def _single(component: Component) -> tuple[list[Group], Undriven | None]:
     """One loop, or one connection in no loop, is one group."""
     unknown = sum(c.freedoms - c.driven for c in component.connections)
-    missing = unknown - SPACE * component.loops
+    missing = unknown - component.space * component.loops
     if missing > 0:
         return [], Undriven(component.connections, missing)
     return [Group(component.entry, component.links, component.connections)], None

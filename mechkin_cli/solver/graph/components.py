@@ -25,6 +25,11 @@ class Component(NamedTuple):
         return tuple(link for link in dict.fromkeys(ends) if link != self.entry)
 
     @property
+    def space(self) -> int:
+        """Freedoms of a free body of it: six, or three in a plane."""
+        return min(c.space for c in self.connections)
+
+    @property
     def loops(self) -> int:
         """Independent loops."""
         return len(self.connections) - len(self.links)

@@ -43,6 +43,11 @@ class Connection(NamedTuple):
         return 1 if self.leg is not None else self.joint.type.equations
 
     @property
+    def space(self) -> int:
+        """Freedoms of a free body where it works: six, or three in a plane."""
+        return self.joint.type.space
+
+    @property
     def has_screws(self) -> bool:
         """Whether its freedoms are screws of a joint: neither a leg nor a free pair."""
         return self.leg is None and not self.joint.type.is_free

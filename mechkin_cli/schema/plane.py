@@ -1,0 +1,288 @@
+"""The whole file of a mechanism in a plane: format 1 with `plane: xy`.
+
+Points, directions and forces are two numbers, inertias and torques one, and nothing has an axis.
+What a plane has no place for is refused at its key, with what to write instead.
+"""
+
+from typing import Annotated, Any, ClassVar, Final, Literal
+
+from mechkin_cli.schema.alternatives import Choice, Tag, by_word
+from mechkin_cli.schema.base import NOTHING, Section, refuse
+from mechkin_cli.schema.file import AnyFile
+from mechkin_cli.schema.joints import JointBase, PerLink, vector_or_per_link
+from mechkin_cli.schema.links import BodyWithMass
+from mechkin_cli.schema.loads import (
+    Axes,
+    DamperAtJoint,
+    DamperBetweenPoints,
+    ForceOnJoint,
+    ForceValue,
+    FrictionLoad,
+    InRuns,
+    SpringAtJoint,
+    SpringBetweenPoints,
+    TorqueOnJoint,
+    TorqueValue,
+    standard_or_vector,
+    tag_of_load,
+)
+from mechkin_cli.schema.rules import Before, Limits, Named
+from mechkin_cli.schema.scalars import Acceleration, AnyDimension, Inertia, Length, Name
+
+PLANE_JOINT_TYPES: Final = ("R", "P", "Ps", "W")
+_LEFT_OUT: Final = "leave it out: in a plane file "
+_NORMAL: Final = _LEFT_OUT + "turns are about the plane's normal"
+
+
+def _plane_word(value: Any) -> str:
+    if value == "xy":
+        return "xy"
+    text = "the plane of a file is xy"
+    raise refuse("unknown-plane", text, "write plane: xy, with x and y along your own two axes")
+
+
+def _two_numbers(value: Any) -> Any:
+    if not isinstance(value, (list, tuple)):
+        raise refuse("wrong-kind", "expected two numbers", "write them in brackets: [x, y]")
+    if len(value) == 3:
+        text = "a vector of a plane file has two numbers"
+        hint = "write [x, y]; a mechanism that leaves its plane is written without plane: xy"
+        raise refuse("spatial", text, hint, 2)
+    if len(value) != 2:
+        raise refuse("wrong-length", "a vector of a plane file has two numbers", "write [x, y]")
+    return value
+
+
+def _about_normal(value: Any) -> Any:
+    if isinstance(value, (list, tuple, dict)):
+        what = "xx: ..., zz: ..." if isinstance(value, dict) else "x, y, z"
+        hint = f"write the one about the normal, without {what}"
+        raise refuse("spatial", "in a plane file this is one number, about the normal", hint)
+    return value
+
+
+_TWO: Final = Limits(min_length=2, max_length=2)
+PlaneVector = Annotated[tuple[Length, ...], _TWO, Before(_two_numbers), Named("PlaneVector")]
+PlaneDirection = Annotated[
+    tuple[AnyDimension, ...], _TWO, Before(_two_numbers), Named("PlaneDirection")
+]
+PlanePoint = Annotated[
+    Annotated[PlaneVector, Tag("(vector)")] | Annotated[PerLink[PlaneVector], Tag("(per link)")],
+    Choice(vector_or_per_link),
+    Named("PlanePoint"),
+]
+PlaneDirections = Annotated[
+    Annotated[PlaneDirection, Tag("(vector)")]
+    | Annotated[PerLink[PlaneDirection], Tag("(per link)")],
+    Choice(vector_or_per_link),
+    Named("PlaneDirections"),
+]
+
+
+class PlaneLink(BodyWithMass):
+    """A rigid body in a plane. All its keys may be left out: `{}` is a link without mass."""
+
+    center_of_mass: PlaneVector | None = None
+    """Mass centre in the home drawing, [x, y]."""
+    inertia: Annotated[Inertia, Before(_about_normal)] | None = None
+    """Moment of inertia about the mass centre, about the plane's normal."""
+
+
+class PlanePointJoint(JointBase):
+    """What all joints of a plane have except the weld."""
+
+    point: PlanePoint
+    """A point of the joint in the home drawing, [x, y], or one point per link."""
+
+
+class PlaneRevoluteJoint(PlanePointJoint):
+    """R: the second link turns by theta against the first, counter-clockwise."""
+
+    advice: ClassVar[dict[str, str]] = {"axis": _NORMAL}
+
+    type: Literal["R"]
+    zero: Annotated[PerLink[PlaneDirection], Named("PlaneZeroReference")] | None = None
+    """A direction for each link; the two lie in line at theta = 0. Left out, theta is zero as
+    drawn."""
+
+
+class PlanePrismaticJoint(PlanePointJoint):
+    """P: the second link slides by s along `axis` and does not turn against the first."""
+
+    advice: ClassVar[dict[str, str]] = {
+        "zero": _LEFT_OUT + "the links stand as drawn, or with the axis per link in line"
+    }
+
+    type: Literal["P"]
+    axis: PlaneDirections
+    """Direction of the slide in the home drawing, [x, y], or one direction for each link."""
+
+
+class PinInSlotJoint(PlanePointJoint):
+    """Ps: a pin of the first link in a slot of the second.
+
+    The second link turns by theta against the first, counter-clockwise; s is where the pin is along
+    the slot.
+    """
+
+    advice: ClassVar[dict[str, str]] = {"axis": _NORMAL, "groove": "the key is slot: [x, y]"}
+
+    type: Literal["Ps"]
+    slot: PlaneDirection
+    """Direction of the slot, fixed in the second link, [x, y]; s grows along it."""
+
+
+class PlaneWeldJoint(JointBase):
+    """W: the two links are one body."""
+
+    type: Literal["W"]
+
+
+def _joint_tag(mapping: dict[str, Any]) -> str | None:
+    word = mapping.get("type")
+    return f"({word})" if word in PLANE_JOINT_TYPES else None
+
+
+PlaneJoint = Annotated[
+    Annotated[PlaneRevoluteJoint, Tag("(R)")]
+    | Annotated[PlanePrismaticJoint, Tag("(P)")]
+    | Annotated[PinInSlotJoint, Tag("(Ps)")]
+    | Annotated[PlaneWeldJoint, Tag("(W)")],
+    by_word("type", _joint_tag, ", ".join(PLANE_JOINT_TYPES)),
+]
+
+
+class PlanePointOfLink(Section):
+    """A point fixed in a link; columns read its position, velocity, acceleration and jerk."""
+
+    link: Name
+    """The link that carries the point; `ground` for a fixed one."""
+    at: PlaneVector
+    """The point in the home drawing, [x, y]."""
+
+
+class PlaneDirectionOfLink(Section):
+    """A unit vector fixed in a link; columns use it by its name."""
+
+    link: Name
+    """The link that carries the direction; `ground` for a fixed one."""
+    vector: PlaneDirection
+    """The direction in the home drawing, [x, y]; its length does not matter."""
+
+
+class PlaneGravity(InRuns):
+    """Acts at the mass centre of every link with mass."""
+
+    type: Literal["gravity"]
+    g: Annotated[
+        Annotated[Annotated[tuple[Acceleration, ...], _TWO, Before(_two_numbers)], Tag("(vector)")]
+        | Annotated[Literal["standard"], Tag("(standard)")],
+        Choice(standard_or_vector),
+        Named("PlaneFreeFall"),
+    ]
+    """Acceleration of free fall, [x, y]; or standard, 9.80665 m/s^2."""
+    direction: PlaneDirection | None = None
+    """With g: standard, where things fall; left out, [0, -1]."""
+
+    def check(self) -> None:
+        """A direction of its own goes with the standard size alone."""
+        if self.direction is not None and self.g != "standard":
+            text = "g as a vector has a direction already"
+            raise refuse("two-choices", text, "write g: standard, or no direction", "direction")
+
+
+class PlaneForce(InRuns):
+    """A force at a point of a link."""
+
+    type: Literal["force"]
+    link: Name
+    """The link it acts on."""
+    point: PlaneVector
+    """Where it acts: a point of the link in the home drawing."""
+    force: Annotated[tuple[ForceValue, ...], _TWO, Before(_two_numbers)]
+    """The force, [x, y]."""
+    axes: Axes = "ground"
+    """Whether the components are in ground axes or turn with the link (its axes in the drawing)."""
+
+
+def _one_torque(value: Any) -> Any:
+    return _about_normal(value) if isinstance(value, (list, tuple)) else value
+
+
+class PlaneTorque(InRuns):
+    """A torque on a link, counter-clockwise."""
+
+    advice: ClassVar[dict[str, str]] = {"axes": _NORMAL}
+
+    type: Literal["torque"]
+    link: Name
+    """The link it acts on."""
+    torque: Annotated[TorqueValue, Before(_one_torque)]
+    """The torque, positive counter-clockwise."""
+
+
+class PlaneFriction(FrictionLoad):
+    """Coulomb friction of a joint R or P, from the joint's own reaction."""
+
+    advice: ClassVar[dict[str, str]] = {
+        "collar": _LEFT_OUT + "nothing presses along the normal",
+        "width": _LEFT_OUT + "no moment tilts a guide about its own axis",
+        "across": _LEFT_OUT + "no moment tilts a guide about its own axis",
+        "flank": "threads are spatial: write the file without plane: xy",
+    }
+
+    radius: Length | None = None
+    """R: radius of the pin."""
+    length: Length | None = None
+    """P: distance of the two shoes along the axis; they take the moment."""
+
+
+PlaneLoad = Annotated[
+    Annotated[PlaneGravity, Tag("(gravity)")]
+    | Annotated[PlaneForce, Tag("(force)")]
+    | Annotated[ForceOnJoint, Tag("(force at joint)")]
+    | Annotated[PlaneTorque, Tag("(torque)")]
+    | Annotated[TorqueOnJoint, Tag("(torque at joint)")]
+    | Annotated[SpringBetweenPoints, Tag("(spring)")]
+    | Annotated[SpringAtJoint, Tag("(spring at joint)")]
+    | Annotated[DamperBetweenPoints, Tag("(damper)")]
+    | Annotated[DamperAtJoint, Tag("(damper at joint)")]
+    | Annotated[PlaneFriction, Tag("(friction)")],
+    tag_of_load,
+]
+
+
+class PlaneFile(AnyFile):
+    """A mechanism in a plane, in the format 1 of mechkin.
+
+    All points, directions and mass centres are written in one drawing, the home pose, as [x, y];
+    every joint coordinate is zero there. Angles and torques are positive counter-clockwise. Joints,
+    links, points, directions and parameters share one namespace.
+    """
+
+    advice: ClassVar[dict[str, str]] = {
+        "chain": "rows of Denavit and Hartenberg are spatial: write the joints under joints: as "
+        "{type: R, links: [crank, rod], point: [x, y]}",
+        "idle": _LEFT_OUT + "no link spins about its own line",
+    }
+
+    in_plane = True
+
+    plane: Annotated[Literal["xy"], Before(_plane_word)]
+    """Everything moves in the plane x, y: vectors are two numbers, inertias and torques one."""
+    links: dict[Name, PlaneLink] = NOTHING
+    """The moving bodies by name; `ground` always exists."""
+    joints: dict[Name, PlaneJoint] = NOTHING
+    """The joints by name."""
+    points: dict[Name, PlanePointOfLink] = NOTHING
+    """Points that move with links, by name."""
+    directions: dict[Name, PlaneDirectionOfLink] = NOTHING
+    """Directions that turn with links, by name."""
+    loads: tuple[PlaneLoad, ...] = ()
+    """Gravity, forces, torques, springs, dampers and friction."""
+
+    def check(self) -> None:
+        """There is a joint, and no two tables are written to the same files."""
+        if not self.joints:
+            raise refuse("no-joints", "the file has no joints", "add joints:")
+        super().check()
