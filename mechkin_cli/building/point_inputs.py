@@ -20,7 +20,6 @@ from mechkin_cli.mechanism.frames import GROUND, Frame, frame_about, perpendicul
 from mechkin_cli.mechanism.joint_table import (
     guide_letter,
     joint_type,
-    pin_letter,
     seat_letter,
 )
 from mechkin_cli.mechanism.joint_type import JointType
@@ -136,7 +135,7 @@ def _held_ball(name: str, at: Attached, guide: str, axes: str) -> Joint:
 def _held_pin(name: str, at: Attached, guide: str, axes: str) -> Joint:
     """The pin about the point, of its link, in a hole of what the slide carries; where one axis
     alone is guided in a slot square to it."""
-    kind = joint_type(pin_letter(axes), plane=True)
+    kind = joint_type(seat_letter(axes, plane=True), plane=True)
     along = GROUND.y if axes == "x" else GROUND.x
     pin = frame_about(GROUND.z, along, at.vector)
     halves = Halves(pin, pin, (pin, pin))

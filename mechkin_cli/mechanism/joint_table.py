@@ -269,6 +269,7 @@ CLOSING_CONDITIONS = {
 
 _ALONG = {"x": _X1, "y": _Y1, "z": _Z1}
 _SEATS = {1: "Sp", 2: "Sg", 3: "S"}
+_PLANE_SEATS = {1: "Ps", 2: "R"}
 
 
 def guide_letter(axes: str) -> str:
@@ -277,27 +278,22 @@ def guide_letter(axes: str) -> str:
     return f"along {axes}"
 
 
-def seat_letter(axes: str) -> str:
-    """Stands for how that slide carries the point: on a plane, in a groove or in a socket."""
-    return f"seat {_SEATS[len(axes)]}"
-
-
-def pin_letter(axes: str) -> str:
-    """The pair of a plane by which that slide carries the point: in a slot or in a hole."""
-    return "Ps" if len(axes) == 1 else "R"
+def seat_letter(axes: str, plane: bool = False) -> str:
+    """Stands for how that slide carries the point: on a plane, in a groove or in a socket; in a
+    plane as a pin in a slot or in a hole."""
+    return f"seat {(_PLANE_SEATS if plane else _SEATS)[len(axes)]}"
 
 
 @cache
 def joint_type(letter: str, plane: bool = False) -> JointType:
     """The entry of a letter; in a plane, that of its links in the plane."""
-    if plane:
-        return PLANE_JOINT_TYPES[letter]
+    types = PLANE_JOINT_TYPES if plane else JOINT_TYPES
     kind, _, rest = letter.partition(" ")
     if kind == "along":
         return _guide(rest)
     if kind == "seat":
-        return replace(JOINT_TYPES[rest], letter=letter, named=())
-    return FREE if letter == FREE.letter else JOINT_TYPES[letter]
+        return replace(types[rest], letter=letter, named=())
+    return FREE if letter == FREE.letter else types[letter]
 
 
 def _guide(axes: str) -> JointType:

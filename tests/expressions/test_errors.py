@@ -44,7 +44,7 @@ from mechkin_cli.units import DIMENSIONLESS
         ("atan2(1)", 0, "atan2 takes 2 arguments, not 1; write atan2(y, x)"),
         ("min(1)", 0, "at least 2 arguments, not 1"),
         ("sin()", 0, "sin takes 1 argument, not 0"),
-        ("[1, 2]", 0, "three components, not 2"),
+        ("[1]", 0, "three components, in a plane two, not 1"),
         ("(A).w", 3, "there is no component .w"),
     ],
 )

@@ -7,34 +7,34 @@ has to be touched, with the text before which something is put.
 
 from __future__ import annotations
 
-LETTER = "Ps"
+LETTER = "Rg"
 
 KERNEL = """\
 // A pin z_B of the second link in a slot of the first along x_A.
-struct PinInSlot
+struct PinInTrack
     : Pair<Conditions<InPlane<AY>, InPlane<AZ>, ParallelAxes>, Coordinates<Along<AX>, About>> {
-  static constexpr char letter[] = "Ps";
+  static constexpr char letter[] = "Rg";
 };
 
 """
 
 TABLE = """\
     JointType(
-        "Ps",
+        "Rg",
         (Step("P", _X1), Step("R")),
         (_length("s", 0, _X1), _angle("theta", 1)),
         Drawing("plane", ("axis", "slot")),
         axis=_Z2,
-        closing="Ps",
+        closing="Rg",
     ),
 """
 
 SCHEMA = '''\
-class PinSlotJoint(PointJoint):
-    """Ps: a pin of the second link slides by s along `slot` of the first, turns by theta about
+class PinTrackJoint(PointJoint):
+    """Rg: a pin of the second link slides by s along `slot` of the first, turns by theta about
     `axis`."""
 
-    type: Literal["Ps"]
+    type: Literal["Rg"]
     axis: Direction
     """Axis of the pin, square to the slot."""
     slot: Direction
@@ -44,7 +44,7 @@ class PinSlotJoint(PointJoint):
 '''
 
 TEXTBOOK = """\
-    "Ps": Pair(
+    "Rg": Pair(
         (("P", ALONG_X), ("R", HERE)),
         lambda m: shifted(m[0, 3], 0, 0) * turned(Z, angle_about_z(m)),
         {"s": (0, lambda m: m[0, 3]), "theta": (1, angle_about_z)},
@@ -52,18 +52,18 @@ TEXTBOOK = """\
     ),
 """
 
-PAGE = "| `Ps` | s, theta | pin of the second link in a `slot` of the first; `axis` of the pin |\n"
+PAGE = "| `Rg` | s, theta | pin of the second link in a `slot` of the first; `axis` of the pin |\n"
 
 ADDITIONS = {
     "mechkin_cli/kernel/src/pairs.hpp": (
         ("// Two spheres with a leg between them: no pair of the file format.\n", KERNEL),
-        ("CylinderOnPlane>;", "PinInSlot, "),
+        ("CylinderOnPlane>;", "PinInTrack, "),
     ),
     "mechkin_cli/mechanism/joint_table.py": ((")\n\nJOINT_TYPES = {entry.letter", TABLE),),
     "mechkin_cli/schema/joints.py": (
         ("class WeldJoint(JointBase):\n", SCHEMA),
-        ('"W")\n_PER_LINK', '"Ps", '),
-        ('    | Annotated[WeldJoint, Tag("(W)")]', '    | Annotated[PinSlotJoint, Tag("(Ps)")]\n'),
+        ('"W")\n_PER_LINK', '"Rg", '),
+        ('    | Annotated[WeldJoint, Tag("(W)")]', '    | Annotated[PinTrackJoint, Tag("(Rg)")]\n'),
     ),
     "tests/kernel/pairs.py": (('    "W": Pair(', TEXTBOOK),),
     "docs/modelling.md": (("| `W` | none | weld |\n", PAGE),),
@@ -82,6 +82,6 @@ links: {crank: {}, arm: {}}
 joints:
   O: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}
   Q: {type: R, links: [ground, arm], point: [0, -2, 0], axis: [0, 0, 1]}
-  A: {type: Ps, links: [arm, crank], point: [1, 0, 0], axis: [0, 0, 1], slot: [1, 2, 0]}
+  A: {type: Rg, links: [arm, crank], point: [1, 0, 0], axis: [0, 0, 1], slot: [1, 2, 0]}
 motion: {inputs: {DRIVEN}}
 """

@@ -13,13 +13,15 @@ import numpy as np
 from kernel.pairs import ELEMENTARY, PITCH, O, Z, exponential, mp, vector
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.mechanism.joint_table import JOINT_TYPES
+from mechkin_cli.mechanism.joint_table import JOINT_TYPES, PLANE_JOINT_TYPES
 from mechkin_cli.solver.codes import Demand, OutputCode
 from mechkin_cli.solver.records import Output, hand_over_outputs
 
 _CLOSING = {entry["letter"]: entry for entry in _kernel.joint_table()}
 TABLE = {letter: _CLOSING[kind.closing] for letter, kind in JOINT_TYPES.items() if kind.closing}
 """The kernel's entry of every pair that closes loops."""
+PLANE_TABLE = {letter: _CLOSING[kind.closing or ""] for letter, kind in PLANE_JOINT_TYPES.items()}
+"""That of every pair of a plane."""
 TREE_LETTERS = "RPHCSW"
 """Elementary displacements in the order of the kernel's codes."""
 LENGTH = 2.0

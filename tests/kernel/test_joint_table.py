@@ -9,14 +9,19 @@ from typing import Any
 import numpy as np
 import pytest
 from kernel.pairs import COSINE, ELEMENTARY, PAIRS, PITCH, SLOTTED, Matrix, derivative, mp, vector
-from kernel.plans import TABLE, TREE_LETTERS
+from kernel.plans import PLANE_TABLE, TABLE, TREE_LETTERS
 
 from mechkin_cli.building.halves import Halves
 from mechkin_cli.building.joints import parts_of
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import elementary
 from mechkin_cli.mechanism.frames import Frame
-from mechkin_cli.mechanism.joint_table import CLOSING_CONDITIONS, JOINT_TYPES, dimension_of
+from mechkin_cli.mechanism.joint_table import (
+    CLOSING_CONDITIONS,
+    JOINT_TYPES,
+    PLANE_JOINT_TYPES,
+    dimension_of,
+)
 from mechkin_cli.mechanism.joint_type import FIRST, SECOND
 from mechkin_cli.mechanism.model import Joint
 
@@ -45,7 +50,7 @@ def test_every_type_of_the_table_has_its_textbook_form() -> None:
 def test_the_code_of_an_entry_is_its_place_in_the_kernel() -> None:
     rows = _kernel.joint_table()
     assert [row["code"] for row in rows] == list(range(len(rows)))
-    used = {row["letter"] for row in TABLE.values()}
+    used = {row["letter"] for row in (*TABLE.values(), *PLANE_TABLE.values())}
     assert {row["letter"] for row in rows} == {"", *used}  # the first: the ends of a leg
 
 
@@ -63,6 +68,16 @@ def test_freedoms_and_closing_equations_make_six(letter: str) -> None:
         assert kind.equations == 0
         return
     assert kind.equations == TABLE[letter]["equations"] == 6 - PAIRS[letter].freedoms
+
+
+@pytest.mark.parametrize("letter", list(PLANE_TABLE))
+def test_freedoms_and_closing_equations_of_a_plane_make_three(letter: str) -> None:
+    """Gruebler 1917: of R and P two, of a pin in a slot one, of a weld three."""
+    kind, row = PLANE_JOINT_TYPES[letter], PLANE_TABLE[letter]
+    assert kind.equations == row["equations"] == 3 - kind.freedoms
+    assert kind.equations == {"R": 2, "P": 2, "Ps": 1, "W": 3}[letter]
+    # what holds the turn is a moment, all else forces
+    assert row["lengths"] == kind.equations - (letter in ("P", "W"))
 
 
 @pytest.mark.parametrize("letter", list(TABLE))

@@ -1,7 +1,8 @@
 """Mobility: Kutzbach's count against the finite freedom, and what makes them differ.
 
 With n links (ground too), j joints and freedoms f, the count is 6 (n - 1 - j) + sum f: all freedoms
-less six for every loop. In a plane it is three: 3 (n - 1) - 2 j where all joints have one freedom. The freedom of first order is sum f less the rank of the loops' screws at
+less six for every loop; in a plane less three, 3 (n - 1) - 2 j where all joints have one freedom.
+The freedom of first order is sum f less the rank of the loops' screws at
 the first configuration; the finite freedom is the dimension of the assembled configurations next to
 it (`local_dimension`). The difference of sum f less the rank at a general configuration and the
 count is the number of redundant constraints.
