@@ -209,6 +209,11 @@ def _cross(a: JetVector, b: JetVector) -> Any:
     return minor(0, 1) if len(a) == 2 else (minor(1, 2), minor(2, 0), minor(0, 1))
 
 
+def _size(normal: Any) -> Jet:
+    """Of a vector product, which in a plane is one number."""
+    return _norm(normal) if isinstance(normal, tuple) else _absolute(normal)
+
+
 RULES: dict[str, Callable[..., Any]] = {
     "+": _on_each(lambda a, b: a + b),
     "-": _on_each(lambda a, b: a - b),
@@ -241,7 +246,7 @@ RULES: dict[str, Callable[..., Any]] = {
     "det": lambda a, b, c: _dot(a, _cross(b, c)),
     "norm": _norm,
     "unit_vector": lambda a: _on_each(jets.quotient)(a, _norm(a)),
-    "angle_between": lambda a, b: _angle_of(_norm(_cross(a, b)), _dot(a, b)),
+    "angle_between": lambda a, b: _angle_of(_size(_cross(a, b)), _dot(a, b)),
     **{symbol: _compared(symbol) for symbol in conditions.COMPARED},
     "and": _joined(truths.both),
     "or": _joined(truths.either),

@@ -195,7 +195,7 @@ def _cross(site: Site, a: Operand, b: Operand) -> Quantity:
 
 def _determinant(site: Site, a: Operand, b: Operand, c: Operand) -> Quantity:
     across = cross_product(site.vector(b), site.vector(c))
-    if not isinstance(across, Vector) or site.vector(a).z is None:
+    if site.vector(a).z is None or not isinstance(across, Vector):
         raise site.error("det takes three vectors of space", "in a plane write cross(a, b)")
     value = dot_product(site.vector(a), across)
     return Quantity(value, a.dimension * b.dimension * c.dimension)
@@ -213,9 +213,13 @@ def _unit_vector(site: Site, operand: Operand) -> Quantity:
 
 def _angle_between(site: Site, a: Operand, b: Operand) -> Quantity:
     """By atan2, whose digits do not get lost where the vectors are parallel."""
-    normal = cross_product(site.vector(a), site.vector(b))
-    sine = scalar_functions.square_root(dot_product(normal, normal))
-    cosine = dot_product(site.vector(a), site.vector(b))
+    one, other = site.vector(a), site.vector(b)
+    require_alike(site, a, b)
+    normal, cosine = cross_product(one, other), dot_product(one, other)
+    if isinstance(normal, Vector):
+        sine = scalar_functions.square_root(dot_product(normal, normal))
+    else:
+        sine = scalar_functions.magnitude(normal)
     return Quantity(scalar_functions.angle_of(sine, cosine), ANGLE)
 
 

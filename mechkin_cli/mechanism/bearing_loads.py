@@ -30,17 +30,23 @@ _LOADS: dict[Kind, _Load] = {
     "tilting_moment": _Load("norm(cross(J.axis, J.moment))", MOMENT),
 }
 
+_IN_PLANE: dict[Kind, _Load] = {"radial_force": _Load("norm(J.force)", FORCE)}
+"""Pins, slots and guides transmit nothing else: along its axis a guide takes no force."""
+
+_TOLD_IN_PLANE = "xy"
+
 BEARING_KINDS = frozenset(_LOADS)
 
 
 def bearing_catalogue(mechanism: Mechanism) -> dict[str, Wanted]:
-    """`J.radial_force`, `J.axial_force` and `J.tilting_moment` of every joint with an axis."""
+    """`J.radial_force`, `J.axial_force` and `J.tilting_moment` of every joint with an axis; in a
+    plane the first alone, of every joint with a point."""
     return {wanted.name: wanted for wanted in _of_joints(mechanism)}
 
 
 def bearing_load(wanted: Wanted, resolve: Resolve) -> Quantity:
     """The load as its expression gives it, in SI."""
-    return _expression(wanted.kind, wanted.owner).evaluate(resolve)
+    return _expression(wanted).evaluate(resolve)
 
 
 def read_for(names: Iterable[str], known: Mapping[str, Wanted]) -> list[str]:
@@ -53,18 +59,21 @@ def read_for(names: Iterable[str], known: Mapping[str, Wanted]) -> list[str]:
     for name in names:
         wanted = known[name]
         is_load = wanted.kind in BEARING_KINDS
-        parts = sorted(_expression(wanted.kind, wanted.owner).names) if is_load else [name]
+        parts = sorted(_expression(wanted).names) if is_load else [name]
         found |= dict.fromkeys(parts)
     return list(found)
 
 
 def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
+    loads, told = (_IN_PLANE, _TOLD_IN_PLANE) if mechanism.plane else (_LOADS, "xyz")
     for joint in mechanism.joints.values():
-        if is_written(joint.name) and joint.type.axis is not None and joint.type.has_point:
-            for kind, load in _LOADS.items():
-                yield Wanted(f"{joint.name}.{kind}", kind, joint.name, load.dimension, False)
+        bears = joint.type.has_point and (mechanism.plane or joint.type.axis is not None)
+        for kind, load in loads.items() if bears and is_written(joint.name) else ():
+            name, dimension = f"{joint.name}.{kind}", load.dimension
+            yield Wanted(name, kind, joint.name, dimension, False, told=told)
 
 
 @cache
-def _expression(kind: Kind, joint: str) -> Expression:
-    return parse(_LOADS[kind].text.replace("J.", f"{joint}."))
+def _expression(wanted: Wanted) -> Expression:
+    loads = _IN_PLANE if wanted.told == _TOLD_IN_PLANE else _LOADS
+    return parse(loads[wanted.kind].text.replace("J.", f"{wanted.owner}."))

@@ -42,7 +42,7 @@ JOINT_TYPES: Final = {
 """Types of a joint."""
 
 
-_SPATIAL = "it is a pair in space: without plane: xy it may be written, in a plane not"
+_SPATIAL = "it is a pair in space; a plane has R, P, Ps (a pin in a slot) and W"
 PLANE_JOINT_TYPES: Final = {
     **JOINT_TYPES,
     **dict.fromkeys(("c", "h", "s", "sp", "u", "e", "ss", "sc", "cp", "f"), _SPATIAL),
