@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from mechkin_cli.mechanism.frames import Frame, frame_about
 from mechkin_cli.mechanism.joint_type import Drawn
-from mechkin_cli.mechanism.vectors import scale
+from mechkin_cli.mechanism.vectors import Vector, scale
 
 
 class Halves(NamedTuple):
@@ -27,7 +27,8 @@ class Halves(NamedTuple):
         if direction.axis == "own":
             assert self.own is not None
             return self.own
-        if direction.axis == "z":
-            back = frame_about(scale(-1.0, frame.z), frame.x, frame.o)
-            return back if direction.reverse else frame
-        return frame_about(getattr(frame, direction.axis), frame.z, frame.o)
+        if direction.axis == "z" and not direction.reverse:
+            return frame
+        along: Vector = getattr(frame, direction.axis)
+        across = frame.x if direction.axis == "z" else frame.z
+        return frame_about(scale(-1.0, along) if direction.reverse else along, across, frame.o)

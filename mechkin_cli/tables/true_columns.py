@@ -73,7 +73,7 @@ def _evaluated(
 ) -> list[DoubleDoubles]:
     found = expression.evaluate(source.quantity, source.units, literal)
     value: Any = found.value
-    parts = [value.x, value.y, value.z] if hasattr(value, "components") else [value]
+    parts = value.components if hasattr(value, "components") else [value]
     return [_in_file_units(part, found.dimension, source) for part in parts]
 
 

@@ -153,7 +153,7 @@ OTHER_WORDS = [
     between("{type: »cam, LINKS}", "unknown-word", "law: table"),
     joint("{type: R, LINKS, point: [0, 0, 0], axis: [0, 0, 1], »friction: 1}", "unknown-key", "is"),
     started("»inputs: {}", "unknown-key", "driven:"),
-    added("»plane: xy", "unknown-key", "mechanisms stand in space", "[x, y, 0]"),
+    added("»planar: true", "unknown-key", "there is no key", "plane: xy"),
     added("»mu: 0.1", "unknown-key", "coefficient: 0.1", "radius"),
     added("»coulomb: 0.1", "unknown-key", "type: friction"),
     added("»stiction: 0.1", "unknown-key", "type: friction"),
