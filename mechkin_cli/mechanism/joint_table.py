@@ -229,6 +229,7 @@ _IN_PLANE = (
         axis=_X2,
         point_on=FIRST,
         closing="Ps2",
+        shape="Sg",
     ),
     replace(JOINT_TYPES["W"], closing="W2"),
 )

@@ -86,7 +86,7 @@ class JointType:
     entry, None where it closes no loop; `parameter`: what that entry has to know of the drawing
     (`Joint.parameter`); `softer`: pairs on the same frames that cure a redundant constraint;
     `friction`: how it rubs, None where no law is known; `space`: freedoms of a body where the pair
-    works, six, or three in a plane.
+    works, six, or three in a plane; `shape`: the pair as which it is drawn, where that is another.
     """
 
     letter: str
@@ -100,6 +100,7 @@ class JointType:
     softer: tuple[str, ...] = ()
     friction: FrictionLaw | None = None
     space: int = 6
+    shape: str = ""
 
     @cached_property
     def parts(self) -> tuple[str, ...]:

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 Kind = Literal["force", "moment"]
 AXES = "xyz"
+NORMAL = (0.0, 0.0, 1.0)
 KINDS: tuple[Kind, Kind] = ("force", "moment")
 
 
@@ -83,7 +84,7 @@ def _arrows(analysis: Readable) -> Iterator[Arrow]:
     for name in reactions(problem):
         joint, _, word = name.rpartition(".")
         kind = KINDS[0] if word == KINDS[0] else KINDS[1]
-        yield from _known(Arrow(name, kind, joints[joint].point, analysis[name]))
+        yield from _known(Arrow(name, kind, joints[joint].point, _in_space(analysis, name)))
     yield from _efforts(analysis, problem)
 
 
@@ -93,9 +94,21 @@ def _efforts(analysis: Readable, problem: Problem) -> Iterator[Arrow]:
         joint = problem.mechanism.joints[name.rpartition(".")[0]]
         if joint not in drawn_joints(problem.mechanism) or len(joint.coordinates) != 1:
             continue  # the axis of one of several coordinates is not that of the joint
-        along = analysis[f"{joint.name}.axis"] * analysis[effort][:, None]
+        axis = f"{joint.name}.axis"
+        hinged = joint.plane and axis not in problem.quantities()  # about the plane's normal
+        direction = np.array([NORMAL]) if hinged else _in_space(analysis, axis)
+        along = direction * analysis[effort][:, None]
         kind = KINDS[1] if is_angle(name.rpartition(".")[2]) else KINDS[0]
         yield from _known(Arrow(effort, kind, joint.point, along))
+
+
+def _in_space(analysis: Readable, name: str) -> Floats:
+    """A vector over the rows (rows, 3); what a plane leaves out of it is zero."""
+    told = np.asarray(analysis[name])
+    found = np.zeros((len(told), 3))
+    places = analysis.result.problem.quantities()[name].places
+    found[:, list(places)] = told.reshape(len(told), len(places))
+    return found
 
 
 def _known(arrow: Arrow) -> Iterator[Arrow]:

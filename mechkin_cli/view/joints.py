@@ -50,7 +50,7 @@ def joint_records(
         found.append(
             {
                 "name": joint.name,
-                "type": joint.letter,
+                "type": joint.type.shape or joint.letter,
                 "links": [links.index(joint.first), links.index(joint.second)],
                 "halves": [_half(joint, side, lengths) for side in (FIRST, SECOND)],
                 "lead": lengths.one(joint.lead) if joint.type.is_threaded else None,
@@ -76,11 +76,11 @@ def half_frame(joint: Joint, side: int) -> Frame:
 def _half(joint: Joint, side: int, lengths: Lengths) -> Plain:
     """The half on one link; `axis2` is the pin that stands square to, or askew of, an axis of its
     own."""
-    frame = half_frame(joint, side)
+    frame, axis = half_frame(joint, side), half_axis(joint, side)
     has_pin = joint.type.parameter == "from axis to pin" and side == FIRST
     return {
         "point": lengths.vector(frame.o),
-        "axis": list(half_axis(joint, side)),
-        "x": list(frame.x),
+        "axis": list(axis),
+        "x": list(frame.z if axis == frame.x else frame.x),
         "axis2": list(scale(-1.0, frame.y)) if has_pin else None,
     }
