@@ -58,6 +58,8 @@ class AnyFile(Section):
     """Tables of the dense system of all reactions at one row, as textbooks write it."""
     balances: tuple[Balance, ...] = ()
     """Work over a cycle, harmonics and flywheels of the sweep, a table each."""
+    view: ViewSection | None = None
+    """How `mechkin view` shows the mechanism; it changes no number."""
     follow: tuple[Name, ...] | None = None
     """Joints whose loops are followed beside those the outputs need; left out, all loops are."""
     accept: tuple[Literal["unphysical-inertia"], ...] = ()
@@ -90,8 +92,6 @@ class MechanismFile(AnyFile):
     """Gravity, forces, torques, springs and dampers."""
     idle: Literal["hold"] | None = None
     """`hold`: idle freedoms that loads would move are held, and the holding moment is reported."""
-    view: ViewSection | None = None
-    """How `mechkin view` shows the mechanism; it changes no number."""
 
     def check(self) -> None:
         """There is a joint, and no two tables are written to the same files."""
