@@ -12,7 +12,6 @@ from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.given_file import shown
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.legible import legible, whole
-from mechkin_cli.version import versions
 
 Record = dict[str, object]
 """Plain data for `--json`."""
@@ -70,6 +69,7 @@ def put_json(record: Record) -> None:
         UsageError: stdout takes no more.
     """
     from mechkin_cli.tables.json_writer import json_text
+    from mechkin_cli.version import versions
 
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     whole_record = versions() | record

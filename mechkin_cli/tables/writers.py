@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.runs import SWEEP
-from mechkin_cli.version import versions
 
 if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Diagnostic
@@ -70,6 +69,7 @@ def _markdown(runs: Sequence[Results]) -> Iterator[File]:
 
 def _json(runs: Sequence[Results]) -> Iterator[File]:
     from mechkin_cli.tables.json_writer import json_bytes, runs_record
+    from mechkin_cli.version import versions
 
     yield "analysis.json", json_bytes(versions() | runs_record(runs))
 
