@@ -54,8 +54,6 @@ class AnyFile(Section):
     """Where efforts act, when not at the inputs: [leg1.s, leg2.s]; at least as many as freedoms."""
     tables: Annotated[tuple[Table, ...], After(differing_names)] = ()
     """The tables a run writes; left out, one table of all coordinates, their rates and efforts."""
-    coefficients: Annotated[tuple[Coefficients, ...], After(differing_names)] = ()
-    """Tables of the dense system of all reactions at one row, as textbooks write it."""
     balances: tuple[Balance, ...] = ()
     """Work over a cycle, harmonics and flywheels of the sweep, a table each."""
     view: ViewSection | None = None
@@ -67,7 +65,7 @@ class AnyFile(Section):
 
     def check(self) -> None:
         """No two tables are written to the same files."""
-        refuse_clashes(self.balances, (*self.tables, *self.coefficients))
+        refuse_clashes(self.balances, self.tables)
 
 
 class MechanismFile(AnyFile):
@@ -90,6 +88,8 @@ class MechanismFile(AnyFile):
     """Directions that turn with links, by name."""
     loads: tuple[Load, ...] = ()
     """Gravity, forces, torques, springs and dampers."""
+    coefficients: Annotated[tuple[Coefficients, ...], After(differing_names)] = ()
+    """Tables of the dense system of all reactions at one row, as textbooks write it."""
     idle: Literal["hold"] | None = None
     """`hold`: idle freedoms that loads would move are held, and the holding moment is reported."""
 
@@ -97,4 +97,4 @@ class MechanismFile(AnyFile):
         """There is a joint, and no two tables are written to the same files."""
         if not self.joints and not self.chain:
             raise refuse("no-joints", "the file has no joints", "add joints: (or chain:)")
-        super().check()
+        refuse_clashes(self.balances, (*self.tables, *self.coefficients))

@@ -58,6 +58,12 @@ CASES = {
     "a collar": ("radius: 1 cm}", "radius: 1 cm, collar: 2 cm}", "loads#4", "normal"),
     "a width": ("radius: 1 cm}", "radius: 1 cm, width: 2 cm}", "loads#4", "leave it out"),
     "idle: hold": ("plane: xy", "plane: xy\nidle: hold", "", "leave it out"),
+    "the dense system": (
+        "plane: xy",
+        "plane: xy\ncoefficients: [{name: dense, row: 1}]",
+        "",
+        "six equations",
+    ),
     "a chain": (
         "points: {p",
         "chain: [{joint: K, type: R, link: ground, theta: 0, s: 0, alpha: 0, a: 1}]\npoints: {p",
