@@ -11,7 +11,7 @@ import pytest
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.mechanism.joint_table import JOINT_TYPES
+from mechkin_cli.mechanism.joint_table import JOINT_TYPES, PLANE_JOINT_TYPES
 from mechkin_cli.view.drawing.isometric import Isometric, isometric
 from mechkin_cli.view.drawing.picture import HEIGHT, WIDTH, mechanism_picture
 from mechkin_cli.view.drawing.strokes import Disc, Stroke
@@ -113,6 +113,15 @@ def test_every_joint_has_a_symbol_of_its_own(letter):
 def test_a_pin_seen_end_on_is_a_disc():
     end_on = Half((0.0, 0.0), (0.01, 0.0), (1.0, 0.0), (0.0, 1.0))
     assert all(isinstance(mark, Disc) for mark in symbol(JOINT_TYPES["R"], end_on, end_on))
+
+
+def test_a_pin_in_a_slot_stands_between_two_walls():
+    half = Half((50.0, 50.0), (1.0, 0.0), (1.0, 0.0), (0.0, 1.0))
+    pin = half._replace(place=(56.0, 50.0), axis=(0.0, 0.0))
+    one, other, *_ = symbol(PLANE_JOINT_TYPES["Ps"], pin, half)
+    # along the slot, twelve points beyond its own place and the pin
+    assert one.places == ((38.0, 42.5), (68.0, 42.5))
+    assert other.places == ((38.0, 57.5), (68.0, 57.5))
 
 
 def test_size_place_units_names_and_order_change_nothing():

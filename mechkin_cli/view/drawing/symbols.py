@@ -42,7 +42,8 @@ def symbol(kind: JointType, first: Half, second: Half) -> list[Mark]:
         seat = _groove if kind.named else _plate
         return [*seat(second, first.place), *_ball(first.place)]
     if kind.has_slip:
-        return [*_plate(second, first.place), *_pin(first.place, first.axis)]
+        bed = _plate if slides > 1 else _groove
+        return [*bed(second, first.place), *_pin(first.place, first.axis)]
     if turns > 1:
         rail = _rail(first, second) if slides else []
         return [*rail, *_cross(second.place, first.axis, second.axis)]
