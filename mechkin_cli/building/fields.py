@@ -25,7 +25,7 @@ from mechkin_cli.reading.limits import MOST_DIAGNOSTICS
 from mechkin_cli.reading.parser import CORRECT_FIRST, in_order
 from mechkin_cli.tape.scalars import is_number
 from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
-from mechkin_cli.units import LENGTH, Dimension, UnitSystem
+from mechkin_cli.units import DIMENSIONLESS, LENGTH, Dimension, UnitSystem
 
 Path = tuple[str | int, ...]
 
@@ -130,7 +130,8 @@ class Fields:
             value = constant(text, dimension, self.units, self.resolve)
             return self._bounded(path, value, value, dimension)
         except ExpressionError as error:
-            self.expression_error(path, error)
+            if not self._blames_parameters(text, dimension):
+                self.expression_error(path, error)
             return 0.0
 
     def written(self, path: Path, text: str, dimension: Dimension) -> float:
@@ -141,6 +142,38 @@ class Fields:
         except ExpressionError as error:
             self.expression_error(path, error)
             return 0.0
+
+    def _blames_parameters(self, text: str, dimension: Dimension) -> bool:
+        """Whether a text is wrong only because parameters in it were written without their unit:
+        each is refused once, where it is written, and what else uses it gets no message."""
+        try:
+            names = sorted(parse(text).names & self.parameters.keys())
+        except ExpressionError:
+            return False
+        written = self.document.data.get("parameters")
+        texts = written if isinstance(written, dict) else {}
+        bare = [name for name in names if literal(str(texts.get(name, ""))) is not None]
+        if not bare or dimension == DIMENSIONLESS:
+            return False
+
+        def with_unit(name: str) -> Quantity:
+            found = self.resolve(name)
+            return replace(found, dimension=dimension) if name in bare else found
+
+        try:
+            constant(text, dimension, self.units, with_unit)
+        except ExpressionError:
+            return False
+        unit = self.units.label(dimension)
+        for name in bare:
+            self.error(
+                "parameter-unit",
+                ("parameters", name),
+                f"{name} is used as {dimension.phrase} and has no unit",
+                f"write {str(texts[name]).strip()} {unit}",
+            )
+            self.refused.add(name)
+        return True
 
     def _bounded(self, path: Path, value: float, in_si: float, dimension: Dimension) -> float:
         """The value, or zero and an error where it cannot be computed with."""
@@ -198,8 +231,6 @@ class Fields:
         return unit(vector)
 
     def _component(self, path: Path, text: str) -> tuple[float, Dimension]:
-        from mechkin_cli.units import DIMENSIONLESS
-
         bare = number_of(text)
         if bare is not None:
             return bare, DIMENSIONLESS

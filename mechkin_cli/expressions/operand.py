@@ -112,6 +112,8 @@ class Site(NamedTuple):
             return f"write the number with a unit: {number.text} {label}"
         if operand.dimension.dimensionless:
             return _multiply_hint(dimension, label)
+        if (operand.dimension / ANGLE).compatible(dimension):
+            return f"it is per angle: write its unit as {label}"
         if dimension.dimensionless:
             return f"divide it by 1 {self.units.label(operand.dimension)}"
         return f"give a value such as 1 {label}"

@@ -17,7 +17,14 @@ LINKS = [
     changed("mass: 1,", "mass: »-1,", "negative-mass", "negative"),
     changed("mass: 1,", "mass: »1 N,", "expression", "expected a mass", "force"),
     changed("mass: 1,", "mass: »1e101,", "too-large", "1e+101 (limit 1e+100)"),
-    changed("[0, 20, 0]", "[0, »k, 0]", "expression", "expected a length", "1 mm"),
+    changed("[0, 20, 0]", "[0, »2*1, 0]", "expression", "expected a length", "1 mm"),
+    changed(
+        "k: 2}\nlinks:\n  crank: {mass: 1, center_of_mass: [0, 20, 0]",
+        "k: »2}\nlinks:\n  crank: {mass: 1, center_of_mass: [0, k, 0]",
+        "parameter-unit",
+        "k is used as a length and has no unit",
+        "write 2 mm",
+    ),
     changed("zz: 1}", "zz: »1 kg}", "expression", "moment of inertia", "mass"),
     changed(
         "zz: 1}",

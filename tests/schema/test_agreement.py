@@ -84,6 +84,7 @@ EDITORS_ACCEPT = {
     "axes-not-square": VALUE,
     "not-square": VALUE,
     "pin-parallel": VALUE,
+    "parameter-unit": VALUE,
 }
 """Code of the reader's error -> why editors accept the file."""
 
