@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.given_file import model_of, shown, stem_of
 from mechkin_cli.cli.messages import put, refusal, say_diagnostics
 from mechkin_cli.cli.options import File, Quiet, Set
 from mechkin_cli.cli.parameters import parameters
@@ -57,7 +58,6 @@ def plot(
     diagram. Without -o the pictures are out/STEM/TABLE.svg. Needs matplotlib: the extra plot.
     """
     from mechkin_cli.expressions import ExpressionError
-    from mechkin_cli.interface import load
     from mechkin_cli.plots.figure import format_of, image
 
     ending = ENDING if out is None else format_of(out)
@@ -65,10 +65,10 @@ def plot(
     if names and table:
         raise UsageError("--y names what is drawn, --table too; leave one of them out")
     try:
-        model = load(file, parameters(set_))
+        model = model_of(file, parameters(set_))
         analyses = _tables(model, table, run, mode) if not names else {}
         if names:
-            analyses[file.stem] = _run(model, run, mode), None
+            analyses[stem_of(file)] = _run(model, run, mode), None
         if out is not None and len(analyses) > 1:
             tables = ", ".join(analyses)
             raise UsageError(f"-o is one picture; choose one of {tables} with --table")
@@ -85,7 +85,7 @@ def plot(
     _write(file, out, files, quiet)
     found = [analysis for analysis, _ in analyses.values()]
     said = dict.fromkeys(one for analysis in found for one in analysis.diagnostics)
-    say_diagnostics(tuple(said), str(file))
+    say_diagnostics(tuple(said), shown(file))
     if not all(analysis.complete for analysis in found):
         raise typer.Exit(ExitCode.ROWS_MISSING)
 
@@ -131,7 +131,7 @@ def _tables(
 def _write(file: Path, out: Path | None, files: dict[str, bytes], quiet: bool) -> None:
     from mechkin_cli.tables.files import write_files
 
-    folder = Path("out") / file.stem if out is None else out.parent
+    folder = Path("out") / stem_of(file) if out is None else out.parent
     written = write_files(folder, files)
     for path in () if quiet else written:
         put(f"{path}\n")

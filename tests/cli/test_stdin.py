@@ -94,3 +94,10 @@ def test_commands_that_need_a_file_say_so(tmp_path: Path, words: list[str]) -> N
     done = run(tmp_path, files.CRANK.encode(), *words)
     assert done.returncode == 2
     assert b"save the text in a file and name it" in done.stderr
+
+
+def test_a_picture_of_a_text(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    done = run(tmp_path, files.CRANK.encode(), "plot", "-")
+    assert done.returncode == 0, done.stderr
+    assert list((tmp_path / "out" / "stdin").glob("*.svg"))
