@@ -26,7 +26,6 @@ from mechkin_cli.building.unit_system import note_force_unit, read_units
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.mechanism.balance import AnyBalance
-from mechkin_cli.mechanism.influence import differentiation
 from mechkin_cli.mechanism.model import Attached, Link, Mechanism
 from mechkin_cli.mechanism.motion import Motion
 from mechkin_cli.mechanism.problem import Problem
@@ -42,6 +41,7 @@ from mechkin_cli.tables.layout import CoefficientsLayout, TableLayout
 from mechkin_cli.units import LENGTH
 
 if TYPE_CHECKING:
+    from mechkin_cli.expressions.nodes import Name, Node
     from mechkin_cli.view.settings import ViewSettings
 
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})
@@ -114,7 +114,14 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
 
 def _with_definitions(fields: Fields, file: MechanismFile, problem: Problem) -> Problem:
     """The problem with the file's named expressions, in which derivatives are known now."""
-    fields.definitions = replace(fields.definitions, differentiate=differentiation(problem))
+
+    def differentiate(nodes: tuple[Node, ...], by: Name, offset: int) -> tuple[Node, ...]:
+        # loaded only where a derivative is written
+        from mechkin_cli.mechanism.influence import differentiation
+
+        return differentiation(problem)(nodes, by, offset)
+
+    fields.definitions = replace(fields.definitions, differentiate=differentiate)
     if file.quantities:
         from mechkin_cli.building.quantities import check_quantities, take_derivatives
 
