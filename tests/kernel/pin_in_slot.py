@@ -57,7 +57,7 @@ PAGE = "| `Rg` | s, theta | pin of the second link in a `slot` of the first; `ax
 ADDITIONS = {
     "mechkin_cli/kernel/src/pairs.hpp": (
         ("// Two spheres with a leg between them: no pair of the file format.\n", KERNEL),
-        ("CylinderOnPlane>;", "PinInTrack, "),
+        ("WeldInPlane>;", "PinInTrack, "),
     ),
     "mechkin_cli/mechanism/joint_table.py": ((")\n\nJOINT_TYPES = {entry.letter", TABLE),),
     "mechkin_cli/schema/joints.py": (
