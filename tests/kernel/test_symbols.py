@@ -39,17 +39,17 @@ needs_objdump = pytest.mark.skipif(shutil.which("objdump") is None, reason="no o
 
 
 PLAIN = ["-O3", "-c", "-fno-exceptions", "-fno-rtti"]
-OF_DOUBLES = [f"unit_{name}" for name in UNITS]
+OF_DOUBLES = [f"{kind}_{name}" for kind in ("unit", "motion") for name in UNITS]
 OF_DOUBLE_DOUBLE = [f"double_double_{name}" for name in DOUBLE_DOUBLE]
 OF_INTERVALS = [f"enclosing_{name}" for name in DOUBLE_DOUBLE]
-FOLDERS = {"unit": "", "double_double": "", "enclosing": "certify"}
-NAMES = {"unit": "UNIT", "double_double": "UNIT", "enclosing": "ENCLOSING"}
+FOLDERS = {"unit": "", "motion": "", "double_double": "", "enclosing": "certify"}
+NAMES = {"unit": "UNIT", "motion": "MOTION", "double_double": "UNIT", "enclosing": "ENCLOSING"}
 
 
 def compile_unit(name: str, target: Path) -> Path:
     """As the build does."""
     kind, _, instructions = name.rpartition("_")
-    if kind == "unit":
+    if kind in ("unit", "motion"):
         lanes, options = UNITS[instructions]
         arithmetic = []
     else:
@@ -91,6 +91,16 @@ def test_a_unit_exports_its_entry_only(unit: Path) -> None:
 def test_a_unit_calls_nothing_but_memory_functions(unit: Path) -> None:
     called = {name for kind, name in symbols(unit) if kind == "U"}
     assert called <= {"memcpy", "memset", "memmove", "_GLOBAL_OFFSET_TABLE_"}
+
+
+@needs_compiler
+@needs_objdump
+def test_a_unit_does_nothing_when_the_module_is_loaded(unit: Path) -> None:
+    """A constant that is computed then would run wide instructions on every machine."""
+    command = ["objdump", "-h", str(unit)]
+    sections = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    assert ".text" in sections
+    assert ".init_array" not in sections
 
 
 @needs_compiler

@@ -49,7 +49,7 @@ struct Lookup {
   }
 };
 
-const Pack UNKNOWN_NUMBER = __builtin_nan("");
+constexpr double UNKNOWN_NUMBER = __builtin_nan("");
 
 // What loads read of a row beside the workspace, see quantity_program.hpp.
 struct RowValues {
