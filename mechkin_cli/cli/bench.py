@@ -25,8 +25,12 @@ if TYPE_CHECKING:
     from mechkin_cli.benchmark.scene import Scene
     from mechkin_cli.benchmark.subject import Subject
 
+_OF_STRESS = ("rows", "seed", "family", "only", "page", "check", "processes")
+_OF_TIMES = ("files", "quick", "out")
+
 
 def bench(
+    context: typer.Context,
     files: Annotated[
         list[Path] | None,
         typer.Argument(help="Mechanism files instead of the known ones.", metavar="FILE"),
@@ -56,6 +60,7 @@ def bench(
     libraries are installed (pip install 'mechkin[bench]'). With --stress: hard mechanisms by the
     thousand, every row decided in double-double.
     """
+    _refuse_options_of_the_other(context, stress=stress)
     if stress:
         from mechkin_cli.cli.bench_stress import Stress, stress_command
 
@@ -89,6 +94,30 @@ def bench(
         put_json(record(described, benches, tables) | ({"refused": refused} if refused else {}))
     if code:
         raise typer.Exit(code)
+
+
+def _refuse_options_of_the_other(context: typer.Context, *, stress: bool) -> None:
+    """
+    Raises:
+        UsageError: an option is given that means nothing with, or without, --stress.
+    """
+    others = _OF_TIMES if stress else _OF_STRESS
+    given = [name for name in others if _is_given(context, name)]
+    if not given:
+        return
+    words = ", ".join("FILE" if name == "files" else f"--{name}" for name in given)
+    if stress:
+        raise UsageError(
+            f"--stress judges mechanisms of its own and times nothing; leave {words} out"
+        )
+    raise UsageError(
+        f"without --stress there is nothing for {words}; add --stress, or leave it out"
+    )
+
+
+def _is_given(context: typer.Context, name: str) -> bool:
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "COMMANDLINE"
 
 
 def _made(folder: Path) -> None:

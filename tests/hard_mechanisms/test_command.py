@@ -17,6 +17,7 @@ from mechkin_cli.benchmark.stress.plan import tasks
 from mechkin_cli.benchmark.stress.run import stress
 from mechkin_cli.benchmark.stress.tally import Tally
 from mechkin_cli.cli.app import app
+from mechkin_cli.diagnostics import UsageError
 
 PAGE = Path(__file__).parents[2] / "docs" / "stress.md"
 
@@ -124,3 +125,20 @@ def test_a_process_ends_where_its_input_ends() -> None:
     process.stdin.write(json.dumps(["many loops", 1, list(range(1000))]).encode() + b"\n")
     process.stdin.close()
     assert process.wait(timeout=60) == 0
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        (["--stress", "one.yaml"], "FILE"),
+        (["--stress", "--rows", "20", "--quick"], "--quick"),
+        (["--stress", "--out", "folder", "one.yaml"], "FILE, --out"),
+        (["--family", "leads"], "--family"),
+        (["--quick", "--rows", "2000", "one.yaml"], "--rows"),
+        (["--seed", "1", "--processes", "0"], "--seed, --processes"),
+    ],
+)
+def test_options_that_mean_nothing_together_are_refused(given: list[str], named: str) -> None:
+    run = CliRunner().invoke(app, ["bench", *given])
+    assert isinstance(run.exception, UsageError)
+    assert f"{named} out" in str(run.exception) or f"for {named};" in str(run.exception)
