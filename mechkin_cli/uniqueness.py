@@ -32,9 +32,11 @@ def unique_cells(
     loaded = values != 0.0
     sizes = [np.abs(v[np.isfinite(v) & loaded]).max(initial=0.0) for v in (values, *others)]
     limit = np.full(values.shape, UNIQUE_CELL * max(sizes))
-    for other in disturbed:
-        limit = np.fmax(limit, np.abs(other - values))
     settled = values.copy()
-    for other in others:
-        settled[~(np.abs(other - values) <= limit)] = np.nan
+    # a cell beyond the largest double is one of those that are not unique
+    with np.errstate(invalid="ignore"):
+        for other in disturbed:
+            limit = np.fmax(limit, np.abs(other - values))
+        for other in others:
+            settled[~(np.abs(other - values) <= limit)] = np.nan
     return settled

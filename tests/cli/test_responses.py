@@ -112,7 +112,7 @@ def test_tables_are_kept_and_compared(mechkin, write, folder) -> None:
     file = write("pendulum.yaml", PENDULUM)
     assert mechkin("tables", file).code == 0
     assert sorted(path.name for path in (folder / "pendulum").iterdir()) == [
-        *("angles.csv", "angles.md", "push.csv", "push.md"),
+        *("angles.csv", "angles.md", "picture.svg", "push.csv", "push.md"),
     ]
     assert mechkin("tables", file, "--check").code == 0
     write("pendulum.yaml", PENDULUM.replace("A.theta: 80", "A.theta: 81"))

@@ -118,7 +118,8 @@ def test_where_tables_are_written(tmp_path: Path, kind: str) -> None:
     assert found.returncode == (2 if is_special else 0), found.stderr
     assert path.is_file() != is_special
     names = sorted(child.name for child in path.parent.iterdir())
-    assert names == (["sweep.csv"] if is_special else ["sweep.csv", "sweep.md"])
+    written = ["picture.svg", "sweep.csv", "sweep.md"]
+    assert names == (["sweep.csv"] if is_special else written)
 
 
 def test_a_device_is_never_replaced_by_the_schema() -> None:

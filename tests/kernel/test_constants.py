@@ -25,7 +25,7 @@ FILES = SWEPT
 
 def layout_of(path: Any, parameters: dict[str, str] | None = None) -> Layout:
     model = mk.load(path, parameters or {})
-    return Layout(model.problem.mechanism, model.graph)
+    return Layout(model.problem.mechanism, model.graph, laws=model.problem.laws)
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
