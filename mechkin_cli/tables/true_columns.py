@@ -13,7 +13,9 @@ import numpy as np
 
 from mechkin_cli.expressions import Quantity, Vector
 from mechkin_cli.expressions.exact_literal import exact_literal
+from mechkin_cli.tape.bounded import bounded
 from mechkin_cli.tape.double_doubles import DoubleDoubles, exactly
+from mechkin_cli.tolerances import NO_DOUBT
 
 if TYPE_CHECKING:
     from mechkin_cli.expressions import Expression
@@ -56,16 +58,40 @@ def true_values(expression: Expression, source: TrueSource) -> list[DoubleDouble
 def doubts(
     expression: Expression, source: TrueSource, true: Sequence[DoubleDoubles]
 ) -> list[FloatArray]:
-    """How far true values may be off (rows,) by the rounding of what they are computed of: what
-    they change by where every number is `OFF` in parts of the largest of its rows. Where the text
-    divides by zero that is as much as the value itself; what has no poles is not off by more than
-    its rounding."""
-    if not any(getattr(node, "symbol", "") in _WITH_POLES for node in expression.nodes):
+    """How far true values may be off (rows,): by their own rounding, which is nearly all of them
+    where a sum swallows what counts or a product is too small for a number; and by that of what
+    they are computed of, which is what they change by where every number is `OFF` in parts of the
+    largest of its rows. Where the text divides by zero that is as much as the value itself."""
+    symbols = {getattr(node, "symbol", "") for node in expression.nodes} - {""}
+    if not symbols:
         return [np.zeros(source.rows) for _ in true]
-    off = _evaluated(expression, _Off(source), _off_literal)
-    with np.errstate(invalid="ignore"):
-        found = [np.abs((one - other).high) for one, other in zip(true, off, strict=True)]
-    return [np.where(np.isnan(doubt), 0.0, doubt) for doubt in found]
+    found = [_unless_zero(*pair) for pair in zip(true, *_bounds(expression, source), strict=True)]
+    if symbols & _WITH_POLES:
+        off = _evaluated(expression, _Off(source), _off_literal)
+        with np.errstate(invalid="ignore"):
+            apart = [np.abs((one - other).high) for one, other in zip(true, off, strict=True)]
+        found = [np.fmax(one, other) for one, other in zip(found, apart, strict=True)]
+    return found
+
+
+def _bounds(expression: Expression, source: TrueSource) -> tuple[list[FloatArray], list[float]]:
+    """Of the rounding of the operations, in the file's units, infinite where nothing is known; and
+    the largest of what rows have in them, for each."""
+    rows = _Bounding(source)
+    found = expression.evaluate(rows.quantity, source.units, _bounded_literal)
+    value: Any = found.value
+    parts = value.components if hasattr(value, "components") else [value]
+    factor = float(source.units.unit(found.dimension).factor)
+    bounds = [np.broadcast_to(bounded(part).bound, (source.rows,)) for part in parts]
+    known = [np.where(np.isnan(bound), np.inf, bound) / factor for bound in bounds]
+    return known, [rows.largest / factor] * len(parts)
+
+
+def _unless_zero(true: DoubleDoubles, bound: FloatArray, largest: float) -> FloatArray:
+    """The bound; none where a column is zero beside what it is computed of, and so is the bound."""
+    nothing = NO_DOUBT * largest
+    is_zero = np.abs(true.high[np.isfinite(true.high)]).max(initial=0.0) <= nothing
+    return np.where(is_zero & (bound <= nothing), 0.0, bound)
 
 
 def _evaluated(
@@ -103,6 +129,38 @@ class _Off:
             moved = _moved(value, part)
         rest = None if found.rest is None else _moved(found.rest, part)
         return Quantity(moved, found.dimension, rest)
+
+
+class _Bounding:
+    """The rows with numbers that know how far operations on them are off."""
+
+    def __init__(self, source: TrueSource) -> None:
+        self.source = source
+        self.largest = 0.0
+
+    def quantity(self, name: str) -> Quantity:
+        """As `TrueSource.quantity`."""
+        found = self.source.quantity(name)
+        value: Any = found.value
+        for part in value.components if hasattr(value, "components") else [value]:
+            sizes = np.abs(exactly(part).high)
+            self.largest = max(self.largest, float(sizes[np.isfinite(sizes)].max(initial=0.0)))
+        return _watched(found)
+
+
+def _watched(found: Quantity) -> Quantity:
+    value: Any = found.value
+    if hasattr(value, "components"):
+        parts: list[Any] = [bounded(part) for part in value.components]
+        watched: Any = Vector(*parts)
+    else:
+        watched = bounded(value)
+    rest: Any = None if found.rest is None else bounded(found.rest)
+    return Quantity(watched, found.dimension, rest)
+
+
+def _bounded_literal(number: Number) -> Quantity:
+    return _watched(exact_literal(number))
 
 
 def _moved(value: Any, part: float) -> Any:

@@ -62,3 +62,11 @@ or two digits."""
 
 NO_DOUBT: Final = 1e-18
 """The same in parts of the column's largest: a hundredth of what the nearest double is off by."""
+
+WIDE_ROUNDING: Final = float.fromhex("0x1p-98")
+"""What an operation in double-double may be off by in parts of its value: sums, products and roots
+2^-103, quotients 2^-102, elementary functions 2^-99."""
+
+WIDE_UNDERFLOW: Final = float.fromhex("0x1p-1068")
+"""What a product, quotient or function in double-double may be off by however small it is: a few of
+the smallest numbers, 2^-1074, to which its parts are rounded."""
