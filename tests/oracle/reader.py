@@ -18,7 +18,7 @@ _INERTIA = (("xx", "xy", "xz"), ("xy", "yy", "yz"), ("xz", "yz", "zz"))
 def read(source: str | Path | dict[str, Any], **parameters: str) -> Mechanism:
     """Read a file (a path), the text of one, or a `document`; `parameters` override its own.
 
-    Left out: `chain`, `plane`, springs, dampers, loads from tables, inputs as expressions of others.
+    Left out: `chain`, `plane`, springs, dampers, loads from tables, inputs that follow others.
     """
     data = document(source)
     if "plane" in data:
