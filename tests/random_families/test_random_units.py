@@ -275,6 +275,8 @@ WITHOUT = {
     ("CylinderPlaneJoint", "axis"),
     ("CylinderPlaneJoint", "normal"),
     ("Column", "value"),
+    ("ShapeOfLink", "points"),
+    *(("ViewSection", key) for key in ("arrow_length", "camera", "joint_radius", "speed")),
 }
-"""Directions, whose unit does not matter (those of R, C and of `directions:` are in lengths), and
-columns, which are read here by their names."""
+"""Directions, whose unit does not matter (those of R, C and of `directions:` are in lengths);
+columns, which are read here by their names; and what a page looks like, which has no answers."""
