@@ -6,7 +6,7 @@ from math import cos, radians, sin, sqrt
 from pathlib import Path
 
 import pytest
-from documents.reading import ROOT, blocks, page
+from documents.reading import ROOT, blocks, page, ran
 
 import mechkin_cli as mk
 from mechkin_cli.cli.analyze import analyze_files
@@ -80,9 +80,7 @@ def test_the_example_file_against_the_closed_form_of_the_slider_crank() -> None:
 def test_the_python_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     (code,) = blocks(README, "python")
-    names: dict[str, object] = {}
-    exec(code, names)
-    analysis = names["r"]
+    analysis = ran(code, "r")
     assert isinstance(analysis, mk.Analysis)
     assert analysis["O4.theta"].shape == (27,)
     for expression in re.findall(r'r\["(.*?)"\]', code):

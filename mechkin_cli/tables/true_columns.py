@@ -79,12 +79,10 @@ def _bounds(expression: Expression, source: TrueSource) -> tuple[list[FloatArray
     the largest of what rows have in them, for each."""
     rows = _Bounding(source)
     found = expression.evaluate(rows.quantity, source.units, _bounded_literal)
-    value: Any = found.value
-    parts = value.components if hasattr(value, "components") else [value]
     factor = float(source.units.unit(found.dimension).factor)
-    bounds = [np.broadcast_to(bounded(part).bound, (source.rows,)) for part in parts]
+    bounds = [np.broadcast_to(bounded(part).bound, (source.rows,)) for part in _parts(found)]
     known = [np.where(np.isnan(bound), np.inf, bound) / factor for bound in bounds]
-    return known, [rows.largest / factor] * len(parts)
+    return known, [rows.largest / factor] * len(known)
 
 
 def _unless_zero(true: DoubleDoubles, bound: FloatArray, largest: float) -> FloatArray:
@@ -98,9 +96,7 @@ def _evaluated(
     expression: Expression, source: TrueSource, literal: Callable[[Number], Quantity]
 ) -> list[DoubleDoubles]:
     found = expression.evaluate(source.quantity, source.units, literal)
-    value: Any = found.value
-    parts = value.components if hasattr(value, "components") else [value]
-    return [_in_file_units(part, found.dimension, source) for part in parts]
+    return [_in_file_units(part, found.dimension, source) for part in _parts(found)]
 
 
 _WITH_POLES = {"/", "^", "pow", "tan", "log", "mod", "atanh", "unit_vector", "angle_between"}
@@ -121,14 +117,8 @@ class _Off:
     def quantity(self, name: str) -> Quantity:
         """As `TrueSource.quantity`."""
         found = self.source.quantity(name)
-        value: Any = found.value
         part = OFF * (1.0 + sum(name.encode()) % 7 / 7.0)
-        if hasattr(value, "components"):
-            moved: Any = Vector(*(_moved(item, part) for item in value.components))
-        else:
-            moved = _moved(value, part)
-        rest = None if found.rest is None else _moved(found.rest, part)
-        return Quantity(moved, found.dimension, rest)
+        return _each(found, lambda value: _moved(value, part))
 
 
 class _Bounding:
@@ -141,26 +131,28 @@ class _Bounding:
     def quantity(self, name: str) -> Quantity:
         """As `TrueSource.quantity`."""
         found = self.source.quantity(name)
-        value: Any = found.value
-        for part in value.components if hasattr(value, "components") else [value]:
+        for part in _parts(found):
             sizes = np.abs(exactly(part).high)
             self.largest = max(self.largest, float(sizes[np.isfinite(sizes)].max(initial=0.0)))
-        return _watched(found)
-
-
-def _watched(found: Quantity) -> Quantity:
-    value: Any = found.value
-    if hasattr(value, "components"):
-        parts: list[Any] = [bounded(part) for part in value.components]
-        watched: Any = Vector(*parts)
-    else:
-        watched = bounded(value)
-    rest: Any = None if found.rest is None else bounded(found.rest)
-    return Quantity(watched, found.dimension, rest)
+        return _each(found, bounded)
 
 
 def _bounded_literal(number: Number) -> Quantity:
-    return _watched(exact_literal(number))
+    return _each(exact_literal(number), bounded)
+
+
+def _parts(found: Quantity) -> list[Any]:
+    """The value of a quantity, of a vector its components."""
+    value: Any = found.value
+    return list(value.components) if hasattr(value, "components") else [value]
+
+
+def _each(found: Quantity, change: Callable[[Any], Any]) -> Quantity:
+    """The quantity with each of its numbers changed."""
+    parts = [change(part) for part in _parts(found)]
+    value: Any = Vector(*parts) if hasattr(found.value, "components") else parts[0]
+    rest = None if found.rest is None else change(found.rest)
+    return Quantity(value, found.dimension, rest)
 
 
 def _moved(value: Any, part: float) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).parents[2]
 
@@ -16,3 +17,10 @@ def page(name: str) -> str:
 def blocks(text: str, language: str) -> list[str]:
     """The fenced blocks of a language."""
     return re.findall(rf"^```{language}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+
+
+def ran(code: str, name: str) -> Any:
+    """What a block of Python calls by a name, after it ran."""
+    names: dict[str, Any] = {}
+    exec(code, names)
+    return names[name]

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from documents.reading import ROOT, blocks, page
+from documents.reading import ROOT, blocks, page, ran
 
 import mechkin_cli as mk
 
@@ -11,9 +11,7 @@ import mechkin_cli as mk
 def test_the_python_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     (code,) = blocks(page("docs/python.md"), "python")
-    names: dict[str, object] = {}
-    exec(code, names)
-    analysis = names["r"]
+    analysis = ran(code, "r")
     assert isinstance(analysis, mk.Analysis)
     assert analysis["O4.theta"].shape == (27,)
     for expression in re.findall(r'r\["(.*?)"\]', code):
