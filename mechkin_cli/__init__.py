@@ -14,6 +14,10 @@ Of a model
     m.solve({"O1.theta": 161.5})       one position
     m.with_parameters({"P1": 0.48})    the model with other values
     m.vary({"P1": [0.46, 0.48]})       many variants at once
+    m.study("study.yaml", out="lengths")   a hundred thousand of them, drawn or crossed, on disk
+    m.sensitivities(["O4.theta"])      what a change of a parameter does to any quantity
+    m.tolerances({"P1": 0.01}, [...])  what tolerances stack up to, and samples beside
+    m.fit({"of": "pen.position", "is": points}, {"a": (30, 50)})   dimensions that do what is wanted
     m.certify()                        proofs of the sweep's rows
     m.view()                           a page that shows it in motion
 

@@ -32,12 +32,16 @@ class Named(tuple[Item, ...], Generic[Item]):
         """By number, slice or name.
 
         Raises:
-            UsageError: nothing has this name.
+            UsageError: nothing has this name, or neither number nor name.
             IndexError: there are not so many.
         """
-        if not isinstance(key, str):
-            return tuple.__getitem__(self, key)
         names = self.keys()
+        if not isinstance(key, str):
+            try:
+                return tuple.__getitem__(self, key)
+            except TypeError:
+                text = f"a {type(key).__name__} is neither number nor name; see keys()"
+                raise UsageError(text) from None
         if key in names:
             return tuple.__getitem__(self, names.index(key))
         hint = nearest_hint(key, names) or f"there are {len(names)}, see keys()"

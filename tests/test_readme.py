@@ -43,7 +43,10 @@ def test_the_gate_runs_the_command_lines_of_the_readme(marker: str) -> None:
     (block,) = [text for text in blocks(README, "sh") if text.startswith(found)]
     assert block == f"{found}\n"
     assert found.startswith("python3 -m venv .venv && .venv/bin/pip install -q ")
-    ending = {"main": ".venv/bin/mechkin analyze mechanisms/rcsr.yaml", "tests": ".venv/bin/pytest"}
+    ending = {
+        "main": ".venv/bin/mechkin analyze mechanisms/rcsr.yaml",
+        "tests": ".venv/bin/pytest -n auto --dist loadfile",
+    }
     assert found.endswith(ending[marker])
 
 

@@ -73,14 +73,15 @@ class Scene:
     Args:
         name: as tables show it.
         model: of the file.
+        most_places: how many of its rows are `places`, evenly spaced.
 
     Raises:
         UsageError: it has no sweep, no row of it closes, or nothing is unknown in it.
         InvalidFile: the mechanism cannot be solved as it is driven.
     """
 
-    def __init__(self, name: str, model: Model) -> None:
-        self.name, self.model = name, model
+    def __init__(self, name: str, model: Model, most_places: int = MOST_PLACES) -> None:
+        self.name, self.model, self.most_places = name, model, most_places
         if SWEEP not in model.runs:
             raise UsageError(
                 f"{name} has no sweep to measure (no motion:); bench takes files with motion:, and "
@@ -113,7 +114,7 @@ class Scene:
     @cached_property
     def places(self) -> NDArray[np.intp]:
         """The rows of the sweep that are solved one after the other and have known errors."""
-        return self.solved[:: -(-self.solved.size // MOST_PLACES)]
+        return self.solved[:: -(-self.solved.size // self.most_places)]
 
     @property
     def rows(self) -> int:

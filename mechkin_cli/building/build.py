@@ -14,17 +14,20 @@ from mechkin_cli.building.coefficients import build_coefficients
 from mechkin_cli.building.columns import build_tables, used_quantities
 from mechkin_cli.building.fields import Fields, Path, read_parameters
 from mechkin_cli.building.idle import held_of, note_spins, settled
-from mechkin_cli.building.linkage import build_linkage, is_link
+from mechkin_cli.building.linkage import build_linkage
 from mechkin_cli.building.loads import LoadBuilder
 from mechkin_cli.building.memory import row_limit
 from mechkin_cli.building.motion import build_motion
+from mechkin_cli.building.places import is_link, read_points
 from mechkin_cli.building.point_inputs import point_guides
 from mechkin_cli.building.run_names import runs_of
 from mechkin_cli.building.sizes import check_blocks, check_size
 from mechkin_cli.building.source import Source
 from mechkin_cli.building.unit_system import note_force_unit, read_units
+from mechkin_cli.building.unused import note_unused
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
+from mechkin_cli.expressions.parameters import Move
 from mechkin_cli.mechanism.balance import AnyBalance
 from mechkin_cli.mechanism.model import Attached, Link, Mechanism
 from mechkin_cli.mechanism.motion import Motion
@@ -38,7 +41,6 @@ from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of, needs_all_links
 from mechkin_cli.solver.graph import SolverGraph, UnsolvableGraph, build_graph
 from mechkin_cli.tables.layout import CoefficientsLayout, TableLayout
-from mechkin_cli.units import LENGTH
 
 if TYPE_CHECKING:
     from mechkin_cli.expressions.nodes import Name, Node
@@ -106,6 +108,8 @@ def build(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Built:
     errors = [d for d in fields.diagnostics if d.severity == "error"]
     if errors or graph is None:
         raise InvalidFile(in_order(fields.diagnostics))
+    if file.parameters:
+        note_unused(fields)
     problem = replace(problem, diagnostics=tuple(in_order(fields.diagnostics)))
     read = (bool(file.tables), file.source or "", source)
     others = (coefficients, balances, view)
@@ -146,11 +150,14 @@ def _view(fields: Fields, file: MechanismFile, problem: Problem) -> ViewSettings
     return build_view(fields, file.view, problem.mechanism)
 
 
-def read_fields(source: Source, given: Mapping[str, Quantity] = _NOTHING) -> Fields:
-    """Units and parameters of a file, `given` as in `build`; what is wrong is noted."""
+def read_fields(
+    source: Source, given: Mapping[str, Quantity] = _NOTHING, moved: Move | None = None
+) -> Fields:
+    """Units and parameters of a file, `given` as in `build`, `moved` as in `evaluate_parameters`;
+    what is wrong is noted."""
     units, wrong_units = read_units(source.document, source.file.units)
     fields = Fields(source.document, units, diagnostics=wrong_units, plane=source.file.in_plane)
-    read_parameters(fields, source.file.parameters, given)
+    read_parameters(fields, source.file.parameters, given, moved)
     if source.file.quantities:
         from mechkin_cli.building.quantities import read_quantities
 
@@ -168,8 +175,9 @@ def build_problem(
 ) -> Problem:
     """The mechanism with its loads, its motion and assembly, and the file's `responses`; a `motion`
     that is given is not built anew, nor is what `moving` responses do in time."""
+    points = read_points(fields, file)
     links, joints = build_linkage(fields, file)
-    points, directions = _points(fields, file, links), _directions(fields, file, links)
+    directions = _directions(fields, file, links)
     guides = point_guides(fields, file.motion, points)
     links, joints = links | guides.links, joints | guides.joints
     limit = row_limit(file, joints)
@@ -199,14 +207,6 @@ def _quantities_of_runs(file: MechanismFile, problem: Problem) -> dict[str, Mapp
     swept = problem.quantities()
     timed = swept if "time" in swept or not file.responses else {**swept, "time": TIME_OF_ROW}
     return {name: swept if name == SWEEP else timed for name in runs_of(file)}
-
-
-def _points(fields: Fields, file: MechanismFile, links: Mapping[str, Link]) -> dict[str, Attached]:
-    return {
-        name: Attached(p.link, fields.vector(("points", name, "at"), p.at, LENGTH))
-        for name, p in file.points.items()
-        if is_link(fields, ("points", name, "link"), p.link, links)
-    }
 
 
 def _directions(

@@ -166,6 +166,7 @@ class Sample:
         run: str,
         drives: Drives | None = None,
     ) -> None:
+        self.run = run
         self.texts = row_texts(run)
         self.drives = drives
         self.fields = fields
@@ -192,7 +193,8 @@ class Sample:
                 *self.quantities,
                 *self.texts,
             ]
-            passive = without_effort(self.drives, name)
+            response = self.run != SWEEP
+            passive = without_effort(name, self.quantities, self.drives, response=response)
             held = hint_in_plane(name) if self.fields.plane else None
             raise UnknownName(name, known, passive or held or hint_of(name))
         one = np.ones(1)

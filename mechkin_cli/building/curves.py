@@ -6,20 +6,18 @@ and in the units of the mechanism file. Errors name the line and column of the C
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from mechkin_cli.building.fields import Fields, is_tiny_length
 from mechkin_cli.building.fields import Path as KeyPath
+from mechkin_cli.building.table_files import BadTable, table_path, table_text
 from mechkin_cli.diagnostics import Diagnostic, Place
 from mechkin_cli.expressions import literal, number_of
 from mechkin_cli.expressions.limits import MAX_QUOTED
 from mechkin_cli.mechanism.curve import Curve
 from mechkin_cli.mechanism.joined_curve import Joining, joined_curve
-from mechkin_cli.reading.limits import MOST_BYTES
-from mechkin_cli.regular_file import NotRegular, read_regular
 from mechkin_cli.schema.joining import JoinedTable
 from mechkin_cli.tape.rows import is_traced
 from mechkin_cli.tape.scalars import is_finite, plain
@@ -38,14 +36,6 @@ class Rows(NamedTuple):
 
     x: list[float]
     y: list[float]
-
-
-class _BadTable(Exception):
-    """What is wrong with a CSV file; `line` and `column` count from 1, line 0 is the whole file."""
-
-    def __init__(self, line: int, column: int, message: str, hint: str) -> None:
-        super().__init__(message)
-        self.line, self.column, self.message, self.hint = line, column, message, hint
 
 
 def read_curve(
@@ -136,8 +126,9 @@ def read_rows(
     fields: Fields, path: KeyPath, file_text: str, x_dimension: Dimension, y_dimension: Dimension
 ) -> Rows | None:
     """The checked rows of a table in the file's units; arguments and errors as `read_curve`."""
-    folder = fields.document.folder
-    if folder is None:
+    document = fields.document
+    file = table_path(document, file_text)
+    if document.folder is None and file_text not in document.tables:
         fields.error(
             CODE,
             path,
@@ -145,13 +136,12 @@ def read_rows(
             "save the mechanism in a file and load that",
         )
         return None
-    file = folder / file_text
     try:
-        rows = _rows(_text(file))
+        rows = _rows(table_text(document, file_text))
         for i, dimension in enumerate((x_dimension, y_dimension)):
             _check_size(fields, rows, i, dimension)
         return Rows([row[1] for row in rows], [row[2] for row in rows])
-    except _BadTable as bad:
+    except BadTable as bad:
         if bad.line == 0:
             fields.error(CODE, path, f"{file} {bad.message}", bad.hint)
         else:
@@ -160,34 +150,12 @@ def read_rows(
         return None
 
 
-def _text(file: Path) -> str:
-    try:
-        content = read_regular(file, MOST_BYTES)
-    except NotRegular:
-        raise _BadTable(0, 0, "is not a regular file", "name a CSV file") from None
-    except FileNotFoundError:
-        hint = "the path leads from the folder of the mechanism file"
-        raise _BadTable(0, 0, "does not exist", hint) from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise _BadTable(0, 0, f"cannot be read: {reason}", "check its rights") from None
-    if len(content) > MOST_BYTES:
-        text = f"is too large for a table: more than 1 MiB (limit {MOST_BYTES} bytes)"
-        raise _BadTable(0, 0, text, "keep fewer rows: the curve between them is smooth")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        text = f"the byte 0x{content[error.start]:02X} is not UTF-8 text"
-        raise _BadTable(line, 1, text, "save the file as UTF-8") from None
-
-
 def _rows(text: str) -> list[tuple[int, float, float]]:
     """(line, x, y) of every row; blank lines are passed over."""
     lines = text.replace("\r\n", "\n").split("\n")
     if all(literal(cell) is not None for cell in lines[0].split(",")):
         hint = "the first line is a header, for example time,value"
-        raise _BadTable(1, 1, "this table has no header", hint)
+        raise BadTable(1, 1, "this table has no header", hint)
     rows: list[tuple[int, float, float]] = []
     for line, row in enumerate(lines[1:], start=2):
         if not row.strip():
@@ -195,11 +163,11 @@ def _rows(text: str) -> list[tuple[int, float, float]]:
         x, y = _row(line, row)
         if rows and x <= rows[-1][1]:
             text = f"{x!r} is not larger than the {rows[-1][1]!r} before it"
-            raise _BadTable(line, 1, text, "order the rows by the first column, each value once")
+            raise BadTable(line, 1, text, "order the rows by the first column, each value once")
         rows.append((line, x, y))
     if len(rows) < 2:
         found = "one row" if rows else "no row"
-        raise _BadTable(len(lines), 1, f"this table has {found} behind its header", "give two")
+        raise BadTable(len(lines), 1, f"this table has {found} behind its header", "give two")
     return rows
 
 
@@ -208,14 +176,14 @@ def _row(line: int, row: str) -> tuple[float, float]:
     if len(cells) != 2:
         text = f"this row has {len(cells)} {'column' if len(cells) == 1 else 'columns'}, not two"
         hint = "write x,y with a comma between them and a point in decimals"
-        raise _BadTable(line, 1, text, hint)
+        raise BadTable(line, 1, text, hint)
     values = []
     for cell, column in zip(cells, (1, len(cells[0]) + 2), strict=True):
         value = number_of(cell)
         if value is None:
             shown = repr(cell.strip()[:MAX_QUOTED])
             hint = "write a finite number without its unit: the mechanism file's units hold"
-            raise _BadTable(line, column, f"{shown} is not a number", hint)
+            raise BadTable(line, column, f"{shown} is not a number", hint)
         values.append(value)
     return values[0], values[1]
 
@@ -227,7 +195,7 @@ def _check_size(
     for row in rows:
         if abs(row[i + 1]) > largest:
             text = f"{row[i + 1]:.4g} is too large to compute with (limit {largest:.4g})"
-            raise _BadTable(row[0], 1, text, "check its exponent and unit")
+            raise BadTable(row[0], 1, text, "check its exponent and unit")
         if is_tiny_length(fields.units.to_si(row[i + 1], dimension), dimension):
             text = f"{row[i + 1]:.4g} is a length below {SMALLEST_SIZE:g} m"
-            raise _BadTable(row[0], 1, text, "check its exponent and unit")
+            raise BadTable(row[0], 1, text, "check its exponent and unit")

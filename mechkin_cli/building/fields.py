@@ -19,6 +19,8 @@ from mechkin_cli.expressions import (
 )
 from mechkin_cli.expressions import Vector as Components
 from mechkin_cli.expressions.definitions import Definitions
+from mechkin_cli.expressions.parameters import Move
+from mechkin_cli.mechanism.model import Attached
 from mechkin_cli.mechanism.vectors import ZERO, Vector
 from mechkin_cli.reading.document import Document
 from mechkin_cli.reading.limits import MOST_DIAGNOSTICS
@@ -53,8 +55,8 @@ class Fields:
     zeros.
 
     `refused` holds names whose definitions have errors: what uses them is not reported again.
-    `definitions` are the file's named expressions. `plane`: of a file in a plane, whose z the user
-    never sees.
+    `points` are the file's named points as drawn, `definitions` its named expressions. `plane`: of
+    a file in a plane, whose z the user never sees.
     """
 
     document: Document
@@ -62,6 +64,7 @@ class Fields:
     parameters: dict[str, Quantity] = field(default_factory=dict)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     refused: set[str] = field(default_factory=set)
+    points: dict[str, Attached] = field(default_factory=dict)
     definitions: Definitions = field(default_factory=Definitions)
     plane: bool = False
 
@@ -246,11 +249,14 @@ class Fields:
 
 
 def read_parameters(
-    fields: Fields, texts: Mapping[str, str], given: Mapping[str, Quantity]
+    fields: Fields,
+    texts: Mapping[str, str],
+    given: Mapping[str, Quantity],
+    moved: Move | None = None,
 ) -> None:
-    """Evaluates the parameters into `fields`; `given` are values instead of some texts."""
+    """Evaluates the parameters into `fields`; `given` and `moved` as in `evaluate_parameters`."""
     errors: list[ExpressionError] = []
-    fields.parameters.update(evaluate_parameters(texts, fields.units, errors, given))
+    fields.parameters.update(evaluate_parameters(texts, fields.units, errors, given, moved))
     for error in errors:
         fields.expression_error(("parameters", error.name or ""), error)
     _check_overrides(fields, texts)

@@ -9,7 +9,6 @@ from mechkin_cli.building.fields import Fields
 from mechkin_cli.building.joints import build_joints
 from mechkin_cli.building.links import build_links
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Link
-from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.schema.file import MechanismFile
 
 
@@ -19,16 +18,6 @@ def build_linkage(fields: Fields, file: MechanismFile) -> tuple[dict[str, Link],
     pairs = _chain_pairs(file)
     links |= {name: Link(name) for _, name in pairs if name != GROUND_NAME and name not in links}
     return links, _joints(fields, file, links, pairs)
-
-
-def is_link(fields: Fields, path: tuple[str, ...], name: str, links: Mapping[str, object]) -> bool:
-    """Whether a link is there; if not, that is noted once, at the path of its name."""
-    if name == GROUND_NAME or name in links:
-        return True
-    fields.refused.add(path[1])
-    hint = nearest_hint(name, [GROUND_NAME, *links])
-    fields.error("unknown-link", path, f"there is no link {name}", hint)
-    return False
 
 
 def _joints(

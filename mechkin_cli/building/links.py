@@ -7,12 +7,13 @@ from collections.abc import Mapping
 
 from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.building.places import place_at
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism.model import Link, Tensor
 from mechkin_cli.mechanism.vectors import ZERO, Vector, cross, dot
 from mechkin_cli.schema import links as written
 from mechkin_cli.tape.scalars import Recorded, advice, largest
-from mechkin_cli.units import INERTIA, LENGTH, MASS
+from mechkin_cli.units import INERTIA, MASS
 
 NO_INERTIA: Tensor = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -29,7 +30,7 @@ def build_links(
             mass = fields.number((*path, "mass"), section.mass, MASS)
             if mass < 0.0:
                 fields.error("negative-mass", (*path, "mass"), "a mass is not negative")
-            centre = fields.vector((*path, "center_of_mass"), section.center_of_mass, LENGTH)
+            centre = place_at(fields, (*path, "center_of_mass"), section.center_of_mass, name)
         if section.inertia is not None:
             tensor = _tensor(fields, (*path, "inertia"), section.inertia)
             if fields.plane:

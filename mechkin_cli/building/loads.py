@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 from mechkin_cli.building.coordinates import CODE, without
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.gravity import gravity_of
+from mechkin_cli.building.places import place_at
 from mechkin_cli.building.run_names import unknown_run
 from mechkin_cli.expressions import ExpressionError
 from mechkin_cli.mechanism.friction import Rubbing
@@ -174,7 +175,7 @@ class LoadBuilder:
         point = ZERO
         if isinstance(section, ForceOnLink):
             texts, dimension = section.force, FORCE
-            point = self.fields.vector((*path, "point"), section.point, LENGTH)
+            point = place_at(self.fields, (*path, "point"), section.point, section.link)
         else:
             texts, dimension = section.torque, MOMENT
         x, y, z = (

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.building.places import place_at
 from mechkin_cli.mechanism.vectors import Vector
 from mechkin_cli.schema.joints import PointJoint
-from mechkin_cli.units import LENGTH
 
 Texts = tuple[str, ...]
 """The three components of a vector, as written."""
@@ -16,8 +17,8 @@ Texts = tuple[str, ...]
 def points_of(fields: Fields, path: Path, section: PointJoint) -> tuple[Vector, Vector]:
     """The joint's point on either link, in m."""
 
-    def read(where: Path, texts: Texts) -> Vector:
-        return fields.vector(where, texts, LENGTH)
+    def read(where: Path, given: str | Texts) -> Vector:
+        return place_at(fields, where, given)
 
     return _per_link(read, (*path, "point"), section.point, section.links)
 
@@ -36,9 +37,9 @@ def place_of(path: Path, section: PointJoint, key: str, side: int) -> Path:
 
 
 def _per_link(
-    read: Callable[[Path, Texts], Vector],
+    read: Callable[[Path, Any], Vector],
     path: Path,
-    value: Texts | Mapping[str, Texts],
+    value: Any,
     links: Sequence[str],
 ) -> tuple[Vector, Vector]:
     if isinstance(value, Mapping):

@@ -24,7 +24,8 @@ from mechkin_cli.schema.loads import (
 from mechkin_cli.schema.points import DirectionOfLink, PointOfLink
 
 Texts = tuple[str, ...]
-Given = Texts | Mapping[str, Texts]
+Given = str | Texts
+"""A vector of the plane, or the name of a point."""
 
 _NORMAL: Texts = ("0", "0", "1")
 _DOWN: Texts = ("0", "-1", "0")
@@ -65,15 +66,15 @@ def in_space(file: AnyFile) -> MechanismFile:
     )
 
 
-def _flat(texts: Texts) -> Texts:
-    """A vector of the plane in space."""
-    return (*texts, "0")
+def _flat(given: Given) -> Given:
+    """A vector of the plane in space; a name stays a name."""
+    return given if isinstance(given, str) else (*given, "0")
 
 
-def _each(given: Given) -> Given:
+def _each(given: Given | Mapping[str, Given]) -> Given | Mapping[str, Given]:
     """The same of one vector, or of one per link."""
     if isinstance(given, Mapping):
-        return {link: _flat(texts) for link, texts in given.items()}
+        return {link: _flat(one) for link, one in given.items()}
     return _flat(given)
 
 

@@ -22,6 +22,7 @@ from mechkin_cli.building.fields import Fields
 from mechkin_cli.building.idle import settled
 from mechkin_cli.exact import PI
 from mechkin_cli.expressions import Quantity
+from mechkin_cli.expressions.parameters import Move
 from mechkin_cli.expressions.written import numbers_read_by
 from mechkin_cli.mechanism.exact_motion import ExactMoments, ExactMotion
 from mechkin_cli.mechanism.held import Held
@@ -29,10 +30,12 @@ from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.precise import Precise
+from mechkin_cli.solver.shifted import ShiftingPrecise
 from mechkin_cli.tape.exact_recorder import ExactRecorder
 from mechkin_cli.tape.exact_rows import ExactRows
 from mechkin_cli.tape.recorder import Recorder
 from mechkin_cli.tape.scalars import Recorded
+from mechkin_cli.tape.shifting_recorder import ShiftingRecorder
 from mechkin_cli.tape.traced import Traced, TraceLost
 from mechkin_cli.units import TIME
 
@@ -58,20 +61,27 @@ class ExactRecording(NamedTuple):
     motion: ExactMotion
 
 
-def record_exactly(built: Built, given: Mapping[str, Quantity] = _NOTHING) -> ExactRecording:
+def record_exactly(
+    built: Built,
+    given: Mapping[str, Quantity] = _NOTHING,
+    recorder: ExactRecorder | None = None,
+    moved: Move | None = None,
+) -> ExactRecording:
     """The problem of a file as it follows from the exact numbers of its text.
 
     Args:
         built: the file, which has no errors.
         given: the values of parameters that were set in place of their texts when it was built.
+        recorder: that holds the recording; None: a new one.
+        moved: as in `evaluate_parameters`, of recorded values.
 
     Raises:
         TraceLost: a number depends on the text in a way that no tape holds.
     """
     base = built.problem
-    recorder = ExactRecorder()
+    recorder = recorder or ExactRecorder()
     with _exactly(recorder):
-        fields = _fields(built, given, recorder)
+        fields = _fields(built, given, recorder, moved)
         file = built.read.file
         problem = build_problem(fields, file, responses=False, motion=base.motion)
         motion = exact_motion(fields, file.motion, base.motion, recorder)
@@ -100,13 +110,18 @@ def _exactly(recorder: ExactRecorder) -> Iterator[None]:
         yield
 
 
-def _fields(built: Built, given: Mapping[str, Quantity], recorder: ExactRecorder) -> Fields:
+def _fields(
+    built: Built,
+    given: Mapping[str, Quantity],
+    recorder: ExactRecorder,
+    moved: Move | None = None,
+) -> Fields:
     """Units and parameters of a file, those `given` as the doubles that they are."""
     set_anew = {
         name: Quantity(recorder.written(float(one.value), Fraction(one.value)), one.dimension)  # type: ignore[arg-type]
         for name, one in given.items()
     }
-    return read_fields(built.read, set_anew)
+    return read_fields(built.read, set_anew, moved)
 
 
 def record_response(
@@ -166,6 +181,22 @@ def precise(built: Built, problem: Problem, given: Mapping[str, Quantity] = _NOT
     the other arguments and errors as those of `record_exactly`."""
     recording = record_exactly(built, given)
     return Precise(*recording, problem)
+
+
+def shifting(
+    built: Built, problem: Problem, given: Mapping[str, Quantity] = _NOTHING
+) -> ShiftingPrecise:
+    """As `precise`, and any parameter can be shifted: what depends on it follows."""
+    recorder = ShiftingRecorder()
+    leaves: dict[str, int] = {}
+
+    def moved(name: str, found: Quantity) -> Quantity:
+        leaves[name] = recorder.leaf()
+        shift: Any = recorder.number(leaves[name])
+        return Quantity(found.value + shift, found.dimension, found.rest)
+
+    recording = record_exactly(built, given, recorder, moved)
+    return ShiftingPrecise(recorder, recording.problem, recording.motion, problem, leaves)
 
 
 def precise_response(

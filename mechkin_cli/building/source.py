@@ -14,6 +14,7 @@ from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.schema.validate import InvalidDataError, validate
 
 _NONE: Mapping[str, str] = MappingProxyType({})
+_NO_TABLES: Mapping[str, bytes] = MappingProxyType({})
 
 
 class Source(NamedTuple):
@@ -34,11 +35,15 @@ def open_file(path: str | Path, parameters: Mapping[str, str] = _NONE) -> Source
 
 
 def open_text(
-    text: str, name: str, parameters: Mapping[str, str] = _NONE, folder: Path | None = None
+    text: str,
+    name: str,
+    parameters: Mapping[str, str] = _NONE,
+    folder: Path | None = None,
+    tables: Mapping[str, bytes] = _NO_TABLES,
 ) -> Source:
     """As `open_file`, for a text; `name` stands for the file in messages, in `folder` are the files
-    that the text names."""
-    document = replace(document_from_text(text, name), folder=folder)
+    that the text names; `tables` are contents of such files that are known already."""
+    document = replace(document_from_text(text, name), folder=folder, tables=dict(tables))
     return _checked(document.with_parameters(parameters))
 
 
@@ -47,11 +52,13 @@ def open_data(
     name: str,
     parameters: Mapping[str, str] = _NONE,
     folder: Path | None = None,
+    tables: Mapping[str, bytes] = _NO_TABLES,
 ) -> Source:
     """As `open_text`, for the plain data of a program; places are ways of keys."""
     from mechkin_cli.reading.from_data import document_from_data
 
-    return _checked(document_from_data(data, name, folder).with_parameters(parameters))
+    document = replace(document_from_data(data, name, folder), tables=dict(tables))
+    return _checked(document.with_parameters(parameters))
 
 
 def _checked(document: Document) -> Source:

@@ -20,6 +20,7 @@ from mechkin_cli.cli.new import new
 from mechkin_cli.cli.plot import plot
 from mechkin_cli.cli.ranges import ranges
 from mechkin_cli.cli.schema import schema
+from mechkin_cli.cli.study import study
 from mechkin_cli.cli.tables import tables
 from mechkin_cli.cli.view import view
 from mechkin_cli.version import version as package_version
@@ -32,7 +33,11 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (new, analyze, view, check, modes, ranges, mobility, plot, tables, schema, bench):
+COMMANDS = (
+    *(new, analyze, view, check, modes, ranges, mobility),
+    *(plot, study, tables, schema, bench),
+)
+for command in COMMANDS:
     app.command()(command)
 
 

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 AFTER = 1.0
 """Seconds of work before anything is shown."""
 
+BAR = 20
+"""Characters of the bar of counted work."""
+
 RESTORED = b"\r\x1b[2K\x1b[?25h"
 """Clears the line and brings the cursor back: for a process that ends at once."""
 
@@ -47,6 +50,42 @@ def working(words: str, quiet: bool = False) -> Iterator[Tell]:
     finally:
         running.discard(display)
         display.clear()
+
+
+@contextmanager
+def counting(words: str, what: str, quiet: bool = False) -> Iterator[Callable[[int, int], None]]:
+    """As `working`, for work that is counted: gives what is told how many are done, and of how
+    many; a bar, the rate and the time that is left are shown."""
+    from time import monotonic
+
+    begun: list[tuple[float, int]] = []
+
+    with working(words, quiet) as tell:
+
+        def count(done: int, whole: int) -> None:
+            if not begun:
+                begun.append((monotonic(), done))
+                return
+            since, before = begun[0]
+            seconds = monotonic() - since
+            rate = (done - before) / seconds if seconds > 0.0 else 0.0
+            left = f", {clock((whole - done) / rate)} left" if rate > 0.0 else ""
+            filled = BAR * done // whole
+            bar = "#" * filled + "-" * (BAR - filled)
+            tell(f"{words} |{bar}| {done} of {whole} {what}, {rate:.3g}/s{left}")
+
+        yield count
+
+
+def clock(seconds: float) -> str:
+    """Hours, minutes and seconds: 1:02:03 or 2:03.
+
+    >>> clock(62.4), clock(3723)
+    ('1:02', '1:02:03')
+    """
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
 
 
 def pause() -> None:

@@ -1,4 +1,4 @@
-"""`mechkin schema`: the JSON Schema of mechanism files, for editors."""
+"""`mechkin schema`: the JSON Schemas of mechanism files and of studies, for editors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,12 @@ from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.messages import put, say
 from mechkin_cli.diagnostics import UsageError
 
-COMMITTED = Path("schemas/mechanism.schema.json")
+MECHANISM = "mechanism"
+
+
+def committed(name: str) -> Path:
+    """Where the schema of a name is kept."""
+    return Path(f"schemas/{name}.schema.json")
 
 
 def schema(
@@ -20,25 +25,45 @@ def schema(
         typer.Option("--out", metavar="FILE", help="Write to a file instead of stdout."),
     ] = None,
     check: Annotated[
-        bool, typer.Option("--check", help=f"Compare with {COMMITTED} (or --out) instead.")
+        bool,
+        typer.Option("--check", help="Compare with the files in schemas/ (or --out) instead."),
+    ] = False,
+    study: Annotated[
+        bool, typer.Option("--study", help="That of study files instead of mechanism files.")
     ] = False,
 ) -> None:
     """Print the JSON Schema of mechanism files."""
-    from mechkin_cli.schema.json_schema import json_schema_text
+    from mechkin_cli.schema.json_schema import SCHEMAS, json_schema_text
 
-    text = json_schema_text()
+    name = "study" if study else MECHANISM
     if check:
-        path = out or COMMITTED
-        if _content(path) != text.encode():
-            say(f"{path} is not up to date; run: mechkin schema --out {path}")
+        names = [name]
+        if not study and out is None:
+            # studies are not everybody's
+            names += [one for one in SCHEMAS if one != name and committed(one).exists()]
+        found = [_is_up_to_date(one, out or committed(one)) for one in names]
+        if not all(found):
             raise typer.Exit(ExitCode.DIFFERENCES)
-        say(f"{path} is up to date")
-    elif out is not None:
+        return
+    text = json_schema_text(name)
+    if out is not None:
         from mechkin_cli.tables.files import write_files
 
         write_files(out.parent, {out.name: text.encode()})
     else:
         put(text)
+
+
+def _is_up_to_date(name: str, path: Path) -> bool:
+    """Whether the file has the schema; says so, or what to do."""
+    from mechkin_cli.schema.json_schema import json_schema_text
+
+    if _content(path) == json_schema_text(name).encode():
+        say(f"{path} is up to date")
+        return True
+    option = "" if name == MECHANISM else f"--{name} "
+    say(f"{path} is not up to date; run: mechkin schema {option}--out {path}")
+    return False
 
 
 def _content(path: Path) -> bytes:

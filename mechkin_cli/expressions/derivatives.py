@@ -214,6 +214,11 @@ def _size(normal: Any) -> Jet:
     return _norm(normal) if isinstance(normal, tuple) else _absolute(normal)
 
 
+def _zero_of(a: JetVector) -> Jet:
+    """Zero, and no number in rows where a vector has no direction."""
+    return jets.quotient(jets.constant(0.0), _dot(a, a))
+
+
 RULES: dict[str, Callable[..., Any]] = {
     "+": _on_each(lambda a, b: a + b),
     "-": _on_each(lambda a, b: a - b),
@@ -246,7 +251,9 @@ RULES: dict[str, Callable[..., Any]] = {
     "det": lambda a, b, c: _dot(a, _cross(b, c)),
     "norm": _norm,
     "unit_vector": lambda a: _on_each(jets.quotient)(a, _norm(a)),
-    "angle_between": lambda a, b: _angle_of(_size(_cross(a, b)), _dot(a, b)),
+    "angle_between": lambda a, b: (
+        _angle_of(_size(_cross(a, b)), _dot(a, b)) + (_zero_of(a) + _zero_of(b))
+    ),
     **{symbol: _compared(symbol) for symbol in conditions.COMPARED},
     "and": _joined(truths.both),
     "or": _joined(truths.either),

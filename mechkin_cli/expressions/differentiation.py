@@ -2,7 +2,8 @@
 
 Nothing is differenced: the result is evaluated as any other expression, with its dimensions checked
 and in whatever arithmetic it is asked for. Steps (sign, floor, comparisons) are taken for
-constants; of min, max, clip and `if` it is the derivative of what is chosen.
+constants; of min, max, clip and `if` it is the derivative of what is chosen. There is none where
+the expression has no value.
 """
 
 from __future__ import annotations
@@ -72,7 +73,7 @@ WHOLE = {
     "if": "if(a, db, dc)",
     "min": "if(b < a, db, da)",
     "max": "if(b > a, db, da)",
-    "clip": "if(a < b, db, if(a > c, dc, da))",
+    "clip": "if(c < max(a, b), dc, if(b > a, db, da))",
     "angle_between": (
         "(dot(a, b)*dot(cross(a, b), cross(da, b) + cross(a, db))/norm(cross(a, b)) "
         "- norm(cross(a, b))*(dot(da, b) + dot(a, db)))/(dot(a, a)*dot(b, b))*(1 rad)"
@@ -110,7 +111,11 @@ def differentiated(nodes: Sequence[Node], rate: Rate, unit: str, offset: int) ->
             del stack[-node.arity :]
             stack.append(_operated(node, operands, unit, offset))
         refuse_large(len(stack[-1].value) + len(stack[-1].rate or ()), offset)
-    return _rate_of(stack[-1], unit, offset)
+    value, found = stack[-1].value, _rate_of(stack[-1], unit, offset)
+    if stack[-1].rate is None:
+        return found
+    # log(x) has none where x < 0, though 1/x has a value, and so for what does not move
+    return _filled(f"d + 0*a/(1 {unit})", {"a": value, "d": found}, offset)
 
 
 def refuse_large(size: int, offset: int) -> None:

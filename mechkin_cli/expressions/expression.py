@@ -121,13 +121,16 @@ class Expression(NamedTuple):
         resolve: Resolve,
         units: UnitSystem = _DEFAULT_UNITS,
         literal: Callable[[Number], Quantity] | None = None,
+        *,
+        through_infinity: bool = False,
     ) -> Quantity:
         """The value in SI, with names looked up by `resolve`.
 
-        Values of names may be floats, rows of shape (rows,), or vectors of these. Rows take nan and
-        infinities quietly; a constant that is not finite is an error. To check dimensions alone,
-        resolve every name to rows of length one. `units` are only used to write hints; `literal`
-        gives numbers of the text (None: as doubles).
+        Values of names may be floats, rows of shape (rows,), or vectors of these. A row in which an
+        operation has no finite value is nan from there on; a constant without one is an error. To
+        check dimensions alone, resolve every name to rows of length one. `units` are only used to
+        write hints; `literal` gives numbers of the text (None: as doubles). `through_infinity` lets
+        functions take infinite rows, as the kernel's programs do: atan(1/x) is a quarter turn at 0.
 
         Raises:
             ExpressionError: unknown name, dimensions that do not fit, a value outside a function's
@@ -141,7 +144,8 @@ class Expression(NamedTuple):
                 if isinstance(node, Operation):
                     operands = stack[-node.arity :]
                     del stack[-node.arity :]
-                    stack.append(_operate(node, operands, units))
+                    operand = _operate(node, operands, units)
+                    stack.append(operand if through_infinity else _finite(operand))
                 elif isinstance(node, Number):
                     stack.append(Operand(literal(node), node.offset, node))
                 else:
@@ -173,10 +177,24 @@ def _operate(node: Operation, operands: list[Operand], units: UnitSystem) -> Ope
             f"the dimension {quantity.dimension} has an exponent above the limit {MAX_EXPONENT}"
         )
     value = quantity.value
-    for item in value.components if isinstance(value, Vector) else (value,):
-        if is_number(item) and not is_finite(item):
-            raise _not_finite(site, operands)
+    parts = value.components if isinstance(value, Vector) else (value,)
+    if any(is_number(item) and not is_finite(item) for item in parts):
+        raise _not_finite(site, operands)
     return Operand(quantity, min(node.offset, *(operand.offset for operand in operands)))
+
+
+def _finite(operand: Operand) -> Operand:
+    """Rows with nan for what is infinite, so that no function makes a number of it again."""
+    value = operand.quantity.value
+    parts = value.components if isinstance(value, Vector) else (value,)
+    if not any(isinstance(item, np.ndarray) and np.isinf(item).any() for item in parts):
+        return operand
+    kept = [
+        np.where(np.isinf(item), np.nan, item) if isinstance(item, np.ndarray) else item
+        for item in parts
+    ]
+    found = Vector(*kept) if isinstance(value, Vector) else kept[0]
+    return replace(operand, quantity=replace(operand.quantity, value=found))
 
 
 def _not_finite(site: Site, operands: list[Operand]) -> ExpressionError:

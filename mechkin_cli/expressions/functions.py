@@ -220,7 +220,18 @@ def _angle_between(site: Site, a: Operand, b: Operand) -> Quantity:
         sine = scalar_functions.square_root(dot_product(normal, normal))
     else:
         sine = scalar_functions.magnitude(normal)
-    return Quantity(scalar_functions.angle_of(sine, cosine), ANGLE)
+    angle = scalar_functions.angle_of(sine, cosine)
+    return Quantity(angle + (_zero_of(site, a) + _zero_of(site, b)), ANGLE)
+
+
+def _zero_of(site: Site, operand: Operand) -> Scalar:
+    """Zero, and no number in rows where a vector has no direction."""
+    vector = site.vector(operand)
+    square = dot_product(vector, vector)
+    if is_number(square) and square == 0.0:
+        words = f"{site.symbol} of a zero vector, which has no direction"
+        raise site.error(words, "check the values of the parameters", operand)
+    return 0.0 / square
 
 
 FUNCTIONS: dict[str, Function] = {

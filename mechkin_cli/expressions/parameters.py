@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import MappingProxyType
 
 from mechkin_cli.expressions.errors import ExpressionError, UnknownName
@@ -13,6 +13,9 @@ from mechkin_cli.expressions.quantity import Quantity, Vector
 from mechkin_cli.units import UnitSystem
 
 Names = dict[str, list[str]]
+Move = Callable[[str, Quantity], Quantity]
+"""Makes of a parameter and its value another value."""
+
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})
 
 
@@ -33,12 +36,14 @@ def evaluate_parameters(
     units: UnitSystem,
     errors: list[ExpressionError] | None = None,
     given: Mapping[str, Quantity] = _NOTHING,
+    moved: Move | None = None,
 ) -> dict[str, Quantity]:
     """The values of all parameters in SI, in the order of `texts`.
 
     A number without unit is dimensionless. With a list `errors`, every independent error (up to
     a little over `MAX_ERRORS`) is appended to it and the parameters that cannot be evaluated are
-    left out; without one the first is raised. `given` are values instead of some texts.
+    left out; without one the first is raised. `given` are values instead of some texts; each value
+    is taken as `moved` makes it, by those that depend on it, too.
 
     Raises:
         ExpressionError: a text that is no constant, or parameters that depend on themselves; `name`
@@ -51,19 +56,25 @@ def evaluate_parameters(
         name: _unique(used.partition(".")[0] for used in expression.names)
         for name, expression in expressions.items()
     }
-    values: dict[str, Quantity] = dict(given)
+    move = moved or _unmoved
+    values = {name: move(name, value) for name, value in given.items()}
     for name in in_order(expressions, needs, found):
         if len(found) - before > MAX_ERRORS:
             break
         if any(need in texts and need not in values for need in needs[name]):
             continue
         try:
-            values[name] = _scalar(expressions[name], _resolver(values, texts), texts, units)
+            value = _scalar(expressions[name], _resolver(values, texts), texts, units)
+            values[name] = move(name, value)
         except ExpressionError as error:
             found.append(_named(error, name))
     if errors is None and len(found) > before:
         raise found[before]
     return {name: values[name] for name in texts if name in values}
+
+
+def _unmoved(name: str, value: Quantity) -> Quantity:
+    return value
 
 
 def _parsed(texts: Mapping[str, str], errors: list[ExpressionError]) -> dict[str, Expression]:

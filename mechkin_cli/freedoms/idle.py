@@ -100,7 +100,7 @@ def _common_motions(configuration: Configuration, links: set[str], border: list[
     rest = [twists[n] if n not in links else twists[n] - one for n in body.links]
     matrix = np.concatenate([configuration.jacobian, *rest])[:, moving]
     _, values, right = np.linalg.svd(matrix, full_matrices=len(matrix) < len(moving))
-    least = tolerances.RANK_ZERO * values[0]
+    least = tolerances.RANK_ZERO * values.max(initial=0.0)  # welds alone have none
     found = np.zeros((body.count, len(moving) - int(np.count_nonzero(values > least))))
     found[moving] = right[len(moving) - found.shape[1] :].T
     return found

@@ -35,7 +35,7 @@ class Rank(NamedTuple):
 def rank_of(matrix: Floats, zero: float) -> Rank:
     """Rank, motions and stresses; singular values below `zero` of the largest are none."""
     rows, columns = matrix.shape
-    if rows == 0 or columns == 0:
+    if not matrix.any():  # nothing closes, or welds alone
         return Rank(np.eye(columns), np.eye(rows), np.inf)
     left, values, right = np.linalg.svd(matrix)
     least = tolerances.RANK_ROUNDING * values[0]

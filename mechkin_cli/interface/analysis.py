@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -42,6 +42,7 @@ class Analysis(Reading, Summarized, Plotted):
         layouts: of the tables that were asked for.
         result: states and verdicts of all rows.
         run: `sweep`, or the name of the response.
+        asked: quantities that were computed with the rows.
     """
 
     def __init__(
@@ -52,6 +53,7 @@ class Analysis(Reading, Summarized, Plotted):
         run: str = SWEEP,
         coefficients: tuple[CoefficientsLayout, ...] = (),
         balances: tuple[AnyBalance, ...] = (),
+        asked: tuple[str, ...] = (),
     ) -> None:
         self.model = model
         self.layouts = layouts
@@ -59,6 +61,19 @@ class Analysis(Reading, Summarized, Plotted):
         self.run = run
         self.chosen_coefficients = coefficients
         self.chosen_balances = balances
+        self.asked = asked
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled as what was asked of the model, which is asked again: the rows have the same
+        bytes, also where another machine packs them otherwise."""
+        session = self.result.session
+        named = (*self.layouts, *self.chosen_coefficients, *self.chosen_balances)
+        given = {
+            "quantities": self.asked,
+            "tables": [each.name for each in named],
+            "mode": session.problem.assembly.mode,
+        }
+        return _asked_again, (self.model, self.run, given, session.closed_at)
 
     @property
     def rows(self) -> int:
@@ -220,3 +235,12 @@ class Analysis(Reading, Summarized, Plotted):
                     f'analyze(["{name}"]), which then follows them'
                 )
         return self.result
+
+
+def _asked_again(
+    model: Model, run: str, given: dict[str, Any], closed_at: Sequence[str] | None
+) -> Analysis:
+    """What a model answers once more."""
+    if run != SWEEP:
+        return model.respond(run, **given)
+    return model.analyze(closed_at=closed_at, **given)

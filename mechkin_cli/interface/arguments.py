@@ -76,15 +76,17 @@ def texts(name: str, value: object, example: str) -> tuple[str, ...]:
     return found
 
 
-def a_path(name: str, value: object) -> Path:
-    """The path of a file.
+def a_path(
+    name: str, value: object, wanted: str = 'the path of a mechanism file such as "rcsr.yaml"'
+) -> Path:
+    """The path of a file; `wanted` says of which, with an example.
 
     Raises:
         UsageError: it is none.
     """
     given = os.fspath(value) if isinstance(value, os.PathLike) else value
     if not isinstance(given, str) or "\0" in given or not 0 < len(given) <= LONGEST_PATH:
-        raise _refusal(name, 'the path of a mechanism file such as "rcsr.yaml"', value)
+        raise _refusal(name, wanted, value)
     return Path(given)
 
 

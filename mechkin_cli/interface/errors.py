@@ -12,10 +12,11 @@ from mechkin_cli.analysis.errors import Repeated, repetition
 from mechkin_cli.analysis.errors.reasons import BALANCE, DENSE, SUMMARY, WORDS, reason_of
 from mechkin_cli.analysis.errors.repeated import NotRepeated
 from mechkin_cli.building.columns import used_quantities
-from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.interface.arguments import a_text
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
+from mechkin_cli.interface.arguments import a_text, texts
 from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.mechanism.bearing_loads import read_for
+from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.tables.cell_errors import (
     ALL_COLUMNS,
     LOST,
@@ -38,6 +39,9 @@ if TYPE_CHECKING:
     from mechkin_cli.tables.columns import Column, Columns
     from mechkin_cli.tables.layout import ColumnLayout
     from mechkin_cli.tape.double_doubles import DoubleDoubles
+
+MOST_LISTED = 10
+"""Columns that a message lists."""
 
 
 class Errors(Listed):
@@ -67,6 +71,10 @@ class Errors(Listed):
             for table in analysis.tables
             if table.summary is not None
         )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled and copied as the analysis, whose rows are repeated once more."""
+        return Errors, (self._analysis,)
 
     @property
     def listing(self) -> Listing:
@@ -144,7 +152,10 @@ class Errors(Listed):
             ExpressionError: neither a label nor an expression of quantities.
         """
         if isinstance(name, tuple):
-            return self._of(*name).error.copy()
+            pair = texts("table and label", name, '["table_03", "theta4"]')
+            if len(pair) != 2:
+                raise UsageError(f"expected a table and a label, not {len(pair)} texts")
+            return self._of(*pair).error.copy()
         a_text("a label or expression", name, '"theta4"')
         known = [column for column in self.columns if column.label == name]
         if not known:
@@ -162,11 +173,16 @@ class Errors(Listed):
         for column in self.columns:
             if (column.table, column.label) == (table, label):
                 return column
-        raise UsageError(f"there is no column {label} in a table {table}")
+        known = list(dict.fromkeys(f"{c.table}.{c.label}" for c in self.columns))
+        asked = f"{table[:LONGEST_NAME]}.{label[:LONGEST_NAME]}"
+        hint = (
+            nearest_hint(asked, known) or f"columns are {', '.join(known[:MOST_LISTED]) or 'none'}"
+        )
+        raise UsageError(f"there is no column {asked}; {hint}")
 
     def _of_expression(self, text: str) -> NDArray[Any]:
         if text in row_texts(self._analysis.run):
-            raise UsageError(f"{text} is words, which have no error")
+            raise UsageError(f"{text} is words, which have no error; name numbers")
         values = self._analysis[text]
         parts = values.T if values.ndim > 1 else values[None]
         try:

@@ -29,7 +29,7 @@ def parameter_values(problem: Problem, given: Mapping[str, Any]) -> dict[str, fl
     """
     values = settings("parameters", given, '{"P1": "0.6 in"}')
     return {
-        name: _one(name, values[name], known.dimension, problem.units)
+        name: one_value(name, values[name], known.dimension, problem.units)
         for name, known in _known(problem, values)
     }
 
@@ -73,7 +73,12 @@ def _known(problem: Problem, given: Mapping[str, Any]) -> list[tuple[str, Quanti
     return [(name, known[name]) for name in known if name in given]
 
 
-def _one(name: str, value: Setting, dimension: Dimension, units: UnitSystem) -> float:
+def one_value(name: str, value: Setting, dimension: Dimension, units: UnitSystem) -> float:
+    """A value in SI; a number is in the file's units, a text carries its own.
+
+    Raises:
+        UsageError: it is none, or no number that can be computed with.
+    """
     if not isinstance(value, str):
         in_si = units.to_si(float(value), dimension)
         if in_si == 0.0 and value != 0.0:
@@ -97,23 +102,25 @@ def _column(name: str, value: Any, dimension: Dimension, units: UnitSystem) -> F
         # whatever a foreign object's conversion raises
         array = np.empty((0, 0))
     if isinstance(value, str) or array.ndim == 0:
-        return np.array(_one(name, a_setting(name, value), dimension, units))
+        return np.array(one_value(name, a_setting(name, value), dimension, units))
     if array.ndim > 1:
         raise UsageError(
             f"{name}: expected a value a variant, an array of one dimension, not {shown(value)}"
         )
     if array.dtype.kind not in "fiu":
         items = [a_setting(f"{name}[{k}]", item) for k, item in enumerate(value)]
-        return np.array([_one(name, item, dimension, units) for item in items], dtype=np.float64)
-    in_si = units.to_si(array.astype(np.float64), dimension)
-    sizes = np.abs(in_si)
+        return np.array(
+            [one_value(name, item, dimension, units) for item in items], dtype=np.float64
+        )
+    found = units.to_si(array.astype(np.float64), dimension)
+    sizes = np.abs(found)
     least = SMALLEST_SIZE if dimension == LENGTH else 0.0
     kept = (sizes >= least) & (sizes > 0.0) | (array == 0)
     wrong = np.flatnonzero(~((sizes <= LARGEST_NUMBER) & kept))
     if wrong.size:
-        _one(f"{name}[{wrong[0]}]", array[wrong[0]].item(), dimension, units)
-        _bounded(f"{name}[{wrong[0]}]", float(in_si[wrong[0]]), array[wrong[0]], dimension)
-    return in_si
+        one_value(f"{name}[{wrong[0]}]", array[wrong[0]].item(), dimension, units)
+        _bounded(f"{name}[{wrong[0]}]", float(found[wrong[0]]), array[wrong[0]], dimension)
+    return found
 
 
 def _bounded(name: str, in_si: float, value: object, dimension: Dimension) -> float:

@@ -28,10 +28,10 @@ class Kept(Listed):
         raise NotImplementedError
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickled and copied as the text of the file; tables that it names are read again."""
+        """Pickled and copied as the text of the file and of the tables that it names."""
         document = self.built.read.document
         given = (document.text, document.file, dict(document.overrides), document.folder)
-        return _rebuilt, (*given, self.stem, document.is_data)
+        return _rebuilt, (*given, self.stem, document.is_data, dict(document.tables))
 
     @property
     def listing(self) -> Listing:
@@ -65,6 +65,7 @@ def _rebuilt(
     folder: Path | None,
     stem: str,
     is_data: bool,
+    tables: Mapping[str, bytes],
 ) -> Model:
     """A model of the text that another had, or of the data that its text was made from."""
     from mechkin_cli.building.build import build
@@ -74,5 +75,5 @@ def _rebuilt(
     if is_data:
         import json
 
-        return Model(build(open_data(json.loads(text), file, overrides, folder)), stem)
-    return Model(build(open_text(text, file, overrides, folder)), stem)
+        return Model(build(open_data(json.loads(text), file, overrides, folder, tables)), stem)
+    return Model(build(open_text(text, file, overrides, folder, tables)), stem)

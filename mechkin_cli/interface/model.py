@@ -12,8 +12,11 @@ from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.arguments import Setting, a_text, texts
 from mechkin_cli.interface.asking import run_name
 from mechkin_cli.interface.certified import Certified
+from mechkin_cli.interface.fitted import Fitted
 from mechkin_cli.interface.kept import Kept
 from mechkin_cli.interface.settings import input_values
+from mechkin_cli.interface.studied import Studied
+from mechkin_cli.interface.toleranced import Toleranced
 from mechkin_cli.interface.viewed import Viewed
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.named import Named
@@ -35,7 +38,7 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.precise import Precise
 
 
-class Model(Kept, Certified, Viewed):
+class Model(Kept, Certified, Fitted, Studied, Toleranced, Viewed):
     """A checked mechanism file."""
 
     def __init__(self, built: Built, stem: str) -> None:
@@ -285,7 +288,8 @@ class Model(Kept, Certified, Viewed):
         those at the rates of the nearest row.
 
         Args:
-            inputs: values by name as in `modes`; those left out keep their value of the first row.
+            inputs: values by name as in `modes`; those left out keep their value of the first row,
+                but one that follows others by its law has to be given with them.
             quantities: names; None: all joint coordinates.
 
         Returns:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
+from mechkin_cli.interface.arguments import a_path, a_text, texts
 from mechkin_cli.runs import SWEEP
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from mechkin_cli.plots.figure import Figure
     from mechkin_cli.plots.picture import Picture
 
@@ -48,11 +50,11 @@ class Plotted:
         """
         from mechkin_cli.plots.figure import drawn, format_of, image
 
+        path = None if to is None else a_path("to", to, 'the path of a picture such as "p.svg"')
         found = self.picture(y, x, table)
-        if to is not None:
+        if path is not None:
             from mechkin_cli.tables.files import write_files
 
-            path = Path(to)
             write_files(path.parent, {path.name: image(found, format_of(path))})
         return drawn(found)
 
@@ -63,6 +65,11 @@ class Plotted:
         from mechkin_cli.plots.of_tables import table_picture
         from mechkin_cli.plots.picture import picture
 
+        y = texts("y", y, '["O4.theta"]')
+        if x is not None:
+            a_text("x", x, '"O4.theta"')
+        if table is not None:
+            a_text("table", table, '"table_03"')
         if y:
             title = self.model.name if self.run == SWEEP else self.run
             return picture(self, title, y, x)

@@ -39,7 +39,8 @@ Cell = "float | NDArray[np.float64]"
 
 
 class Position(dict[str, "float | NDArray[np.float64]"]):
-    """Quantities by name in the file's units, vectors as arrays (3,); nan without a solution.
+    """Quantities by name in the file's units, vectors as arrays (3,), of a plane (2,); nan without
+    a solution.
 
     Attributes:
         status: `ok`, or `branch-lost` where the branch does not lead to the inputs.
@@ -53,9 +54,10 @@ class Position(dict[str, "float | NDArray[np.float64]"]):
 
 
 class _Column(NamedTuple):
+    """Where the kernel's position tells what users see of a quantity."""
+
     name: str
-    first: int
-    width: int
+    slots: tuple[int, ...]
     conversion: Conversion
 
 
@@ -71,11 +73,15 @@ class Solver:
         units = problem.units
         readout = session.readout(wanted)
         self.columns = [
-            _Column(q.name, slot.first, slot.width, units.conversion(known[q.name].dimension))
+            _Column(
+                q.name,
+                tuple(readout.slots[q.name].first + place for place in q.places),
+                units.conversion(q.dimension),
+            )
             for q in wanted
-            for slot in (readout.slots[q.name],)
         ]
         self.inputs = [item.name for item in problem.motion.inputs]
+        self.following = {item.name for item in problem.motion.inputs if item.follows}
         self.first = [float(item.written[0]) for item in problem.motion.inputs]
         self.to_kernel = [
             (units.conversion(known[item.name].dimension), unit, turn_of(problem, item))
@@ -92,7 +98,10 @@ class Solver:
     def solve(self, inputs: Setting | Mapping[str, Setting]) -> Position:
         """The position at some inputs."""
         places = dict(zip(self.inputs, self.first, strict=True))
-        places.update(_plain(inputs, places) or input_values(self.problem, inputs))
+        given = _plain(inputs, places) or input_values(self.problem, inputs)
+        if self.following:
+            self._check_following(given)
+        places.update(given)
         values, whole, full = [], [], []
         for name, (conversion, unit, turn) in zip(self.inputs, self.to_kernel, strict=True):
             rest, turns = (places[name], 0.0) if turn is None else reduce_angle(places[name], turn)
@@ -104,15 +113,30 @@ class Solver:
         full += self.held
         found = None if self.native is None else self.native.solve(values, whole, full)
         if found is None:
-            nothing = {c.name: np.nan if c.width == 1 else np.full(3, np.nan) for c in self.columns}
-            return Position(nothing, Status.branch_lost.label)
+            return Position(self._nothing(), Status.branch_lost.label)
         cells: dict[str, float | NDArray[np.float64]] = {}
-        for name, first, width, conversion in self.columns:
-            if width == 1:
-                cells[name] = conversion.reverse(found[first])
+        for name, slots, conversion in self.columns:
+            if len(slots) == 1:
+                cells[name] = conversion.reverse(found[slots[0]])
             else:
-                cells[name] = conversion.reverse(np.array(found[first : first + width]))
+                cells[name] = conversion.reverse(np.array([found[slot] for slot in slots]))
         return Position(cells, "ok")
+
+    def _check_following(self, given: Mapping[str, float]) -> None:
+        """Refuses to leave an input at its first row whose law ties it to one that moves."""
+        missing = sorted(self.following - given.keys())
+        if missing:
+            raise UsageError(
+                f"{', '.join(missing)} follows other inputs by its law, which solve does not "
+                "evaluate; give its value, too, or use analyze"
+            )
+
+    def _nothing(self) -> dict[str, float | NDArray[np.float64]]:
+        """The cells of a position that was not reached."""
+        return {
+            name: np.nan if len(slots) == 1 else np.full(len(slots), np.nan)
+            for name, slots, _ in self.columns
+        }
 
 
 def _plain(inputs: object, known: Mapping[str, float]) -> dict[str, float] | None:

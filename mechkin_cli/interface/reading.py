@@ -6,11 +6,13 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.interface.arguments import texts
 from mechkin_cli.listing import Listed, Listing, html_table
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.tables.layout import ROW_NUMBERS, ROW_PROOF, row_texts
 
 if TYPE_CHECKING:
+    import numpy as np
     import pandas  # type: ignore[import-untyped]
     from numpy.typing import NDArray
 
@@ -89,15 +91,16 @@ class Reading(Listed):
         """A table, or quantities over the rows, as a DataFrame of pandas.
 
         Args:
-            what: the name of a table; or quantities and expressions, a vector's components as
-                three columns; None: the only table.
+            what: the name of a table; or quantities and expressions, each component of a vector
+                as a column; None: the only table.
 
         Returns:
             A line for each row, empty cells as nan. `attrs["units"]` has the unit of each column,
             `attrs["name"]` and `attrs["title"]` are those of the table.
 
         Raises:
-            UsageError: pandas is not installed, there is no such table, or several to choose from.
+            UsageError: pandas is not installed, there is no such table, several to choose from, or
+                no list of texts.
             ExpressionError: no such quantity.
 
         Example:
@@ -114,12 +117,11 @@ class Reading(Listed):
             return _table_frame(self._table(what), pandas)
         columns: dict[str, Any] = {}
         units: dict[str, str] = {}
-        for text in what:
+        for text in texts("what", what, '["O4.theta"]'):
             values, unit = self[text], self.unit(text)
-            parts = [values] if values.ndim == 1 else list(values.T)
-            names = [text] if values.ndim == 1 else [f"{text}.{axis}" for axis in "xyz"]
-            columns |= dict(zip(names, parts, strict=True))
-            units |= dict.fromkeys(names, unit)
+            found = {text: values} if values.ndim == 1 else _components(text, values)
+            columns |= found
+            units |= dict.fromkeys(found, unit)
         frame = pandas.DataFrame(columns)
         frame.attrs |= {"units": units, "name": self.run, "title": self.model.name}
         return frame
@@ -131,6 +133,14 @@ class Reading(Listed):
             return self.tables[0]
         names = ", ".join(self.tables.keys()) or "none"
         raise UsageError(f"which table? write to_pandas(NAME); tables are {names}")
+
+
+def _components(text: str, values: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """The columns of a vector (rows, components), by the expressions that give them."""
+    from mechkin_cli.tables.columns import component_text
+
+    # a vector of a plane has no z
+    return {component_text(text, axis): one for axis, one in zip("xyz", values.T, strict=False)}
 
 
 def _table_frame(table: Columns, pandas: Any) -> Any:

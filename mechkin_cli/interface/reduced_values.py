@@ -13,8 +13,8 @@ Reductions = tuple[Reduction, ...] | Reduction | None
 
 
 def reduced(text: str, values: Floats, reduction: Reductions) -> Floats:
-    """What is kept of (variants, rows) or (variants, rows, 3), the reductions last where there are
-    several.
+    """What is kept of (variants, rows) or (variants, rows, components), the reductions last where
+    there are several.
 
     Raises:
         UsageError: a function of the caller fails, or gives something else.
@@ -28,7 +28,7 @@ def reduced(text: str, values: Floats, reduction: Reductions) -> Floats:
 
 def _by(reduction: Reduction, text: str, values: Floats) -> Floats:
     if values.ndim == 3:
-        parts = [_by(reduction, text, values[:, :, k]) for k in range(3)]
+        parts = [_by(reduction, text, component) for component in np.moveaxis(values, 2, 0)]
         return np.stack(parts, axis=1)
     given = values.view()
     given.flags.writeable = False  # the next reduction reads the same

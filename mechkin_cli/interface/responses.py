@@ -50,7 +50,7 @@ def respond(
     layouts = chosen_tables(model.built, tables, run)
     names = wanted_names(session, run, layouts, quantities)
     result = run_response(problem, response, names, packing, session)
-    analysis = Analysis(model, layouts, result, run)
+    analysis = Analysis(model, layouts, result, run, asked=tuple(names))
     return analysis if mode is None else known_mode(analysis)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol, overload
 import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.tables.layout import row_texts
 
 if TYPE_CHECKING:
@@ -73,8 +74,8 @@ class Summarized:
                 below = summary_of((), layout.columns, table.columns, self.result)
                 found[table.name] = {each.label: each.statistics for each in below.columns}
             return found
-        if quantity in row_texts(self.run):
-            raise UsageError(f"{quantity} is words, which have no summary")
+        if a_text("a quantity or expression", quantity, '"O4.theta"') in row_texts(self.run):
+            raise UsageError(f"{quantity} is words, which have no summary; name numbers")
         values = self[quantity]
         if values.ndim > 1:
             values = self[f"norm({quantity})"]
@@ -90,4 +91,5 @@ class Summarized:
             >>> round(value, 3), place
             (145.425, 220.0)
         """
-        return Summarized.summary(self, quantity).peak
+        text = a_text("a quantity or expression", quantity, '"O4.theta"')
+        return Summarized.summary(self, text).peak

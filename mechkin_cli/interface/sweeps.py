@@ -50,11 +50,12 @@ def run_sweep(
     layouts = chosen_tables(model.built, tables, SWEEP)
     balances = chosen(model.built.balances, tables)
     names = wanted_names(session, SWEEP, layouts, quantities)
+    asked = tuple(names)
     names += read_by(balances, problem)
     refuse_loaded_spin(session, names)
     result = analyze(session.packed(packing), names)
     systems = chosen(model.built.coefficients, tables)
-    analysis = Analysis(model, layouts, result, SWEEP, systems, balances)
+    analysis = Analysis(model, layouts, result, SWEEP, systems, balances, asked)
     analysis = analysis if mode is None else known_mode(analysis)
     if errors:
         _ = analysis.errors

@@ -10,7 +10,7 @@ import numpy as np
 
 from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
 from mechkin_cli.expressions import Expression, ExpressionError
-from mechkin_cli.interface.arguments import a_whole_number, shown, texts
+from mechkin_cli.interface.arguments import a_text, a_whole_number, shown, texts
 from mechkin_cli.interface.given import parameter_arrays
 from mechkin_cli.interface.reduced_values import Reductions
 from mechkin_cli.interface.responses import response_name
@@ -67,11 +67,10 @@ class Variants:
         Raises:
             UsageError: it was not asked for.
         """
-        try:
-            return self._values[text]
-        except KeyError:
+        if a_text("a quantity or expression", text, '"O4.theta"') not in self._values:
             asked = ", ".join(self._values)
-            raise UsageError(f"{text} was not asked for; quantities are {asked}") from None
+            raise UsageError(f"{text[:LONGEST_NAME]} was not asked for; quantities are {asked}")
+        return self._values[text]
 
     @property
     def codes(self) -> NDArray[np.int8]:
@@ -104,7 +103,7 @@ def vary(
     threads: int,
 ) -> Variants:
     """`Model.vary`, whose arguments these are; `held` are values (SI) that are set already."""
-    if run != SWEEP:
+    if a_text("run", run, f'"{SWEEP}"') != SWEEP:
         from mechkin_cli.interface.response_variants import vary_response
 
         name = response_name(base.model, run)

@@ -120,6 +120,11 @@ class VariedModel(Model):
         super().__init__(base.model.built, base.model.stem)
         self._advised = verdict == Verdict.OTHER_ADVICE
 
+    @property
+    def values(self) -> Mapping[str, float]:
+        """The parameters that were set, by name, in SI."""
+        return self._values
+
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled and copied as the file's model and the values."""
         return _revaried, (self._base.model, self._values)
@@ -221,9 +226,11 @@ class VariedModel(Model):
         threads: int = 0,
     ) -> Analysis:
         """As `Model.respond`; the assembly at the start is chosen for these parameters."""
-        return self._fresh.respond(
+        found = self._fresh.respond(
             name, quantities, tables=tables, mode=mode, lanes=lanes, threads=threads
         )
+        found.model = self
+        return found
 
     def with_parameters(self, parameters: Mapping[str, Any]) -> Model:
         """As `Model.with_parameters`; values of before stay unless they are given anew."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from mechkin_cli.analysis.assembly.start import HOME, NEAR
 from mechkin_cli.analysis.modes.modes import UNNAMED
 from mechkin_cli.diagnostics import Diagnostic, UsageError
+from mechkin_cli.interface.arguments import a_path
 from mechkin_cli.interface.asking import run_name
 from mechkin_cli.interface.sweeps import refuse_loaded_spin
 from mechkin_cli.runs import SWEEP
@@ -53,7 +54,7 @@ def write_view(path: str | PathLike[str], page: bytes) -> Path:
     Raises:
         UsageError: it cannot be written there.
     """
-    target = Path(path)
+    target = a_path("path", path, 'the path of a page such as "page.html"')
     if not target.name:
         raise UsageError(f"{path} names no file; write a name such as page.html")
     return write_files(target.parent, {target.name: page})[0]

@@ -8,7 +8,13 @@ of the actuators' coordinates by those of the inputs (docs/numerics.md, Actuator
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+from mechkin_cli.nearest import SHORT_LIST
+
+if TYPE_CHECKING:
+    from mechkin_cli.mechanism.quantities import Wanted
 
 Coordinate = tuple[str, str]
 """A joint and its coordinate."""
@@ -38,25 +44,56 @@ class Drives(NamedTuple):
         return not self.actuators and not self.ties
 
 
-def without_effort(drives: Drives | None, name: str) -> str | None:
-    """What to do where `name` asks for the effort of an input at which none acts; None for other
-    names.
+def without_effort(
+    name: str, quantities: Mapping[str, Wanted], drives: Drives | None, *, response: bool = False
+) -> str | None:
+    """Why nothing acts where `name` asks for an effort, where efforts act, and what to do; None for
+    other names.
 
-    >>> words = without_effort(Drives((("A", "theta"),), (("B", "s"),)), "A.effort")
-    >>> print(words.partition(": ")[0])
-    no effort acts at the input A.theta
+    Args:
+        name: of a quantity that there is not, such as `B.effort` or `B.s.effort`.
+        quantities: those that there are, by name.
+        drives: of a sweep.
+        response: whether the rows are those of a response, whose file gives the efforts.
     """
     owner, _, word = name.rpartition(".")
-    if drives is None or word != "effort" or not drives.actuators:
+    if word != "effort":
         return None
-    acting = [".".join(pair) for pair in drives.actuators]
-    joints = [joint for joint, _ in drives.actuators]
-    first = joints[0] if joints.count(joints[0]) == 1 else acting[0]
-    for joint, coordinate in drives.inputs:
-        full = f"{joint}.{coordinate}"
-        if owner in (joint, full):
-            return (
-                f"no effort acts at the input {full}: actuators act at {', '.join(acting)}; "
-                f"ask for {first}.effort, or add {full} to actuators"
-            )
-    return None
+    places = {
+        wanted.name: wanted
+        for wanted in quantities.values()
+        if wanted.kind == "coordinate" and wanted.order == 0
+    }
+    here = [full for full, wanted in places.items() if owner in (full, wanted.owner)]
+    efforts = {full: f"{full}.effort" for full in places if f"{full}.effort" in quantities}
+    asked = [efforts[full] for full in here if full in efforts]
+    if asked:
+        return f"it has two efforts: ask for {' or '.join(asked)}"
+    if not here:
+        if all(wanted.owner != owner for wanted in quantities.values()):
+            return None
+        return f"{owner} has no coordinate: {_listed('efforts act at', efforts, quantities)}"
+    at = " and ".join(here)
+    if response:
+        acting = _listed("efforts act at", efforts, quantities)
+        return f"no effort acts at {at} in this response: {acting}, or name {at} under efforts"
+    if drives is not None and drives.actuators:
+        is_input = here[0] in (".".join(pair) for pair in drives.inputs)
+        acting = _listed("actuators act at", efforts, quantities)
+        what = f"the input {at}" if is_input else at
+        return f"no effort acts at {what}: {acting}, or add {at} to actuators"
+    what = "are not inputs" if len(here) > 1 else "is not an input"
+    inputs = _listed("inputs are" if len(efforts) > 1 else "the input is", efforts, quantities)
+    return f"{at} {what}: {inputs}, or drive {at}"
+
+
+def _listed(words: str, efforts: Mapping[str, str], quantities: Mapping[str, Wanted]) -> str:
+    """Where efforts act, and how the first of them is called."""
+    if not efforts:
+        return "there is no effort"
+    first = next(iter(efforts))
+    short = f"{quantities[efforts[first]].owner}.effort"
+    ask = short if short in quantities else efforts[first]
+    most = list(efforts)[:SHORT_LIST]
+    more = f" and {len(efforts) - len(most)} more" if len(efforts) > len(most) else ""
+    return f"{words} {', '.join(most)}{more}; ask for {ask}"

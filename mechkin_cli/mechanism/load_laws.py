@@ -74,7 +74,8 @@ def law_value(law: LoadLaw, resolve: Resolve, rows: int) -> Floats:
         clipped = np.clip(x, law.curve.first, law.curve.last)
         return np.where(inside, law.curve.evaluate(clipped)[0], np.nan)
     assert law.expression is not None
-    found = np.asarray(law.expression.evaluate(resolve).value, dtype=np.float64)
+    quantity = law.expression.evaluate(resolve, through_infinity=True)
+    found = np.asarray(quantity.value, dtype=np.float64)
     inside = np.broadcast_to(np.abs(found) <= LARGEST_NUMBER, (rows,))
     return np.where(inside, found, np.nan)
 

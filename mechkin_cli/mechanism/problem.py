@@ -11,7 +11,12 @@ from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.expressions.definitions import Definitions
 from mechkin_cli.mechanism.bearing_loads import bearing_catalogue
 from mechkin_cli.mechanism.coefficient_quantities import coefficient_catalogue
-from mechkin_cli.mechanism.derived_quantities import derived_catalogue, ledger_catalogue
+from mechkin_cli.mechanism.derived_quantities import (
+    derived_catalogue,
+    hint_of,
+    ledger_catalogue,
+)
+from mechkin_cli.mechanism.drives import without_effort
 from mechkin_cli.mechanism.held import Held
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import Assembly, Motion
@@ -100,6 +105,12 @@ class Problem:
     def quantities(self) -> Mapping[str, Wanted]:
         """The quantities that the mechanism has, by name."""
         return self._quantities
+
+    def why_not(self, name: str) -> str | None:
+        """Why there is no quantity of a name, and what there is; None where that is not known."""
+        response = self.response is not None
+        passive = without_effort(name, self._quantities, self.mechanism.drives, response=response)
+        return passive or hint_of(name)
 
     @cached_property
     def _quantities(self) -> Mapping[str, Wanted]:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Curve(NamedTuple):
-    """Values over the rows (rows,), of a vector (rows, 3), nan where there is none."""
+    """Values over the rows (rows,), of a vector (rows, components), nan where there is none."""
 
     label: str
     unit: str
@@ -26,7 +26,7 @@ class Curve(NamedTuple):
 
     @property
     def is_vector(self) -> bool:
-        """Whether it has three components."""
+        """Whether it has components."""
         return self.values.ndim > 1
 
     @property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import warnings
 from collections.abc import Iterator
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
@@ -30,6 +31,7 @@ FORMATS = tuple(_NO_DATES)
 
 _STYLE: dict[str, Any] = {
     "svg.hashsalt": "mechkin",
+    "text.parse_math": False,  # a $ of a title is a $, and no formula
     "axes.grid": True,
     "grid.color": "#d8dee4",
     "axes.axisbelow": True,
@@ -76,7 +78,9 @@ def drawn(picture: Picture) -> Figure:
 def image(picture: Picture, ending: str) -> bytes:
     """A file with the picture, without dates or names of programs; errors as `drawn`."""
     matplotlib, stream = _matplotlib(), io.BytesIO()
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(_STYLE), warnings.catch_warnings():
+        # the empty boxes in the picture say so themselves
+        warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from", UserWarning)
         drawn(picture).savefig(stream, format=ending, metadata=_NO_DATES[ending])
     return stream.getvalue()
 

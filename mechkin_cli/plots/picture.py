@@ -127,8 +127,9 @@ def _in_plane(
     numbers = [curve.label for curve in drawn if not curve.is_vector]
     if numbers or against is not None:
         other = numbers[0] if numbers or against is None else against.label
+        vector = next(curve.label for curve in drawn if curve.is_vector)
         raise UsageError(
-            f"{drawn[0].label} is a vector, which is drawn in a plane of its own, without {other}; "
+            f"{vector} is a vector, which is drawn in a plane of its own, without {other}; "
             "for curves over a column write its components: .x, .y or .z"
         )
     units = {curve.unit for curve in drawn}

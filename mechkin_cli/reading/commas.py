@@ -6,6 +6,10 @@ Inside braces and brackets YAML ends an unquoted scalar at the comma, so the exa
 
 from __future__ import annotations
 
+from bisect import bisect_left
+from functools import lru_cache
+from itertools import accumulate
+
 from mechkin_cli.diagnostics import Diagnostic, Place
 from mechkin_cli.reading.limits import LONGEST_EXPRESSION, MOST_PIECES
 from mechkin_cli.reading.nodes import Node, Scalar, Style
@@ -51,7 +55,7 @@ def is_empty(node: Node) -> bool:
 
 def cut_at_comma(scalar: Scalar, line: str, file: str) -> Diagnostic:
     """The message for a cut off scalar; `line` is the source line on which it starts."""
-    whole = _whole_expression(line[scalar.mark.column - 1 :])
+    whole = _whole_expression(line, scalar.mark.column - 1)
     hint = f'put it in quotes: "{whole}"' if whole else "put the whole expression in quotes"
     return Diagnostic(
         "comma-without-quotes",
@@ -68,13 +72,28 @@ def _open_parentheses(node: Node) -> int:
     return node.text.count("(") - node.text.count(")")
 
 
-def _whole_expression(source: str) -> str | None:
-    depth = 0
-    for index, character in enumerate(source[:LONGEST_EXPRESSION]):
-        if depth == 0 and (character in _ENDS_AN_EXPRESSION or source.startswith(" #", index)):
-            return source[:index].strip()
-        depth += (character in _OPENING) - (character in _CLOSING)
-    return source.strip() if depth == 0 and len(source) <= LONGEST_EXPRESSION else None
+def _whole_expression(line: str, start: int) -> str | None:
+    depths, ends = _nesting(line)
+    level = depths[min(start, len(line))]
+    places = ends.get(level, [])
+    first = bisect_left(places, start)
+    if first < len(places) and places[first] < start + LONGEST_EXPRESSION:
+        return line[start : places[first]].strip()
+    source = line[start:]
+    return source.strip() if depths[-1] == level and len(source) <= LONGEST_EXPRESSION else None
+
+
+@lru_cache(maxsize=1)
+def _nesting(line: str) -> tuple[list[int], dict[int, list[int]]]:
+    """How deep each character of a line stands in brackets, and the end's depth; and by depth where
+    an expression could end. A line may have thousands of values that ask."""
+    steps = ((c in _OPENING) - (c in _CLOSING) for c in line)
+    depths = list(accumulate(steps, initial=0))
+    ends: dict[int, list[int]] = {}
+    for index, character in enumerate(line):
+        if character in _ENDS_AN_EXPRESSION or line.startswith(" #", index):
+            ends.setdefault(depths[index], []).append(index)
+    return depths, ends
 
 
 def _shortened(text: str) -> str:

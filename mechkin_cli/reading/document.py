@@ -40,7 +40,9 @@ class Document:
     `file` is the name that messages show, `text` the source, `root` the top-level mapping;
     `overrides` holds the parameters set from outside, by name; `folder` is where files are sought
     that it names, None for a text that comes from no file. `is_data` says that the text was made
-    from a program's data: places are then ways of keys.
+    from a program's data: places are then ways of keys. `tables` are the contents of files that it
+    names, by name, as they were when they were first read: what is built of a document again, here
+    or in another process, is built of the same.
     """
 
     file: str
@@ -49,6 +51,7 @@ class Document:
     overrides: dict[str, str] = field(default_factory=dict)
     folder: Path | None = None
     is_data: bool = False
+    tables: dict[str, bytes] = field(default_factory=dict)
 
     @cached_property
     def data(self) -> dict[str, PlainData]:

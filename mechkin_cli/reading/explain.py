@@ -17,7 +17,7 @@ from typing import Any
 from mechkin_cli.diagnostics import Diagnostic, Place
 from mechkin_cli.reading import wording
 from mechkin_cli.reading.document import Document, KeyPath
-from mechkin_cli.reading.nodes import Mapping, Sequence
+from mechkin_cli.reading.nodes import Mapping, Scalar, Sequence
 from mechkin_cli.reading.parser import in_order
 
 _KEY = "[key]"
@@ -34,13 +34,20 @@ def _is_echo(error: dict[str, Any], document: Document) -> bool:
     if error["type"] != "too_short":
         return False
     node = document.node(_path(error["loc"], document))
+    if isinstance(node, Scalar):
+        return True  # it stands for a list of one
+    if isinstance(node, Mapping):
+        return bool(error["ctx"].get("field_type") != "Dictionary")  # so does this
     return isinstance(node, Sequence) and len(node.items) >= error["ctx"]["min_length"]
 
 
 def _path(steps: Iterable[str | int], document: Document) -> KeyPath:
-    """The steps without the names of forms; a key that somebody wrote in parentheses stays."""
+    """The steps without the names of forms, and without the number of an item where one value
+    stands for a list; a key that somebody wrote in parentheses stays."""
     path: KeyPath = ()
     for step in steps:
+        if isinstance(step, int) and isinstance(document.node(path), Scalar | Mapping):
+            continue
         is_form = str(step).startswith("(") and document.node((*path, step)) is None
         path = path if is_form else (*path, step)
     return path

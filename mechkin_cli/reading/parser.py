@@ -22,7 +22,7 @@ FASTEST_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 CORRECT_FIRST = "correct these first"
 
-_START_OF_A_FILE = "a mechanism file starts with the line format: 1"
+_START_OF_A_FILE = "a mechanism file starts with the line format: 1, a study with study: 1"
 
 
 def parse(text: str, file: str, *, loader: Any = FASTEST_LOADER) -> Mapping:

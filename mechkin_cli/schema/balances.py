@@ -56,7 +56,7 @@ class HarmonicsBalance(_Balance):
         "4",
     )
     """Orders: cosines and sines of so many times the angle, or periods in the rows' time. Where the
-    rows turn k times, multiples of 1/k are orders, too."""
+    rows turn k times, multiples of 1/k are orders, too. Left out, [0, 1, 2, 3, 4]."""
 
 
 class FlywheelBalance(_Balance):

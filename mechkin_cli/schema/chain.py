@@ -34,7 +34,7 @@ class ChainRow(Section):
     a: Length = "0"
     """Distance along x from this z to the next z."""
     lead: Length | None = None
-    """For type H: length per turn, positive for a right-handed thread."""
+    """For type H, which needs it: length per turn, positive for a right-handed thread."""
 
     def check(self) -> None:
         """A lead belongs to type H alone."""

@@ -22,6 +22,8 @@ class Coefficients(Section):
     row: Annotated[WholeNumber, Limits(ge=1)] = 1
     """Row of the sweep, counted from 1."""
     along: dict[Name, Annotated[tuple[Name, ...], Limits(min_length=2, max_length=2)]] = NOTHING
-    """Directions of two force components of a ball; the third is along their cross product."""
+    """Directions of two force components of a ball; the third is along their cross
+    product; left out, those along x, y and z."""
     counted: Annotated[WholeNumber, Limits(ge=1)] | None = None
-    """Number of unknowns that the source counts, to stand beside those here."""
+    """Number of unknowns that the source counts, to stand beside those here; left out, none
+    does."""

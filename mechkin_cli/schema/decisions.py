@@ -17,9 +17,12 @@ def decided(forms: list[Schema], key: str | None, definitions: Schema) -> Schema
     """The schema that chooses among forms; `key` holds the word that tells them apart, if any."""
     if key is not None:
         return _by_word(forms, key, definitions)
-    kinds = [frozenset(_kinds(form, definitions)) for form in forms]
+    groups: dict[frozenset[str], list[Schema]] = {}
+    for form in forms:
+        groups.setdefault(frozenset(_kinds(form, definitions)), []).append(form)
+    kinds = list(groups)
     if sum(map(len, kinds)) == len(frozenset().union(*kinds)):
-        return _by_kind(forms, kinds)
+        return _by_kind([_by_key(group, definitions) for group in groups.values()], kinds)
     return _by_key(forms, definitions)
 
 

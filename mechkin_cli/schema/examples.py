@@ -23,7 +23,6 @@ BY_KEY: Final[dict[str, Any]] = {
     "balances": [{"name": "work", "type": "work"}],
     "between": ["P", "Q"],
     "camera": [1, -2, 1],
-    "center_of_mass": ["r/2", 0, "10 mm"],
     "chain": [
         {"joint": "A", "type": "R", "link": "one", "theta": 0, "s": 0, "alpha": 40, "a": 1},
         {"joint": "B", "type": "R", "link": "ground", "theta": 0, "s": 0, "alpha": -40, "a": 1},
@@ -61,7 +60,6 @@ BY_KEY: Final[dict[str, Any]] = {
     "paths": ["coupler_point"],
     "pin": [1, 0, 0],
     "plot": {"x": "theta", "y": ["torque"]},
-    "point": [0, "r", "10 mm"],
     "points": {"P": {"link": "crank", "at": ["r", 0, 0]}},
     "published": "published/table_3.csv",
     "quantities": {"gap": "norm(P.position - Q.position)"},
@@ -90,6 +88,43 @@ BY_KEY: Final[dict[str, Any]] = {
 }
 
 BY_SECTION: Final[dict[tuple[str, str], Any]] = {
+    ("Kept", "as"): ["peak", "rms"],
+    ("Column", "value"): "norm(O1.force)",
+    ("Crossing", "value"): "O1.theta - O2.theta",
+    ("DeadCentre", "dead_centre"): "O4.theta",
+    ("FollowingInput", "with"): "2*O1.theta",
+    ("Kept", "of"): "O1.effort",
+    ("Kept", "at"): "90 deg",
+    ("Kept", "label"): "largest torque",
+    ("Normal", "mean"): "0.5 in",
+    ("Normal", "deviation"): "0.01 in",
+    ("RangeOfValues", "from"): "0.4 in",
+    ("RangeOfValues", "to"): "0.6 in",
+    ("RangeOfValues", "step"): "0.05 in",
+    ("StudyFile", "name"): "lengths of the coupler",
+    ("StudyFile", "table"): "variants.csv",
+    ("Uniform", "between"): ["0.4 in", "0.6 in"],
+    ("UnitsSection", "length"): "mm",
+    ("UnitsSection", "angle"): "deg",
+    ("UnitsSection", "mass"): "kg",
+    ("UnitsSection", "force"): "N",
+    ("UnitsSection", "time"): "s",
+    ("UnitsSection", "angular_rate"): "deg/s",
+    ("ViewSection", "speed"): "4 s",
+    ("Cycloidal", "duration"): "0.5 s",
+    ("Cycloidal", "from"): 0,
+    ("Cycloidal", "start"): "0.1 s",
+    ("Cycloidal", "to"): "40 mm",
+    ("Harmonic", "duration"): "0.5 s",
+    ("Harmonic", "from"): 0,
+    ("Harmonic", "start"): "0.1 s",
+    ("Harmonic", "to"): "40 mm",
+    ("SweptInput", "from"): 0,
+    ("SweptInput", "step"): 5,
+    ("SweptInput", "to"): 360,
+    ("TimeSection", "from"): 0,
+    ("TimeSection", "step"): "5 ms",
+    ("TimeSection", "to"): "2 s",
     ("ListedTime", "values"): [0, 0.1, "0.5 s"],
     ("MechanismFile", "links"): {
         "crank": {"mass": "0.4 kg", "center_of_mass": ["r/2", 0, 0]},
@@ -119,10 +154,44 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("PlaneTorque", "torque"): "5 N*m",
     ("PointOfLink", "at"): ["r", 0, 0],
     ("PrintedRemark", "columns"): ["theta4"],
+    ("StudyFile", "keep"): [{"of": "O1.effort", "as": "peak"}],
+    ("StudyFile", "rows"): ["O4.theta"],
+    ("StudyFile", "sample"): {"count": 1024, "method": "sobol"},
+    ("StudyFile", "set"): {"P3": "0.4 in"},
+    ("StudyFile", "vary"): {"P1": [0.48, "0.5 in"], "P2": {"tolerance": "0.01 in"}},
+    ("Tolerance", "tolerance"): ["-0.1 mm", "0.2 mm"],
     ("ShapeOfLink", "points"): ["O1", [0, 10, 0]],
 }
 
 
-def example(section: str, key: str) -> Any:
-    """The example of a key of a section; None where it has none here."""
-    return BY_SECTION.get((section, key), BY_KEY.get(key))
+INSTEAD_OF_ANY: Final[dict[str, Any]] = {
+    "joint": "O1",
+    "coordinate": "theta",
+    "free": "80 mm",
+    "radius": "8 mm",
+    "length": "60 mm",
+    "collar": "12 mm",
+    "width": "90 mm",
+    "flank": "15 deg",
+    "damping": "0.2 N*s/mm",
+    "stiffness": "4 N/mm",
+    "unevenness": 0.02,
+    "static": 0.15,
+    "sliding": 0.1,
+    "tolerance": "1e-9",
+    "fixed_step": "1 ms",
+    "lead": "5 mm",
+    "speed": "5 mm/s",
+    "jerk": "0 rad/s^3",
+    "coefficient": 0.12,
+    "mass": "0.4 kg",
+    "point": [0, "r", "10 mm"],
+    "center_of_mass": ["r/2", 0, "10 mm"],
+    "xx": "2 kg*mm^2",
+}
+"""For keys whose kind of value has an example that says little of this key, wherever they stand."""
+
+
+def own_example(section: str, key: str) -> Any:
+    """The example of a key whatever its kind of value has; None where it has none here."""
+    return BY_SECTION.get((section, key), INSTEAD_OF_ANY.get(key))

@@ -35,33 +35,36 @@ class AnyFile(Section):
     format: Annotated[Literal[1], Before(_format_number)]
     """Version of the file format."""
     name: Text | None = None
-    """Name of the mechanism."""
+    """Name of the mechanism; left out, that of the file."""
     source: Text | None = None
-    """Where the mechanism comes from: book, page, drawing."""
+    """Where the mechanism comes from (book, page, drawing); left out, nothing is said."""
     units: UnitsSection = METRIC
-    """Units of bare numbers and of the tables."""
+    """Units of bare numbers and of the tables; left out, m, deg, kg, N and s."""
     parameters: dict[Name, AnyDimension] = NOTHING
-    """Named numbers, values with units, or expressions of one another."""
+    """Named numbers, values with units, or expressions of one another; left out, none."""
     quantities: dict[Name, AnyDimension] = NOTHING
-    """Named expressions of quantities, used by name in columns, loads, stops and one another."""
+    """Named expressions of quantities, used by name in columns, loads, stops and one another; left
+    out, none."""
     motion: MotionSection | None = None
-    """The driven coordinates and their values."""
+    """The driven coordinates and their values; left out, one row."""
     assembly: AssemblySection | None = None
-    """Which way of assembling the mechanism is meant."""
+    """Which way of assembling the mechanism is meant; left out, an assembled drawing, else the way
+    nearest to it."""
     responses: Annotated[dict[Name, Response], After(free_run_names)] = NOTHING
-    """Motions under forces, by name."""
+    """Motions under forces, by name; left out, none."""
     actuators: tuple[Coordinate, ...] = ()
-    """Where efforts act, when not at the inputs: [leg1.s, leg2.s]; at least as many as freedoms."""
+    """Where efforts act, at least as many coordinates as freedoms; left out, at the inputs."""
     tables: Annotated[tuple[Table, ...], After(differing_names)] = ()
     """The tables a run writes; left out, one table of all coordinates, their rates and efforts."""
     balances: tuple[Balance, ...] = ()
-    """Work over a cycle, harmonics and flywheels of the sweep, a table each."""
+    """Work over a cycle, harmonics and flywheels of the sweep, a table each; left out, none."""
     view: ViewSection | None = None
-    """How `mechkin view` shows the mechanism; it changes no number."""
+    """How `mechkin view` shows the mechanism; it changes no number; left out, the page
+    chooses."""
     follow: tuple[Name, ...] | None = None
     """Joints whose loops are followed beside those the outputs need; left out, all loops are."""
     accept: tuple[Literal["unphysical-inertia"], ...] = ()
-    """Warnings that the file acknowledges."""
+    """Warnings that the file acknowledges; left out, none."""
 
     def check(self) -> None:
         """No two tables are written to the same files."""
@@ -77,21 +80,23 @@ class MechanismFile(AnyFile):
     """
 
     links: dict[Name, Link] = NOTHING
-    """The moving bodies by name; `ground` always exists."""
+    """The moving bodies by name; `ground` always exists; left out, those of `chain`."""
     joints: dict[Name, Joint] = NOTHING
-    """The joints by name."""
+    """The joints by name; left out, those of `chain`."""
     chain: tuple[ChainRow, ...] = ()
-    """A loop as rows (theta, s, alpha, a), beside or instead of `joints`."""
+    """A loop as rows (theta, s, alpha, a), beside or instead of `joints`; left out, none."""
     points: dict[Name, PointOfLink] = NOTHING
-    """Points that move with links, by name."""
+    """Points that move with links, by name; left out, none."""
     directions: dict[Name, DirectionOfLink] = NOTHING
-    """Directions that turn with links, by name."""
+    """Directions that turn with links, by name; left out, none."""
     loads: tuple[Load, ...] = ()
-    """Gravity, forces, torques, springs and dampers."""
+    """Gravity, forces, torques, springs, dampers and friction; left out, none."""
     coefficients: Annotated[tuple[Coefficients, ...], After(differing_names)] = ()
-    """Tables of the dense system of all reactions at one row, as textbooks write it."""
+    """Tables of the dense system of all reactions at one row, as textbooks write it; left out,
+    none."""
     idle: Literal["hold"] | None = None
-    """`hold`: idle freedoms that loads would move are held, and the holding moment is reported."""
+    """`hold`: idle freedoms that loads would move are held, and the holding moment is reported;
+    left out, such loads are refused."""
 
     def check(self) -> None:
         """There is a joint, and no two tables are written to the same files."""

@@ -15,8 +15,8 @@ class JoinedTable(Section):
     """How its points are joined: by a smooth spline; by a curve that rises and falls only where the
     points do; by straight lines."""
     ends: Literal["not-a-knot", "natural", "clamped"] | None = None
-    """Of a spline: as smooth as between the points (not-a-knot, the usual), without curvature
-    (natural) or at rest (clamped, which a monotone curve can be, too)."""
+    """Of a spline: as smooth as between the points (not-a-knot), without curvature (natural) or at
+    rest (clamped, which a monotone curve can be, too); left out, not-a-knot."""
 
     def check(self) -> None:
         """The ends are some that the interpolation has."""

@@ -1,13 +1,15 @@
 """`joints:` - the pairs of the mechanism, one model per type with exactly the keys of that type.
 
 All places and directions stand in the home drawing, in ground axes. A joint whose two halves do not
-meet in the drawing gives a place or direction per link: `point: {crank: [...], rocker: [...]}`.
+meet in the drawing gives a place or direction per link: `point: {crank: [...], rocker: [...]}`. A
+place is [x, y, z], or the name of a point.
 """
 
 from typing import Annotated, Any, ClassVar, Final, Literal, TypeVar
 
 from mechkin_cli.schema.alternatives import Choice, Tag, by_word
 from mechkin_cli.schema.base import Section, refuse
+from mechkin_cli.schema.places import NamedOrGiven, name_or_vector
 from mechkin_cli.schema.rules import Limits, Named
 from mechkin_cli.schema.scalars import DirectionVector, Length, LengthVector, Name
 
@@ -16,8 +18,13 @@ _PER_LINK_FIELDS = ("point", "axis", "normal", "groove", "slot", "pin", "x", "ze
 
 
 def vector_or_per_link(value: Any) -> str:
-    """The form of a place or direction of a joint."""
+    """The form of a direction of a joint."""
     return "(per link)" if isinstance(value, dict) else "(vector)"
+
+
+def place_or_per_link(value: Any) -> str:
+    """The form of a place of a joint."""
+    return "(per link)" if isinstance(value, dict) else name_or_vector(value)
 
 
 _Vector = TypeVar("_Vector")
@@ -25,8 +32,10 @@ PerLink = Annotated[dict[Name, _Vector], Limits(min_length=2, max_length=2)]
 """One vector for each of the joint's two links."""
 
 Point = Annotated[
-    Annotated[LengthVector, Tag("(vector)")] | Annotated[PerLink[LengthVector], Tag("(per link)")],
-    Choice(vector_or_per_link),
+    Annotated[Name, Tag("(name)")]
+    | Annotated[LengthVector, Tag("(vector)")]
+    | Annotated[PerLink[NamedOrGiven], Tag("(per link)")],
+    Choice(place_or_per_link),
     Named("Point"),
 ]
 Direction = Annotated[
@@ -62,7 +71,7 @@ class PointJoint(JointBase):
     """What all joints except the weld have."""
 
     point: Point
-    """A point of the joint in the home drawing, [x, y, z], or one point per link."""
+    """A point of the joint in the home drawing, [x, y, z] or by its name, or one per link."""
 
 
 class AxisJoint(PointJoint):

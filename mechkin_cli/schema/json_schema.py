@@ -1,4 +1,4 @@
-"""The JSON Schema of format 1, for editors: completion, help texts and checks while writing.
+"""The JSON Schemas of mechanism files and of studies, for editors: completion, help texts, checks.
 
 Read from the same annotations as the validator, in a fixed order of keys, with help texts from the
 sources of the sections and names as patterns. Fixed-length lists are `items` with `minItems` and
@@ -16,7 +16,7 @@ from mechkin_cli.schema.alternatives import Choice
 from mechkin_cli.schema.base import Section, fields_of
 from mechkin_cli.schema.decisions import decided
 from mechkin_cli.schema.descriptions import field_descriptions
-from mechkin_cli.schema.examples import example
+from mechkin_cli.schema.examples import BY_KEY, own_example
 from mechkin_cli.schema.file import AnyFile, MechanismFile
 from mechkin_cli.schema.names import RESERVED
 from mechkin_cli.schema.plane import PlaneFile
@@ -25,6 +25,9 @@ from mechkin_cli.schema.runs import TAKEN_FOR_EDITORS
 
 IDENTITY: Final = "urn:mechkin:schema:mechanism:1"
 """The name of the schema of format 1, wherever its file lies."""
+
+STUDY_IDENTITY: Final = "urn:mechkin:schema:study:1"
+"""The name of the schema of studies."""
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 _FIRST_KEYS = (
@@ -69,12 +72,34 @@ def json_schema() -> Schema:
         "then": {"$ref": f"#/$defs/{PlaneFile.__name__}"},
         "else": {"$ref": f"#/$defs/{MechanismFile.__name__}"},
     }
-    return dict(_ordered(top)) | {"$defs": _ordered(dict(sorted(definitions.items())), True)}
+    return _whole(top, definitions)
 
 
-def json_schema_text() -> str:
-    """The JSON Schema as the text of `schemas/mechanism.schema.json`."""
-    return json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n"
+def study_schema() -> Schema:
+    """The JSON Schema of a study file, as `json_schema` that of a mechanism file.
+
+    It cannot say what the mechanism has, nor that something varies and what is drawn is counted.
+    """
+    from mechkin_cli.schema.study import StudyFile
+
+    definitions: Schema = {}
+    top: Schema = {"$schema": DIALECT, "$id": STUDY_IDENTITY, "title": "mechkin study file, form 1"}
+    return _whole(top | _section(StudyFile, definitions), definitions)
+
+
+SCHEMAS: Final = {"mechanism": json_schema, "study": study_schema}
+"""By the names of the files `schemas/NAME.schema.json`."""
+
+
+def json_schema_text(name: str = "mechanism") -> str:
+    """A JSON Schema as the text of its file."""
+    return json.dumps(SCHEMAS[name](), indent=2, ensure_ascii=False) + "\n"
+
+
+def _whole(top: Schema, definitions: Schema) -> Schema:
+    """The schema and its definitions in a stable order."""
+    ordered = _ordered(dict(sorted(definitions.items())), True)
+    return dict(_ordered(top)) | {"$defs": ordered}
 
 
 def _file(form: type[AnyFile], definitions: Schema) -> Schema:
@@ -109,8 +134,11 @@ def _section(section: type[Section], definitions: Schema) -> Schema:
             required.append(key)
         elif isinstance(field.default, (str, int)):
             schema["default"] = field.default
-        if not has_example(schema, definitions) and (shown := example(section.__name__, key)):
-            schema = schema | {"examples": [shown]}
+        own = own_example(section.__name__, key)
+        if own is None and not has_example(schema, definitions):
+            own = BY_KEY.get(key)
+        if own is not None:
+            schema = schema | {"examples": [own]}
         properties[key] = schema
     words = "\n\n".join(_paragraphs(section))
     found = {"description": words, "type": "object", "additionalProperties": False}
@@ -120,10 +148,11 @@ def _section(section: type[Section], definitions: Schema) -> Schema:
 
 def _measure(schema: Schema, definitions: Schema) -> str | None:
     """What a number, or each number of a list, measures; None where it is no measured number."""
-    while "$ref" in schema or "if" in schema:
-        schema = (
-            definitions[schema["$ref"].rpartition("/")[2]] if "$ref" in schema else schema["then"]
-        )
+    while "$ref" in schema:
+        schema = definitions[schema["$ref"].rpartition("/")[2]]
+    if "if" in schema:
+        forms = (schema[form] for form in ("then", "else") if form in schema)
+        return next((found for form in forms if (found := _measure(form, definitions))), None)
     if "items" in schema:
         return _measure(schema["items"], definitions)
     name, mark, _ = str(schema.get("description", "")).partition(_MEASURED)

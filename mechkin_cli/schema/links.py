@@ -3,7 +3,8 @@
 from typing import Any, ClassVar
 
 from mechkin_cli.schema.base import Section, refuse
-from mechkin_cli.schema.scalars import DirectionVector, Inertia, LengthVector, Mass
+from mechkin_cli.schema.places import NamedOrGiven
+from mechkin_cli.schema.scalars import DirectionVector, Inertia, Mass
 
 
 class InertiaAxes(Section):
@@ -54,7 +55,7 @@ class BodyWithMass(Section):
     }
 
     mass: Mass | None = None
-    """Mass of the link."""
+    """Mass of the link; left out, it has none."""
 
     def check(self) -> None:
         """Mass and centre come together."""
@@ -71,7 +72,8 @@ class BodyWithMass(Section):
 class Link(BodyWithMass):
     """A rigid body. All its keys may be left out: `{}` is a link without mass."""
 
-    center_of_mass: LengthVector | None = None
-    """Mass centre in the home drawing, [x, y, z] in ground axes."""
+    center_of_mass: NamedOrGiven | None = None
+    """Mass centre in the home drawing, [x, y, z] in ground axes or the name of a point of the link;
+    left out, the link has no mass."""
     inertia: LinkInertia | None = None
-    """Inertia tensor about the mass centre."""
+    """Inertia tensor about the mass centre; left out, zero."""

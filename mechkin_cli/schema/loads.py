@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from mechkin_cli.schema.alternatives import Choice, Tag, by_word
 from mechkin_cli.schema.base import Section, refuse
 from mechkin_cli.schema.joining import JoinedTable
+from mechkin_cli.schema.places import NamedOrGiven
 from mechkin_cli.schema.rules import Limits, Named
 from mechkin_cli.schema.runs import RunNames
 from mechkin_cli.schema.scalars import (
@@ -21,7 +22,6 @@ from mechkin_cli.schema.scalars import (
     Force,
     ForceOrTorque,
     Length,
-    LengthVector,
     Name,
     Stiffness,
     Text,
@@ -102,8 +102,8 @@ class ForceOnLink(InRuns):
     type: Literal["force"]
     link: Name
     """The link it acts on."""
-    point: LengthVector
-    """Where it acts: a point of the link in the home drawing."""
+    point: NamedOrGiven
+    """Where it acts: a point of the link in the home drawing, [x, y, z] or by its name."""
     force: Annotated[tuple[ForceValue, ...], Limits(min_length=3, max_length=3)]
     """The force, [x, y, z]."""
     axes: Axes = "ground"
@@ -230,17 +230,21 @@ class FrictionAtJoint(FrictionLoad):
     """Coulomb friction of a joint R, P, C, H, S, Sp or Sg, from the joint's own reaction."""
 
     radius: Length | None = None
-    """R, C, S: radius of the surfaces that turn; H: mean radius of the thread."""
+    """R, C, S: radius of the surfaces that turn; H: mean radius of the thread. `R`, `C`, `H`
+    and `S` need it."""
     length: Length | None = None
-    """R, C, P: distance of the two bearings (shoes) along the axis; they take tilting moments."""
+    """R, C, P: distance of the two bearings (shoes) along the axis; they take tilting moments;
+    left out, moments do not rub."""
     collar: Length | None = None
-    """R: mean radius of the face that takes axial force."""
+    """R: mean radius of the face that takes axial force; left out, no face rubs."""
     width: Length | None = None
-    """P: distance of the shoes across the axis; they take the moment about it."""
+    """P: distance of the shoes across the axis; they take the moment about it; left out, it
+    does not rub."""
     across: DirectionVector | None = None
     """P: direction of the width; left out, the shoes take forces alike in all directions."""
     flank: Angle | None = None
-    """H: angle of the flank against the plane square to the axis, half the thread's angle."""
+    """H: angle of the flank against the plane square to the axis, half the thread's angle; left
+    out, 0, a square thread."""
 
 
 AnyLoad = (

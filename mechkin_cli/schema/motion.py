@@ -46,9 +46,9 @@ class SweptInput(WithRates):
     last: Annotated[AngleOrLength, Key("to")]
     """Value that the last row reaches or stays below."""
     step: AngleOrLength | None = None
-    """Distance between rows; its sign does not matter."""
+    """Distance between rows, its sign does not matter; left out, `count` says it."""
     count: Annotated[WholeNumber, Limits(ge=1)] | None = None
-    """Number of rows, instead of `step`; the last row is exactly `to`."""
+    """Number of rows, the last of which is exactly `to`; left out, `step` says it."""
 
     def check(self) -> None:
         """Exactly one of step and count."""
@@ -79,7 +79,8 @@ class FollowingInput(Section):
     value: Annotated[AnyDimension, Key("with")]
     """An expression of other inputs, and of `time` where there is one: `2*O1.theta`."""
     drive: Literal["own", "tie"] | None = None
-    """`tie`: the motors of the inputs that it follows move it, too; else it has one of its own."""
+    """`tie`: the motors of the inputs that it follows move it, too; `own`: it has a motor
+    of its own; left out, `own`."""
 
 
 class TimeSection(Section):
@@ -92,9 +93,9 @@ class TimeSection(Section):
     last: Annotated[Duration, Key("to")]
     """Last moment."""
     step: Duration | None = None
-    """Time between rows."""
+    """Time between rows; left out, `count` says it."""
     count: Annotated[WholeNumber, Limits(ge=1)] | None = None
-    """Number of rows, instead of `step`."""
+    """Number of rows; left out, `step` says it."""
 
     def check(self) -> None:
         """Exactly one of step and count."""
@@ -128,9 +129,10 @@ class MotionSection(Section):
     """The driven coordinates. Without inputs the mechanism has one row."""
 
     inputs: dict[Coordinate, InputMotion] = NOTHING
-    """Driven coordinates by name: {O1.theta: {from: 0, to: 360, step: 5}}."""
+    """Driven coordinates by name; left out, one row, which stands as it is assembled."""
     time: TimeSection | None = None
-    """The moments of the rows, for inputs that are given by laws."""
+    """The moments of the rows, for inputs that are given by laws; left out, inputs have rows of
+    their own."""
 
     def check(self) -> None:
         """Laws go with `time`, rows of an input's own do not."""

@@ -9,7 +9,12 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 from mechkin_cli.schema.alternatives import Choice, Tag, by_word
 from mechkin_cli.schema.base import NOTHING, Section, refuse
 from mechkin_cli.schema.file import AnyFile
-from mechkin_cli.schema.joints import JointBase, PerLink, vector_or_per_link
+from mechkin_cli.schema.joints import (
+    JointBase,
+    PerLink,
+    place_or_per_link,
+    vector_or_per_link,
+)
 from mechkin_cli.schema.links import BodyWithMass
 from mechkin_cli.schema.loads import (
     Axes,
@@ -26,6 +31,7 @@ from mechkin_cli.schema.loads import (
     standard_or_vector,
     tag_of_load,
 )
+from mechkin_cli.schema.places import name_or_vector
 from mechkin_cli.schema.rules import Before, Limits, Named
 from mechkin_cli.schema.scalars import Acceleration, AnyDimension, Inertia, Length, Name
 
@@ -66,9 +72,16 @@ PlaneVector = Annotated[tuple[Length, ...], _TWO, Before(_two_numbers), Named("P
 PlaneDirection = Annotated[
     tuple[AnyDimension, ...], _TWO, Before(_two_numbers), Named("PlaneDirection")
 ]
+PlaneNamedOrGiven = Annotated[
+    Annotated[Name, Tag("(name)")] | Annotated[PlaneVector, Tag("(vector)")],
+    Choice(name_or_vector),
+    Named("PlaneNamedOrGiven"),
+]
 PlanePoint = Annotated[
-    Annotated[PlaneVector, Tag("(vector)")] | Annotated[PerLink[PlaneVector], Tag("(per link)")],
-    Choice(vector_or_per_link),
+    Annotated[Name, Tag("(name)")]
+    | Annotated[PlaneVector, Tag("(vector)")]
+    | Annotated[PerLink[PlaneNamedOrGiven], Tag("(per link)")],
+    Choice(place_or_per_link),
     Named("PlanePoint"),
 ]
 PlaneDirections = Annotated[
@@ -82,17 +95,18 @@ PlaneDirections = Annotated[
 class PlaneLink(BodyWithMass):
     """A rigid body in a plane. All its keys may be left out: `{}` is a link without mass."""
 
-    center_of_mass: PlaneVector | None = None
-    """Mass centre in the home drawing, [x, y]."""
+    center_of_mass: PlaneNamedOrGiven | None = None
+    """Mass centre in the home drawing, [x, y] or the name of a point of the link; left out, the
+    link has no mass."""
     inertia: Annotated[Inertia, Before(_about_normal)] | None = None
-    """Moment of inertia about the mass centre, about the plane's normal."""
+    """Moment of inertia about the mass centre, about the plane's normal; left out, zero."""
 
 
 class PlanePointJoint(JointBase):
     """What all joints of a plane have except the weld."""
 
     point: PlanePoint
-    """A point of the joint in the home drawing, [x, y], or one point per link."""
+    """A point of the joint in the home drawing, [x, y] or by its name, or one per link."""
 
 
 class PlaneRevoluteJoint(PlanePointJoint):
@@ -157,8 +171,9 @@ class PlanePointOfLink(Section):
 
     link: Name
     """The link that carries the point; `ground` for a fixed one."""
-    at: PlaneVector
-    """The point in the home drawing, [x, y]."""
+    at: PlaneNamedOrGiven
+    """The point in the home drawing, [x, y] or the name of a point that is drawn at the same
+    place."""
 
 
 class PlaneDirectionOfLink(Section):
@@ -197,8 +212,8 @@ class PlaneForce(InRuns):
     type: Literal["force"]
     link: Name
     """The link it acts on."""
-    point: PlaneVector
-    """Where it acts: a point of the link in the home drawing."""
+    point: PlaneNamedOrGiven
+    """Where it acts: a point of the link in the home drawing, [x, y] or by its name."""
     force: Annotated[tuple[ForceValue, ...], _TWO, Before(_two_numbers)]
     """The force, [x, y]."""
     axes: Axes = "ground"
@@ -232,9 +247,10 @@ class PlaneFriction(FrictionLoad):
     }
 
     radius: Length | None = None
-    """R: radius of the pin."""
+    """R: radius of the pin, which it needs."""
     length: Length | None = None
-    """P: distance of the two shoes along the axis; they take the moment."""
+    """P: distance of the two shoes along the axis; they take the moment; left out, it
+    does not rub."""
 
 
 PlaneLoad = Annotated[
@@ -271,17 +287,18 @@ class PlaneFile(AnyFile):
     in_plane = True
 
     plane: Annotated[Literal["xy"], Before(_plane_word)]
-    """Everything moves in the plane x, y: vectors are two numbers, inertias and torques one."""
+    """Everything moves in the plane x, y: vectors are two numbers, inertias and torques one; left
+    out, a mechanism in space."""
     links: dict[Name, PlaneLink] = NOTHING
     """The moving bodies by name; `ground` always exists."""
     joints: dict[Name, PlaneJoint] = NOTHING
     """The joints by name."""
     points: dict[Name, PlanePointOfLink] = NOTHING
-    """Points that move with links, by name."""
+    """Points that move with links, by name; left out, none."""
     directions: dict[Name, PlaneDirectionOfLink] = NOTHING
-    """Directions that turn with links, by name."""
+    """Directions that turn with links, by name; left out, none."""
     loads: tuple[PlaneLoad, ...] = ()
-    """Gravity, forces, torques, springs, dampers and friction."""
+    """Gravity, forces, torques, springs, dampers and friction; left out, none."""
 
     def check(self) -> None:
         """There is a joint, and no two tables are written to the same files."""

@@ -1,7 +1,8 @@
 """`points:` and `directions:` - named places and directions that move with a link."""
 
 from mechkin_cli.schema.base import Section
-from mechkin_cli.schema.scalars import DirectionVector, LengthVector, Name
+from mechkin_cli.schema.places import NamedOrGiven
+from mechkin_cli.schema.scalars import DirectionVector, Name
 
 
 class PointOfLink(Section):
@@ -9,8 +10,9 @@ class PointOfLink(Section):
 
     link: Name
     """The link that carries the point; `ground` for a fixed one."""
-    at: LengthVector
-    """The point in the home drawing, [x, y, z] in ground axes."""
+    at: NamedOrGiven
+    """The point in the home drawing, [x, y, z] in ground axes or the name of a point that is drawn
+    at the same place."""
 
 
 class DirectionOfLink(Section):

@@ -158,21 +158,22 @@ class Response(Section):
     near: dict[Coordinate, AngleOrLength] = NOTHING
     """Take the assembly nearest to these coordinates; left out, the file's choice."""
     mode: Text | None = None
-    """Take the assembly mode of this letter at the start."""
+    """Take the assembly mode of this letter at the start; left out, the file's choice."""
     efforts: dict[Coordinate, Effort] = NOTHING
     """Force or torque on coordinates: a number, an expression, or a table over the coordinate; they
-    add to the loads."""
+    add to the loads; left out, none."""
     driven: dict[Coordinate, DrivenLaw] = NOTHING
     """Coordinates whose motion is prescribed: by a law of time, by others (`with`), or held
-    (`at`)."""
+    (`at`); left out, none."""
     time: ResponseTime
     """The moments of the rows."""
     stop: tuple[Stop, ...] = ()
-    """What ends the response before its last moment."""
+    """What ends the response before its last moment; left out, nothing."""
     tolerance: Dimensionless | None = None
-    """Relative error of a step, 1e-10 if it is left out."""
+    """Relative error of a step; left out, 1e-10."""
     fixed_step: Duration | None = None
-    """A step of its own for the integrator instead of a tolerance."""
+    """A step of its own for the integrator instead of a tolerance; left out, steps go
+    by the tolerance."""
 
     def check(self) -> None:
         """One of near and mode at most, one of tolerance and fixed_step at most."""

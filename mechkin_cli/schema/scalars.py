@@ -33,7 +33,7 @@ FORMS: Final = {
     TABLE_NAME_PATTERN: ("a name for a file", "use letters, digits, - and _, at most 100"),
     COLOUR_PATTERN: ("a colour", 'write #rrggbb in quotes, for example "#c0392b"'),
     CSV_PATH_PATTERN: (
-        "a CSV file beside or below the mechanism file",
+        "a CSV file beside or below the file that names it",
         "write a relative path with / that ends in .csv",
     ),
 }
@@ -167,7 +167,7 @@ Coordinate = Annotated[
 CsvPath = Annotated[
     str,
     Limits(pattern=CSV_PATH_PATTERN),
-    Shown(("string",), "a CSV file, relative to the mechanism file", ("force.csv",)),
+    Shown(("string",), "a CSV file, relative to the file that names it", ("force.csv",)),
     Named("CsvPath"),
 ]
 

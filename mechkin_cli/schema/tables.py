@@ -38,7 +38,8 @@ class Column(Section):
     value: AnyDimension
     """An expression over quantities and parameters; with commas or brackets it stands in quotes."""
     decimals: Annotated[WholeNumber, Limits(ge=0, le=17)] | None = None
-    """Decimals in Markdown; CSV always has all digits."""
+    """Decimals in Markdown, CSV always has all digits; left out, six significant digits of the
+    largest value."""
 
 
 def _in_full(value: Any) -> Any:
@@ -56,7 +57,8 @@ class PrintedRemark(Section):
     columns: Annotated[tuple[Text, ...], Limits(min_length=1)] | None = None
     """Labels of the columns it holds for; left out, all."""
     data: Annotated[tuple[Text, ...], Limits(min_length=1)] | None = None
-    """Numbers that the source does not give, where the remark says how they were found."""
+    """Numbers that the source does not give, where the remark says how they were found; left out,
+    none."""
     text: Text
     """The reason in words."""
 
@@ -69,7 +71,7 @@ class PublishedValues(Section):
     rows_by: Text | None = None
     """Label of the column that finds the rows, or `row.number`; left out, the first one printed."""
     remarks: tuple[PrintedRemark, ...] = ()
-    """Why values differ, in words."""
+    """Why values differ, in words; left out, nothing is known."""
 
 
 def _with_file(value: Any) -> Any:
@@ -152,11 +154,12 @@ class Table(Section):
     """The columns, from left to right."""
     summary: Annotated[tuple[SummaryWord, ...], Limits(min_length=1), After(_each_once)] = ()
     """What stands below the table for each column that is computed: some of [max, min, peak, mean,
-    rms, range]. `peak` is the largest magnitude; max, min and peak have their places."""
+    rms, range]. `peak` is the largest magnitude; max, min and peak have their places; left
+    out, nothing."""
     plot: Plot | None = None
-    """The picture that `mechkin plot` makes of it."""
+    """The picture that `mechkin plot` makes of it; left out, all columns over the first input."""
     published: PathOrPublishedValues | None = None
-    """Values printed in the source, as a CSV file with the same labels."""
+    """Values printed in the source, as a CSV file with the same labels; left out, no comparison."""
 
     def check(self) -> None:
         """What is drawn and what is published names columns of the table."""

@@ -1,4 +1,5 @@
-"""Plain data -> `MechanismFile` or `PlaneFile`, or every independent error as a plain record.
+"""Plain data -> `MechanismFile`, `PlaneFile` or `StudyFile`, or every independent error as a plain
+record.
 
 A record has `type`, `loc` (keys, list indices and tags in parentheses), `msg` and `ctx`. To the
 records of pydantic are added the reserved and clashing names, and what a mapping's keys could have
@@ -7,14 +8,18 @@ been.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic_core import ValidationError
 
+from mechkin_cli.schema.base import Section
 from mechkin_cli.schema.compiled import validated
 from mechkin_cli.schema.file import AnyFile, MechanismFile
 from mechkin_cli.schema.names import name_errors
 from mechkin_cli.schema.scalars import FORMS
+
+if TYPE_CHECKING:
+    from mechkin_cli.schema.study import StudyFile
 
 
 class InvalidDataError(Exception):
@@ -33,11 +38,26 @@ def validate(data: object) -> AnyFile:
     try:
         file = validated(form, data)
     except ValidationError as failure:
-        found = failure.errors(include_url=False, include_input=False)
-        errors = [_completed(dict(error), data, form) for error in found] + errors
+        errors = _told(failure, data, form) + errors
     if errors:
         raise InvalidDataError(errors)
     return file
+
+
+def validate_study(data: object) -> StudyFile:
+    """The study that plain data describes; raises `InvalidDataError`."""
+    from mechkin_cli.schema.study import StudyFile  # only for studies
+
+    try:
+        return validated(StudyFile, data)
+    except ValidationError as failure:
+        raise InvalidDataError(_told(failure, data, StudyFile)) from None
+
+
+def _told(failure: ValidationError, data: object, form: type[Section]) -> list[dict[str, Any]]:
+    """The errors of a validation as records."""
+    found = failure.errors(include_url=False, include_input=False)
+    return [_completed(dict(error), data, form) for error in found]
 
 
 def _form(data: object) -> type[AnyFile]:
@@ -48,7 +68,7 @@ def _form(data: object) -> type[AnyFile]:
     return MechanismFile
 
 
-def _completed(error: dict[str, Any], data: object, form: type[AnyFile]) -> dict[str, Any]:
+def _completed(error: dict[str, Any], data: object, form: type[Section]) -> dict[str, Any]:
     """The record with what a message needs beyond pydantic's own context."""
     if error["type"] == "string_pattern_mismatch":
         expected, hint = FORMS[error["ctx"]["pattern"]]
@@ -72,7 +92,7 @@ def _completed(error: dict[str, Any], data: object, form: type[AnyFile]) -> dict
     return error | {"ctx": context}
 
 
-def _with_advice(error: dict[str, Any], data: object, form: type[AnyFile]) -> dict[str, Any]:
+def _with_advice(error: dict[str, Any], data: object, form: type[Section]) -> dict[str, Any]:
     """The record of an unknown type, with what to write instead where that is known."""
     from mechkin_cli.schema.other_words import advice_for_type
 
@@ -83,5 +103,5 @@ def _with_advice(error: dict[str, Any], data: object, form: type[AnyFile]) -> di
         word = found[error["ctx"]["key"]]
     except (KeyError, IndexError, TypeError):
         return error
-    advice = advice_for_type(str(error["loc"][0]), str(word), form.in_plane)
+    advice = advice_for_type(str(error["loc"][0]), str(word), getattr(form, "in_plane", False))
     return error | {"ctx": error["ctx"] | {"advice": advice}}

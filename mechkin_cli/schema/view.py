@@ -2,15 +2,14 @@
 
 from typing import Annotated, Any, Final, Literal
 
-from mechkin_cli.schema.alternatives import Choice, Tag
 from mechkin_cli.schema.base import NOTHING, Section, refuse
+from mechkin_cli.schema.places import NamedOrGiven
 from mechkin_cli.schema.rules import After, Before, Limits, Named, ShortForm, Shown
 from mechkin_cli.schema.scalars import (
     COLOUR_PATTERN,
     DirectionVector,
     Duration,
     Length,
-    LengthVector,
     Name,
 )
 
@@ -22,17 +21,6 @@ Colour = Annotated[
     Limits(pattern=COLOUR_PATTERN),
     Shown(("string",), "a colour as #rrggbb, in quotes", ("#c0392b",)),
     Named("Colour"),
-]
-
-
-def _name_or_vector(value: Any) -> str:
-    return "(name)" if isinstance(value, str) else "(vector)"
-
-
-NamedOrGiven = Annotated[
-    Annotated[Name, Tag("(name)")] | Annotated[LengthVector, Tag("(vector)")],
-    Choice(_name_or_vector),
-    Named("NamedOrGiven"),
 ]
 
 
@@ -70,12 +58,11 @@ class ViewSection(Section):
     """How `mechkin view` shows the mechanism."""
 
     colours: dict[Name, Colour] = NOTHING
-    """Colours of links by name, for example {crank: "#c0392b"}; the others have colours of their
-    own."""
+    """Colours of links by name; left out, the page chooses."""
     hidden: Names = ()
-    """Links that are not drawn, nor their halves of joints."""
+    """Links that are not drawn, nor their halves of joints; left out, none."""
     shapes: dict[Name, KindOrShape] = NOTHING
-    """Shapes of links by name, for example {coupler: plate}."""
+    """Shapes of links by name; left out, as their joints lie."""
     joint_radius: Length | None = None
     """Radius of the pins and balls of joints; left out, the radius at which a joint rubs, else by
     the size of the mechanism."""

@@ -119,6 +119,9 @@ class Precise:
     def parameters(self) -> Mapping[str, Floats]:
         """The file's parameters in SI and double-double (2,), by name; nan where the text says no
         number, as where it divides by zero."""
+        return self._parameters()
+
+    def _parameters(self) -> dict[str, Floats]:
         known = self.problem.parameters
         try:
             values = double_doubles(self.tape([quantity.value for quantity in known.values()]))

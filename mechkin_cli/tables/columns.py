@@ -158,7 +158,7 @@ def _evaluated(layout: ColumnLayout, source: Source) -> Column:
         raise ExpressionError(
             f"column {layout.label!r} is a vector, a column holds one number per row",
             0,
-            f"write one component of it: {_component(layout.expression.text)}",
+            f"write one component of it: {component_text(layout.expression.text, 'x')}",
         )
     in_si = np.array(np.broadcast_to(value, (source.rows,)), dtype=np.float64)
     # the conversion may hand back the array itself, so it works on the copy
@@ -177,8 +177,12 @@ def _resolve(name: str, source: Source) -> Quantity:
     return source.quantity(name)
 
 
-def _component(text: str) -> str:
-    """The expression text with `.x` behind it, in parentheses where it is a sum or the like."""
+def component_text(text: str, axis: str) -> str:
+    """The expression of a vector's component, in parentheses where it is a sum or the like.
+
+    >>> component_text("pen.position", "x"), component_text("2*pen.position", "y")
+    ('pen.position.x', '(2*pen.position).y')
+    """
     text = text.strip()
     bare = text.replace(".", "").replace("_", "").isalnum()
-    return f"{text}.x" if bare else f"({text}).x"
+    return f"{text}.{axis}" if bare else f"({text}).{axis}"

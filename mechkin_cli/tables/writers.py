@@ -74,10 +74,19 @@ def _json(runs: Sequence[Results]) -> Iterator[File]:
     yield "analysis.json", json_bytes(versions() | runs_record(runs))
 
 
+def _latex(runs: Sequence[Results]) -> Iterator[File]:
+    from mechkin_cli.tables.latex import latex_bytes
+
+    for results in runs:
+        for table in results.tables:
+            yield f"{table.name}.tex", latex_bytes(table, results.source)
+
+
 WRITERS: Mapping[str, Callable[[Sequence[Results]], Iterator[File]]] = {
     "csv": _csv,
     "md": _markdown,
     "json": _json,
+    "tex": _latex,
 }
 """Format -> its files, in the order that help and messages list them."""
 

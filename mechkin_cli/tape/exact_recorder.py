@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.tape.traced import Traced
 
-_DECIDED = (*CONDITIONS, Operation.SIGN, Operation.POWER_OF_TWO, Operation.WHOLE)
+DECIDED = (*CONDITIONS, Operation.SIGN, Operation.POWER_OF_TWO, Operation.WHOLE)
 """Operations whose results are decisions: constants of the structure."""
 
 _LARGEST_POWER = 64
@@ -35,12 +35,13 @@ _LARGEST_POWER = 64
 
 
 class ExactTape(NamedTuple):
-    """A tape without guards, the exact numbers that are its inputs, and these as double-doubles
-    (inputs, 2)."""
+    """A tape without guards, the exact numbers that are its inputs, these as double-doubles
+    (inputs, 2), and the registers in which they are recorded."""
 
     tape: Tape
     numbers: tuple[Fraction, ...]
     values: Floats
+    given: tuple[int, ...]
 
 
 class Step(NamedTuple):
@@ -76,7 +77,7 @@ class ExactRecorder(Recorder):
     def compute(self, operation: Operation, *operands: int) -> int:
         """The register of an operation's result; what doubles decide is decided."""
         values = [self.values[register] for register in operands]
-        if operation in _DECIDED:
+        if operation in DECIDED:
             return self.constant(meaning(operation)(*values))
         if operation is Operation.CHOOSE:
             return operands[1] if values[0] != 0.0 else operands[2]
@@ -143,7 +144,8 @@ class ExactRecorder(Recorder):
         )
         numbers = tuple(self.exact[r] for r in given)
         pairs = [double_double(value) for value in numbers]
-        return ExactTape(tape, numbers, np.array(pairs, dtype=np.float64).reshape(-1, 2))
+        values = np.array(pairs, dtype=np.float64).reshape(-1, 2)
+        return ExactTape(tape, numbers, values, tuple(given))
 
     def steps_to(self, wanted: int) -> Iterator[Step]:
         """How a register comes about, from the numbers of the text on."""

@@ -15,6 +15,16 @@ MOST_KEPT: Final = 400_000_000
 """Numbers that the results of variants may have together; 3.2 GB, the machine's memory before
 anything is computed with them."""
 
+MOST_VARIANTS: Final = 1_000_000_000
+"""Variants of a study: a day of one machine at 0.1 ms each, and 100 GB of files."""
+
+MOST_DRAWN: Final = 50_000_000
+"""Numbers of a Latin hypercube, which is drawn whole: 0.4 GB, and as much again while it is
+drawn."""
+
+MOST_TABLE_TEXT: Final = 64 << 20
+"""Bytes of a study's table of variants: it is held in memory, ten times as large."""
+
 MOST_NAMES: Final = 100_000
 """Names in one list that a caller gives: more come from an iterable without an end."""
 

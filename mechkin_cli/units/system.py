@@ -7,6 +7,7 @@ The unit of a dimension is composed by these rules:
 - an angle with time is an angular rate, always per second: `rad/s`, `rad/s^2`;
 - an angle beside mass or length is in rad, its time in s: torsional stiffness is moment per rad,
   torsional damping moment per rad/s, whatever the file's unit of angular rates;
+- what is per angle is per rad;
 - an angle alone is in the file's unit; what is left is in the file's units of length and time.
 """
 
@@ -92,7 +93,7 @@ class UnitSystem:
         if angle and time:
             rate = self.angular_rate if bare else _RADIAN_PER_SECOND
             return rate**angle * _SECOND ** (time + angle)
-        angle_unit = self.angle if bare else _RADIAN
+        angle_unit = self.angle if bare and angle > 0 else _RADIAN
         return self.time**time * angle_unit**angle
 
     def label(self, dimension: Dimension) -> str:

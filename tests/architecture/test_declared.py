@@ -17,9 +17,10 @@ BY_HAND = {}
 
 def declared() -> set[str]:
     project = tomllib.loads((ROOT.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    # the benchmark, pictures and data frames ask for extras, and are done without
+    # the benchmark, pictures, data frames and studies ask for extras, and are done without
     extras = project["optional-dependencies"]
-    named = [*project["dependencies"], *extras["bench"], *extras["plot"], *extras["pandas"]]
+    asked = ("bench", "plot", "pandas", "parquet", "cluster", "fit")
+    named = [*project["dependencies"], *(text for extra in asked for text in extras[extra])]
     return {re.split(r"[<>=;\[ ]", text)[0] for text in named}
 
 

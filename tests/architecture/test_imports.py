@@ -36,7 +36,9 @@ ANALYSIS = FREEDOMS | {"analysis"}
 BUILDING = FREEDOMS | {"reading", "schema", "building", "tables.layout", "view.settings"}
 VIEW = ANALYSIS | {"tables", "view"}
 PLOTS = VIEW | {"plots"}
-INTERFACE = BUILDING | PLOTS | {"interface"}
+FITTING = BASE | {"fitting"}
+STUDIES = BASE | {"tables", "studies"}
+INTERFACE = BUILDING | PLOTS | {"fitting", "studies", "interface"}
 BENCHMARK = INTERFACE | {"benchmark"}
 ALLOWED = {
     **dict.fromkeys(BASE, BASE),
@@ -54,6 +56,8 @@ ALLOWED = {
     "building": BUILDING,
     "view": VIEW,
     "plots": PLOTS,
+    "studies": STUDIES,
+    "fitting": FITTING,
     "interface": INTERFACE,
     "benchmark": BENCHMARK,
     "templates": BASE | {"templates"},
@@ -72,7 +76,9 @@ HOMES = {
     "click": {"cli"},
     "rich": {"cli"},
     "pandas": {"interface"},
-    "scipy": {"benchmark"},
+    "scipy": {"benchmark", "studies", "fitting"},
+    "pyarrow": {"studies"},
+    "distributed": {"studies"},
     "pinocchio": {"benchmark"},
     "casadi": {"benchmark"},
     "mujoco": {"benchmark"},

@@ -1,6 +1,6 @@
 """Mistakes in units, parameters, links, joints, points, and sections that are not solved."""
 
-from building.sound import added, between, changed, joint
+from building.sound import added, between, changed, joint, load
 
 UNITS_AND_PARAMETERS = [
     changed("{length: mm, force: N}", "{length: »parsec}", "unit", "parsec"),
@@ -128,9 +128,48 @@ JOINTS = [
 ]
 
 POINTS = [
+    joint(
+        "{type: R, LINKS, point: »pp, axis: [0, 0, 1]}", "unknown-point", "no point pp", "mean p?"
+    ),
+    joint(
+        "{type: R, LINKS, point: {ground: q, crank: »D}, axis: [0, 0, 1]}",
+        "unknown-point",
+        "there is no point D",
+        "D is a joint: name its point under points",
+    ),
+    changed("center_of_mass: [0, 20, 0]", "center_of_mass: »pq", "unknown-point", "no point pq"),
+    changed(
+        "center_of_mass: [0, 20, 0]",
+        "center_of_mass: »q",
+        "point-of-another-link",
+        "q is a point of ground, and this place moves with crank",
+        "q_of_crank: {link: crank, at: q}",
+    ),
+    load(
+        "{type: force, link: rod, point: »p, force: [1, 0, 0]}",
+        "point-of-another-link",
+        "p is a point of crank, and this place moves with rod",
+        "p_of_rod: {link: rod, at: p}",
+    ),
+    changed("at: [0, 40, 0]", "at: »pq", "unknown-point", "there is no point pq"),
+    changed("at: [0, 40, 0]", "at: »p", "circular-place", "back to itself: p -> p", "coordinates"),
+    changed(
+        "{p: {link: crank, at: [0, 40, 0]}",
+        "{p: {link: crank, at: »u}, u: {link: rod, at: v}, v: {link: rod, at: p}",
+        "circular-place",
+        "the place of p leads back to itself: p -> u -> v -> p",
+    ),
+    changed(
+        "D: {type: C, links: [ground, slider], point: [120, 0, 10], axis: [1, 0, 0]}\n"
+        "points: {p: {link: crank, at: [0, 40, 0]}",
+        "D: {type: C, links: [ground, slider], point: u, axis: [1, 0, 0]}\n"
+        "points: {u: {link: slider, at: [»2 kg, 0, 10]}, p: {link: crank, at: [0, 40, 0]}",
+        "expression",
+        "expected a length",
+    ),
     changed("{p: {link: crank", "{p: {link: »cran", "unknown-link", "no link cran", "crank"),
     changed("{n: {link: crank", "{n: {link: »crink", "unknown-link", "no link crink", "crank"),
-    changed("vector: [0, 1, 0]", "vector: »[0, 0, 0]", "zero-direction", "direction is zero"),
+    changed("vector: [0, k, 0]", "vector: »[0, 0, 0]", "zero-direction", "direction is zero"),
     changed("at: [0, 40, 0]", "at: [0, »40 deg, 0]", "expression", "expected a length", "angle"),
 ]
 

@@ -57,6 +57,20 @@ DRIVES = [
     started("efforts: {»D.q: 1}", "unknown-coordinate", "no coordinate q", "theta, s"),
     started("efforts: {D.s: »3 mm}", "expression", "expected a force", "length"),
     started("efforts: {D.s: »-2*D.s}", "expression", "expected a force", "length"),
+    changed(
+        "tables: [{name: t, columns: [O.theta]}]",
+        "responses: {go: {start: {O.theta: 20}, efforts: {O.theta: 3}, TIME}}\n"
+        "tables: [{name: t, run: go, columns: [»D.s.effort]}]".replace("TIME", TIME),
+        "expression",
+        "no effort acts at D.s in this response: efforts act at O.theta; ask for O.effort, or name",
+    ),
+    changed(
+        "tables: [{name: t, columns: [O.theta]}]",
+        "responses: {go: {start: {O.theta: 20}, TIME}}\n"
+        "tables: [{name: t, run: go, columns: [»B.effort]}]".replace("TIME", TIME),
+        "expression",
+        "no effort acts at B.theta in this response: there is no effort, or name B.theta under",
+    ),
     started("efforts: {O.theta: 1 N*mm*»row.mode}", "expression", "cannot read row.mode"),
     started("efforts: {O.theta: »O.moment.z}", "expression", "it follows from the loads"),
     started("efforts: {D.s: {table: f.csv, over: »D.s + 1 mm}}", "expression", "one quantity"),

@@ -179,7 +179,24 @@ LOADS = [
 COLUMNS = [
     column("»O.thetta", "expression", "O.thetta", "O.theta"),
     column("»O.force", "expression", "vector", ".x, .y or .z"),
-    column("»D.theta.effort", "expression", "D.theta.effort"),
+    column(
+        "»D.theta.effort",
+        "expression",
+        "nothing named D.theta.effort",
+        "D.theta is not an input: the input is O.theta; ask for O.effort, or drive D.theta",
+    ),
+    column("»D.effort", "expression", "D.theta and D.s are not inputs: the input is O.theta"),
+    column("»B.effort", "expression", "B.theta is not an input: the input is O.theta"),
+    column("»A.effort", "expression", "A has no coordinate: efforts act at O.theta"),
+    column("»rod.effort", "expression", "rod has no coordinate: efforts act at O.theta"),
+    column("»O.s.effort", "expression", "did you mean O.effort"),
+    changed(
+        "{O.theta: {from: -70, to: 70, step: 5}}}\nloads: [{type: gravity, g: [0, -9810, 0]}]\n"
+        "tables: [{name: t, columns: [O.theta]}]",
+        "{D.theta: {at: 0}, D.s: {at: 0}}}\ntables: [{name: t, columns: [»D.effort]}]",
+        "expression",
+        "it has two efforts: ask for D.theta.effort or D.s.effort",
+    ),
     column("O.theta + »D.s", "expression", "angle", "length"),
     column('"1 + »row.status"', "expression", "row.status"),
     column('"dot(O.force, »2)"', "expression", "vector"),
@@ -208,6 +225,12 @@ ACTUATORS = [
         "expression",
         "no effort acts at the input O.theta",
         "ask for D.effort, or add O.theta to actuators",
+    ),
+    changed(
+        "columns: [O.theta]}]",
+        "columns: [»B.effort]}]\nactuators: [D.s]",
+        "expression",
+        "no effort acts at B.theta: actuators act at D.s; ask for D.effort, or add B.theta to",
     ),
     inputs("{»pp.position.z: {at: 0}}", "unknown-point", "there is no point pp"),
     inputs("{»q.position.z: {at: 0}}", "point-on-ground", "q is a point of ground"),

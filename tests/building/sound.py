@@ -21,7 +21,7 @@ joints:
   B: {type: R, links: [rod, slider], point: [120, 0, 10], axis: [0, 0.2, 1]}
   D: {type: C, links: [ground, slider], point: [120, 0, 10], axis: [1, 0, 0]}
 points: {p: {link: crank, at: [0, 40, 0]}, q: {link: ground, at: [0, 0, 0]}}
-directions: {n: {link: crank, vector: [0, 1, 0]}}
+directions: {n: {link: crank, vector: [0, k, 0]}}
 motion: {inputs: {O.theta: {from: -70, to: 70, step: 5}}}
 loads: [{type: gravity, g: [0, -9810, 0]}]
 tables: [{name: t, columns: [O.theta]}]

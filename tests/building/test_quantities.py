@@ -160,3 +160,14 @@ def test_a_derivative_stands_in_no_parameter_and_no_load() -> None:
 
 def test_a_name_has_the_unit_of_what_it_stands_for(rows: Any) -> None:
     assert rows.unit("stroke") == "mm"
+
+
+def test_what_is_per_angle_is_per_rad(rows: Any) -> None:
+    """Of lengths, angles and plain numbers alike, whatever unit angles have."""
+    slope = "derivative(stroke/(1 mm), O.theta)"
+    assert rows.unit(slope) == "1/rad"
+    assert rows.unit("gain") == "mm/rad"
+    assert rows.unit("lean_gain") == ""
+    assert np.allclose(rows[slope], rows["gain"], rtol=1e-15)
+    assert rows.unit("derivative(3, O.theta)") == "1/rad"
+    assert (rows["derivative(3, O.theta)"] == 0.0).all()

@@ -27,6 +27,9 @@ directions: {{along: {{link: arm, vector: [1, 0, 0]}}}}
 motion: {{inputs: {{O.theta: {{values: {ANGLES}, rate: {RATE}}}}}}}
 """
 
+WITHOUT_K = PENDULUM.replace("parameters: {k: 60 N*mm}\n", "")
+"""For loads that do not use it."""
+
 EXPRESSIONS = {
     '{type: torque, joint: O, value: "-0.2 N*m*s*O.theta_dot + 3 N*m*sin(O.theta)"}': lambda a: (
         200 * RATE - 3000 * sin(a)
@@ -133,7 +136,7 @@ def test_a_table_over_the_joints_coordinate(tmp_path: Path) -> None:
     points = range(-80, 71, 10)
     table = "theta,torque\n" + "".join(f"{x},{3 * x * x - x + 5}\n" for x in points)
     load = "{type: torque, joint: O, value: {table: law.csv}}"
-    found = from_file(tmp_path, f"{PENDULUM}loads: [{load}]\n", table).analyze()
+    found = from_file(tmp_path, f"{WITHOUT_K}loads: [{load}]\n", table).analyze()
     assert found.diagnostics == ()
     expected = [-(3 * a * a - a + 5) for a in ANGLES]
     assert list(found["O.effort"]) == pytest.approx(expected, rel=1e-12)
@@ -162,7 +165,7 @@ def test_an_expression_of_time() -> None:
 
 def test_rows_outside_a_table_have_no_forces(tmp_path: Path) -> None:
     load = "{type: torque, joint: O, value: {table: law.csv}}"
-    text = f"{PENDULUM}loads: [{load}]\n"
+    text = f"{WITHOUT_K}loads: [{load}]\n"
     found = from_file(tmp_path, text, "theta,torque\n-30,1\n20,1\n").analyze(["row.power_error"])
     nothing = [True, False, False, False, True]
     assert list(np.isnan(found["O.effort"])) == nothing

@@ -51,7 +51,7 @@ def offered(folder: Path, line: str) -> list[str]:
         ("mechkin analyze craned/", ["craned/x.yml"]),
         ("mechkin analyze crank.yaml --table ", ["tip", "drive"]),
         ("mechkin analyze crank.yaml --table d", ["drive"]),
-        ("mechkin analyze crank.yaml --format ", ["csv", "md", "json"]),
+        ("mechkin analyze crank.yaml --format ", ["csv", "md", "json", "tex"]),
         ("mechkin analyze crank.yaml --set ", ["r="]),
         ("mechkin analyze craned/x.yml --table ", []),
         ("mechkin analyze nowhere.yaml --table ", []),

@@ -58,7 +58,8 @@ def test_every_option_of_analyze_is_described_and_exists() -> None:
 def test_every_option_named_anywhere_exists(name: str) -> None:
     group = typer.main.get_command(app)
     own = {option for parameter in group.params for option in parameter.opts}
-    known = {"--help"} | own.union(*options().values())
+    of_the_tests = {"--dist"}  # which pytest takes
+    known = {"--help"} | of_the_tests | own.union(*options().values())
     assert set(re.findall(r"(?<![-\w<])--[a-z]+[a-z-]*", page(name))) <= known
 
 

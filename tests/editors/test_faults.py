@@ -27,6 +27,14 @@ BAD = {
         joint("type: S, links: [ground, arm], point: {arm: [0, 0], ground: [0, 0, 0]}"),
         [(4, 51, "Array has too few items. Expected 3 or more.")],
     ),
+    "a point whose name is none": (
+        joint("type: S, links: [ground, arm], point: 2nd"),
+        [(4, 45, "String does not match the pattern")],
+    ),
+    "a point that is one number": (
+        joint("type: S, links: [ground, arm], point: 3"),
+        [(4, 45, "Incorrect type. Expected")],
+    ),
     "a thread without a lead": (
         joint("type: H, links: [ground, arm], point: [0, 0, 0], axis: [0, 0, 1]"),
         [(4, 3, 'Missing property "lead".')],
@@ -66,6 +74,15 @@ BAD = {
 def test_good_files_have_no_faults(editor: Server, name: str) -> None:
     file = MECHANISMS / f"{name}.yaml"
     assert editor.faults(file.read_text(encoding="utf-8"), file) == []
+
+
+def test_names_of_points_have_no_faults(editor: Server) -> None:
+    named = joint("type: R, links: [ground, arm], point: p, axis: [0, 0, 1]")
+    per_link = "  B: {type: S, links: [ground, arm], point: {ground: p, arm: [0, 0, 1]}}\n"
+    points = "points: {p: {link: arm, at: q}, q: {link: arm, at: [0, 0, 0]}}\n"
+    load = "loads: [{type: force, link: arm, point: p, force: [1, 0, 0]}]\n"
+    heavy = (named + per_link + points + load).replace("{}", "{mass: 1, center_of_mass: p}")
+    assert editor.faults(heavy) == []
 
 
 @pytest.mark.parametrize("name", BAD)

@@ -36,12 +36,12 @@ NOT_OFFERED = {
 }
 
 HOVERS = {
-    "a lead": (f"{TOP}  A:\n    type: H\n    le|ad: 3 mm\n", ["Length per turn", "0.5 in"]),
+    "a lead": (f"{TOP}  A:\n    type: H\n    le|ad: 3 mm\n", ["Length per turn", "5 mm"]),
     "a type": (f"{TOP}  A:\n    ty|pe: H\n", ["H: the second link turns by theta", "S: ball"]),
     "a point": (f"{TOP}  A:\n    type: S\n    po|int: [0, 0, 0]\n", ["home drawing", "10 mm"]),
     "units": ("format: 1\nun|its: {length: mm}\n", ["Units of bare numbers", "mm"]),
     "a rate": (f"{INPUT}ra|te: 3 rad/s\n", ["rad/s"]),
-    "a mass": ("format: 1\nlinks: {arm: {ma|ss: 3}}\n", ["lbm"]),
+    "a mass": ("format: 1\nlinks: {arm: {ma|ss: 3}}\n", ["0.4 kg"]),
 }
 
 

@@ -14,16 +14,18 @@ from mechkin_cli.expressions import FUNCTIONS, ExpressionError, Quantity, lookup
 from mechkin_cli.expressions.definitions import Definitions
 from mechkin_cli.expressions.differentiation import STEPS, TERMS, WHOLE, differentiated
 from mechkin_cli.expressions.limits import MAX_EXPANDED
-from mechkin_cli.expressions.nodes import Name, Node, Number
+from mechkin_cli.expressions.nodes import Name, Node
+from mechkin_cli.expressions.parser import parse_nodes
 
 COUNT = 40 * int(os.environ.get("MECHKIN_RANDOM", "5"))
 ROWS = {name: Quantity(np.array(rows)) for name, rows in NAMES.items()}
 STEP = mp.mpf("1e-12")
+PER_ANGLE = parse_nodes("1/(1 rad)")
 
 
 def rate(name: Name) -> tuple[Node, ...] | None:
-    """x moves alone."""
-    return (Number(1.0, None, "1", name.offset),) if name.text == "x" else None
+    """x moves alone, as an angle in rad does."""
+    return PER_ANGLE if name.text == "x" else None
 
 
 def by_x(nodes: tuple[Node, ...], by: Name, offset: int) -> tuple[Node, ...]:
@@ -69,6 +71,65 @@ def test_random_expressions() -> None:
             for row, one in zip(rows, expected, strict=True):
                 assert abs(row - float(one)) < 1e-9 * (1.0 + abs(float(one))), text
     assert followed > COUNT // 8
+
+
+# a condition that is not known or a chosen way alone tells nothing of the others
+CHOICES = {
+    "clip": (3, lambda x, least, most: min(max(x, least), most)),
+    "min": (2, min),
+    "max": (2, max),
+}
+
+
+@pytest.mark.parametrize("name", CHOICES)
+def test_a_choice_has_the_derivative_of_what_is_chosen(name: str) -> None:
+    """Bounds that move, in any order: the least above the most, too."""
+    count, choose = CHOICES[name]
+    draw = random.Random(name)
+    moving = [(lambda x: 2 * x, "2*x"), (lambda x: 1 - x * x, "(1 - x*x)"), (lambda x: x, "x")]
+    for _ in range(COUNT):
+        bounds = [draw.choice([-2.5, -0.5, 0.25, 1.5]) for _ in range(3)]
+        constant = [(lambda x, at=at: mp.mpf(at), f"({at})") for at in bounds]
+        parts = [draw.choice([*moving, *constant]) for _ in range(count)]
+        text = f"{name}({', '.join(written for _, written in parts)})"
+        found = DEFINITIONS.parse(f"derivative({text}, x)").evaluate(lookup(ROWS)).value
+        for row, at in enumerate(NAMES["x"]):
+            with mp.workdps(40):
+                values = [part(mp.mpf(at)) for part, _ in parts]
+                if len(set(values)) < count:
+                    continue
+                chosen = parts[values.index(choose(*values))][0]
+                slope = mp.diff(chosen, mp.mpf(at))
+            assert abs(np.broadcast_to(found, (3,))[row] - float(slope)) < 1e-12, text
+
+
+@pytest.mark.parametrize(
+    ("text", "there"),
+    [
+        ("log(x)", [True, False, True]),
+        ("atanh(x)", [True, False, False]),
+        ("acosh(x)", [False, False, True]),
+        ("x + sqrt(y)", [True, True, False]),
+        ("x*log(n)", [True, True, False]),
+        ("2*x + floor(1/(n - 1))", [True, False, True]),
+        ("[x, sqrt(y), 1].x", [True, True, True]),
+        ("if(x > 0, log(x), x)", [True, True, True]),
+        ("mod(x, y - 0.25)", [True, False, True]),
+        ("atan(1/(n - 1))*x/(1 rad)", [True, False, True]),
+    ],
+)
+def test_there_is_none_where_the_expression_has_no_value(text: str, there: list[bool]) -> None:
+    value = np.broadcast_to(parse(text).evaluate(lookup(ROWS)).value, (3,))
+    assert np.isfinite(value).tolist() == there
+    found = DEFINITIONS.parse(f"derivative({text}, x)").evaluate(lookup(ROWS)).value
+    assert np.isfinite(np.broadcast_to(found, (3,))).tolist() == there
+
+
+@pytest.mark.parametrize("text", ["x + log(-1)", "x*sqrt(0 - 4)", "clip(x, 1/0, 2)"])
+def test_a_constant_without_a_value_is_refused_in_a_derivative_too(text: str) -> None:
+    for whole in (text, f"derivative({text}, x)"):
+        with pytest.raises(ExpressionError, match=r"check the values of the parameters|negative"):
+            DEFINITIONS.parse(whole).evaluate(lookup(ROWS))
 
 
 def test_every_operation_has_a_rule() -> None:

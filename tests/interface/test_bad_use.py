@@ -64,6 +64,21 @@ def calls(model, analysis) -> dict[str, Callable[[Any], object]]:
         "ranges outputs": lambda x: model.ranges(outputs=x),
         "ranges one output": lambda x: model.ranges(outputs=[x]),
         "read": lambda x: analysis[x],
+        "unit": lambda x: analysis.unit(x),
+        "peak": lambda x: analysis.peak(x),
+        "to_pandas": lambda x: analysis.to_pandas([x]),
+        "plot y": lambda x: analysis.plot(x),
+        "plot x": lambda x: analysis.plot("O4.theta", x=[x]),
+        "plot table": lambda x: analysis.plot(table=[x]),
+        "plot to": lambda x: analysis.plot("O4.theta", to=[x]),
+        "view path": lambda x: analysis.view([x]),
+        "view run": lambda x: model.view("page.html", run=[x]),
+        "one error": lambda x: analysis.errors[x],
+        "error of a column": lambda x: analysis.errors["table_03", x],
+        "error of a pair": lambda x: analysis.errors[x, "theta4"],
+        "varied": lambda x: model.vary({"P1": 0.5}, ["O4.theta"])[x],
+        "vary run": lambda x: model.vary({"P1": 0.5}, ["O4.theta"], run=x),
+        "study": lambda x: model.study(x),
         "with_parameters": lambda x: model.with_parameters(x),
         "with_parameters P1": lambda x: model.with_parameters({"P1": x}),
         "vary parameters": lambda x: model.vary(x, ["O4.theta"]),
@@ -119,3 +134,44 @@ def test_random_values(name, model, analysis):
     call = calls(model, analysis)[name]
     refused = sum(check(call, bad_value(chance)) for _ in range(CALLS_PER_ARGUMENT))
     assert refused > CALLS_PER_ARGUMENT // 3
+
+
+def test_tables_take_numbers_slices_and_names(model):
+    for value in SINGLE:
+        try:
+            model.tables[value]
+        except (mk.UsageError, IndexError):
+            continue
+        except Exception as error:
+            pytest.fail(f"{shown(value)}: {type(error).__name__}")
+
+
+def test_columns_of_studies_take_texts(model):
+    found = model.study({"vary": {"P1": [0.5]}, "keep": [{"of": "O1.effort", "as": "peak"}]})
+    for value in SINGLE:
+        check(found.__getitem__, value)
+        check(found.unit, value)
+        check(found.to_pandas, value)
+
+
+def test_what_has_no_default_is_asked_for(analysis):
+    for call in (analysis.peak, analysis.unit):
+        with pytest.raises(mk.UsageError, match="expected a text such as"):
+            call(None)
+
+
+def test_solve_leaves_no_input_behind_that_follows_another() -> None:
+    """Its law is not evaluated, and its value of the first row would be wrong elsewhere."""
+    text = (
+        "format: 1\nlinks: {arm: {}, dial: {}}\njoints:\n"
+        "  A: {type: R, links: [ground, arm], point: [0, 0, 0], axis: [0, 0, 1]}\n"
+        "  E: {type: R, links: [ground, dial], point: [1, 0, 0], axis: [0, 0, 1]}\n"
+        "motion: {inputs: {A.theta: {from: 0, to: 40, step: 10}, E.theta: {with: 0.5*A.theta}}}\n"
+    )
+    model = mk.loads(text, "arm.yaml")
+    with pytest.raises(mk.UsageError, match=r"E\.theta follows other inputs by its law"):
+        model.solve({"A.theta": 30.0}, ["E.theta"])
+    for row in range(5):
+        values = {name: float(model.analyze()[name][row]) for name in ("A.theta", "E.theta")}
+        assert values["E.theta"] == pytest.approx(5.0 * row, abs=1e-12)
+        assert dict(model.solve(values, ["A.theta", "E.theta"])) == pytest.approx(values, abs=1e-12)

@@ -1,4 +1,4 @@
-"""Models cross processes: pickled, copied, with other parameters."""
+"""Models and what they answer cross processes: pickled, copied, with other parameters."""
 
 import copy
 import pickle
@@ -39,3 +39,53 @@ def test_a_copy_keeps_parameters() -> None:
     assert model.analyze()["O4.theta"].tobytes() == other.analyze()["O4.theta"].tobytes()
     study = {"P1": np.linspace(0.5, 0.52, 5)}
     assert (model.vary(study)["O4.theta"] == other.vary(study)["O4.theta"]).all()
+
+
+PICKLED = [lambda r: pickle.loads(pickle.dumps(r)), copy.deepcopy]
+
+
+@pytest.mark.parametrize("again", PICKLED)
+@pytest.mark.parametrize(
+    ("stem", "asked"),
+    [
+        ("rcsr", {"quantities": ["O4.theta_ddot"], "tables": ["table_04"], "mode": "B"}),
+        ("rcsr", {"closed_at": ["O2"], "lanes": 2, "threads": 1}),
+        ("rcsr_csr", {"tables": []}),
+        ("five_link_suspension", {}),
+        ("planar_shaper", {}),
+    ],
+)
+def test_a_copy_of_an_analysis_has_the_same_rows(again, stem, asked) -> None:
+    run = mk.load(MECHANISMS / f"{stem}.yaml").analyze(**asked)
+    other = again(run)
+    for name in (*run.model.problem.mechanism.coordinates, "row.condition"):
+        assert run[name].tobytes() == other[name].tobytes()
+    assert other.tables.keys() == run.tables.keys()
+    for one, two in zip(run.tables, other.tables, strict=True):
+        for a, b in zip(one.columns, two.columns, strict=True):
+            assert (a.label, a.unit, a.decimals) == (b.label, b.unit, b.decimals)
+            assert a.values.tobytes() == b.values.tobytes()
+    assert other.result.mode == run.result.mode
+    assert other.result.session.closed_at == run.result.session.closed_at
+    assert list(map(str, other.diagnostics)) == list(map(str, run.diagnostics))
+
+
+@pytest.mark.parametrize("again", PICKLED)
+def test_a_copy_of_a_response_keeps_parameters(again) -> None:
+    model = mk.load(MECHANISMS / "rcsr_response.yaml").with_parameters({"P1": 0.49})
+    run = model.respond()
+    assert (run["O4.theta"] != mk.load(model.built.read.document.file).respond()["O4.theta"]).any()
+    other = again(run)
+    assert run["O4.theta"].tobytes() == other["O4.theta"].tobytes()
+    assert other.model.problem.parameters["P1"].value == pytest.approx(0.49 * 0.0254, rel=1e-15)
+
+
+@pytest.mark.parametrize("again", PICKLED)
+def test_answers_are_copied(again) -> None:
+    model = mk.load(MECHANISMS / "rcsr.yaml")
+    run = model.analyze()
+    assert np.array_equal(again(run.errors)["theta4"], run.errors["theta4"])
+    for answer in (run.tables, model.solve(161.0), model.modes(certify=True), model.ranges()):
+        assert len(again(answer) if hasattr(answer, "__len__") else [again(answer)]) > 0
+    for answer in (model.mobility(), run.certificate, run.summary(), run.peak("O1.effort")):
+        assert repr(again(answer)) == repr(answer)

@@ -106,7 +106,7 @@ def test_a_label_of_two_tables_has_to_be_told_apart(planted):
     errors = mk.loads(TEXT).analyze().errors
     with pytest.raises(mk.UsageError, match=r'errors\["one", "x"\]'):
         errors["x"]
-    with pytest.raises(mk.UsageError, match="no column z"):
+    with pytest.raises(mk.UsageError, match=r"no column one\.z"):
         errors["one", "z"]
 
 

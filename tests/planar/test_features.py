@@ -283,3 +283,67 @@ def test_gravity_straight_down_is_along_minus_y() -> None:
     assert (one["O.effort"] == other["O.effort"]).all()
     data["loads"] = [{"type": "gravity", "g": "standard", "direction": [1, 0]}]
     assert not (mk.loads(json.dumps(data)).analyze()["O.effort"] == one["O.effort"]).any()
+
+
+VECTORS = [
+    "pen.position",
+    "pen.velocity",
+    "A.force",
+    "arrow",
+    "[1, 2]",
+    "2*pen.position - post.position",
+]
+SCALARS = ["coupler.omega", "A.moment", "C.theta", "ground.shaking_moment"]
+
+
+def test_a_position_tells_what_the_rows_tell() -> None:
+    """Vectors of two components, turns and moments of one, also where the branch ends."""
+    model = mk.loads(json.dumps(four_bar()))
+    run = model.analyze()
+    names = [name for name in (*VECTORS, *SCALARS) if name in run]
+    assert len(names) == 8
+    rows = range(run.rows)
+    for row in rows:
+        found = model.solve({"O.theta": float(run["O.theta"][row])}, names)
+        for name in names:
+            assert np.shape(found[name]) == run[name][row].shape
+            assert np.abs(found[name] - run[name][row]).max() < NEAR * 100
+    beyond = four_bar()
+    beyond["joints"]["C"]["point"] = [2.9, 0]
+    beyond["joints"]["B"]["point"] = {"coupler": [1.2, 0.9], "rocker": [1.2, 0.9]}
+    model = mk.loads(json.dumps(beyond))
+    lost = next(
+        found
+        for angle in np.linspace(0.0, 6.2, 60)
+        if (found := model.solve({"O.theta": float(angle)}, names)).status != "ok"
+    )
+    assert {name: np.shape(lost[name]) for name in names} == {
+        name: run[name][0].shape for name in names
+    }
+
+
+def test_vectors_as_data_frames() -> None:
+    pytest.importorskip("pandas")
+    run = mk.loads(json.dumps(four_bar())).analyze()
+    frame = run.to_pandas([*VECTORS, *SCALARS])
+    labels = [f"{name}.{axis}" for name in VECTORS[:4] for axis in "xy"]
+    labels += [f"({name}).{axis}" for name in VECTORS[4:] for axis in "xy"]
+    assert list(frame.columns) == [*labels, *SCALARS]
+    for label in frame.columns:
+        assert np.array_equal(frame[label], run[label])
+        assert frame.attrs["units"][label] == run.unit(label)
+
+
+@pytest.mark.parametrize("reduce", ["max", "peak", ["min", "rms"], lambda rows: rows[:, 0], None])
+def test_vectors_of_variants(reduce: Any) -> None:
+    model = mk.loads(json.dumps(four_bar()))
+    radii = [0.39, 0.4, 0.41]
+    names = [*VECTORS, *SCALARS]
+    found = model.vary({"r": radii}, names, reduce=reduce)
+    alone = model.vary({"r": radii}, [f"({n}).{axis}" for n in VECTORS for axis in "xy"], reduce)
+    for name in VECTORS:
+        parts = [alone[f"({name}).{axis}"] for axis in "xy"]
+        whole = found[name]
+        axis = 2 if reduce is None else 1
+        assert whole.shape[axis] == 2
+        assert np.array_equal(np.moveaxis(whole, axis, 0), parts)

@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 import pytest
+import yaml
 from references import RCSR
 
 import mechkin_cli as mk
@@ -193,3 +194,27 @@ def test_plot_gives_the_figure_and_writes_it(analysis, tmp_path):
     assert (tmp_path / "effort.png").read_bytes().startswith(b"\x89PNG")
     with pytest.raises(mk.UsageError, match=r"end in \.svg, \.png, \.pdf"):
         analysis.plot("A.effort", to=tmp_path / "effort.gif")
+
+
+@pytest.mark.parametrize("ending", ["svg", "png", "pdf"])
+@pytest.mark.parametrize(
+    "text", ["costs $5 and $6", "$x_{$", "$", "$\\frac{1}$ $", "a_b^c \\alpha", "日本 ⚙ \u0950"]
+)
+def test_titles_and_labels_are_no_formulas(text, ending, recwarn):
+    """Any text of a file stands in pictures as it is written, and nothing is said about fonts."""
+    data = yaml.safe_load(FOUR_BAR)
+    data["name"] = data["tables"][0]["title"] = text
+    data["tables"][0]["columns"] = ["A.theta", {"label": text, "value": "D.theta"}]
+    run = mk.load(data).analyze()
+    for found in (run.picture(table="sizes"), run.picture(["tip.position"])):
+        assert found.title == text
+        assert len(image(found, ending)) > 1000
+        titles = [axes.get_title() for axes in drawn(found).axes]
+        assert titles[0].startswith(text)
+    assert not [str(one.message) for one in recwarn.list]
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_the_vector_is_named_as_the_vector(analysis, order):
+    with pytest.raises(mk.UsageError, match=r"^tip\.position is a vector.* without A\.theta;"):
+        analysis.picture(["A.theta", "tip.position"][::order])

@@ -51,6 +51,8 @@ EDITORS_ACCEPT = {
     "unknown-link": CROSSING,
     "unknown-joint": CROSSING,
     "unknown-point": CROSSING,
+    "point-of-another-link": CROSSING,
+    "circular-place": CROSSING,
     "unknown-coordinate": CROSSING,
     "disconnected-link": CROSSING,
     "load-on-ground": CROSSING,

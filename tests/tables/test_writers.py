@@ -16,7 +16,12 @@ def results(source, layout):
 
 
 def test_each_format_writes_its_files(results):
-    kinds = {"csv": ["table.csv"], "md": ["table.md"], "json": ["analysis.json"]}
+    kinds = {
+        "csv": ["table.csv"],
+        "md": ["table.md"],
+        "json": ["analysis.json"],
+        "tex": ["table.tex"],
+    }
     assert list(writers.WRITERS) == list(kinds)
     for name, files in kinds.items():
         assert list(writers.written_files([results], [name])) == [*files, "rows.csv"]
@@ -46,5 +51,5 @@ def test_a_new_format_is_one_entry(results, monkeypatch):
 
 
 def test_an_unknown_format_is_refused_with_the_list():
-    with pytest.raises(UsageError, match="--format xml: formats are csv, md, json"):
+    with pytest.raises(UsageError, match="--format xml: formats are csv, md, json, tex"):
         analyze._formats(["xml"])

@@ -125,6 +125,37 @@ def test_the_cylinder_arms_triangle_and_moments() -> None:
     assert off(rows["cylinder.effort"] / (weight * np.cos(boom) / lever), 1.0) < 1e-12
 
 
+def test_the_deltas_tool_is_where_three_spheres_meet() -> None:
+    rows = rows_of("delta")
+    # each parallelogram holds a point of the tool at one distance from its elbow, drawn inwards
+    long = np.hypot(120.0 + 100.0 - 40.0, 220.0)
+    centres = []
+    for number, turn in enumerate(np.radians([0.0, 120.0, 240.0])):
+        arm = np.radians(rows[f"M{number + 1}.theta"])
+        out = 120.0 + 100.0 * np.cos(arm) - 40.0
+        centres.append([out * np.cos(turn), out * np.sin(turn), -100.0 * np.sin(arm)])
+    first, second, third = (np.array(one).T for one in centres)
+    # the lower of the two points that three spheres of one radius share (trilateration)
+    x = (second - first) / np.linalg.norm(second - first, axis=1)[:, None]
+    along = np.sum(x * (third - first), axis=1)
+    across = third - first - along[:, None] * x
+    y = across / np.linalg.norm(across, axis=1)[:, None]
+    z = np.cross(x, y)
+    d, j = np.linalg.norm(second - first, axis=1), np.linalg.norm(across, axis=1)
+    u = d / 2.0
+    v = (along**2 + j**2 - 2.0 * along * u) / (2.0 * j)
+    w = np.sqrt(long**2 - u**2 - v**2)
+    place = first + u[:, None] * x + v[:, None] * y - w[:, None] * z
+    tip = np.stack([rows[f"tip.position.{axis}"] for axis in "xyz"], axis=-1)
+    assert off(tip, place) < 1e-9
+    # massless arms and rods: the motors' power lifts and speeds up the tool alone
+    rates = (1.0, 0.75, 0.5)
+    power = sum(rows[f"M{k + 1}.effort"] * rate for k, rate in enumerate(rates))
+    velocity, acceleration = rows["tip.velocity"], rows["tip.acceleration"]
+    thrust = 0.4 * (acceleration + np.array([0.0, 0.0, 9806.65])) / 1000.0
+    assert off(power, np.sum(thrust * velocity, axis=1)) < 1e-8
+
+
 def test_the_suspensions_links_keep_their_lengths_and_its_roll_centre() -> None:
     rows = rows_of("suspension")
     for one, other in (("rod_inner", "rod_outer"), ("lower_ball", "upper_ball")):

@@ -51,11 +51,18 @@ class KernelRows:
     Args:
         result: the run.
         precise: the numbers of its session as the text says them.
+        chosen: rows that are wanted (rows,); None: all.
+
+    Attributes:
+        residual: (rows,) the largest residual of closing a row so far, as a row's own; nan where
+            nothing was closed.
     """
 
-    def __init__(self, result: Result, precise: Precise) -> None:
+    def __init__(self, result: Result, precise: Precise, chosen: Bools | None = None) -> None:
         self.result = result
         self.precise = precise
+        self.chosen = chosen
+        self.residual: Floats = np.full(result.rows, np.nan)
         self._known: dict[int, tuple[Session, Floats]] = {}
 
     @property
@@ -66,7 +73,8 @@ class KernelRows:
     @property
     def known(self) -> Bools:
         """Rows that are repeated (rows,)."""
-        return self.result.row_states.reached
+        reached = self.result.row_states.reached
+        return reached if self.chosen is None else reached & self.chosen
 
     @cached_property
     def inputs(self) -> KernelInputs:
@@ -122,7 +130,7 @@ class KernelRows:
     ) -> tuple[DoubleDoubles, DoubleDoubles | None]:
         rows, given, forces = self.result.row_states, self.given, demand & Demand.FORCES
         known = self.known
-        at = np.where(known, np.arange(known.size), known.argmax())
+        at = np.flatnonzero(known) if known.any() else np.zeros(1, dtype=np.intp)
 
         def parts(numbers: Any) -> Floats:
             return as_parts(numbers)[..., at]
@@ -144,15 +152,11 @@ class KernelRows:
             time=None if given.time is None else np.ascontiguousarray(given.time[:, at]),
         )
         # what the text does not close exactly is solved by least squares, as in doubles
-        closed = batch.good | session.is_redundant
-        states = as_number(batch.states)
-        closed &= self.known
-        states[:, ~closed] = np.nan
-        if batch.outputs is None:
-            return states, None
-        values = as_number(batch.outputs)
-        values[:, ~closed] = np.nan
-        return states, values
+        closed = (batch.good | session.is_redundant) & known[at]
+        self.residual[at] = np.fmax(self.residual[at], batch.residual[0])
+        outputs = batch.outputs
+        values = None if outputs is None else _put_back(outputs, at, closed, known.size)
+        return _put_back(batch.states, at, closed, known.size), values
 
     def _start(self, at: NDArray[np.intp], session: Session) -> dict[str, Any]:
         """What `Session.run_precise` starts `session` from at the rows `at`."""
@@ -163,3 +167,11 @@ class KernelRows:
         if id(session) not in self._known:
             self._known[id(session)] = (session, self.precise.constants(session))
         return self._known[id(session)][1]
+
+
+def _put_back(found: Floats, at: NDArray[np.intp], closed: Bools, rows: int) -> DoubleDoubles:
+    """Numbers (numbers, 2, places) of the rows `at` among all; nan elsewhere and where a row did
+    not close."""
+    numbers = np.full((len(found), 2, rows), np.nan)
+    numbers[..., at[closed]] = found[..., closed]
+    return as_number(numbers)

@@ -219,4 +219,4 @@ def _list(words: Iterable[str]) -> str:
 
 def _rank(matrix: Floats) -> int:
     values = np.linalg.svd(matrix, compute_uv=False)
-    return int(np.count_nonzero(values > tolerances.RANK_ZERO * values[0]))
+    return int(np.count_nonzero(values > tolerances.RANK_ZERO * values.max(initial=0.0)))

@@ -27,8 +27,7 @@ from mechkin_cli.analysis.sweep.proven import Proven
 from mechkin_cli.analysis.sweep.read_off import read_off
 from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.mechanism.bearing_loads import BEARING_KINDS, bearing_load
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
-from mechkin_cli.mechanism.drives import without_effort
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import WRENCH_KINDS, demand_of, forces_demand
 from mechkin_cli.solver.inputs import input_rest
@@ -237,8 +236,7 @@ class Result(Proven):
             return Quantity(self._verdict(ROW_NUMBERS[name]), DIMENSIONLESS)
         wanted = problem.quantities().get(name)
         if wanted is None:
-            passive = without_effort(problem.mechanism.drives, name)
-            raise UnknownName(name, sorted(self._columns), passive or hint_of(name))
+            raise UnknownName(name, sorted(self._columns), problem.why_not(name))
         if wanted.kind in BEARING_KINDS:
             return bearing_load(wanted, self.quantity)
         if (given := self._given(name)) is not None:

@@ -28,12 +28,17 @@ SECOND_DIFFICULT = (
     1371,
     1461,
     *(21, 48, 64, 121, 179, 209, 267, 1102, 1123, 1354, 1392, 1469, 200267, 300808),
-    *(300839, 300933, 301277, 301509, 301644, 301645, 301912, 301930, 400326),
+    *(300839, 300933, 301277, 301509, 301644, 301912, 301930, 400326),
 )
 """The same of the second series."""
 
 SECOND_NOT_YET: frozenset[int] = frozenset({300839})
 """As above."""
+
+SECOND_MARGINAL: frozenset[int] = frozenset({301645})
+"""Of the second series: whether rows are given up beside a singular place (least singular value
+1e-5) depends on the last digits of the drawing, which numpy's matrix products leave to the
+processor. They are never wrong."""
 
 THIRD_NOT_YET: frozenset[int] = frozenset()
 """Of the third series."""

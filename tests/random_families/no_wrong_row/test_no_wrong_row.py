@@ -10,6 +10,7 @@ from random_families.no_wrong_row.difficult import (
     DIFFICULT,
     NOT_YET,
     SECOND_DIFFICULT,
+    SECOND_MARGINAL,
     SECOND_NOT_YET,
     THIRD_NOT_YET,
 )
@@ -57,7 +58,10 @@ def test_second_not_yet(number: int) -> None:
 
 @pytest.mark.parametrize(
     ("number", "series"),
-    [*((n, 1) for n in sorted(NOT_YET)), *((n, 2) for n in sorted(SECOND_NOT_YET))],
+    [
+        *((n, 1) for n in sorted(NOT_YET)),
+        *((n, 2) for n in sorted(SECOND_NOT_YET | SECOND_MARGINAL)),
+    ],
 )
 def test_what_is_lost_is_not_wrong(number: int, series: int) -> None:
     faults = run_one(number, series).faults

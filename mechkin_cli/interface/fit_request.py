@@ -1,0 +1,258 @@
+"""What a fit is asked: parameters with bounds, targets, constraints; all checked first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
+from mechkin_cli.expressions import Vector
+from mechkin_cli.interface.arguments import a_setting, shown
+from mechkin_cli.interface.given import one_value, parameter_values
+from mechkin_cli.interface.settings import input_values
+from mechkin_cli.interface.variant_runs import sample_of
+from mechkin_cli.interface.variants import expressions_of
+from mechkin_cli.nearest import nearest_hint
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.mechanism.problem import Problem
+
+TARGET_KEYS = ("of", "is", "at", "least", "within", "label")
+CONSTRAINT_KEYS = ("of", "min", "max", "label")
+LEAST = ("peak", "rms")
+"""What of a quantity can be made small."""
+
+EXAMPLE = '{"of": "C.theta", "at": [0, 40], "is": [50, 62]}, or {"of": "O.effort", "least": "peak"}'
+
+
+class Bounds(NamedTuple):
+    """A parameter that is sought: bounds and its own value, in the file's units."""
+
+    name: str
+    lower: float
+    upper: float
+    own: float
+    unit: str
+
+
+class Target(NamedTuple):
+    """What a quantity should be.
+
+    Attributes:
+        of: a quantity or an expression.
+        wanted: (points, width) in the file's units; none where it is to be `least`.
+        at: inputs of the points in the file's units; None: where the curve comes nearest.
+        least: "peak" or "rms"; "" where values are wanted.
+        within: what counts as one, in the file's units.
+        unit: of the quantity.
+        width: 1, or the components of a vector.
+    """
+
+    of: str
+    wanted: Floats
+    at: tuple[float, ...] | None
+    least: str
+    within: float
+    label: str
+    unit: str
+    width: int
+
+
+class Constraint(NamedTuple):
+    """Bounds of an expression in every row of the sweep, in the file's units."""
+
+    of: str
+    lower: float
+    upper: float
+    label: str
+    unit: str
+
+
+class Request(NamedTuple):
+    """All that is asked."""
+
+    parameters: tuple[Bounds, ...]
+    targets: tuple[Target, ...]
+    constraints: tuple[Constraint, ...]
+
+
+def request(problem: Problem, targets: Any, parameters: Any, constraints: Any) -> Request:
+    """Checked, in the file's units.
+
+    Raises:
+        UsageError: what is wrong first, and what to write.
+    """
+    found = tuple(
+        _target(problem, f"targets[{k}]", one)
+        for k, one in enumerate(_several("targets", targets, EXAMPLE))
+    )
+    if not found:
+        raise UsageError(f"targets: there is none; give one such as {EXAMPLE}")
+    example = '{"of": "C.theta", "min": "40 deg"}'
+    held = tuple(
+        _constraint(problem, f"constraints[{k}]", one)
+        for k, one in enumerate(_several("constraints", constraints, example))
+    )
+    units = {target.unit for target, _ in found}
+    for number, (target, has_scale) in enumerate(found):
+        if len(units) > 1 and not has_scale:
+            raise UsageError(
+                f"targets[{number}]: targets have different units ({', '.join(sorted(units))}), so "
+                f'each needs within:, the deviation that counts as one, such as "1 {target.unit}"'
+            )
+    return Request(_bounds(problem, parameters), tuple(t for t, _ in found), held)
+
+
+def _bounds(problem: Problem, parameters: Any) -> tuple[Bounds, ...]:
+    example = '{"a": ("20 mm", "60 mm")}'
+    if not isinstance(parameters, Mapping) or not parameters:
+        raise UsageError(f"parameters: expected bounds by name such as {example}")
+    pairs: dict[str, tuple[Any, Any]] = {}
+    for name, pair in parameters.items():
+        if isinstance(pair, str) or not isinstance(pair, Sequence) or len(pair) != 2:
+            raise UsageError(
+                f"parameters: {str(name)[:LONGEST_NAME]} has {shown(pair)}; write the least and "
+                f"the largest value, as {example}"
+            )
+        pairs[name] = (pair[0], pair[1])
+    lower = parameter_values(problem, {name: pair[0] for name, pair in pairs.items()})
+    upper = parameter_values(problem, {name: pair[1] for name, pair in pairs.items()})
+    found = []
+    for name, low in lower.items():
+        known = problem.parameters[name]
+        own = float(known.value)  # type: ignore[arg-type]
+        ends = [float(problem.units.from_si(v, known.dimension)) for v in (low, upper[name], own)]
+        unit = problem.units.label(known.dimension)
+        if not ends[0] < ends[1]:
+            raise UsageError(
+                f"parameters: the bounds of {name} are {ends[0]:g} and {ends[1]:g} {unit}".rstrip()
+                + "; write the smaller one first"
+            )
+        found.append(Bounds(name, ends[0], ends[1], ends[2], unit))
+    return tuple(found)
+
+
+def _target(problem: Problem, place: str, given: Any) -> tuple[Target, bool]:
+    """A target, and whether it says what counts as one."""
+    of, unit, width = _quantity(problem, place, given, TARGET_KEYS, EXAMPLE)
+    if ("is" in given) == ("least" in given):
+        raise UsageError(
+            f"{place}: say either what {of[:LONGEST_NAME]} should be (is:) or that it should be "
+            "small (least:)"
+        )
+    least, at = given.get("least", ""), None
+    if "least" in given:
+        if least not in LEAST:
+            raise UsageError(f"{place}: least is {shown(least)}; it is one of {', '.join(LEAST)}")
+        if "at" in given:
+            raise UsageError(f"{place}: what should be least counts in all rows; leave out at:")
+        if width > 1 and least == "peak":
+            raise UsageError(f"{place}: {of} is a vector; write norm({of})")
+        wanted = np.zeros((0, width))
+    else:
+        wanted = _points(problem, place, of, given["is"], width)
+        if "at" in given:
+            items = given["at"]
+            items = items if isinstance(items, Iterable) and not isinstance(items, str) else [items]
+            at = tuple(_input(problem, f"{place}: at", item) for item in items)
+            if len(at) != len(wanted):
+                raise UsageError(
+                    f"{place}: {len(wanted)} values and {len(at)} inputs; each needs one"
+                )
+        elif width == 1:
+            raise UsageError(
+                f"{place}: a number is met somewhere by most curves; say at which inputs, at: [...]"
+            )
+    within = 1.0
+    if "within" in given:
+        within = _value(problem, f"{place}: within", of, given["within"])
+        if not within > 0.0:
+            raise UsageError(f"{place}: within is {within:g}; write a deviation above zero")
+    label = str(given.get("label", of if not least else f"{least}({of})"))
+    return Target(of, wanted, at, least, within, label, unit, width), "within" in given
+
+
+def _constraint(problem: Problem, place: str, given: Any) -> Constraint:
+    example = '{"of": "norm(A.force)", "max": "50 N"}'
+    of, unit, width = _quantity(problem, place, given, CONSTRAINT_KEYS, example)
+    if width > 1:
+        raise UsageError(f"{place}: {of} is a vector; bound a component or norm({of})")
+    if "min" not in given and "max" not in given:
+        raise UsageError(f"{place}: add min: or max:, as {example}")
+    ends = {"min": -np.inf, "max": np.inf}
+    for key in ends.keys() & given.keys():
+        ends[key] = _value(problem, f"{place}: {key}", of, given[key])
+    if ends["min"] > ends["max"]:
+        raise UsageError(f"{place}: min is above max; exchange them")
+    return Constraint(of, ends["min"], ends["max"], str(given.get("label", of)), unit)
+
+
+def _quantity(
+    problem: Problem, place: str, given: Any, keys: Sequence[str], example: str
+) -> tuple[str, str, int]:
+    """Text, unit and width of what a target or a constraint is of."""
+    if not isinstance(given, Mapping) or not isinstance(given.get("of"), str):
+        raise UsageError(f"{place}: expected a dict such as {example}, not {shown(given)}")
+    for key in given:
+        if key not in keys:
+            hint = nearest_hint(str(key), list(keys)) or f"keys are {', '.join(keys)}"
+            raise UsageError(f"{place}: there is no key {str(key)[:LONGEST_NAME]}; {hint}")
+    of = given["of"]
+    try:
+        expression = expressions_of([of], problem)[of]
+    except UsageError as error:
+        raise UsageError(f"{place}: {error}") from None
+    found = expression.evaluate(sample_of(problem), problem.units)
+    width = len(found.value.components) if isinstance(found.value, Vector) else 1
+    return of, problem.units.label(found.dimension), width
+
+
+def _value(problem: Problem, place: str, of: str, value: Any) -> float:
+    """A value with the dimension of an expression, in the file's units."""
+    expression = expressions_of([of], problem)[of]
+    dimension = expression.evaluate(sample_of(problem), problem.units).dimension
+    in_si = one_value(place, a_setting(place, value), dimension, problem.units)
+    return float(problem.units.from_si(in_si, dimension))
+
+
+def _points(problem: Problem, place: str, of: str, given: Any, width: int) -> Floats:
+    """(points, width) in the file's units."""
+    wrong = UsageError(
+        f"{place}: is should be a list of "
+        + ("values" if width == 1 else f"points of {width} numbers")
+        + f", not {shown(given)}"
+    )
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        given = [given]
+    rows = []
+    for point in given:
+        parts = [point] if width == 1 else point
+        if isinstance(parts, str) or not isinstance(parts, Iterable):
+            raise wrong
+        parts = list(parts)
+        if len(parts) != width:
+            raise wrong
+        component = of if width == 1 else f"dot({of}, {of})/norm({of})"
+        rows.append([_value(problem, f"{place}: is", component, part) for part in parts])
+    if not rows:
+        raise wrong
+    return np.array(rows)
+
+
+def _input(problem: Problem, place: str, value: Any) -> float:
+    """A value of the input that moves, in the file's units."""
+    try:
+        return next(iter(input_values(problem, a_setting(place, value)).values()))
+    except UsageError as error:
+        raise UsageError(f"{place}: {error}") from None
+
+
+def _several(name: str, given: Any, example: str) -> list[Any]:
+    if isinstance(given, Mapping):
+        return [given]
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise UsageError(f"{name}: expected a list of dicts such as {example}, not {shown(given)}")
+    return list(given)

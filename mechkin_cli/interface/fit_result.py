@@ -1,0 +1,240 @@
+"""What a fit has found, measured anew on the mechanism that it gives."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.fitting.nearest_place import nearest_places
+from mechkin_cli.interface.fit_request import Constraint, Target
+from mechkin_cli.interface.fit_values import SOLVED, FitValues, deviations, margins_of
+from mechkin_cli.listing import Listed, Listing
+from mechkin_cli.tolerances import FIT_AT_BOUND, FIT_HELD
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.fitting.measures import Measured
+    from mechkin_cli.fitting.search import Found
+    from mechkin_cli.interface.analysis import Analysis
+    from mechkin_cli.interface.model import Model
+
+FITTED = "fitted"
+NOT_CONVERGED = "not-converged"
+VIOLATED = "violated"
+NOT_ASSEMBLED = "not-assembled"
+
+
+class Met(NamedTuple):
+    """How a target is met.
+
+    Attributes:
+        label, unit: of the target.
+        inputs: (points,) where its values stand, in the file's units; empty where it is least.
+        values: (points, width); of what is least its peak or rms (1, 1).
+        deviations: from what was wanted, as values, in the file's units.
+    """
+
+    label: str
+    unit: str
+    inputs: Floats
+    values: Floats
+    deviations: Floats
+
+    @property
+    def largest(self) -> float:
+        """The largest distance from what was wanted; of what is least, its value."""
+        return float(np.linalg.norm(self.deviations, axis=1).max())
+
+    @property
+    def rms(self) -> float:
+        """The root of the mean of the distances squared."""
+        return float(np.sqrt(np.square(self.deviations).sum(axis=1).mean()))
+
+
+class Held(NamedTuple):
+    """Whether a constraint holds: the value nearest to its bound, the bound, the row (from 0)."""
+
+    label: str
+    unit: str
+    bound: float
+    value: float
+    row: int
+    holds: bool
+
+
+class Fit(Listed):
+    """The dimensions that were found.
+
+    Attributes:
+        parameters: values by name, in the file's units.
+        units: their units.
+        model: the mechanism that has them.
+        evaluations: variants that were computed, those of derivatives among them.
+        costs: what each local search reached: half the sum of the squares of what was asked, in
+            parts of `within`; nan where nothing assembled.
+    """
+
+    def __init__(self, values: FitValues, best: Found, measured: Measured) -> None:
+        self._values, self._best = values, best
+        request = values.request
+        found = values.values(best.unknowns[:, None])
+        self.parameters = {name: float(value[0]) for name, value in found.items()}
+        self.units = {one.name: one.unit for one in request.parameters}
+        self.model: Model = values.models.model.with_parameters(self.parameters)
+        self.evaluations, self.slopes_taken = measured.evaluations, measured.slopes_taken
+        self.costs = best.costs
+
+    @property
+    def cost(self) -> float:
+        """Half the sum of the squares of what was asked, in parts of `within`."""
+        return float(self._best.measures.costs[0])
+
+    @cached_property
+    def rows_not_ok(self) -> int:
+        """Rows of the sweep without a solution."""
+        return int((~SOLVED[self._sweep.result.status]).sum())
+
+    @cached_property
+    def at_bounds(self) -> dict[str, str]:
+        """The parameters that lie at a bound, and at which: `lower` or `upper`."""
+        sides = {}
+        for one, part in zip(self._values.request.parameters, self._best.unknowns, strict=True):
+            if part <= FIT_AT_BOUND or part >= 1.0 - FIT_AT_BOUND:
+                sides[one.name] = "lower" if part < 0.5 else "upper"
+        return sides
+
+    @property
+    def status(self) -> str:
+        """`fitted`; `not-converged` where the search stopped early; `violated` where a constraint
+        does not hold; `not-assembled` where rows or targets have no solution."""
+        if self.rows_not_ok or self._best.measures.missing[0] > 0.0:
+            return NOT_ASSEMBLED
+        if not all(one.holds for one in self.constraints):
+            return VIOLATED
+        return FITTED if self._best.ended else NOT_CONVERGED
+
+    @property
+    def reason(self) -> str:
+        """Why that is the status, in a sentence."""
+        status = self.status
+        if status == NOT_ASSEMBLED:
+            rows = self._sweep.rows
+            return (
+                f"no variant that was tried has a solution everywhere; the best misses "
+                f"{self.rows_not_ok} of {rows} rows of the sweep; widen the bounds, shorten the "
+                "sweep, or take more generations"
+            )
+        if status == VIOLATED:
+            worst = next(one for one in self.constraints if not one.holds)
+            return (
+                f"{worst.label} reaches {worst.value:.6g} {worst.unit} in row {worst.row + 1}, its "
+                f"bound is {worst.bound:g}; within these bounds no variant that was tried holds "
+                "all constraints"
+            )
+        return self._best.reason
+
+    @cached_property
+    def targets(self) -> tuple[Met, ...]:
+        """How each target is met, in the order in which they were given."""
+        return tuple(self._met(target) for target in self._values.request.targets)
+
+    @cached_property
+    def constraints(self) -> tuple[Held, ...]:
+        """How each bound is held, where it is nearest to be exceeded."""
+        return tuple(held for one in self._values.request.constraints for held in self._held(one))
+
+    @property
+    def yaml(self) -> str:
+        """The lines of `parameters:` that have changed, to paste into the file."""
+        units = self.units
+        lines = [f"  {n}: {v!r} {units[n]}".rstrip() for n, v in self.parameters.items()]
+        return "\n".join(["parameters:", *lines, ""])
+
+    @property
+    def listing(self) -> Listing:
+        """Parameters, targets and constraints."""
+        rows = []
+        for one in self._values.request.parameters:
+            side = self.at_bounds.get(one.name)
+            told = f"{one.lower:g} to {one.upper:g}" + (f", at the {side} bound" if side else "")
+            rows.append((one.name, f"{self.parameters[one.name]:.9g}", one.unit, told))
+        for met, target in zip(self.targets, self._values.request.targets, strict=True):
+            if target.least:
+                rows.append((met.label, f"{met.largest:.6g}", met.unit, f"least {target.least}"))
+            else:
+                told = f"largest deviation of {len(target.wanted)}"
+                rows.append((met.label, f"{met.largest:.3g}", met.unit, told))
+        for held in self.constraints:
+            word = "holds" if held.holds else "DOES NOT HOLD"
+            told = f"bound {held.bound:g} {word}"
+            rows.append((held.label, f"{held.value:.6g}", held.unit, told))
+        head = f"{self.model.name}, fit: {self.status}"
+        notes = (
+            self.reason,
+            f"{self.evaluations} variants, {self.slopes_taken} Jacobians, {len(self.costs)} starts",
+        )
+        return Listing(head, ("what", "value", "unit", ""), tuple(rows), notes)
+
+    @cached_property
+    def _sweep(self) -> Analysis:
+        texts = self._values.sweep_texts
+        return self.model.analyze(_names(self.model, texts), tables=[])
+
+    def _met(self, target: Target) -> Met:
+        none = np.zeros(0)
+        if target.least:
+            values = self._sweep[target.of]
+            if target.least == "peak":
+                size = np.array([[np.nanmax(np.abs(values), initial=0.0)]])
+            else:
+                parts = values.reshape(len(values), -1) * self._values.weights[:, None]
+                size = np.array([[np.sqrt(np.nansum(np.square(parts)))]])
+            return Met(target.label, target.unit, none, size, size)
+        inputs = np.array(target.at) if target.at is not None else self._nearest(target)
+        # each by itself from the first row, in the order in which they are passed
+        order = np.argsort(inputs if self._values.models.ends[1] >= inputs.min() else -inputs)
+        listed = self._values.models.listed(tuple(inputs[order].tolist()))
+        found = listed.with_parameters(self.parameters).analyze(
+            _names(listed, [target.of]), tables=[]
+        )
+        values = np.empty((len(inputs), target.width))
+        values[order] = found[target.of][1:].reshape(-1, target.width)
+        away = deviations(target, values[None])[0].reshape(values.shape) * target.within
+        return Met(target.label, target.unit, inputs, values, away)
+
+    def _nearest(self, target: Target) -> Floats:
+        """The inputs at which the curve comes nearest to the points."""
+        models = self._values.models
+        run = models.curve.vary(
+            {name: np.array([value]) for name, value in self.parameters.items()}, [target.of]
+        )
+        rows, _ = nearest_places(np.nan_to_num(run[target.of]), target.wanted)
+        found: Floats = np.interp(rows[0], np.arange(len(models.curve_inputs)), models.curve_inputs)
+        return found
+
+    def _held(self, constraint: Constraint) -> list[Held]:
+        values = self._sweep[constraint.of]
+        bounds = [v for v in (constraint.lower, constraint.upper) if np.isfinite(v)]
+        found = []
+        for bound, margins in zip(bounds, margins_of(constraint, values), strict=True):
+            row = int(np.argmin(np.where(np.isnan(margins), np.inf, margins)))
+            holds = bool((margins >= -FIT_HELD).all())
+            found.append(
+                Held(constraint.label, constraint.unit, bound, float(values[row]), row, holds)
+            )
+        return found
+
+
+def _names(model: Model, texts: list[str]) -> list[str]:
+    """Quantities that expressions read."""
+    known = model.problem.quantities()
+    names = []
+    for text in texts:
+        for name in sorted(model.problem.definitions.parse(text).names):
+            if name in known:
+                names.append(name)
+            elif name.rpartition(".")[0] in known:
+                names.append(name.rpartition(".")[0])
+    return list(dict.fromkeys(names))

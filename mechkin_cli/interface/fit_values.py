@@ -1,0 +1,129 @@
+"""What a population of variants is measured by: residuals of targets, magnitudes, margins."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.fitting.measures import Measures
+from mechkin_cli.fitting.nearest_place import nearest_places
+from mechkin_cli.interface.fit_models import FitModels
+from mechkin_cli.interface.fit_request import Constraint, Request, Target
+from mechkin_cli.reductions import row_weights
+from mechkin_cli.status import Status
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.interface.model import Model
+
+SOLVED = np.array([status.has_solution for status in Status])
+
+
+class FitValues:
+    """A request to a model, for populations of its parameters in parts of their bounds."""
+
+    def __init__(self, models: FitModels, request: Request) -> None:
+        self.models, self.request = models, request
+        self.lower = np.array([one.lower for one in request.parameters])
+        self.width = np.array([one.upper for one in request.parameters]) - self.lower
+        self.names = [one.name for one in request.parameters]
+        targets = request.targets
+        self.at_inputs = [one for one in targets if one.at is not None]
+        self.anywhere = [one for one in targets if one.at is None and not one.least]
+        self.least = [one for one in targets if one.least]
+        self.weights = rms_weights(models.model)
+        # rows in the order of the inputs, so that each is followed from its neighbour
+        begin, end = models.ends if self.at_inputs else (0.0, 0.0)
+        inputs = sorted({v for one in self.at_inputs for v in one.at or ()}, reverse=end < begin)
+        self.listed_inputs = tuple(inputs)
+        self._row = {value: number + 1 for number, value in enumerate(inputs)}
+
+    @property
+    def sweep_texts(self) -> list[str]:
+        """What is read of the sweep."""
+        texts = [one.of for one in self.least]
+        return texts + [one.of for one in self.request.constraints]
+
+    def values(self, unknowns: Floats) -> dict[str, Floats]:
+        """Parameters (S,) by name, in the file's units."""
+        found = self.lower[:, None] + unknowns * self.width[:, None]
+        return dict(zip(self.names, found, strict=True))
+
+    def measure(self, unknowns: Floats) -> Measures:
+        """Of a population (unknowns, S)."""
+        values, count = self.values(unknowns), unknowns.shape[1]
+        residuals: list[Floats] = []
+        peaks: list[Floats] = []
+        margins: list[Floats] = []
+        sweep, missing = self._run(self.models.model, values, self.sweep_texts)
+        for target in self.least:
+            scaled = sweep[target.of] / target.within
+            if target.least == "peak":
+                peaks.append(scaled)
+            else:
+                parts = scaled.reshape(count, len(self.weights), -1) * self.weights[:, None]
+                residuals.append(parts.reshape(count, -1))
+        for constraint in self.request.constraints:
+            margins += margins_of(constraint, sweep[constraint.of])
+        if self.at_inputs:
+            listed = self.models.listed(self.listed_inputs)
+            found, lost = self._run(listed, values, [one.of for one in self.at_inputs])
+            missing = missing + lost
+            for target in self.at_inputs:
+                rows = [self._row[value] for value in target.at or ()]
+                residuals.append(deviations(target, found[target.of][:, rows]))
+        if self.anywhere:
+            found, lost = self._run(self.models.curve, values, [one.of for one in self.anywhere])
+            missing = missing + lost
+            for target in self.anywhere:
+                _, places = nearest_places(found[target.of], target.wanted)
+                residuals.append(deviations(target, places))
+        return Measures(_beside(residuals, count), tuple(peaks), _beside(margins, count), missing)
+
+    def _run(
+        self, model: Model, values: dict[str, Floats], texts: list[str]
+    ) -> tuple[dict[str, Floats], Floats]:
+        """Expressions over the rows, and the part of rows or values that are missing (S,)."""
+        asked = list(dict.fromkeys(texts)) or [model.problem.motion.inputs[0].name]
+        run = model.vary(values, asked)
+        lost = ~SOLVED[run.codes]
+        found = {}
+        for text in asked:
+            value = run[text]
+            empty = ~np.isfinite(value)
+            lost = lost | (empty.any(axis=2) if value.ndim == 3 else empty)
+            found[text] = np.where(empty, 0.0, value)
+        missing: Floats = lost.mean(axis=1)
+        return found, missing
+
+
+def deviations(target: Target, values: Floats) -> Floats:
+    """Residuals (S, points * width) of values (S, points) or (S, points, width)."""
+    values = values.reshape(len(values), len(target.wanted), target.width)
+    found: Floats = ((values - target.wanted) / target.within).reshape(len(values), -1)
+    return found
+
+
+def margins_of(constraint: Constraint, values: Floats) -> list[Floats]:
+    """Margins (S, rows) of each of its bounds, in parts of the bound."""
+    found = []
+    for bound, sign in ((constraint.lower, 1.0), (constraint.upper, -1.0)):
+        if np.isfinite(bound):
+            found.append(sign * (values - bound) / (abs(bound) or 1.0))
+    return found
+
+
+def rms_weights(model: Model) -> Floats:
+    """Roots of what each row counts for in a mean over the way (rows,)."""
+    motion = model.problem.motion
+    moved = [one.written for one in motion.inputs if np.ptp(one.written) > 0.0]
+    at = motion.time.written if motion.time is not None else None
+    at = at if at is not None else (moved[0] if moved else np.zeros(motion.rows))
+    weights = row_weights(np.asarray(at, dtype=np.float64))
+    found: Floats = np.sqrt(weights / weights.sum())
+    return found
+
+
+def _beside(parts: list[Floats], count: int) -> Floats:
+    return np.concatenate(parts, axis=1) if parts else np.zeros((count, 0))

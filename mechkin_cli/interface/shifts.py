@@ -1,0 +1,177 @@
+"""A run with one of its parameters a little less and a little more, in double-double.
+
+Where nothing that the building decides is decided otherwise, the converged rows are closed again
+with the tape of the file replayed for the shifted parameter. Else, and for responses, the model is
+made and run anew with both values, and each run is repeated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.analysis.errors import Repeated, repetition
+from mechkin_cli.analysis.errors.repeated import NotRepeated
+from mechkin_cli.analysis.errors.wide import KernelRows
+from mechkin_cli.diagnostics import InvalidFile, UsageError
+from mechkin_cli.runs import SWEEP
+from mechkin_cli.tape.decimal_replay import NotEnclosed
+from mechkin_cli.tape.double_doubles import DoubleDoubles
+from mechkin_cli.tape.traced import TraceLost
+from mechkin_cli.units import ANGLE, LENGTH
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Bools, Floats
+    from mechkin_cli.interface.analysis import Analysis
+    from mechkin_cli.interface.model import Model
+    from mechkin_cli.solver.shifted import ShiftingPrecise
+
+ONE_SIDE = "its file holds no value next to this one on both sides"
+OTHER_ROWS = "another value has other rows"
+
+
+@dataclass(frozen=True, eq=False)
+class Sides:
+    """The rows for three values of a parameter.
+
+    Attributes:
+        below, above: how far the values next to it are away (), in the file's units, both positive.
+        scale: of the parameter, of which the distances are small parts, in the file's units.
+        rows: of the lower value, of its own, of the higher one.
+        opened: (rows,) whether closure is lost with the parameter changed.
+    """
+
+    below: DoubleDoubles
+    above: DoubleDoubles
+    scale: float
+    rows: tuple[Repeated, Repeated, Repeated]
+    opened: Callable[[], Bools]
+
+
+class Shifting:
+    """What shifts the parameters of a run.
+
+    Args:
+        analysis: the run.
+        chosen: rows that are wanted (rows,).
+    """
+
+    def __init__(self, analysis: Analysis, chosen: Bools) -> None:
+        self.analysis = analysis
+        self.model: Model = analysis.model
+        self.result = analysis.result
+        self.chosen = chosen
+        self.is_sweep = analysis.run == SWEEP
+        self._own: dict[bool, Repeated] = {}
+
+    def sides(self, name: str, part: float = 1.0) -> Sides:
+        """The rows for values next to a parameter's own, `part` of the usual shift away.
+
+        Raises:
+            NotRepeated: why there are none.
+        """
+        amount = self._amount(name) * Fraction(part)
+        try:
+            precise = self._precise(name, amount)
+            if precise is not None:
+                return self._replayed(precise, name, amount)
+            return self._anew(name, amount)
+        except (TraceLost, LookupError, NotEnclosed) as lost:
+            raise NotRepeated(str(lost)) from None
+
+    def _amount(self, name: str) -> Fraction:
+        """The shift in SI."""
+        part = tolerances.SHIFT if self.is_sweep else tolerances.SHIFT_OF_RESPONSE
+        return Fraction(part) * Fraction(self._scale(name))
+
+    def _scale(self, name: str) -> float:
+        """The scale of a parameter in SI, see `tolerances.SHIFT`."""
+        known = self.model.problem.parameters[name]
+        if known.dimension == LENGTH:
+            return self.result.session.layout.length
+        if known.dimension == ANGLE:
+            return 1.0
+        one = float(self.model.problem.units.to_si(1.0, known.dimension))
+        return abs(float(known.value)) or one  # type: ignore[arg-type]
+
+    def _scale_of(self, name: str) -> float:
+        return float(self._in_file_units(name, Fraction(self._scale(name))).high)
+
+    def _precise(self, name: str, amount: Fraction) -> ShiftingPrecise | None:
+        """What replays the shift; None where the model has to be made anew."""
+        if not self.is_sweep:
+            return None
+        try:
+            precise = self.model.shifting
+            return None if precise.is_turned(name, amount) else precise
+        except (TraceLost, NotEnclosed):
+            return None
+
+    def _replayed(self, precise: ShiftingPrecise, name: str, amount: Fraction) -> Sides:
+        def repeated(by: Fraction) -> Repeated:
+            shifted = precise.shifted(name if by else None, by)
+            return Repeated(self.result, KernelRows(self.result, shifted, self.chosen))
+
+        if True not in self._own:
+            self._own[True] = repeated(Fraction(0))
+        rows = repeated(-amount), self._own[True], repeated(amount)
+        away = self._in_file_units(name, amount)
+        return Sides(away, away, self._scale_of(name), rows, lambda: self._opened(rows))
+
+    def _anew(self, name: str, amount: Fraction) -> Sides:
+        problem = self.model.problem
+        value = Fraction(float(problem.parameters[name].value))  # type: ignore[arg-type]
+        if False not in self._own:
+            self._own[False] = repetition(self.result)
+        own = self._own[False]
+        exact: Any = own.wide.parameters[name].value
+        around, away = [], []
+        for side in (-1, 1):
+            wanted = float(value + side * amount)
+            analysis = self._run(name, wanted)
+            around.append(repetition(analysis.result))
+            found = Fraction(float(analysis.model.problem.parameters[name].value))  # type: ignore[arg-type]
+            gap = side * (found - Fraction(float(exact.high)) - Fraction(float(exact.low)))
+            away.append(self._in_file_units(name, gap))
+        rows = around[0], own, around[1]
+        return Sides(away[0], away[1], self._scale_of(name), rows, lambda: self._opened(rows))
+
+    def _run(self, name: str, value: float) -> Analysis:
+        """The run with another value in SI."""
+        known = self.model.problem.parameters[name]
+        given = float(self.model.problem.units.from_si(value, known.dimension))
+        try:
+            varied = self.model.with_parameters({name: given})
+            run = self.analysis.run
+            found = varied.analyze(tables=[]) if self.is_sweep else varied.respond(run, tables=[])
+        except (InvalidFile, UsageError):
+            raise NotRepeated(ONE_SIDE) from None
+        if found.result.rows != self.result.rows:
+            raise NotRepeated(OTHER_ROWS)
+        return found
+
+    def _in_file_units(self, name: str, amount: Fraction) -> DoubleDoubles:
+        dimension = self.model.problem.parameters[name].dimension
+        factor = self.model.problem.units.unit(dimension).factor
+        return DoubleDoubles.of_fraction(amount / factor)
+
+    def _opened(self, rows: tuple[Repeated, ...]) -> Bools:
+        """Rows whose residual grows with the shift: their loops do not close beside it."""
+        if not self.is_sweep:
+            return np.zeros(self.result.rows, dtype=np.bool_)
+        below, own, above = (_residual(one) for one in rows)
+        limit = tolerances.CLOSURE_LOST * tolerances.SHIFT
+        with np.errstate(invalid="ignore"):
+            grown: Bools = np.fmax(np.abs(below - own), np.abs(above - own)) > limit
+        return grown
+
+
+def _residual(repeated: Repeated) -> Floats:
+    wide = repeated.wide
+    assert isinstance(wide, KernelRows)
+    return wide.residual

@@ -1,0 +1,217 @@
+"""What is kept of a stretch of a study's variants: `Model.vary`, and the rows made into records."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.diagnostics import InvalidFile, MechkinError
+from mechkin_cli.reductions import REDUCTIONS, mean, root_mean_square, row_weights
+from mechkin_cli.status import Status
+from mechkin_cli.studies.records import Heading, Records, empty_values
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.arrays import Floats
+    from mechkin_cli.interface.model import Model
+    from mechkin_cli.interface.variants import Variants
+
+VARIANT = Heading("variant", kind="whole")
+ROW = Heading("row", kind="whole")
+DEAD_CENTRE = "dead_centre"
+VERDICTS = (
+    Heading("rows_not_ok", kind="whole"),
+    Heading("verdict", kind="text"),
+    Heading("message", kind="text"),
+)
+"""What is told of every variant beside what is asked for."""
+
+NOT_BUILT, WORKER_DIED = "not-built", "worker-died"
+"""Verdicts of variants without rows."""
+
+VALUE = "value"
+PLACES: Mapping[str, Callable[[Floats], Floats]] = {
+    "place_of_max": lambda values: values,
+    "place_of_min": np.negative,
+    "place_of_peak": np.abs,
+}
+"""Words for places, and that whose largest value stands there."""
+
+LONGEST_MESSAGE = 300
+
+
+class Kept(NamedTuple):
+    """A column of variants: a word of `keep:` for a quantity; `row` is that of `value`."""
+
+    heading: Heading
+    text: str
+    word: str
+    row: int = -1
+
+
+@dataclass(frozen=True)
+class Question:
+    """What a study asks of every variant.
+
+    Attributes:
+        run: of the mechanism.
+        parameter: what the run goes along, None where nothing moves.
+        parameters: headings of what varies.
+        kept: columns of variants.
+        rows: headings of quantities of which all rows are kept, their labels the quantities.
+        dead_centre: heading of the place at which a branch ends; None: not asked.
+    """
+
+    run: str
+    parameter: Heading | None
+    parameters: tuple[Heading, ...]
+    kept: tuple[Kept, ...]
+    rows: tuple[Heading, ...]
+    dead_centre: Heading | None
+
+    @property
+    def tables(self) -> dict[str, tuple[Heading, ...]]:
+        """Headings of `variants` and, where rows are kept, of `rows`."""
+        own = tuple(kept.heading for kept in self.kept)
+        ends = () if self.dead_centre is None else (self.dead_centre,)
+        found = {"variants": (VARIANT, *self.parameters, *own, *ends, *VERDICTS)}
+        if self.rows:
+            along = () if self.parameter is None else (self.parameter,)
+            others = tuple(heading for heading in self.rows if heading not in along)
+            found["rows"] = (VARIANT, ROW, *along, *others, VERDICTS[1])
+        return found
+
+
+def chunk(
+    model: Model, question: Question, values: Mapping[str, Floats], begin: int, threads: int
+) -> dict[str, Records]:
+    """What is kept of variants that have these values (variants,) by name, in the file's units; the
+    first has the number `begin`. By name of table."""
+    found, places = _varied(model, question, values, threads)
+    count = len(found)
+    records: Records = {VARIANT.label: np.arange(begin, begin + count, dtype=np.int64)}
+    records |= {name: np.asarray(column, dtype=np.float64) for name, column in values.items()}
+    for kept in question.kept:
+        records[kept.heading.label] = _kept(found[kept.text], kept, places)
+    words = np.array([status.label for status in Status], dtype=object)
+    not_ok = found.codes != Status.ok
+    records[VERDICTS[0].label] = np.count_nonzero(not_ok, axis=1).astype(np.int64)
+    verdicts = words[found.codes[np.arange(count), np.argmax(not_ok, axis=1)]]
+    messages = empty_values("text", count)
+    for number, error in found.errors.items():
+        verdicts[number], messages[number] = NOT_BUILT, _message(error)
+    if question.dead_centre is not None:
+        records[question.dead_centre.label] = _dead_centres(model, values, found)
+    records[VERDICTS[1].label], records[VERDICTS[2].label] = verdicts, messages
+    tables = {"variants": records}
+    if question.rows:
+        tables["rows"] = _rows(question, found, places, begin, words)
+    return tables
+
+
+def lost(question: Question, values: Mapping[str, Floats], begin: int) -> dict[str, Records]:
+    """The records of variants that their worker has died of."""
+    count = len(next(iter(values.values())))
+    tables = {
+        name: {h.label: empty_values(h.kind, count if name == "variants" else 0) for h in headings}
+        for name, headings in question.tables.items()
+    }
+    variants = tables["variants"]
+    variants[VARIANT.label] = np.arange(begin, begin + count, dtype=np.int64)
+    variants |= {name: np.asarray(column, dtype=np.float64) for name, column in values.items()}
+    variants[VERDICTS[1].label][:] = WORKER_DIED
+    variants[VERDICTS[2].label][:] = "the process that computed this variant died of it, every time"
+    return tables
+
+
+def _varied(
+    model: Model, question: Question, values: Mapping[str, Floats], threads: int
+) -> tuple[Variants, Floats | None]:
+    """The variants, with all rows of what is asked for; and the places of the rows."""
+    asked = [kept.text for kept in question.kept] + [heading.label for heading in question.rows]
+    if question.parameter is not None:
+        asked.append(question.parameter.label)
+    found = model.vary(values, list(dict.fromkeys(asked)), run=question.run, threads=threads)
+    if question.parameter is None:
+        return found, None
+    return found, found[question.parameter.label]
+
+
+def _kept(values: Floats, kept: Kept, places: Floats | None) -> Floats:
+    """One number of the rows of every variant, (variants,)."""
+    if kept.word == VALUE:
+        return np.array(values[:, kept.row])
+    if kept.word in PLACES:
+        return _place(PLACES[kept.word](values), places)
+    if kept.word not in ("mean", "rms"):
+        return REDUCTIONS[kept.word](values)
+    over = mean if kept.word == "mean" else root_mean_square
+    if places is None:
+        return over(values)
+    alike = bool((places == places[:1]).all())
+    if alike:
+        return over(values, row_weights(places[0]))
+    # rows that stand elsewhere in every variant
+    return np.array([over(v[None], _weights(at))[0] for v, at in zip(values, places, strict=True)])
+
+
+def _weights(places: Floats) -> Floats:
+    """As `row_weights`, over the rows that are there."""
+    there = ~np.isnan(places)
+    weights = np.zeros(places.shape)
+    weights[there] = row_weights(places[there])
+    return weights
+
+
+def _place(sizes: Floats, places: Floats | None) -> Floats:
+    """Where the first of the largest sizes stands; the number of the row where nothing moves."""
+    there = ~np.isnan(sizes)
+    row = np.argmax(np.where(there, sizes, -np.inf), axis=1)
+    at = row + 1.0 if places is None else places[np.arange(len(row)), row]
+    return np.where(there.any(axis=1), at, np.nan)
+
+
+def _message(error: MechkinError) -> str:
+    """What was said of a variant, in one line."""
+    text = str(error)
+    if isinstance(error, InvalidFile):
+        first = next((d for d in error.diagnostics if d.severity == "error"), None)
+        text = str(first._replace(place=None)) if first is not None else text
+    return " ".join(text.split())[:LONGEST_MESSAGE]
+
+
+def _dead_centres(model: Model, values: Mapping[str, Floats], found: Variants) -> Floats:
+    """The input at the dead centre at which a variant's branch ends, in the file's units; nan where
+    it meets none."""
+    ends = np.full(len(found), np.nan)
+    for number in np.flatnonzero((found.codes == Status.beyond_dead_centre).any(axis=1)):
+        own = {name: float(column[number]) for name, column in values.items()}
+        for diagnostic in model.with_parameters(own).analyze([], tables=[]).diagnostics:
+            if diagnostic.code == "dead-centre" and diagnostic.numbers:
+                ends[number] = diagnostic.numbers[0].value
+    return ends
+
+
+def _rows(
+    question: Question,
+    found: Variants,
+    places: Floats | None,
+    begin: int,
+    words: NDArray[np.object_],
+) -> Records:
+    """All rows of all variants, one below the other."""
+    count, rows = found.codes.shape
+    records: Records = {
+        VARIANT.label: np.repeat(np.arange(begin, begin + count, dtype=np.int64), rows),
+        ROW.label: np.tile(np.arange(1, rows + 1, dtype=np.int64), count),
+    }
+    if question.parameter is not None and places is not None:
+        records[question.parameter.label] = places.reshape(-1)
+    for heading in question.rows:
+        records[heading.label] = found[heading.label].reshape(-1)
+    records[VERDICTS[1].label] = words[found.codes.reshape(-1)]
+    return records

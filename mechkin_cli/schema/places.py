@@ -1,0 +1,23 @@
+"""A place in the home drawing: its coordinates, or the name of a point that is drawn there."""
+
+import re
+from typing import Annotated, Any, Final
+
+from mechkin_cli.schema.alternatives import Choice, Tag
+from mechkin_cli.schema.rules import Named
+from mechkin_cli.schema.scalars import NAME_PATTERN, LengthVector, Name
+
+_NAME: Final = re.compile(NAME_PATTERN)
+
+
+def name_or_vector(value: Any) -> str:
+    """The form of a place: a name, or else coordinates."""
+    is_name = isinstance(value, str) and _NAME.search(value.strip())
+    return "(name)" if is_name else "(vector)"
+
+
+NamedOrGiven = Annotated[
+    Annotated[Name, Tag("(name)")] | Annotated[LengthVector, Tag("(vector)")],
+    Choice(name_or_vector),
+    Named("NamedOrGiven"),
+]

@@ -1,0 +1,278 @@
+"""The folder of a study: pieces as they are computed, and the whole results at the end.
+
+`study.json` says what the folder holds, `pieces/` has a file for each piece that is done. A piece
+is written under another name and renamed when it is whole, so that whatever ends the process leaves
+pieces that are whole or not there; the next run computes those that are missing. At the end the
+pieces are put together, and go.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import json
+import os
+import shutil
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from types import TracebackType
+from typing import Any, BinaryIO, NamedTuple
+
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.regular_file import MOST_TABLE_BYTES, read_regular
+from mechkin_cli.studies.formats import FORMATS, Format
+from mechkin_cli.studies.records import Heading, Records
+from mechkin_cli.tables.claim import Claim
+
+MANIFEST = "study.json"
+PIECES = "pieces"
+VARIANTS, ROWS = "variants", "rows"
+"""What the results are called, and in which order they are written."""
+
+_UNFINISHED = ".unfinished"
+
+
+class Contents(NamedTuple):
+    """What a folder's results are of: equal contents have equal bytes.
+
+    Attributes:
+        sources: digests by what they are of (`mechanism`, `study`, ...).
+        variants: how many.
+        format: `csv` or `parquet`.
+        tables: headings of `variants`, and of `rows` where rows are kept.
+    """
+
+    sources: Mapping[str, str]
+    variants: int
+    format: str
+    tables: Mapping[str, Sequence[Heading]]
+
+    def record(self) -> dict[str, Any]:
+        """As plain data."""
+        return {
+            "sources": dict(self.sources),
+            "variants": self.variants,
+            "format": self.format,
+            "tables": {
+                name: [heading._asdict() for heading in headings]
+                for name, headings in self.tables.items()
+            },
+        }
+
+
+class StudyFolder:
+    """A folder that this process alone writes a study to, inside `with`."""
+
+    def __init__(self, folder: Path, contents: Contents, file_format: Format, size: int) -> None:
+        """Args:
+        folder: made as needed.
+        contents: what it is to hold.
+        file_format: writes the files.
+        size: variants of a piece, where the folder does not say yet.
+        """
+        self.folder = folder
+        self.contents = contents
+        self.size = size
+        self.is_complete = False
+        self._format = file_format
+        self._claim: Claim | None = None
+
+    def __enter__(self) -> StudyFolder:
+        with refused(self.folder):
+            self._claim = Claim(self.folder)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._claim is not None:
+            self._claim.release()
+            self._claim = None
+
+    def begin(self, anew: bool = False) -> None:
+        """Takes up what an earlier run left, or begins; with `anew` in any case.
+
+        Raises:
+            UsageError: the folder holds another study, or cannot be written to.
+        """
+        found = None if anew else self._manifest()
+        with refused(self.folder):
+            if found is None:
+                self._clear()
+                (self.folder / PIECES).mkdir(exist_ok=True)
+                self._write_manifest()
+                return
+            self._check(found)
+            self.size = int(found["piece"])
+            self.is_complete = bool(found["complete"]) and all(map(Path.exists, self.results))
+            if self.is_complete:
+                shutil.rmtree(self.folder / PIECES, ignore_errors=True)
+                return
+            (self.folder / PIECES).mkdir(exist_ok=True)
+            for path in (self.folder / PIECES).glob(f"*{_UNFINISHED}"):
+                path.unlink()
+
+    @property
+    def results(self) -> list[Path]:
+        """The files of the whole study."""
+        return [self.folder / f"{name}.{self._format.ending}" for name in self.contents.tables]
+
+    @property
+    def pieces(self) -> range:
+        """Numbers of all pieces."""
+        return range(-(-self.contents.variants // self.size))
+
+    def stretch(self, piece: int) -> tuple[int, int]:
+        """Numbers of the variants of a piece: the first, and one after the last."""
+        return piece * self.size, min((piece + 1) * self.size, self.contents.variants)
+
+    def missing(self) -> list[int]:
+        """Numbers of the pieces that are not there yet."""
+        with refused(self.folder):
+            there = {path.name for path in (self.folder / PIECES).iterdir()}
+        names = list(self.contents.tables)
+        return [
+            n for n in self.pieces if any(self._piece(name, n).name not in there for name in names)
+        ]
+
+    def put(self, piece: int, records: Mapping[str, Records]) -> None:
+        """Writes a piece.
+
+        Raises:
+            UsageError: it cannot be written; the others stay.
+        """
+        for name, headings in self.contents.tables.items():
+            content = self._format.piece(headings, records[name])
+            path = self._piece(name, piece)
+            with refused(path):
+                _write_whole(path, partial(_put, content))
+
+    def read(self, name: str) -> Iterator[Records]:
+        """The pieces of a result, in order; of a finished study its only file."""
+        headings = self.contents.tables[name]
+        for path in self._files(name):
+            with refused(path, "read"):
+                try:
+                    found = self._format.read(path, headings)
+                except (ValueError, KeyError) as error:
+                    raise UsageError(
+                        f"{path} is not as it was written: {str(error)[:120]}; begin anew with "
+                        "--again"
+                    ) from None
+            yield found
+
+    def finish(self) -> None:
+        """Puts the pieces together, and removes them.
+
+        Raises:
+            UsageError: a result cannot be written; all pieces stay.
+        """
+        for (name, headings), path in zip(self.contents.tables.items(), self.results, strict=True):
+            pieces = [self._piece(name, number) for number in self.pieces]
+            with refused(path):
+                _write_whole(path, partial(self._format.join, pieces, headings))
+        with refused(self.folder):
+            self.is_complete = True
+            self._write_manifest()
+            shutil.rmtree(self.folder / PIECES, ignore_errors=True)
+
+    def _files(self, name: str) -> list[Path]:
+        if self.is_complete:
+            return [self.folder / f"{name}.{self._format.ending}"]
+        return [self._piece(name, number) for number in self.pieces]
+
+    def _piece(self, name: str, number: int) -> Path:
+        return self.folder / PIECES / f"{name}-{number:09d}.{self._format.ending}"
+
+    def _manifest(self) -> dict[str, Any] | None:
+        path = self.folder / MANIFEST
+        try:
+            found = json.loads(read_regular(path, MOST_TABLE_BYTES))
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError, RecursionError):
+            found = None
+        if not _is_manifest(found):
+            raise UsageError(
+                f"{path} does not say what the folder holds; choose another folder with --out, or "
+                "begin anew with --again"
+            )
+        return dict(found)
+
+    def _check(self, found: Mapping[str, Any]) -> None:
+        """Refuses another study than this."""
+        own = json.loads(json.dumps(self.contents.record()))
+        if all(found.get(key) == value for key, value in own.items()):
+            return
+        theirs = found["sources"]
+        changed = [
+            name
+            for name in dict.fromkeys((*self.contents.sources, *theirs))
+            if self.contents.sources.get(name) != theirs.get(name)
+        ]
+        changed += [key for key in ("variants", "format") if found.get(key) != own[key]]
+        what = ", ".join(changed) or "columns"
+        raise UsageError(
+            f"{self.folder} holds results of another study: different {what}; choose another "
+            "folder with --out, or begin anew with --again"
+        )
+
+    def _write_manifest(self) -> None:
+        record = self.contents.record() | {"piece": self.size, "complete": self.is_complete}
+        text = json.dumps(record, indent=1, ensure_ascii=False) + "\n"
+        _write_whole(self.folder / MANIFEST, partial(_put, text.encode()))
+
+    def _clear(self) -> None:
+        """Removes what a study left here, and nothing else."""
+        with contextlib.suppress(FileNotFoundError):
+            (self.folder / MANIFEST).unlink()
+        shutil.rmtree(self.folder / PIECES, ignore_errors=True)
+        for path in (self.folder / f"{n}.{f}" for n in (VARIANTS, ROWS) for f in FORMATS):
+            with contextlib.suppress(FileNotFoundError):
+                path.unlink()
+
+
+def _is_manifest(found: object) -> bool:
+    """Whether it is what `_write_manifest` writes."""
+    if not isinstance(found, dict):
+        return False
+    piece, complete = found.get("piece"), found.get("complete")
+    is_size = isinstance(piece, int) and not isinstance(piece, bool) and piece > 0
+    return is_size and isinstance(complete, bool) and isinstance(found.get("sources"), dict)
+
+
+def _write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
+    """Writes under another name, and renames when all is on the disk."""
+    unfinished = path.with_name(path.name + _UNFINISHED)
+    try:
+        with unfinished.open("wb") as file:
+            write(file)
+            file.flush()
+            os.fsync(file.fileno())
+        unfinished.replace(path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            unfinished.unlink()
+        raise
+
+
+def _put(content: bytes, file: BinaryIO) -> None:
+    file.write(content)
+
+
+@contextlib.contextmanager
+def refused(path: Path, what: str = "write") -> Iterator[None]:
+    """Words for what the operating system refuses."""
+    try:
+        yield
+    except OSError as error:
+        kept = "; the variants computed so far are kept, and the same command goes on with them"
+        if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            text = f"the disk is full; free some space{kept}"
+        else:
+            text = f"{error.strerror or error}; choose another folder with --out"
+        raise UsageError(f"cannot {what} {path}: {text}") from error

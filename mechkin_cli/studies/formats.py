@@ -1,0 +1,187 @@
+"""Files of a study's records: CSV, or Parquet with the extra `parquet`.
+
+Pieces are written as they are computed, and put together at the end: bytes of the result do not
+depend on the pieces.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, BinaryIO, Protocol
+
+import numpy as np
+
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.studies.records import Heading, Records
+
+ROW_GROUP = 65536
+"""Lines of a row group of Parquet, whatever the pieces were."""
+
+
+class Format(Protocol):
+    """A kind of file."""
+
+    ending: str
+
+    def piece(self, headings: Sequence[Heading], records: Records) -> bytes:
+        """A file of its own of some lines."""
+        ...
+
+    def read(self, path: Path, headings: Sequence[Heading]) -> Records:
+        """The lines of a file."""
+        ...
+
+    def join(self, pieces: Iterable[Path], headings: Sequence[Heading], file: BinaryIO) -> None:
+        """Writes all pieces, one below the other, as one file."""
+        ...
+
+
+def format_of(name: str) -> Format:
+    """The format of a name.
+
+    Raises:
+        UsageError: there is no such format, or what it needs is not installed.
+    """
+    if name == "csv":
+        return Csv()
+    if name == "parquet":
+        return Parquet()
+    raise UsageError(f"there is no format {name[:60]} of studies; they are {', '.join(FORMATS)}")
+
+
+FORMATS = ("csv", "parquet")
+
+
+class Csv:
+    """RFC 4180 with LF line ends and the shortest digits that read back as the same double."""
+
+    ending = "csv"
+
+    def piece(self, headings: Sequence[Heading], records: Records) -> bytes:
+        """As `Format.piece`."""
+        from mechkin_cli.tables.columns import Column, Columns, words_of
+        from mechkin_cli.tables.csv_writer import csv_bytes
+
+        columns = [
+            Column(h.label, h.unit, words_of(records[h.label].tolist()))
+            if h.kind == "text"
+            else Column(h.label, h.unit, np.asarray(records[h.label], dtype=np.float64))
+            for h in headings
+        ]
+        return csv_bytes(Columns("study", "", tuple(columns)))
+
+    def read(self, path: Path, headings: Sequence[Heading]) -> Records:
+        """As `Format.read`."""
+        with path.open(encoding="utf-8", newline="") as stream:
+            lines = list(csv.reader(stream))[1:]
+        cells = list(zip(*lines, strict=True)) if lines else [()] * len(headings)
+        return {h.label: _read(h.kind, column) for h, column in zip(headings, cells, strict=True)}
+
+    def join(self, pieces: Iterable[Path], headings: Sequence[Heading], file: BinaryIO) -> None:
+        """As `Format.join`."""
+        header = self.piece(headings, {h.label: np.empty(0) for h in headings})
+        file.write(header)
+        for path in pieces:
+            with path.open("rb") as stream:
+                stream.seek(len(header))
+                while block := stream.read(1 << 20):
+                    file.write(block)
+
+
+def _read(kind: str, cells: Sequence[str]) -> Any:
+    if kind == "text":
+        return np.array([cell.removeprefix("'") for cell in cells], dtype=object)
+    if kind == "whole":
+        return np.array([int(float(cell)) for cell in cells], dtype=np.int64)
+    return np.array([float(cell) if cell else np.nan for cell in cells], dtype=np.float64)
+
+
+class Parquet:
+    """Apache Parquet; a cell without a number is null, units stand in the fields' metadata."""
+
+    ending = "parquet"
+
+    def __init__(self) -> None:
+        try:
+            import pyarrow  # noqa: F401
+        except ImportError:
+            raise UsageError("Parquet needs pyarrow: pip install 'mechkin[parquet]'") from None
+
+    def piece(self, headings: Sequence[Heading], records: Records) -> bytes:
+        """As `Format.piece`."""
+        import pyarrow.parquet
+
+        buffer = io.BytesIO()
+        pyarrow.parquet.write_table(_arrow(headings, records), buffer)
+        return buffer.getvalue()
+
+    def read(self, path: Path, headings: Sequence[Heading]) -> Records:
+        """As `Format.read`."""
+        import pyarrow.parquet
+
+        table = pyarrow.parquet.read_table(path)
+        found: Records = {}
+        for heading in headings:
+            column = table.column(heading.label)
+            if heading.kind == "text":
+                found[heading.label] = np.array(column.to_pylist(), dtype=object)
+            elif heading.kind == "whole":
+                found[heading.label] = np.array(column.to_pylist(), dtype=np.int64)
+            else:
+                found[heading.label] = np.asarray(column.to_numpy(), dtype=np.float64)
+        return found
+
+    def join(self, pieces: Iterable[Path], headings: Sequence[Heading], file: BinaryIO) -> None:
+        """As `Format.join`."""
+        import pyarrow.parquet
+
+        with pyarrow.parquet.ParquetWriter(file, _schema(headings)) as writer:
+            for group in _groups(pieces):
+                writer.write_table(group, row_group_size=ROW_GROUP)
+
+
+def _schema(headings: Sequence[Heading]) -> Any:
+    import pyarrow
+
+    types = {"number": pyarrow.float64(), "whole": pyarrow.int64(), "text": pyarrow.string()}
+    return pyarrow.schema(
+        [
+            pyarrow.field(h.label, types[h.kind], metadata={"unit": h.unit} if h.unit else None)
+            for h in headings
+        ]
+    )
+
+
+def _arrow(headings: Sequence[Heading], records: Records) -> Any:
+    import pyarrow
+
+    schema = _schema(headings)
+    columns = []
+    for heading, field in zip(headings, schema, strict=True):
+        values = records[heading.label]
+        mask = np.isnan(values) if heading.kind == "number" else None
+        columns.append(pyarrow.array(values, field.type, mask=mask))
+    return pyarrow.Table.from_arrays(columns, schema=schema)
+
+
+def _groups(pieces: Iterable[Path]) -> Iterator[Any]:
+    """Tables of as many lines as a row group has, the last one of the rest."""
+    import pyarrow
+    import pyarrow.parquet
+
+    held: list[Any] = []
+    lines = 0
+    for path in pieces:
+        table = pyarrow.parquet.read_table(path)
+        held.append(table)
+        lines += table.num_rows
+        while lines >= ROW_GROUP:
+            whole = pyarrow.concat_tables(held)
+            yield whole.slice(0, ROW_GROUP).combine_chunks()
+            held = [whole.slice(ROW_GROUP)]
+            lines -= ROW_GROUP
+    if lines:
+        yield pyarrow.concat_tables(held).combine_chunks()

@@ -1,0 +1,42 @@
+"""Processes of this machine that compute pieces of a study."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
+
+from mechkin_cli.diagnostics import UsageError
+
+
+def processes(count: int) -> ProcessPoolExecutor:
+    """An executor of so many new processes, which end with this one whatever ends it.
+
+    Raises:
+        UsageError: they end before they compute anything.
+    """
+    context = multiprocessing.get_context("spawn")
+    executor = ProcessPoolExecutor(count, mp_context=context, initializer=_begin)
+    try:
+        executor.submit(os.getpid).result()
+    except BrokenExecutor:
+        raise UsageError(
+            "new processes end before they compute anything; a script that starts them does its "
+            'work below `if __name__ == "__main__":`, since each of them reads it, too'
+        ) from None
+    return executor
+
+
+def _begin() -> None:
+    """In a new process: Ctrl-C is for the first one, and its end is the end of all."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent: multiprocessing.process.BaseProcess) -> None:
+    parent.join()
+    os._exit(1)
