@@ -9,7 +9,9 @@ import pytest
 from references import RCSR
 
 DOCS = RCSR.parent.parent / "docs"
-SHOWN = re.compile(r"^```yaml\n(.*?)^```\n\n```text\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+# a block ends at its own fence: one that reached to a later fence would join two blocks and the words between
+BLOCK = r"((?:(?!```).*\n)*)```"
+SHOWN = re.compile(rf"^```yaml\n{BLOCK}\n\n```text\n{BLOCK}$", re.MULTILINE)
 EXAMPLES = [
     (page.name, file, text)
     for page in sorted(DOCS.glob("*.md"))

@@ -56,6 +56,7 @@ class Server:
         }
         self._settings = {"yaml": yaml}
         self._tell("workspace/didChangeConfiguration", {"settings": self._settings})
+        self._wait_for_the_schema()
 
     def close(self) -> None:
         """Ends the server."""
@@ -84,6 +85,16 @@ class Server:
         uri, place = self._at_mark(text)
         found = self._ask("textDocument/hover", {"textDocument": {"uri": uri}} | place)
         return "" if found is None else str(found["contents"]["value"])
+
+    def _wait_for_the_schema(self) -> None:
+        """Until the server has taken the settings in: what is asked earlier is answered without a schema."""
+        uri = self._open("no_key_of_the_schema: 1\n")
+        while True:
+            found = self._next()
+            said = found.get("params") or {}
+            is_said = found.get("method") == "textDocument/publishDiagnostics"
+            if is_said and said["uri"] == uri and said["diagnostics"]:
+                return
 
     def _at_mark(self, text: str) -> tuple[str, dict[str, Any]]:
         before, _, after = text.partition("|")
