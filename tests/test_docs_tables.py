@@ -9,7 +9,7 @@ import pytest
 from references import RCSR
 
 DOCS = RCSR.parent.parent / "docs"
-# a block ends at its own fence: one that reached to a later fence would join two blocks and the words between
+# a block ends at its own fence: else two blocks would be one, with the words between them
 BLOCK = r"((?:(?!```).*\n)*)```"
 SHOWN = re.compile(rf"^```yaml\n{BLOCK}\n\n```text\n{BLOCK}$", re.MULTILINE)
 EXAMPLES = [

@@ -87,7 +87,7 @@ class Server:
         return "" if found is None else str(found["contents"]["value"])
 
     def _wait_for_the_schema(self) -> None:
-        """Until the server has taken the settings in: what is asked earlier is answered without a schema."""
+        """Until the server has taken its settings in; before, it answers without a schema."""
         uri = self._open("no_key_of_the_schema: 1\n")
         while True:
             found = self._next()

@@ -1,7 +1,11 @@
-"""The solver graph: blocks of classics, against brute force, of many loops; verdicts and limits."""
+"""The solver graph: blocks of classics, against brute force, of many loops; verdicts and limits.
+
+`MECHKIN_RANDOM` multiplies the number of networks that are shuffled.
+"""
 
 from __future__ import annotations
 
+import os
 import time
 
 import numpy as np
@@ -200,15 +204,20 @@ def verdict(network: Network) -> object:
         return [(d.code, d.measured) for d in error.diagnostics]
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_the_order_written_changes_neither_verdict_nor_blocks(seed: int) -> None:
-    network = random_network(seed, 8 + seed)
+TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
+LOOPS = [*range(8, 8 + 12 * TIMES), 33, 47]
+
+
+@pytest.mark.parametrize("loops", LOOPS)
+def test_the_order_written_changes_neither_verdict_nor_blocks(loops: int) -> None:
+    seed = loops - 8
+    network = random_network(seed, loops)
     wanted = verdict(network)
     assert isinstance(wanted, list)
     assert wanted == verdict(shuffled(network, seed)) == verdict(shuffled(network, -1 - seed))
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(10 * TIMES))
 def test_nor_with_an_input_more_or_less(seed: int) -> None:
     network = random_network(seed, 12)
     less = network._replace(inputs=network.inputs[1:])

@@ -1,7 +1,12 @@
-"""Which files a new pair touches, proved by adding one to a copy of the sources.
+"""What a change of the sources does, proved on one copy of them with two changes.
 
-The copy is built, passes the identity tests with the new pair, and analyses a quick-return
-mechanism with it, closed at the pair and carried by it, against elementary trigonometry.
+A new pair: which files it touches. The copy passes the identity tests with it, and analyses a
+quick-return mechanism with it, closed at the pair and carried by it, against elementary
+trigonometry.
+
+A fault in the balance of forces: half the gravity, which no other test of the copy has. The
+efforts that follow are in equilibrium with what was taken, and do not fit the
+energies: the balance of powers, which shares nothing with that of forces, shows it.
 """
 
 from __future__ import annotations
@@ -16,11 +21,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from kernel.compiler import COMPILER
+from kernel.compiler import COMPILER, NARROW
 from kernel.pin_in_slot import ADDITIONS, GENERATED, LETTER, MECHANISM
+from kernel.test_power_balance import MECHANISM as LOADED
 
 ROOT = Path(__file__).parents[2]
 KEPT = ("mechkin_cli", "schemas", "tests", "docs", "README.md", "LICENSE", "pyproject.toml")
+SOURCE = "mechkin_cli/kernel/src/wrenches.hpp"
+WEIGHT = "balance.apply_outside(k, force_at(w.pose[k].point(m.centre), Pack(m.mass) * g));"
+FAULT = WEIGHT.replace("Pack(m.mass)", "Pack(0.5) * Pack(m.mass)")
 NEAR = 1e-13
 """Some roundings of coordinates of size one."""
 
@@ -68,7 +77,10 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for before, added in additions:
             text = text.replace(before, added + before)
         (folder / file).write_text(text, encoding="utf-8")
-    install = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target"]
+    text = (folder / SOURCE).read_text(encoding="utf-8")
+    assert text.count(WEIGHT) == 1
+    (folder / SOURCE).write_text(text.replace(WEIGHT, FAULT), encoding="utf-8")
+    install = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", NARROW, "--target"]
     done = subprocess.run(
         [*install, str(folder / "site"), str(folder)], capture_output=True, text=True, check=False
     )
@@ -132,3 +144,13 @@ def test_a_quick_return_driven_at_the_pair(copy: Path) -> None:
     for slide, theta in zip(found["A.s"], found["O.theta"], strict=True):
         reach = hypot(1, 2) + slide
         assert sin(theta) == pytest.approx((reach * reach - 5) / 4, abs=NEAR)
+
+
+def test_half_the_gravity_in_the_balance_of_forces_shows(copy: Path) -> None:
+    """Without the fault the same mechanism balances to 1e-14 (`test_power_balance.py`)."""
+    (copy / "loaded.yaml").write_text(LOADED, encoding="utf-8")
+    code = (
+        "import json, mechkin_cli as mk; r = mk.load('loaded.yaml').analyze(['A.effort']); "
+        "print(json.dumps(r['row.power_error'].tolist()))"
+    )
+    assert min(json.loads(python(copy, code))) > 1e-3
