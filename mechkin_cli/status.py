@@ -29,6 +29,7 @@ class Status(IntEnum):
     friction_undecided = 7
     singular_inertia = 8
     step_limit = 9
+    dead_centre = 10
 
     @property
     def label(self) -> str:
@@ -47,7 +48,13 @@ class Status(IntEnum):
 
 
 _SOLVED = frozenset(
-    {Status.ok, Status.near_singular, Status.rank_unclear, Status.friction_undecided}
+    {
+        Status.ok,
+        Status.near_singular,
+        Status.rank_unclear,
+        Status.friction_undecided,
+        Status.dead_centre,
+    }
 )
 
 _SENTENCES = {
@@ -73,6 +80,10 @@ _SENTENCES = {
     ),
     Status.step_limit: (
         "the response ended before this row: its steps became too short, or too many."
+    ),
+    Status.dead_centre: (
+        "stands at a dead centre: rates and loads that grow without bound towards it are infinite, "
+        "the others are empty."
     ),
 }
 

@@ -15,6 +15,7 @@ LABELS = {
     "friction-undecided": 7,
     "singular-inertia": 8,
     "step-limit": 9,
+    "dead-centre": 10,
 }
 
 
@@ -31,4 +32,4 @@ def test_every_status_has_a_sentence(status):
 
 def test_rows_with_a_position_have_a_solution():
     solved = {status.label for status in Status if status.has_solution}
-    assert solved == {"ok", "near-singular", "rank-unclear", "friction-undecided"}
+    assert solved == {"ok", "near-singular", "rank-unclear", "friction-undecided", "dead-centre"}

@@ -56,7 +56,10 @@ def analyze(
     ] = False,
     strict: Annotated[
         bool,
-        typer.Option("--strict", help="Exit with 4 where a row is near-singular or rank-unclear."),
+        typer.Option(
+            "--strict",
+            help="Exit with 4 where a row is near-singular, rank-unclear or at a dead centre.",
+        ),
     ] = False,
     errors: Annotated[
         bool,

@@ -87,7 +87,8 @@ def _texts(column: Column, chosen: Sequence[int]) -> list[str]:
     if isinstance(column.values, Words):
         texts = column.values.texts(chosen)
     else:
-        texts = column_texts(column.values[list(chosen)], column.decimals)
+        part = column.part(chosen)
+        texts = part.texts(column_texts(part.numbers, part.decimals))
     return [_one_line(column.label), f"[{column.unit}]" if column.unit else "", *texts]
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from mechkin_cli.expressions import arithmetic, conditions
 from mechkin_cli.expressions.errors import ExpressionError, UnknownName
 from mechkin_cli.expressions.functions import FORMS, FUNCTIONS
+from mechkin_cli.expressions.infinite_rows import is_infinite, of_infinite, without_new
 from mechkin_cli.expressions.limits import MAX_EXPONENT, MAX_QUOTED
 from mechkin_cli.expressions.nodes import Name, Node, Number, Operation
 from mechkin_cli.expressions.operand import Operand, Resolve, Site
@@ -127,7 +128,8 @@ class Expression(NamedTuple):
         """The value in SI, with names looked up by `resolve`.
 
         Values of names may be floats, rows of shape (rows,), or vectors of these. A row in which an
-        operation has no finite value is nan from there on; a constant without one is an error. To
+        operation has no finite value is nan from there on, one in which a name is infinite is
+            infinite or nan; a constant without a finite value is an error. To
         check dimensions alone, resolve every name to rows of length one. `units` are only used to
         write hints; `literal` gives numbers of the text (None: as doubles). `through_infinity` lets
         functions take infinite rows, as the kernel's programs do: atan(1/x) is a quarter turn at 0.
@@ -139,17 +141,24 @@ class Expression(NamedTuple):
         self.reject_ambiguous_units(lambda word: _exists(word, resolve))
         literal = literal or _literal
         stack: list[Operand] = []
+        some_infinite = through_infinity
         with np.errstate(all="ignore"):
             for node in self.nodes:
                 if isinstance(node, Operation):
                     operands = stack[-node.arity :]
                     del stack[-node.arity :]
                     operand = _operate(node, operands, units)
-                    stack.append(operand if through_infinity else _finite(operand))
+                    if not some_infinite:
+                        operand = without_new(operand)
+                    elif not through_infinity:
+                        operand = of_infinite(node.symbol, operand, operands)
+                    stack.append(operand)
                 elif isinstance(node, Number):
                     stack.append(Operand(literal(node), node.offset, node))
                 else:
-                    stack.append(Operand(_look_up(node, resolve), node.offset))
+                    found = _look_up(node, resolve)
+                    some_infinite = some_infinite or is_infinite(found)
+                    stack.append(Operand(found, node.offset))
         return stack[-1].quantity
 
 
@@ -181,20 +190,6 @@ def _operate(node: Operation, operands: list[Operand], units: UnitSystem) -> Ope
     if any(is_number(item) and not is_finite(item) for item in parts):
         raise _not_finite(site, operands)
     return Operand(quantity, min(node.offset, *(operand.offset for operand in operands)))
-
-
-def _finite(operand: Operand) -> Operand:
-    """Rows with nan for what is infinite, so that no function makes a number of it again."""
-    value = operand.quantity.value
-    parts = value.components if isinstance(value, Vector) else (value,)
-    if not any(isinstance(item, np.ndarray) and np.isinf(item).any() for item in parts):
-        return operand
-    kept = [
-        np.where(np.isinf(item), np.nan, item) if isinstance(item, np.ndarray) else item
-        for item in parts
-    ]
-    found = Vector(*kept) if isinstance(value, Vector) else kept[0]
-    return replace(operand, quantity=replace(operand.quantity, value=found))
 
 
 def _not_finite(site: Site, operands: list[Operand]) -> ExpressionError:

@@ -203,7 +203,8 @@ def _determinant(site: Site, a: Operand, b: Operand, c: Operand) -> Quantity:
 
 def _norm(site: Site, operand: Operand) -> Quantity:
     value = site.vector(operand)
-    return Quantity(scalar_functions.square_root(dot_product(value, value)), operand.dimension)
+    found = scalar_functions.square_root(dot_product(value, value))
+    return Quantity(scalar_functions.infinite_with(value.components, found), operand.dimension)
 
 
 def _unit_vector(site: Site, operand: Operand) -> Quantity:

@@ -7,6 +7,7 @@ zero and nan rules of numpy's own minimum and maximum depend on the processor.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -29,6 +30,14 @@ _TURN_LOW = Exact(1.2556659146019252e-06, 2 * PI - Fraction(_TURN_HIGH))
 def square_root(value: Scalar) -> Scalar:
     """The square root; nan in rows where the value is negative."""
     return np.sqrt(value) if isinstance(value, np.ndarray) else scalars.square_root(value)
+
+
+def infinite_with(parts: Sequence[Scalar], length: Scalar) -> Scalar:
+    """The length of a vector, infinite in rows where one of its parts is."""
+    for part in parts:
+        if isinstance(part, np.ndarray) and part.dtype == np.float64 and np.isinf(part).any():
+            length = np.where(np.isinf(part), np.inf, length)
+    return length
 
 
 def magnitude(value: Scalar) -> Scalar:

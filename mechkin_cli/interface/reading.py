@@ -148,7 +148,7 @@ def _table_frame(table: Columns, pandas: Any) -> Any:
 
     frame = pandas.DataFrame(
         {
-            c.label: c.values.array() if isinstance(c.values, Words) else c.values
+            c.label: c.values.array() if isinstance(c.values, Words) else c.numbers
             for c in table.columns
         }
     )
@@ -173,10 +173,10 @@ def _folded(table: Columns) -> str:
         list(range(count)) if count <= MOST_ROWS else [*range(half), *range(count - half, count)]
     )
     cells = [
-        c.values.texts(chosen)
+        c.values.texts(range(len(chosen)))
         if isinstance(c.values, Words)
-        else column_texts(c.values[chosen], c.decimals)
-        for c in table.columns
+        else c.texts(column_texts(c.values, c.decimals))
+        for c in (column.part(chosen) for column in table.columns)
     ]
     rows = list(zip(*cells, strict=True))
     if count > len(chosen):

@@ -79,8 +79,7 @@ class Summarized:
         values = self[quantity]
         if values.ndim > 1:
             values = self[f"norm({quantity})"]
-        there = solved_rows(self.result) & np.isfinite(values)
-        return statistics(np.where(there, values, np.nan), self.result)
+        return statistics(np.where(solved_rows(self.result), values, np.nan), self.result)
 
     def peak(self: _Rows, quantity: str) -> Extreme:
         """The largest magnitude of a quantity or expression, and its place, as `summary` has it.

@@ -61,6 +61,9 @@ PERIODIC = re.compile(r"\b(?:wrap|sin|cos|tan)\s*\(")
 """Functions to which whole turns of an angle do not matter."""
 
 
+_DOUBTFUL = (int(Status.near_singular), int(Status.rank_unclear))
+
+
 class Study:
     """One call of `vary`."""
 
@@ -191,7 +194,9 @@ class Study:
             states = [reading.slots[q.name].first for q in self._states(reading)]
             codes[begin : begin + count] = _verdicts(runs, states)
             found = self._evaluated(variation, reading, runs, values, codes[begin : begin + count])
-            alone = np.flatnonzero(runs.end != int(VariantEnd.COMPLETE))
+            # what stands at a dead centre is judged as in a run of its own
+            doubtful = np.isin(codes[begin : begin + count], _DOUBTFUL).any(axis=1)
+            alone = np.flatnonzero((runs.end != int(VariantEnd.COMPLETE)) | doubtful)
         for number in alone:
             self._alone(values[:, number], int(begin + number), int(number), found, codes)
         return {text: reduced(text, array, self.reductions[text]) for text, array in found.items()}

@@ -7,7 +7,7 @@ only inputs, `row.mode`, `row.status` and `row.proof` keep their cells.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +23,9 @@ from mechkin_cli.units import DIMENSIONLESS
 
 if TYPE_CHECKING:
     from mechkin_cli.tables.summary import Summary
+
+
+INFINITE = "inf"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,17 +57,57 @@ def words_of(texts: Sequence[str]) -> Words:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Column:
-    """One evaluated column: `values` in the unit that `unit` names, shape (rows,)."""
+    """One evaluated column: `values` in the unit that `unit` names, shape (rows,).
+
+    `unbounded` (rows,) is infinite with its sign in rows at a dead centre towards which the column
+    grows without bound, else zero; None where it does in no row.
+    """
 
     label: str
     unit: str
     values: FloatArray | Words
     decimals: int | None = None
+    unbounded: FloatArray | None = None
+
+    @property
+    def numbers(self) -> FloatArray:
+        """The values of a column that is no words, with what is infinite."""
+        assert not isinstance(self.values, Words)
+        if self.unbounded is None:
+            return self.values
+        return np.where(self.unbounded == 0.0, self.values, self.unbounded)
+
+    def texts(self, texts: Sequence[str]) -> list[str]:
+        """The texts of the values, with words for what is infinite."""
+        if self.unbounded is None:
+            return list(texts)
+        words = np.where(self.unbounded > 0.0, INFINITE, f"-{INFINITE}").tolist()
+        is_infinite = (self.unbounded != 0.0).tolist()
+        return [w if i else t for t, w, i in zip(texts, words, is_infinite, strict=True)]
+
+    def part(self, rows: NDArray[np.intp] | Sequence[int]) -> Column:
+        """Some of the rows."""
+        rows, values = np.asarray(rows, dtype=np.intp), self.values
+        if isinstance(values, Words):
+            return replace(self, values=Words(values.codes[rows], values.words))
+        unbounded = None if self.unbounded is None else self.unbounded[rows]
+        return replace(self, values=values[rows], unbounded=unbounded)
 
     @property
     def rows(self) -> int:
         """Number of rows."""
         return self.values.rows if isinstance(self.values, Words) else self.values.size
+
+
+def column_of_numbers(
+    label: str, unit: str, numbers: FloatArray, decimals: int | None = None
+) -> Column:
+    """A column of numbers (rows,), of which some may be infinite."""
+    infinite = np.isinf(numbers)
+    if not infinite.any():
+        return Column(label, unit, numbers, decimals)
+    unbounded = np.where(infinite, numbers, 0.0)
+    return Column(label, unit, np.where(infinite, np.nan, numbers), decimals, unbounded)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -148,7 +191,7 @@ def column_of(layout: ColumnLayout, source: Source) -> Column:
     others = [_evaluated(layout, other).values for other in source.alternatives]
     disturbed = [_evaluated(layout, other).values for other in source.disturbed]
     values = unique_cells(column.values, others, disturbed)  # type: ignore[arg-type]
-    return Column(column.label, column.unit, values, column.decimals)
+    return replace(column, values=values)
 
 
 def _evaluated(layout: ColumnLayout, source: Source) -> Column:
@@ -163,8 +206,10 @@ def _evaluated(layout: ColumnLayout, source: Source) -> Column:
     in_si = np.array(np.broadcast_to(value, (source.rows,)), dtype=np.float64)
     # the conversion may hand back the array itself, so it works on the copy
     values = source.units.from_si(in_si, quantity.dimension)
-    values[~(solved_rows(source) & np.isfinite(values))] = np.nan
-    return Column(layout.label, source.units.label(quantity.dimension), values, layout.decimals)
+    # infinite is only what grows without bound towards a dead centre at which its row stands
+    values[~solved_rows(source) | np.isinf(values) & (source.status != Status.dead_centre)] = np.nan
+    unit = source.units.label(quantity.dimension)
+    return column_of_numbers(layout.label, unit, values, layout.decimals)
 
 
 def _resolve(name: str, source: Source) -> Quantity:

@@ -8,9 +8,15 @@ Labels that a spreadsheet would take for formulas begin with an apostrophe (`tab
 
 from __future__ import annotations
 
-from mechkin_cli.tables.columns import Column, Columns, Words
+from typing import TYPE_CHECKING
+
+from mechkin_cli.tables.columns import Column, Columns, Words, words_of
 from mechkin_cli.tables.native_columns import number_column, threads_for, word_column
 from mechkin_cli.tables.neutral import csv_text
+
+if TYPE_CHECKING:
+    from mechkin_cli.tables.native_columns import WordColumn
+    from mechkin_cli.tables.source import FloatArray
 
 COMMITTED_DIGITS = 12
 """Significant digits of committed tables: above any rounding, below what a last bit can change."""
@@ -29,7 +35,7 @@ def csv_bytes(
     cells = [
         word_column(column.values, csv_text)
         if isinstance(column.values, Words)
-        else number_column(column.values)
+        else _numbers(column, significant_digits)
         for column in columns.columns
     ]
     text: bytes = _kernel.csv_text(
@@ -40,6 +46,20 @@ def csv_bytes(
         threads=threads_for(columns, threads),
     )
     return text
+
+
+def _numbers(column: Column, significant_digits: int) -> FloatArray | WordColumn:
+    """The cells as the kernel takes them: as texts where one is infinite."""
+    assert not isinstance(column.values, Words)
+    cells = number_column(column.values)
+    if column.unbounded is None:
+        return cells
+    from mechkin_cli.kernel import _kernel
+
+    one: bytes = _kernel.csv_text(
+        [""], [cells], significant_digits=significant_digits, quoted_empty=False, threads=1
+    )
+    return word_column(words_of(column.texts(one.decode().split("\n")[1:-1])))
 
 
 def _header(column: Column, units: bool) -> str:

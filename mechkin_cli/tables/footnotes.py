@@ -27,7 +27,8 @@ def footnotes(columns: Columns, source: Source, written: Callable[[str], str] = 
         for status in Status
         if status is not Status.ok and bool((source.status == status).any())
     ]
-    explained = ~solved_rows(source) | (source.status == Status.rank_unclear)
+    unclear = np.isin(source.status, (Status.rank_unclear, Status.dead_centre))
+    explained = ~solved_rows(source) | unclear
     for column in columns.columns:
         if isinstance(column.values, Words):
             continue

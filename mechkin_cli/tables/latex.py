@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
 from mechkin_cli.legible import legible
-from mechkin_cli.tables.columns import Column, Columns, Words
+from mechkin_cli.tables.columns import INFINITE, Column, Columns, Words
 from mechkin_cli.tables.decimal_text import column_texts
 from mechkin_cli.tables.footnotes import footnotes
 
@@ -75,6 +75,8 @@ def latex_number(text: str) -> str:
         >>> latex_number("-1.50"), latex_number("2.5e-07"), latex_number("")
         ('$-$1.50', '2.5$\\times10^{-7}$', '--')
     """
+    if text.endswith(INFINITE):
+        return f"${text.removesuffix(INFINITE)}\\infty$"
     found = _NUMBER.fullmatch(text)
     if found is None:
         return EMPTY
@@ -174,7 +176,9 @@ def _cells(column: Column) -> list[str]:
     if isinstance(column.values, Words):
         texts = [latex_text(word) for word in column.values.words]
         return [texts[code] for code in column.values.codes]
-    return [latex_number(text) for text in column_texts(column.values, column.decimals)]
+    return [
+        latex_number(text) for text in column.texts(column_texts(column.values, column.decimals))
+    ]
 
 
 def _head(label: str, unit: str) -> str:

@@ -10,14 +10,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.tables.columns import Column, Columns, Words
-from mechkin_cli.tables.decimal_text import decimal_column
+from mechkin_cli.tables.columns import Column, Columns, Words, words_of
+from mechkin_cli.tables.decimal_text import column_texts, decimal_column
 from mechkin_cli.tables.footnotes import footnotes
 from mechkin_cli.tables.native_columns import threads_for, word_column
 from mechkin_cli.tables.neutral import markdown_text
 from mechkin_cli.tables.source import Source
 
 if TYPE_CHECKING:
+    from mechkin_cli.tables.decimal_text import DecimalColumn
+    from mechkin_cli.tables.native_columns import WordColumn
     from mechkin_cli.tables.summary import Summary
 
 
@@ -30,7 +32,7 @@ def markdown_bytes(columns: Columns, source: Source, threads: int = 0) -> bytes:
     cells = [
         word_column(column.values, markdown_text)
         if isinstance(column.values, Words)
-        else decimal_column(column.values, column.decimals)
+        else _numbers(column)
         for column in columns.columns
     ]
     title = f"# {markdown_text(columns.title or columns.name)}\n\n"
@@ -58,6 +60,16 @@ def _below(summary: Summary) -> str:
     rule = [f":{'-' * (widths[0] - 1)}", *(f"{'-' * (width - 1)}:" for width in widths[1:])]
     said = "".join(f"- {note}\n" for note in written_notes(summary, markdown_text))
     return "".join(("\n", head, f"| {' | '.join(rule)} |\n", *lines, f"\n{said}" if said else ""))
+
+
+def _numbers(column: Column) -> DecimalColumn | WordColumn:
+    """The cells as the kernel takes them: as texts where one is infinite."""
+    assert not isinstance(column.values, Words)
+    if column.unbounded is None:
+        return decimal_column(column.values, column.decimals)
+    texts = column.texts(column_texts(column.values, column.decimals))
+    width = max(map(len, texts))
+    return word_column(words_of([text.rjust(width) for text in texts]))
 
 
 def _header(column: Column) -> str:

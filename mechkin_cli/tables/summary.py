@@ -16,7 +16,7 @@ import numpy as np
 
 from mechkin_cli.reductions import REDUCTIONS, mean, root_mean_square, row_weights
 from mechkin_cli.status import Status
-from mechkin_cli.tables.columns import Column, Columns, words_of
+from mechkin_cli.tables.columns import Column, Columns, column_of_numbers, words_of
 from mechkin_cli.tables.decimal_text import column_texts
 from mechkin_cli.tables.layout import ROW_NUMBER, ColumnLayout
 from mechkin_cli.tables.run_parameter import run_parameter
@@ -95,9 +95,10 @@ class Summary(NamedTuple):
         """The same as people read them: with the column's decimals, places with nine digits."""
         numbers = np.array(self.numbers(column))
         is_value = np.array([line not in (AT, ROWS) for line in self.lines])
-        values = iter(column_texts(numbers[is_value], column.decimals))
+        own = column_of_numbers("", "", numbers[is_value])
+        values = iter(own.texts(column_texts(numbers[is_value], column.decimals)))
         others = (f"{n + 0.0:.9g}" if np.isfinite(n) else "" for n in numbers[~is_value].tolist())
-        return [next(values) if own else next(others) for own in is_value]
+        return [next(values) if mine else next(others) for mine in is_value]
 
 
 _WITH_PLACE = ("max", "min", "peak")
@@ -136,7 +137,7 @@ def summary_of(
     along = run_parameter(source)
     found = tuple(
         SummaryColumn(
-            number, column.label, column.unit, column.decimals, statistics(column.values, source)
+            number, column.label, column.unit, column.decimals, statistics(column.numbers, source)
         )
         for number, (layout, column) in enumerate(zip(layouts, columns, strict=True))
         if isinstance(column.values, np.ndarray)
@@ -165,7 +166,7 @@ def summary_table(name: str, title: str, summary: Summary) -> Columns:
     columns = [Column("summary", "", words_of(words))]
     for each in summary.columns:
         numbers = np.array(summary.numbers(each))
-        columns.append(Column(each.label, each.unit, numbers, each.decimals))
+        columns.append(column_of_numbers(each.label, each.unit, numbers, each.decimals))
     return Columns(f"{name}.summary", f"Summary of {title or name}", tuple(columns), of_rows=False)
 
 

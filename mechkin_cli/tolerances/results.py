@@ -17,6 +17,18 @@ CONDITION_RANK_UNCLEAR: Final = 1e12
 """Above it rates and reactions of a row have no digit that means anything; its position still
 has."""
 
+DEAD_CENTRE_LOST: Final = 0.05
+"""Part of a rate by which the rounding of an input changes it, from which on a row stands at a dead
+centre as nearly as a double can say: hardly a digit of the rate is left."""
+
+BEFORE_DEAD_CENTRE: Final = (1e-4, 1e-6)
+"""Distances of two places before a dead centre (rad, sizes): what grows as the root of the inverse
+does so tenfold between them, and both are far above rounding."""
+
+GROWS_WITHOUT_BOUND: Final = 5.0
+"""Growth between these two places from which on a quantity has no bound: half of the root's. What
+has a bound changes by a hundredth of itself."""
+
 # --- reactions and actuators ---------------------------------------------------------------------
 
 REACTION_ROUNDING: Final = 1e-12

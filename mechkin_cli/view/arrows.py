@@ -97,14 +97,20 @@ def _efforts(analysis: Readable, problem: Problem) -> Iterator[Arrow]:
         axis = f"{joint.name}.axis"
         hinged = joint.plane and axis not in problem.quantities()  # about the plane's normal
         direction = np.array([NORMAL]) if hinged else _in_space(analysis, axis)
-        along = direction * analysis[effort][:, None]
+        along = direction * _drawable(analysis[effort])[:, None]
         kind = KINDS[1] if is_angle(name.rpartition(".")[2]) else KINDS[0]
         yield from _known(Arrow(effort, kind, joint.point, along))
 
 
+def _drawable(values: Floats) -> Floats:
+    """Values with nan for what grows without bound towards its row, which has no arrow."""
+    found: Floats = np.where(np.isinf(values), np.nan, values)
+    return found
+
+
 def _in_space(analysis: Readable, name: str) -> Floats:
     """A vector over the rows (rows, 3); what a plane leaves out of it is zero."""
-    told = np.asarray(analysis[name])
+    told = _drawable(analysis[name])
     found = np.zeros((len(told), 3))
     places = analysis.result.problem.quantities()[name].places
     found[:, list(places)] = told.reshape(len(told), len(places))

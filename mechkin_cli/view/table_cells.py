@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from mechkin_cli.tables.columns import Column, Columns, Words
+from mechkin_cli.tables.columns import Columns
 from mechkin_cli.tables.csv_writer import csv_bytes
 from mechkin_cli.tables.table_text import read_table_text
 
@@ -32,11 +32,4 @@ def table_record(table: Columns, run: str, rows: NDArray[np.intp], codes: list[i
 
 
 def _part(table: Columns, rows: NDArray[np.intp]) -> Columns:
-    return replace(table, columns=tuple(_rows_of(column, rows) for column in table.columns))
-
-
-def _rows_of(column: Column, rows: NDArray[np.intp]) -> Column:
-    values = column.values
-    if isinstance(values, Words):
-        return replace(column, values=Words(values.codes[rows], values.words))
-    return replace(column, values=values[rows])
+    return replace(table, columns=tuple(column.part(rows) for column in table.columns))

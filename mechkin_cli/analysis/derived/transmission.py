@@ -78,7 +78,7 @@ def _angle(run: Reading, quantity: Wanted, session: Session | None) -> Floats:
         return _between(force, _velocity(guide, quantity.coordinate, axis, arm, unit))
 
     found, rows = angle(0), run.result.row_states
-    lost = ~rows.reached | (rows.status == Status.rank_unclear)
+    lost = ~rows.reached | np.isin(rows.status, (Status.rank_unclear, Status.dead_centre))
     for shift in run.result.shifts:
         lost |= ~(np.abs(angle(shift) - found) <= tolerances.UNIQUE_CELL)
     return np.where(lost, np.nan, found)

@@ -211,7 +211,7 @@ class Repeated:
         demand |= demand_of(session.problem.mechanism, wanted)
         found = self.wide.run(wanted, session, self._exact(inputs), demand)
         rows = self.row_states
-        unclear = rows.status == Status.rank_unclear
+        unclear = np.isin(rows.status, (Status.rank_unclear, Status.dead_centre))
         for quantity in wanted:
             own = found[quantity.name]
             own[:, ~rows.reached] = np.nan

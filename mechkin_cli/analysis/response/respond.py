@@ -258,7 +258,7 @@ def read(result: ResponseResult, quantities: Iterable[str]) -> None:
         failed = rows.reached & ~batch.good
         rows.status[failed] = Status.not_converged
         rows.reached &= ~failed
-        judge_condition(rows, batch)
+        judge_condition(result.session, rows, batch)
         result.keep(batch, wanted, demand)
         result.read(asked)
     result.row_states.diagnostics += row_notes(

@@ -72,7 +72,8 @@ def _holding(problem: Problem) -> list[Wanted]:
 def friction_verdict(result: Result) -> FrictionVerdict:
     """The verdict on the friction of a result, whose verdict quantities have been read."""
     rows, problem = result.row_states, result.problem
-    judged = rows.reached & (rows.status != Status.rank_unclear)
+    unclear = np.isin(rows.status, (Status.rank_unclear, Status.dead_centre))
+    judged = rows.reached & ~unclear
     lost, unfounded = np.zeros((2, judged.size), dtype=bool)
     diagnostics = []
     for where, diagnostic in _undecided(result, judged):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from mechkin_cli.analysis.sweep.admissible import (
 from mechkin_cli.analysis.sweep.closing_angles import make_continuous
 from mechkin_cli.analysis.sweep.error_bound import error_bound
 from mechkin_cli.analysis.sweep.friction_rows import FrictionRows
+from mechkin_cli.analysis.sweep.places import Places
 from mechkin_cli.analysis.sweep.proven import Proven
 from mechkin_cli.analysis.sweep.read_off import read_off
 from mechkin_cli.expressions import Quantity, UnknownName
@@ -346,38 +347,24 @@ class Result(Proven):
         """One call of the kernel over all rows on their states; rows without a state repeat
         another's."""
         session = session or self.session
-        inputs = inputs or self.session.inputs
         rows = self.row_states
-        values, states = inputs.reduced, rows.states
-        turned, whole, full = rows.turns, self.session.inputs.whole, self.session.inputs.values
-        moments = self.problem.motion.time
-        time = None if moments is None else moments.values
-        ties = session.tie_rates if demand & Demand.FORCES else None
+        inputs = inputs or self.session.inputs
+        places = Places.of(self.session, rows, inputs, demand, session.tie_rates)
         if not rows.reached.all():
             stand_in = np.where(rows.reached, np.arange(rows.reached.size), rows.reached.argmax())
-            values, states = values[:, stand_in], states[:, stand_in]
-            turned, whole, full = turned[:, stand_in], whole[:, stand_in], full[:, stand_in]
-            time = None if time is None else time[stand_in]
-            if chart is not None:
-                chart = chart.at(stand_in)
-            ties = None if ties is None else ties[:, stand_in]
-        return session.run(
-            values,
-            states,
-            readout=session.readout(wanted) if wanted else None,
-            demand=demand,
-            rates=inputs.rates if demand & Demand.VELOCITY else None,
-            accelerations=inputs.accelerations if demand & Demand.ACCELERATION else None,
-            jerks=inputs.jerks if demand & Demand.JERK else None,
-            ties=ties,
-            turned=turned,
-            whole=whole,
-            chart=chart,
-            full=full,
-            time=time,
-            shift=shift,
-            iterations=iterations,
-        )
+            places = places.at(stand_in)
+            chart = None if chart is None else chart.at(stand_in)
+        asked: dict[str, Any] = {
+            "readout": session.readout(wanted) if wanted else None,
+            "demand": demand,
+            "shift": shift,
+        }
+        batch = session.run(**places.arguments, **asked, chart=chart, iterations=iterations)
+        if rows.dead_centres and wanted:
+            from mechkin_cli.analysis.sweep.dead_centre_rows import put_unbounded
+
+            put_unbounded(session, rows, wanted, batch, places, asked)
+        return batch
 
     def _split(self, wanted: Sequence[Wanted], batch: Batch, session: Session) -> Columns:
         slots = session.readout(wanted).slots

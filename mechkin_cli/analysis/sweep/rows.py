@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +12,7 @@ from mechkin_cli.status import Status
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.analysis.sweep.dead_centre_rows import Before
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.solver.branch_limit import EndOfRows
@@ -33,7 +34,8 @@ class Rows:
     from 0 as the file does, `nodes` the steps with which they were followed. `turns` (turn slots,
     rows) are angles and quaternions of closing joints as following carried them along
     (`solver.closing_turns`). `section` (rows,) tells rows apart between which a branch point was
-    passed; numbers say nothing but that. `ends` are the dead centres beyond which rows are missing.
+    passed; numbers say nothing but that. `ends` are the dead centres beyond which rows are missing,
+    `dead_centres` the rows that stand at one.
     """
 
     states: Floats
@@ -46,6 +48,7 @@ class Rows:
     turns: Floats
     section: NDArray[np.int64]
     ends: list[EndOfRows]
+    dead_centres: list[Before] = field(default_factory=list)
 
     @classmethod
     def without_guesses(cls, states: int, turns: int, rows: int) -> Rows:

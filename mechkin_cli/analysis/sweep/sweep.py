@@ -121,8 +121,10 @@ def _closed_once(session: Session, start: Start, asked: Question, *, every_row: 
             rows.states = batch.states
         else:
             rows.states[:, rows.reached] = batch.states[:, rows.reached]
-        judge_condition(rows, batch)
+        judge_condition(session, rows, batch)
         _judge_inputs(session, rows)
+        if rows.dead_centres and asked.wanted:
+            batch = batch._replace(outputs=result.run(asked.wanted, asked.demand).outputs)
     result.keep(batch, asked.wanted, asked.demand)
     return result
 
@@ -156,7 +158,7 @@ def _failed(batch: Batch, rows: Rows) -> Bools:
     return failed | rows.reached & turned
 
 
-def judge_condition(rows: Rows, batch: Batch) -> None:
+def judge_condition(session: Session, rows: Rows, batch: Batch) -> None:
     """Verdicts by condition."""
     condition = batch.condition
     if condition is None or (condition <= tolerances.CONDITION_NEAR_SINGULAR).all():
@@ -165,6 +167,9 @@ def judge_condition(rows: Rows, batch: Batch) -> None:
     unclear = rows.reached & ~(condition <= tolerances.CONDITION_RANK_UNCLEAR)
     rows.status[singular & (rows.status == Status.ok)] = Status.near_singular
     rows.status[unclear & (rows.status == Status.near_singular)] = Status.rank_unclear
+    from mechkin_cli.analysis.sweep.dead_centre_rows import judge_dead_centres
+
+    judge_dead_centres(session, rows)
     rows.diagnostics += condition_notes(rows, condition)
 
 
@@ -182,6 +187,7 @@ def _judge_inputs(session: Session, rows: Rows) -> None:
     rows.diagnostics.extend(fault for fault in faults if fault not in rows.diagnostics)
     if faults and any(moved.any() for moved in session.inputs.orders[1:]):
         rows.status[rows.reached] = Status.rank_unclear
+        rows.dead_centres.clear()
 
 
 def _read_by_loads(result: Result) -> list[Wanted]:

@@ -1,0 +1,61 @@
+"""What becomes of rows in which something is infinite.
+
+A quantity may be: what grows without bound towards a row at a dead centre. What is made of it is
+infinite, too, or has no value. An operation that has no finite value by itself, as 1/x at zero,
+gives none, so that no function makes a number of it again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.expressions.operand import Operand
+from mechkin_cli.expressions.quantity import Quantity, Scalar, Vector
+
+if TYPE_CHECKING:
+    from mechkin_cli.arrays import Bools, Floats
+
+_TAKES_PARTS = frozenset({"[]", ".x", ".y", ".z"})
+
+
+def is_infinite(quantity: Quantity) -> bool:
+    """Whether a quantity is infinite in some row."""
+    return any(
+        isinstance(part, np.ndarray) and part.dtype == np.float64 and bool(np.isinf(part).any())
+        for part in _parts(quantity)
+    )
+
+
+def without_new(operand: Operand) -> Operand:
+    """Rows with nan for what is infinite, of operations on what is finite."""
+    if not any(isinstance(p, np.ndarray) and np.isinf(p).any() for p in _parts(operand.quantity)):
+        return operand
+    return _each(operand, lambda part: np.where(np.isinf(part), np.nan, part))
+
+
+def of_infinite(symbol: str, operand: Operand, operands: Sequence[Operand]) -> Operand:
+    """The same where operands may be infinite: what is finite in such a row is none of it."""
+    if symbol in _TAKES_PARTS:
+        return operand
+    rows: Bools | np.bool_ = np.False_
+    for given in operands:
+        for part in _parts(given.quantity):
+            if isinstance(part, np.ndarray):
+                rows = rows | np.isinf(part)
+    return _each(operand, lambda part: np.where(np.isinf(part) == rows, part, np.nan))
+
+
+def _parts(quantity: Quantity) -> Sequence[Scalar]:
+    value = quantity.value
+    return value.components if isinstance(value, Vector) else (value,)
+
+
+def _each(operand: Operand, change: Callable[[Floats], Floats]) -> Operand:
+    value = operand.quantity.value
+    kept = [change(p) if isinstance(p, np.ndarray) else p for p in _parts(operand.quantity)]
+    found = Vector(*kept) if isinstance(value, Vector) else kept[0]
+    return replace(operand, quantity=replace(operand.quantity, value=found))
