@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shlex import quote
 from typing import Annotated
 
 import typer
@@ -35,11 +36,17 @@ def new(
         raise UsageError(
             "name the file to write: mechkin new NAME; mechkin new --list tells of what"
         )
+    stem = Path(name).name
+    if not stem[:1].isalnum() and not stem.startswith("_"):
+        raise UsageError(
+            f"{name!r} is no name for a file: it begins with a letter or digit; such as "
+            "mechkin new pump"
+        )
     text = template_text(template)
     path = Path(name if name.endswith((".yaml", ".yml")) else f"{name}.yaml")
     _write_anew(path, text)
     say(f"{path}: {purpose(text)}")
-    say(f"mechkin analyze {path}")
+    say(f"mechkin analyze {quote(str(path))}")
 
 
 def _write_anew(path: Path, text: str) -> None:

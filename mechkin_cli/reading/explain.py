@@ -15,6 +15,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from mechkin_cli.diagnostics import Diagnostic, Place
+from mechkin_cli.nearest import nearest
 from mechkin_cli.reading import wording
 from mechkin_cli.reading.document import Document, KeyPath
 from mechkin_cli.reading.nodes import Mapping, Scalar, Sequence
@@ -25,8 +26,26 @@ _KEY = "[key]"
 
 def explain(errors: Iterable[dict[str, Any]], document: Document) -> list[Diagnostic]:
     """One diagnostic per error, in the order of the file."""
-    told = (_diagnostic(error, document) for error in errors if not _is_echo(error, document))
+    errors = list(errors)
+    misspelt = _misspelt(errors)
+    told = (
+        _diagnostic(error, document)
+        for error in errors
+        if not _is_echo(error, document)
+        and not (error["type"] == "missing" and tuple(error["loc"]) in misspelt)
+    )
     return in_order(list(dict.fromkeys(told)))
+
+
+def _misspelt(errors: list[dict[str, Any]]) -> set[tuple[str | int, ...]]:
+    """The ways to keys that are missing only because they are misspelt, which is told."""
+    found = set()
+    for error in errors:
+        if error["type"] == "extra_forbidden":
+            *mapping, key = error["loc"]
+            close = nearest(str(key), (error.get("ctx") or {}).get("known") or [])
+            found.add((*mapping, close or ""))
+    return found
 
 
 def _is_echo(error: dict[str, Any], document: Document) -> bool:

@@ -84,7 +84,7 @@ def _walk(text: str, file: str, loader: Any, builder: TreeBuilder) -> None:
     except yaml.YAMLError as error:
         from mechkin_cli.reading.syntax import syntax_diagnostic  # only on the way to messages
 
-        builder.diagnostics.append(builder.cut_off_value() or syntax_diagnostic(error, file))
+        builder.diagnostics.append(builder.cut_off_value() or syntax_diagnostic(error, file, text))
 
 
 def _too_many(place: Place, documents: int) -> Diagnostic:

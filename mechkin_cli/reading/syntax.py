@@ -14,6 +14,9 @@ from yaml import MarkedYAMLError, YAMLError
 from mechkin_cli.diagnostics import Diagnostic, Place
 
 _QUOTE = "put the text in quotes"
+_COLON = "a ':' cannot stand here"
+_NO_COLON = "a ':' is missing after this key"
+_WITH_COLON = "write key: value, with a blank after the colon"
 _INDENT = "indent keys of one mapping equally, and put a value that holds ': ' in quotes"
 
 
@@ -59,7 +62,7 @@ _RULES = (
         "close the mapping with }, and put an expression with commas or brackets in quotes",
         open_message="this mapping is not closed on its line and goes wrong further down",
     ),
-    _rule(r"mapping values are not allowed", "a ':' cannot stand here", _INDENT),
+    _rule(r"mapping values are not allowed", _COLON, _INDENT),
     _rule(
         r"sequence entries are not allowed",
         "a '-' cannot start a list here",
@@ -68,8 +71,8 @@ _RULES = (
     _rule(r"mapping keys are not allowed", "a '?' cannot stand here", _QUOTE),
     _rule(
         r"simple key",
-        "a ':' is missing after this key",
-        "write key: value, with a blank after the colon",
+        _NO_COLON,
+        _WITH_COLON,
         at_start=True,
     ),
     _rule(
@@ -97,8 +100,8 @@ _RULES = (
 _GENERAL = _rule("", "the text is not valid YAML here", "check indentation, quotes and brackets")
 
 
-def syntax_diagnostic(error: YAMLError, file: str) -> Diagnostic:
-    """The message for an error that a YAML parser raised."""
+def syntax_diagnostic(error: YAMLError, file: str, text: str) -> Diagnostic:
+    """The message for an error that a YAML parser raised about a text."""
     if not isinstance(error, MarkedYAMLError):
         return Diagnostic("yaml", "error", _GENERAL.message, Place(file, 1, 1), hint=_GENERAL.hint)
     words = f"{error.context} {error.problem}"
@@ -109,5 +112,23 @@ def syntax_diagnostic(error: YAMLError, file: str) -> Diagnostic:
         message, mark = rule.open_message, start
     elif start and rule.at_start:
         mark = start
+    if stop and rule.message == _COLON:
+        before = _line_without_colon(text.split("\n"), stop.line)
+        if before is not None:
+            return Diagnostic("yaml", "error", _NO_COLON, Place(file, *before), hint=_WITH_COLON)
     place = Place(file, mark.line + 1, mark.column + 1) if mark else Place(file, 1, 1)
     return Diagnostic("yaml", "error", message, place, hint=rule.hint)
+
+
+def _line_without_colon(lines: list[str], number: int) -> tuple[int, int] | None:
+    """Line and column, from 1, of a key without its colon: the line before the one where a second
+    value begins, where it is indented as that and has none. YAML takes both for one text."""
+    above = number - 1
+    while above >= 0 and not lines[above].strip():
+        above -= 1
+    if above < 0:
+        return None
+    line, indent = lines[above], len(lines[above]) - len(lines[above].lstrip())
+    own = len(lines[number]) - len(lines[number].lstrip())
+    is_key = line[indent : indent + 1].isidentifier() and ":" not in line
+    return (above + 1, indent + 1) if is_key and indent == own else None

@@ -52,7 +52,9 @@ def expression_text(value: Any) -> str:
     if text is None:
         text = value if isinstance(value, str) else None
     if text is None:
-        raise refuse("not-a-number", "expected a number or an expression", "for example 0.5 in")
+        is_list = isinstance(value, (list, tuple))
+        hint = 'a vector is written in quotes: "[x, y, z]"' if is_list else "for example 0.5 in"
+        raise refuse("not-a-number", "expected a number or an expression", hint)
     text = text.strip()
     if not text:
         raise refuse("empty-value", "an empty text is no number", "write a number or an expression")

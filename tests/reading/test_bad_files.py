@@ -50,6 +50,15 @@ def test_independent_mistakes_are_reported_together_in_the_order_of_the_file() -
     ]
 
 
+@pytest.mark.parametrize(
+    ("right", "wrong"), [("point:", "pont:"), ("axis:", "Axis:"), ("links: [", "lins: [")]
+)
+def test_a_misspelt_key_is_not_reported_as_missing_as_well(right: str, wrong: str) -> None:
+    (message,) = messages(SOUND.replace(right, wrong))
+    assert f"there is no key '{wrong.partition(':')[0]}' here; did you mean {right[:4]}" in message
+    assert "missing" not in message
+
+
 def test_a_refused_item_is_not_reported_as_a_short_list_as_well() -> None:
     text = SOUND + "points: {p: {link: crank, at: [0, 0, nan]}}\n"
     assert len(messages(text)) == 1

@@ -223,6 +223,10 @@ def test_the_command_writes_a_file_and_never_over_another(
     assert "did you mean four-bar" in capsys.readouterr().err
     assert run(monkeypatch, "new") == 2
     assert run(monkeypatch, "new", "no/such/folder") == 2
+    for name in ("", "-", ".", "..", "...yaml", "#"):
+        capsys.readouterr()
+        assert run(monkeypatch, "new", "--", name) == 2
+        assert "is no name for a file" in capsys.readouterr().err
     assert [one.name for one in tmp_path.iterdir()] == ["arm.yaml"]
 
 
