@@ -8,6 +8,7 @@ section 12.1).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,28 +23,49 @@ if TYPE_CHECKING:
 MOST_STEPS = 200
 """Steps of a local search."""
 
+LAST_STEPS = 8
+"""Steps with exact derivatives from where a search has ended: one or two move it to where the
+gradient vanishes but for rounding; into a corner of the bounds it would creep on for fifty."""
+
 WORSE = 10.0
 """Times the start's cost: what a step counts that leads to where something is missing."""
 
 
-def refined(measured: Measured, start: Floats) -> tuple[Floats, bool, str]:
+Slopes = Callable[["Floats"], "Floats"]
+"""From (unknowns,) to the derivatives of `Measures.stacked` (all, unknowns)."""
+
+
+def refined(
+    measured: Measured, start: Floats, slopes: Slopes, steps: int = MOST_STEPS
+) -> tuple[Floats, bool, str]:
     """The unknowns in [0, 1] that a search from `start` ends at, whether it ended by itself, and
-    why it ended."""
+    why it ended; `steps`: the most it takes."""
     at_start = measured.one(start)
     if at_start.missing[0] > 0.0:
         return start, False, "something has no value at the start of this search"
     unknowns, ended, reason = start, True, ""
     if not at_start.peaks:
-        unknowns, ended, reason = _least_squares(measured, start)
+        unknowns, ended, reason = _least_squares(measured, start, slopes, steps)
         if measured.one(unknowns).margins.min(initial=1.0) >= -FIT_HELD:
             return unknowns, ended, reason
-    programmed = _constrained(measured, unknowns)
+    programmed = _constrained(measured, unknowns, slopes, steps)
     if programmed[0] is not unknowns and measured.one(programmed[0]).missing[0] > 0.0:
         return unknowns, False, "the constrained search left what has values"
     return programmed
 
 
-def _least_squares(measured: Measured, start: Floats) -> tuple[Floats, bool, str]:
+def finished(measured: Measured, end: Floats, ended: bool, reason: str) -> tuple[Floats, bool, str]:
+    """`refined` once more from its `end`, a few steps with exact derivatives; that end itself
+    where they find nothing better."""
+    found, of_itself, why = refined(measured, end, measured.exact_slopes, LAST_STEPS)
+    if measured.one(found).ranks[0] <= measured.one(end).ranks[0]:
+        return found, ended or of_itself, why if of_itself else reason
+    return end, ended, reason
+
+
+def _least_squares(
+    measured: Measured, start: Floats, slopes: Slopes, steps: int
+) -> tuple[Floats, bool, str]:
     least_squares = optimizer().least_squares
 
     count = measured.one(start).residuals.shape[1]
@@ -56,17 +78,19 @@ def _least_squares(measured: Measured, start: Floats) -> tuple[Floats, bool, str
     end = least_squares(
         residuals,
         np.clip(start, FIT_HELD, 1.0 - FIT_HELD),
-        lambda unknowns: measured.slopes(unknowns)[:count],
+        lambda unknowns: slopes(unknowns)[:count],
         bounds=(0.0, 1.0),
         xtol=FIT_ENDED,
         ftol=FIT_ENDED,
         gtol=FIT_ENDED,
-        max_nfev=MOST_STEPS,
+        max_nfev=steps,
     )
     return np.clip(end.x, 0.0, 1.0), end.status > 0, str(end.message).rstrip(".")
 
 
-def _constrained(measured: Measured, start: Floats) -> tuple[Floats, bool, str]:
+def _constrained(
+    measured: Measured, start: Floats, stacked_slopes: Slopes, steps: int
+) -> tuple[Floats, bool, str]:
     minimize = optimizer().minimize
 
     count, first = len(start), measured.one(start)
@@ -97,7 +121,7 @@ def _constrained(measured: Measured, start: Floats) -> tuple[Floats, bool, str]:
         key = unknowns.tobytes()
         if key not in kept:
             kept.clear()
-            kept[key] = measured.slopes(unknowns)
+            kept[key] = stacked_slopes(unknowns)
         return kept[key]
 
     def above(all_unknowns: Floats) -> Floats:
@@ -124,7 +148,7 @@ def _constrained(measured: Measured, start: Floats) -> tuple[Floats, bool, str]:
         method="SLSQP",
         bounds=[(0.0, 1.0)] * count + [(0.0, None)] * len(sizes),
         constraints=[{"type": "ineq", "fun": above, "jac": above_slopes}],
-        options={"ftol": FIT_ENDED, "maxiter": MOST_STEPS},
+        options={"ftol": FIT_ENDED, "maxiter": steps},
     )
     return np.clip(end.x[:count], 0.0, 1.0), bool(end.status in (0, 8)), str(end.message)
 

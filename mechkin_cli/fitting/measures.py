@@ -67,14 +67,29 @@ class Measures(NamedTuple):
 Measure = Callable[["Floats"], Measures]
 """From (unknowns, S) to their measures."""
 
+Exact = Callable[["Floats"], "Floats"]
+"""From (unknowns,) to the derivatives of `stacked` (all, unknowns), nan where it has none."""
+
 
 class Measured:
-    """Measures with their derivatives, and how many variants they took."""
+    """Measures with their derivatives, and how many variants they took.
 
-    def __init__(self, measure: Measure) -> None:
-        self._measure = measure
+    Args:
+        measure: the measures of a population.
+        exact: their exact derivatives; many times dearer than differences.
+
+    Attributes:
+        evaluations: variants computed.
+        slopes_taken, exact_taken: Jacobians by differences alone, and exact ones.
+        entries, filled: numbers of the last exact Jacobian, and those that are differences, as
+            there was no exact one.
+    """
+
+    def __init__(self, measure: Measure, exact: Exact) -> None:
+        self._measure, self._exact = measure, exact
         self.evaluations = 0
-        self.slopes_taken = 0
+        self.slopes_taken = self.exact_taken = 0
+        self.entries = self.filled = 0
         self._last: tuple[bytes, Measures] | None = None
 
     def many(self, unknowns: Floats) -> Measures:
@@ -89,10 +104,23 @@ class Measured:
             self._last = key, self.many(unknowns[:, None])
         return self._last[1]
 
-    def slopes(self, unknowns: Floats) -> Floats:
-        """Derivatives of `stacked` (all, unknowns): fourth-order differences, of all unknowns in
-        one call; narrow or one-sided ones where those leave what has values."""
+    def differences(self, unknowns: Floats) -> Floats:
+        """Derivatives of `stacked` (all, unknowns), the quick ones."""
         self.slopes_taken += 1
+        return self._differences(unknowns)
+
+    def exact_slopes(self, unknowns: Floats) -> Floats:
+        """Derivatives of `stacked` (all, unknowns), exact to rounding; differences where something
+        has no exact one."""
+        self.exact_taken += 1
+        found = self._exact(unknowns)
+        without = ~np.isfinite(found)
+        self.entries, self.filled = found.size, int(without.sum())
+        return np.where(without, self._differences(unknowns), found) if self.filled else found
+
+    def _differences(self, unknowns: Floats) -> Floats:
+        """Fourth-order differences, of all unknowns in one call; narrow or one-sided ones where
+        those leave what has values."""
         count = len(unknowns)
         far, near = FIT_STEP, FIT_NARROW_STEP
         steps = np.array([-2 * far, -far, far, 2 * far])

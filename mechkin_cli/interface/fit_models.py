@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.motion import DrivenInput
 
 CURVE_ROWS = 181
-"""Rows of a curve between which the nearest place is sought: 2 deg of a turn, so that eight of
+"""Rows of a curve between which the nearest place is sought: 2 deg of a turn, so that ten of
 them tell the curve between to rounding."""
 
 LEFT_OUT = ("tables", "responses", "view")

@@ -70,6 +70,12 @@ class Constraint(NamedTuple):
     label: str
     unit: str
 
+    @property
+    def bounds(self) -> list[tuple[float, float]]:
+        """Each bound there is, with 1 for the lower and -1 for the upper one."""
+        ends = ((self.lower, 1.0), (self.upper, -1.0))
+        return [(bound, sign) for bound, sign in ends if np.isfinite(bound)]
+
 
 class Request(NamedTuple):
     """All that is asked."""

@@ -72,11 +72,16 @@ class Fit(Listed):
         units: their units.
         model: the mechanism that has them.
         evaluations: variants that were computed, those of derivatives among them.
+        slopes_taken, exact_taken: Jacobians of the searches, by differences; exact ones, with
+            which the best of them was finished.
+        slopes: `exact`, or which of the last Jacobian's numbers are differences, and why.
         costs: what each local search reached: half the sum of the squares of what was asked, in
             parts of `within`; nan where nothing assembled.
     """
 
-    def __init__(self, values: FitValues, best: Found, measured: Measured) -> None:
+    def __init__(
+        self, values: FitValues, best: Found, measured: Measured, why: dict[str, str]
+    ) -> None:
         self._values, self._best = values, best
         request = values.request
         found = values.values(best.unknowns[:, None])
@@ -84,6 +89,8 @@ class Fit(Listed):
         self.units = {one.name: one.unit for one in request.parameters}
         self.model: Model = values.models.model.with_parameters(self.parameters)
         self.evaluations, self.slopes_taken = measured.evaluations, measured.slopes_taken
+        self.exact_taken = measured.exact_taken
+        self.slopes = _slopes_told(measured, why)
         self.costs = best.costs
 
     @property
@@ -173,7 +180,9 @@ class Fit(Listed):
         head = f"{self.model.name}, fit: {self.status}"
         notes = (
             self.reason,
-            f"{self.evaluations} variants, {self.slopes_taken} Jacobians, {len(self.costs)} starts",
+            f"{self.evaluations} variants, {self.slopes_taken} Jacobians by differences and "
+            f"{self.exact_taken} of sensitivities, {len(self.costs)} starts",
+            f"slopes: {self.slopes}",
         )
         return Listing(head, ("what", "value", "unit", ""), tuple(rows), notes)
 
@@ -216,15 +225,26 @@ class Fit(Listed):
 
     def _held(self, constraint: Constraint) -> list[Held]:
         values = self._sweep[constraint.of]
-        bounds = [v for v in (constraint.lower, constraint.upper) if np.isfinite(v)]
         found = []
-        for bound, margins in zip(bounds, margins_of(constraint, values), strict=True):
+        all_margins = margins_of(constraint, values)
+        for (bound, _), margins in zip(constraint.bounds, all_margins, strict=True):
             row = int(np.argmin(np.where(np.isnan(margins), np.inf, margins)))
             holds = bool((margins >= -FIT_HELD).all())
             found.append(
                 Held(constraint.label, constraint.unit, bound, float(values[row]), row, holds)
             )
         return found
+
+
+def _slopes_told(measured: Measured, why: dict[str, str]) -> str:
+    """Which derivatives the search ended with."""
+    if not measured.exact_taken:
+        return "differences: no search found where everything has a value"
+    if not measured.filled:
+        return "exact"
+    told = "; ".join(f"{text}: {reason}" for text, reason in why.items())
+    some = f"differences in {measured.filled} of {measured.entries} derivatives"
+    return f"{some}, which have no sensitivity ({told})"
 
 
 def _names(model: Model, texts: list[str]) -> list[str]:

@@ -50,6 +50,10 @@ class FitValues:
         found = self.lower[:, None] + unknowns * self.width[:, None]
         return dict(zip(self.names, found, strict=True))
 
+    def rows_of(self, target: Target) -> list[int]:
+        """The rows among the listed inputs at which a target stands."""
+        return [self._row[value] for value in target.at or ()]
+
     def measure(self, unknowns: Floats) -> Measures:
         """Of a population (unknowns, S)."""
         values, count = self.values(unknowns), unknowns.shape[1]
@@ -71,8 +75,7 @@ class FitValues:
             found, lost = self._run(listed, values, [one.of for one in self.at_inputs])
             missing = missing + lost
             for target in self.at_inputs:
-                rows = [self._row[value] for value in target.at or ()]
-                residuals.append(deviations(target, found[target.of][:, rows]))
+                residuals.append(deviations(target, found[target.of][:, self.rows_of(target)]))
         if self.anywhere:
             found, lost = self._run(self.models.curve, values, [one.of for one in self.anywhere])
             missing = missing + lost
@@ -107,11 +110,7 @@ def deviations(target: Target, values: Floats) -> Floats:
 
 def margins_of(constraint: Constraint, values: Floats) -> list[Floats]:
     """Margins (S, rows) of each of its bounds, in parts of the bound."""
-    found = []
-    for bound, sign in ((constraint.lower, 1.0), (constraint.upper, -1.0)):
-        if np.isfinite(bound):
-            found.append(sign * (values - bound) / (abs(bound) or 1.0))
-    return found
+    return [sign * (values - bound) / (abs(bound) or 1.0) for bound, sign in constraint.bounds]
 
 
 def rms_weights(model: Model) -> Floats:

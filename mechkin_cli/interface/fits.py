@@ -13,6 +13,7 @@ from mechkin_cli.interface.arguments import a_whole_number
 from mechkin_cli.interface.fit_models import FitModels
 from mechkin_cli.interface.fit_request import request
 from mechkin_cli.interface.fit_result import Fit
+from mechkin_cli.interface.fit_slopes import FitSlopes
 from mechkin_cli.interface.fit_values import FitValues
 
 if TYPE_CHECKING:
@@ -38,7 +39,8 @@ def fit_of(
     models = FitModels(model)
     asked = request(model.problem, targets, parameters, constraints)
     values = FitValues(models, asked)
-    measured = Measured(values.measure)
+    slopes = FitSlopes(values)
+    measured = Measured(values.measure, slopes.stacked)
     own = np.array([one.own for one in asked.parameters])
     best = found(measured, (own - values.lower) / values.width, seed, starts, generations, progress)
-    return Fit(values, best, measured)
+    return Fit(values, best, measured, slopes.why)
