@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from mechkin_cli.building.columns import Sample, quantities_of
 from mechkin_cli.building.run_names import runs_of
 from mechkin_cli.expressions import ExpressionError, parse
+from mechkin_cli.expressions.nodes import Name, Node, Operation
 from mechkin_cli.expressions.parameters import in_order
 
 if TYPE_CHECKING:
     from mechkin_cli.building.fields import Fields
-    from mechkin_cli.expressions import Expression
+    from mechkin_cli.expressions import Expression, Quantity
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.schema.file import MechanismFile
 
@@ -65,17 +66,48 @@ def check_quantities(fields: Fields, file: MechanismFile, problem: Problem) -> N
     """Notes what is wrong with a quantity in every run of the file, at its place; what uses it gets
     no message of its own."""
     runs = runs_of(file)
-    samples = [Sample(fields, quantities_of(problem, run), run) for run in runs]
+    samples = [_Named(Sample(fields, quantities_of(problem, run), run), {}) for run in runs]
     for name in fields.definitions.named:
-        wrong = [_error_of(fields, file.quantities[name], sample) for sample in samples]
+        expression = parse(file.quantities[name])
+        if _uses(expression) & fields.refused:
+            fields.refused.add(name)
+            continue
+        wrong = [_error_of(fields, name, expression, sample) for sample in samples]
         if all(error is not None for error in wrong) and wrong[0] is not None:
             fields.expression_error(("quantities", name), wrong[0])
             fields.refused.add(name)
 
 
-def _error_of(fields: Fields, text: str, sample: Sample) -> ExpressionError | None:
+def _uses(expression: Expression) -> set[str]:
+    names = (node.text for node in expression.nodes if isinstance(node, Name))
+    return {name.partition(".")[0] for name in names}
+
+
+@dataclass(frozen=True)
+class _Named:
+    """A run's sample with the values of named expressions, so that each is evaluated once."""
+
+    sample: Sample
+    known: dict[str, Quantity]
+
+    def __call__(self, name: str) -> Quantity:
+        return self.known[name] if name in self.known else self.sample(name)
+
+
+def _error_of(
+    fields: Fields, name: str, expression: Expression, sample: _Named
+) -> ExpressionError | None:
+    """What is wrong with a named expression whose names are known; else keeps its value."""
     try:
-        fields.definitions.parse(text).evaluate(sample, fields.units)
+        if any(map(_is_derivative, expression.nodes)):
+            whole = fields.definitions.expanded(expression)
+            sample.known[name] = whole.evaluate(sample.sample, fields.units)
+        else:
+            sample.known[name] = expression.evaluate(sample, fields.units)
     except ExpressionError as error:
         return error
     return None
+
+
+def _is_derivative(node: Node) -> bool:
+    return isinstance(node, Operation) and node.symbol == "derivative"

@@ -6,7 +6,7 @@ file calls them; what grows beyond `MAX_EXPANDED` is refused.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from mechkin_cli.expressions.errors import ExpressionError
@@ -71,7 +71,7 @@ class Definitions:
     def _meant(self, name: Name) -> list[Node]:
         whole = self.named.get(name.text)
         if whole is not None:
-            return [node._replace(offset=name.offset) for node in whole.nodes]
+            return _at(name.offset, whole.nodes)
         prefix, _, axis = name.text.rpartition(".")
         vector = self.named.get(prefix)
         if vector is None:
@@ -82,8 +82,7 @@ class Definitions:
         if axis not in _AXES:
             text = f"there is no component .{axis[:MAX_QUOTED]}"
             raise ExpressionError(text, name.offset, "components are .x, .y and .z")
-        nodes: list[Node] = [node._replace(offset=name.offset) for node in vector.nodes]
-        return [*nodes, Operation(f".{axis}", 1, name.offset)]
+        return [*_at(name.offset, vector.nodes), Operation(f".{axis}", 1, name.offset)]
 
     def _operated(self, node: Operation, operands: list[list[Node]]) -> list[Node]:
         if node.symbol != "derivative" or self.differentiate is None:
@@ -93,3 +92,8 @@ class Definitions:
             hint = "write derivative(expression, A.theta)"
             raise ExpressionError("a derivative is taken by an input", node.offset, hint)
         return list(self.differentiate(tuple(operands[0]), coordinate, node.offset))
+
+
+def _at(offset: int, nodes: Sequence[Node]) -> list[Node]:
+    """The nodes with one place; those that have it are shared, as most are in a chain of names."""
+    return [node if node.offset == offset else node._replace(offset=offset) for node in nodes]

@@ -9,7 +9,6 @@ from mechkin_cli.building.columns import used_quantities
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.interface.arguments import a_text, a_whole_number, texts
 from mechkin_cli.kernel.width import check_threads, check_width
-from mechkin_cli.mechanism.derived_quantities import hint_of
 from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.session import Packing, Session
@@ -97,7 +96,7 @@ def wanted_names(
     names = [name for name in asked if name not in always]
     for name in names:
         if name not in known:
-            hint = hint_of(name) or nearest_hint(name, known) or QUANTITIES
+            hint = session.problem.why_not(name) or nearest_hint(name, known) or QUANTITIES
             raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
     return [*used, *names]
 

@@ -14,7 +14,7 @@ from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.interface.arguments import Setting, texts
 from mechkin_cli.interface.settings import input_values
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, hint_of
+from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
 from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.solver.closing_turns import angle_slots
 from mechkin_cli.solver.codes import Demand
@@ -155,7 +155,7 @@ def _wanted(model: Model, names: tuple[str, ...]) -> list[Wanted]:
     found = []
     for name in names:
         if name not in known:
-            hint = hint_of(name) or nearest_hint(name, known)
+            hint = problem.why_not(name) or nearest_hint(name, known)
             hint = hint or "quantities are names such as J.theta; analyze takes expressions"
             raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
         quantity = known[name]

@@ -13,6 +13,7 @@ from mechkin_cli.mechanism.bearing_loads import bearing_catalogue
 from mechkin_cli.mechanism.coefficient_quantities import coefficient_catalogue
 from mechkin_cli.mechanism.derived_quantities import (
     derived_catalogue,
+    hint_in_plane,
     hint_of,
     ledger_catalogue,
 )
@@ -110,7 +111,8 @@ class Problem:
         """Why there is no quantity of a name, and what there is; None where that is not known."""
         response = self.response is not None
         passive = without_effort(name, self._quantities, self.mechanism.drives, response=response)
-        return passive or hint_of(name)
+        held = hint_in_plane(name) if self.mechanism.plane else None
+        return passive or held or hint_of(name)
 
     @cached_property
     def _quantities(self) -> Mapping[str, Wanted]:

@@ -171,3 +171,19 @@ def test_what_is_per_angle_is_per_rad(rows: Any) -> None:
     assert np.allclose(rows[slope], rows["gain"], rtol=1e-15)
     assert rows.unit("derivative(3, O.theta)") == "1/rad"
     assert (rows["derivative(3, O.theta)"] == 0.0).all()
+
+
+@pytest.mark.parametrize("wrong", ["", " + 1 kg"], ids=["right", "one wrong"])
+def test_a_long_chain_of_names_is_read(wrong: str) -> None:
+    """Each is looked at once; where one is wrong, what uses it gets no message of its own."""
+    links = "".join(f"  q{i}: {i % 7} mm + q{i - 1}{wrong * (i == 1)}\n" for i in range(1, 1500))
+    text = SLIDER_CRANK.replace("quantities:\n", f"quantities:\n  q0: stroke\n{links}")
+    if wrong:
+        with pytest.raises(mk.InvalidFile) as refused:
+            mk.loads(text)
+        (message,) = refused.value.diagnostics
+        assert message.message.startswith("cannot add a length and a mass")
+        return
+    analysis = mk.loads(text).analyze()
+    total = sum(i % 7 for i in range(1, 1500))
+    assert np.abs(analysis["q1499"] - analysis["stroke"] - total).max() < 1e-9
