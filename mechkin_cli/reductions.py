@@ -39,29 +39,58 @@ def span(values: Floats) -> Floats:
     return largest(values) - smallest(values)
 
 
-def mean(values: Floats, weights: Floats | None = None) -> Floats:
-    """The mean of the values; `weights` of the rows (rows,), None: each counts the same."""
-    total, count = _sum(values, weights)
+def mean(values: Floats, at: Floats | None = None) -> Floats:
+    """The mean over the way, by the trapezoidal rule over the stretches between neighbouring rows
+    that both have a value, divided by their length.
+
+    A row without a neighbour has no way and does not count beside those that have. Where no
+    stretch has a length every row counts the same.
+
+    Args:
+        values: (variants, rows).
+        at: where the rows stand, (rows,) or (variants, rows); None: nowhere, as where nothing
+            moves.
+    """
+    total, count = _sum(values, None if at is None else _ways(values, at))
     return total / count
 
 
-def root_mean_square(values: Floats, weights: Floats | None = None) -> Floats:
+def root_mean_square(values: Floats, at: Floats | None = None) -> Floats:
     """The root of the mean of the squares, as `mean`."""
     # a power of two in front keeps squares from running over, and changes no bit
     _, exponent = np.frexp(peak(values))
     scaled = np.ldexp(values, -exponent[:, None])
-    total, count = _sum(scaled * scaled, weights)
+    total, count = _sum(scaled * scaled, None if at is None else _ways(values, at))
     return np.ldexp(np.sqrt(total / count), exponent)
 
 
 def row_weights(at: Floats) -> Floats:
-    """What rows at these places (rows,) count for in a mean over the way: half the way to each
-    neighbour, as the trapezoidal rule has it; all the same where nothing moves."""
-    half = 0.5 * np.abs(np.diff(at))
-    weights = np.zeros(at.shape)
-    weights[:-1] += half
-    weights[1:] += half
+    """What rows at these places (rows,) count for in a mean over the way where all have a value:
+    half the way to each neighbour; all the same where nothing moves."""
+    weights = _halves(0.5 * np.abs(np.diff(at)))
     return weights if weights.any() else np.ones(at.shape)
+
+
+def _ways(values: Floats, at: Floats) -> Floats:
+    """What rows count for, (rows,) or (variants, rows): half of each stretch at whose other end
+    there is a value, too."""
+    there = ~np.isnan(values)
+    if at.ndim == 2 and bool((at == at[:1]).all()):
+        at = at[0]
+    if at.ndim == 1 and there.all():
+        return row_weights(at)
+    both = there[:, 1:] & there[:, :-1]
+    weights = _halves(np.where(both, 0.5 * np.abs(np.diff(at)), 0.0))
+    weights[~weights.any(axis=1)] = 1.0
+    return weights
+
+
+def _halves(stretches: Floats) -> Floats:
+    """The sum of the two stretches that meet in each row."""
+    weights = np.zeros((*stretches.shape[:-1], stretches.shape[-1] + 1))
+    weights[..., :-1] += stretches
+    weights[..., 1:] += stretches
+    return weights
 
 
 def _sum(values: Floats, weights: Floats | None) -> tuple[Floats, Floats]:
@@ -71,7 +100,10 @@ def _sum(values: Floats, weights: Floats | None) -> tuple[Floats, Floats]:
         total = _in_order(np.where(there, values, 0.0))
         count = np.count_nonzero(there, axis=1).astype(np.float64)
     else:
-        total = _in_order(np.where(there, values * weights, 0.0))
+        # what counts for nothing may be infinite
+        total = _in_order(
+            np.multiply(values, weights, out=np.zeros(values.shape), where=there & (weights > 0.0))
+        )
         count = _in_order(np.where(there, weights, 0.0))
     return total, np.where(count == 0.0, np.nan, count)
 
@@ -91,3 +123,6 @@ REDUCTIONS: dict[str, Reduction] = {
     "rms": root_mean_square,
 }
 """By the names under which they are asked for."""
+
+OVER_THE_WAY: tuple[Reduction, ...] = (mean, root_mean_square)
+"""Those that take the places of the rows, too."""

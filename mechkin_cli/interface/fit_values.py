@@ -10,6 +10,7 @@ from mechkin_cli.fitting.measures import Measures
 from mechkin_cli.fitting.nearest_place import nearest_places
 from mechkin_cli.interface.fit_models import FitModels
 from mechkin_cli.interface.fit_request import Constraint, Request, Target
+from mechkin_cli.interface.way import way_of
 from mechkin_cli.reductions import row_weights
 from mechkin_cli.status import Status
 
@@ -115,10 +116,8 @@ def margins_of(constraint: Constraint, values: Floats) -> list[Floats]:
 
 def rms_weights(model: Model) -> Floats:
     """Roots of what each row counts for in a mean over the way (rows,)."""
-    motion = model.problem.motion
-    moved = [one.written for one in motion.inputs if np.ptp(one.written) > 0.0]
-    at = motion.time.written if motion.time is not None else None
-    at = at if at is not None else (moved[0] if moved else np.zeros(motion.rows))
+    way = way_of(model.problem)
+    at = np.zeros(model.problem.motion.rows) if way is None else way.values
     weights = row_weights(np.asarray(at, dtype=np.float64))
     found: Floats = np.sqrt(weights / weights.sum())
     return found

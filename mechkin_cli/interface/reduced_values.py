@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from mechkin_cli.arrays import Floats
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
-from mechkin_cli.reductions import Reduction
+from mechkin_cli.reductions import OVER_THE_WAY, Reduction, mean, root_mean_square
 
 Reductions = tuple[Reduction, ...] | Reduction | None
 """Several, one, or none: all rows."""
 
 
-def reduced(text: str, values: Floats, reduction: Reductions) -> Floats:
+def need_places(reductions: Mapping[str, Reductions]) -> bool:
+    """Whether one of them is taken over the way."""
+    own = (each if isinstance(each, tuple) else (each,) for each in reductions.values())
+    return any(one in OVER_THE_WAY for several in own for one in several)
+
+
+def reduced(
+    text: str, values: Floats, reduction: Reductions, places: Floats | None = None
+) -> Floats:
     """What is kept of (variants, rows) or (variants, rows, components), the reductions last where
-    there are several.
+    there are several; `places` of the rows (variants, rows), None where nothing moves.
 
     Raises:
         UsageError: a function of the caller fails, or gives something else.
@@ -22,14 +32,16 @@ def reduced(text: str, values: Floats, reduction: Reductions) -> Floats:
     if reduction is None:
         return values
     if isinstance(reduction, tuple):
-        return np.stack([_by(each, text, values) for each in reduction], axis=-1)
-    return _by(reduction, text, values)
+        return np.stack([_by(each, text, values, places) for each in reduction], axis=-1)
+    return _by(reduction, text, values, places)
 
 
-def _by(reduction: Reduction, text: str, values: Floats) -> Floats:
+def _by(reduction: Reduction, text: str, values: Floats, places: Floats | None) -> Floats:
     if values.ndim == 3:
-        parts = [_by(reduction, text, component) for component in np.moveaxis(values, 2, 0)]
+        parts = [_by(reduction, text, c, places) for c in np.moveaxis(values, 2, 0)]
         return np.stack(parts, axis=1)
+    if reduction is mean or reduction is root_mean_square:
+        return reduction(values, places)
     given = values.view()
     given.flags.writeable = False  # the next reduction reads the same
     try:

@@ -14,7 +14,7 @@ from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.asking import a_packing
 from mechkin_cli.interface.given import parameter_arrays
 from mechkin_cli.interface.model import Model
-from mechkin_cli.interface.reduced_values import reduced
+from mechkin_cli.interface.reduced_values import need_places, reduced
 from mechkin_cli.interface.variants import (
     Reduce,
     Variants,
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis.response.respond import Prepared
     from mechkin_cli.arrays import Floats
     from mechkin_cli.solver.session import Packing
+
+TIME = "time"
 
 CHUNK = 512
 """Variants that are held at a time: memory stays flat, and packs are full."""
@@ -62,10 +64,11 @@ def vary_response(
     asked = expressions_of(
         problem.mechanism.coordinates if quantities is None else quantities, known
     )
-    study = _Study(base, names, list(asked), run, packing)
-    found = study.run(values)
     reductions = reductions_of(asked, reduce)
-    kept = {text: reduced(text, found[text], reductions[text]) for text in asked}
+    read = dict.fromkeys((*asked, TIME)) if need_places(reductions) else asked
+    study = _Study(base, names, list(read), run, packing)
+    found = study.run(values)
+    kept = {text: reduced(text, found[text], reductions[text], found.get(TIME)) for text in asked}
     return Variants(given, kept, study.codes, study.errors)
 
 

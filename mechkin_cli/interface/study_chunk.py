@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli.diagnostics import InvalidFile, MechkinError
-from mechkin_cli.reductions import REDUCTIONS, mean, root_mean_square, row_weights
+from mechkin_cli.reductions import REDUCTIONS, mean, root_mean_square
 from mechkin_cli.status import Status
 from mechkin_cli.studies.records import Heading, Records, empty_values
 
@@ -150,21 +150,7 @@ def _kept(values: Floats, kept: Kept, places: Floats | None) -> Floats:
     if kept.word not in ("mean", "rms"):
         return REDUCTIONS[kept.word](values)
     over = mean if kept.word == "mean" else root_mean_square
-    if places is None:
-        return over(values)
-    alike = bool((places == places[:1]).all())
-    if alike:
-        return over(values, row_weights(places[0]))
-    # rows that stand elsewhere in every variant
-    return np.array([over(v[None], _weights(at))[0] for v, at in zip(values, places, strict=True)])
-
-
-def _weights(places: Floats) -> Floats:
-    """As `row_weights`, over the rows that are there."""
-    there = ~np.isnan(places)
-    weights = np.zeros(places.shape)
-    weights[there] = row_weights(places[there])
-    return weights
+    return over(values, places)
 
 
 def _place(sizes: Floats, places: Floats | None) -> Floats:

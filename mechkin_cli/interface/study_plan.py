@@ -12,6 +12,7 @@ from mechkin_cli.interface.study_chunk import DEAD_CENTRE, VALUE, VARIANT, VERDI
 from mechkin_cli.interface.study_faults import Faults
 from mechkin_cli.interface.study_variation import variation_of
 from mechkin_cli.interface.variant_runs import sample_of
+from mechkin_cli.interface.way import way_of
 from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.runs import SWEEP
@@ -98,17 +99,13 @@ class _Asking:
         return runs[0]
 
     def _along(self) -> _Along | None:
-        motion, known = self.problem.motion, self.problem.quantities()
-        label = self.problem.units.label
+        known, label = self.problem.quantities(), self.problem.units.label
         if self.run != SWEEP:
             return _Along(Heading("time", label(known["time"].dimension)), None)
-        if motion.time is not None:
-            return _Along(Heading("time", label(known["time"].dimension)), motion.time.written)
-        for driven in motion.inputs:
-            if np.ptp(driven.written) > 0.0:
-                unit = label(known[driven.name].dimension)
-                return _Along(Heading(driven.name, unit), driven.written)
-        return None
+        way = way_of(self.problem)
+        if way is None:
+            return None
+        return _Along(Heading(way.name, label(known[way.name].dimension)), way.values)
 
     def _dead_centre(self) -> Heading | None:
         if self.file.dead_centres is None:

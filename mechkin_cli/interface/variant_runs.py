@@ -12,8 +12,9 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.sweep.closing_angles import has_turns
 from mechkin_cli.diagnostics import MechkinError, UsageError
 from mechkin_cli.expressions import Expression, Quantity, UnknownName, Vector
-from mechkin_cli.interface.reduced_values import Reductions, reduced
+from mechkin_cli.interface.reduced_values import Reductions, need_places, reduced
 from mechkin_cli.interface.varied import Base, VariedModel
+from mechkin_cli.interface.way import way_of
 from mechkin_cli.kernel._kernel import VariantEnd
 from mechkin_cli.kernel.width import threads_for
 from mechkin_cli.mechanism.bearing_loads import BEARING_KINDS, bearing_load, read_for
@@ -77,11 +78,16 @@ class Study:
         threads: int,
     ) -> None:
         self.base, self.names, self.asked, self.reductions = base, names, asked, reductions
+        self.kept = tuple(asked)
         self.lanes, self.threads = lanes, threads
         self.problem = base.model.problem
+        self.way = way_of(self.problem) if need_places(reductions) else None
+        if self.way is not None and self.way.name not in asked:
+            parse = self.problem.definitions.parse
+            self.asked = {**asked, self.way.name: parse(self.way.name)}
         self.rows = self.problem.motion.rows
         known = self.problem.quantities()
-        used = (name for expression in asked.values() for name in sorted(expression.names))
+        used = (name for expression in self.asked.values() for name in sorted(expression.names))
         own = (name for name in map(self._quantity_of, used) if name is not None)
         self.read = tuple(read_for(own, known))
         self.wanted = tuple(known[name] for name in self.read)
@@ -98,7 +104,7 @@ class Study:
         """All variants, chunk by chunk: what was asked for, the verdicts, the errors."""
         count = values.shape[1]
         codes = np.empty((count, self.rows), dtype=np.int8)
-        parts: dict[str, list[Floats]] = {text: [] for text in self.asked}
+        parts: dict[str, list[Floats]] = {text: [] for text in self.kept}
         variation = self.base.variation(self.names)
         native = self._native(variation) if variation is not None else None
         chunk = self._chunk()
@@ -112,8 +118,8 @@ class Study:
     def numbers_kept(self) -> int:
         """Numbers that come back of a variant: parameters, verdicts, what was asked for."""
         kept = len(self.names) + -(-self.rows // 8)
-        for text, expression in self.asked.items():
-            value = expression.evaluate(sample_of(self.problem), self.problem.units).value
+        for text in self.kept:
+            value = self.asked[text].evaluate(sample_of(self.problem), self.problem.units).value
             width = len(value.components) if isinstance(value, Vector) else 1
             reduction = self.reductions[text]
             each = len(reduction) if isinstance(reduction, tuple) else 1
@@ -199,7 +205,8 @@ class Study:
             alone = np.flatnonzero((runs.end != int(VariantEnd.COMPLETE)) | doubtful)
         for number in alone:
             self._alone(values[:, number], int(begin + number), int(number), found, codes)
-        return {text: reduced(text, array, self.reductions[text]) for text, array in found.items()}
+        places = None if self.way is None else found[self.way.name]
+        return {t: reduced(t, found[t], self.reductions[t], places) for t in self.kept}
 
     def _evaluated(
         self,

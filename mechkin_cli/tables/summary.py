@@ -1,10 +1,9 @@
 """What stands below a table: extremes with their places, means and ranges of its columns.
 
 Rows without a cell do not count, and `rows` says how many do. Mean and RMS are integrals over the
-way of the run's parameter by the trapezoidal rule, so that they do not depend on where rows are
-dense: a row counts for half the way to each of its neighbours (`reductions.row_weights`). Places
-are values of that parameter, of the first row that has the extreme; where nothing moves, numbers
-of rows.
+way of the run's parameter by the trapezoidal rule (`reductions.mean`), so that they do not depend
+on where rows are dense; the way to a row without a cell is none of it. Places are values of that
+parameter, of the first row that has the extreme; where nothing moves, numbers of rows.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mechkin_cli.reductions import REDUCTIONS, mean, root_mean_square, row_weights
+from mechkin_cli.reductions import REDUCTIONS, mean, root_mean_square
 from mechkin_cli.status import Status
 from mechkin_cli.tables.columns import Column, Columns, column_of_numbers, words_of
 from mechkin_cli.tables.decimal_text import column_texts
@@ -108,7 +107,7 @@ def statistics(values: FloatArray, source: Source) -> Statistics:
     """The numbers of a column (rows,), nan where a row has no cell."""
     along = run_parameter(source)
     places = np.arange(1.0, source.rows + 1) if along is None else along.values
-    weights = np.ones(source.rows) if along is None else row_weights(places)
+    way = None if along is None else places
     row = values[None]
     numbers = {word: float(reduce(row)[0]) for word, reduce in REDUCTIONS.items()}
 
@@ -120,8 +119,8 @@ def statistics(values: FloatArray, source: Source) -> Statistics:
         extreme("max", values),
         extreme("min", values),
         extreme("peak", np.abs(values)),
-        float(mean(row, weights)[0]),
-        float(root_mean_square(row, weights)[0]),
+        float(mean(row, way)[0]),
+        float(root_mean_square(row, way)[0]),
         numbers["range"],
         int(np.count_nonzero(~np.isnan(values))),
     )

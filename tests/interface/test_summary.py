@@ -9,6 +9,7 @@ import random
 
 import numpy as np
 import pytest
+from means import mean_over_the_way, rms_over_the_way
 
 import mechkin_cli as mk
 from mechkin_cli.tables.writers import Results, written_files
@@ -74,15 +75,10 @@ def by_numpy(values: np.ndarray, at: np.ndarray) -> dict[str, float]:
     found["rows"] = float(known.sum())
     if not known.any():
         return found
-    weights = np.zeros(at.size)
-    for k in range(at.size - 1):
-        weights[[k, k + 1]] += abs(at[k + 1] - at[k])
-    weights = weights if weights.sum() else np.ones(at.size)
-    v, w = values[known], weights[known]
+    v = values[known]
     found |= {"max": v.max(), "min": v.min(), "peak": np.abs(v).max(), "range": np.ptp(v)}
-    if w.sum():
-        found["mean"] = np.average(v, weights=w)
-        found["rms"] = np.sqrt(np.average(v**2, weights=w))
+    found["mean"] = mean_over_the_way(np.where(known, values, np.nan), at)
+    found["rms"] = rms_over_the_way(np.where(known, values, np.nan), at)
     moving = np.ptp(at) > 0
     places = at if moving else np.arange(1.0, at.size + 1)
     found["max at"] = places[np.nanargmax(values)]

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from means import mean_over_the_way, rms_over_the_way
 
 import mechkin_cli as mk
 
@@ -104,8 +105,6 @@ REDUCTIONS = {
     "min": lambda rows: rows.min(axis=1),
     "peak": lambda rows: np.abs(rows).max(axis=1),
     "range": lambda rows: rows.max(axis=1) - rows.min(axis=1),
-    "mean": lambda rows: rows.mean(axis=1),
-    "rms": lambda rows: np.sqrt((rows * rows).mean(axis=1)),
 }
 
 
@@ -146,5 +145,16 @@ def test_bytes_do_not_depend_on_the_call(stem: str, seed: int) -> None:
         for name in asked:
             rows = np.ma.masked_invalid(whole[name])
             mine = np.ma.filled(function(rows), np.nan)
+            size = float(np.nanmax(np.abs(whole[name]), initial=1e-300))
+            assert np.allclose(reduced[name], mine, rtol=0, atol=1e-12 * size, equal_nan=True)
+    moving = [text for text, at in base.result.inputs.items() if np.ptp(at) > 0]
+    places = model.vary(values, moving[:1])[moving[0]] if moving else np.zeros(whole.codes.shape)
+    for kind, over in (("mean", mean_over_the_way), ("rms", rms_over_the_way)):
+        reduced = model.vary(values, asked, reduce=kind)
+        for name in asked:
+            rows = whole[name] if whole[name].ndim == 3 else whole[name][..., None]
+            mine = np.array(
+                [[over(one, at) for one in row.T] for row, at in zip(rows, places, strict=True)]
+            ).reshape(reduced[name].shape)
             size = float(np.nanmax(np.abs(whole[name]), initial=1e-300))
             assert np.allclose(reduced[name], mine, rtol=0, atol=1e-12 * size, equal_nan=True)

@@ -29,8 +29,8 @@ MARKDOWN = """\
 | at      |     192 |
 | peak    |   4.000 |
 | at      |     192 |
-| mean    |  -0.600 |
-| rms     |   2.864 |
+| mean    |   0.250 |
+| rms     |   2.500 |
 | range   |   6.000 |
 | rows    |       3 |
 
@@ -51,11 +51,11 @@ def test_markdown_has_a_second_table_below(source, layout):
 
 
 def test_means_weigh_rows_by_their_way(source, layout):
-    """The row beyond the dead centre has no cell: 190, 191 and 192 count 1/2, 1 and 1."""
+    """The row beyond the dead centre has no cell: 190, 191 and 192 count 1/2, 1 and 1/2."""
     (column,) = summed(source, layout).summary.columns
     found = column.statistics
-    assert found.mean == pytest.approx((0.5 + 2 - 4) / 2.5, rel=1e-15)
-    assert found.rms == pytest.approx(math.sqrt((0.5 + 4 + 16) / 2.5), rel=1e-15)
+    assert found.mean == pytest.approx((0.5 + 2 - 2) / 2, rel=1e-15)
+    assert found.rms == pytest.approx(math.sqrt((0.5 + 4 + 8) / 2), rel=1e-15)
 
 
 @pytest.mark.parametrize("backwards", [False, True])
@@ -111,7 +111,7 @@ def test_a_column_without_cells_has_an_empty_summary(source, layout):
 def test_csv_has_all_digits_and_names_what_a_place_is_of(source, layout):
     table = summed(source, layout, ("peak", "mean"))
     text = csv_bytes(summary_table("t", "", table.summary)).decode()
-    assert text == "summary,s2\npeak,4\npeak at,192\nmean,-0.6\nrows,3\n"
+    assert text == "summary,s2\npeak,4\npeak at,192\nmean,0.25\nrows,3\n"
 
 
 def test_json_has_each_number_with_its_place(source, layout):
