@@ -9,13 +9,14 @@ import typer
 
 from mechkin_cli.cli.analyze import FORMATS, analyze_files
 from mechkin_cli.cli.completion import format_names, table_names
-from mechkin_cli.cli.options import Files, Json, Messages, Quiet, Set
+from mechkin_cli.cli.options import Files, Json, Messages, Quiet, Set, folder
 
 
 def analyze(
     files: Files,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Folder to write to (out/STEM).")
+        Path | None,
+        typer.Option("--out", metavar="DIR", parser=folder, help="Folder to write to (out/STEM)."),
     ] = None,
     format: Annotated[
         list[str] | None,

@@ -13,7 +13,7 @@ from mechkin_cli.cli import stress_options as options
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.given_file import refuse_stdin
 from mechkin_cli.cli.messages import Record, put, put_json, refusal
-from mechkin_cli.cli.options import Json
+from mechkin_cli.cli.options import Json, folder
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
@@ -41,7 +41,10 @@ def bench(
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", metavar="DIR", help="Also write bench.json, bench.csv, bench.md, bench.svg."
+            "--out",
+            metavar="DIR",
+            parser=folder,
+            help="Also write bench.json, bench.csv, bench.md, bench.svg.",
         ),
     ] = None,
     json: Json = False,

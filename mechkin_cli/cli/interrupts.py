@@ -19,18 +19,25 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 130
 _final_code: int | None = None
+_next_step = ""
 
 
 def end_quietly() -> None:
     """Lets Ctrl-C, and a request to end (kill, a closed terminal), end the process quietly."""
-    global _final_code
-    _final_code = None
+    global _final_code, _next_step
+    _final_code, _next_step = None, ""
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         number = getattr(signal, name, None)
         # nohup and parents that ignore a signal are obeyed
         usual = (signal.SIG_DFL, signal.default_int_handler)
         if number is not None and signal.getsignal(number) in usual:
             signal.signal(number, _interrupted)
+
+
+def then(next_step: str) -> None:
+    """What whoever interrupts this command is told to do next."""
+    global _next_step
+    _next_step = next_step
 
 
 def leave(code: int) -> NoReturn:
@@ -42,10 +49,10 @@ def leave(code: int) -> NoReturn:
 
 def said() -> None:
     """Says on stderr that the work was interrupted."""
-    text = b"mechkin: interrupted; files written so far are whole\n"
+    text = f"mechkin: interrupted; files written so far are whole{_next_step}\n"
     if sys.stderr is not None:
         with contextlib.suppress(OSError):
-            os.write(2, text)
+            os.write(2, text.encode())
 
 
 def _interrupted(number: int, frame: FrameType | None) -> None:

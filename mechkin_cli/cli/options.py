@@ -9,6 +9,19 @@ import typer
 
 from mechkin_cli.cli.completion import mechanism_files, message_forms, parameter_names
 from mechkin_cli.cli.messages import FORMS
+from mechkin_cli.diagnostics import UsageError
+
+
+def folder(text: str) -> Path:
+    """A folder to write to.
+
+    Raises:
+        UsageError: it has no name, as that of a variable of the shell that is not set.
+    """
+    if not text:
+        raise UsageError("--out has no name; write a folder behind it, as --out results")
+    return Path(text)
+
 
 Files = Annotated[
     list[Path],

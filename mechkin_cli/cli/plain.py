@@ -1,7 +1,8 @@
 """Plain command lines of `mechkin analyze`, read without typer.
 
-Plain is: files (or `-`), known options in full, each with its value as a word of its own that does
-not start with a dash, nothing given twice that is wanted once. Of all else typer is to judge.
+Plain is: files (or `-`), known options in full, each with its value as a word of its own that is
+not empty and does not start with a dash, nothing given twice that is wanted once. Of all else typer
+is to judge.
 """
 
 from __future__ import annotations
@@ -63,7 +64,11 @@ def _add(given: dict[str, Any], option: Option, rest: Any) -> bool:
         given[option.argument] = True
         return True
     word = next(rest, "-")
-    if word.startswith("-") or (option.value is int and not (word.isascii() and word.isdecimal())):
+    if (
+        not word
+        or word.startswith("-")
+        or (option.value is int and not (word.isascii() and word.isdecimal()))
+    ):
         return False
     if option.repeated:
         given.setdefault(option.argument, []).append(word)

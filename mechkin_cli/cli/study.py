@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.interrupts import then
 from mechkin_cli.cli.messages import Record, put, put_json, refusal, say, say_diagnostics, tell_as
-from mechkin_cli.cli.options import Json, Messages, Quiet, Set
+from mechkin_cli.cli.options import Json, Messages, Quiet, Set, folder
 from mechkin_cli.cli.parameters import parameters
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
@@ -27,7 +28,9 @@ def study(
     file: Annotated[Path, typer.Argument(help="Study file (YAML).", metavar="STUDY")],
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", metavar="FOLDER", help="Folder to write (out/STUDY)."),
+        typer.Option(
+            "-o", "--out", metavar="FOLDER", parser=folder, help="Folder to write (out/STUDY)."
+        ),
     ] = None,
     set_: Set = None,
     format_: Annotated[
@@ -63,6 +66,7 @@ def study(
     """
     from mechkin_cli.interface.studies import Study, Workers
     from mechkin_cli.interface.study_source import open_study
+    from mechkin_cli.studies.pools import end_without_warnings
 
     tell_as(messages)
     record: Record = {}
@@ -77,9 +81,12 @@ def study(
         elif explain:
             record = _estimate(planned, workers, format_, json)
         else:
-            folder = out or Path("out", file.stem)
+            target = Path("out", file.stem) if out is None else out
+            then(", and the same command goes on with them")
+            if processes:
+                end_without_warnings()
             with _progress(planned, quiet or json) as progress:
-                found = planned.in_folder(folder, workers, format_, again, progress)
+                found = planned.in_folder(target, workers, format_, again, progress)
             record = _record(found)
             if not json:
                 _print(found, quiet)

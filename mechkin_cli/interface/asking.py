@@ -31,7 +31,7 @@ def a_packing(lanes: object, threads: object) -> Packing:
         UsageError: no numbers, or a width that the machine lacks.
     """
     lanes = a_whole_number("lanes", lanes, "rows at a time")
-    threads = a_whole_number("threads", threads, "how many split the rows")
+    threads = a_whole_number("threads", threads, "threads")
     check_width(lanes)
     check_threads(threads)
     return Packing(lanes, threads)

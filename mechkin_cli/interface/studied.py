@@ -33,8 +33,7 @@ class Studied:
         """Many variants: drawn, crossed or listed, and numbers of each that are kept.
 
         Args:
-            study: a study file, whose `mechanism:` and `set:` do not count here; or its sections as
-                a dict.
+            study: a study file, whose `mechanism:` does not count here; or its sections as a dict.
             out: a folder for results of any size, which a run that was stopped goes on with; None:
                 they come back as arrays.
             format: of the files, "csv" or "parquet" (extra `parquet`).

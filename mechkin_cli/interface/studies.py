@@ -25,7 +25,7 @@ from mechkin_cli.interface.study_work import Answer, Parcel, check_version, subm
 from mechkin_cli.kernel.width import check_threads
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.studies.executing import Executors, Task, Work, executed
-from mechkin_cli.studies.folder import VARIANTS, Contents, StudyFolder
+from mechkin_cli.studies.folder import VARIANTS, Contents, StudyFolder, spare
 from mechkin_cli.studies.formats import format_of
 from mechkin_cli.studies.overview import overview
 from mechkin_cli.studies.records import Records, joined
@@ -223,6 +223,7 @@ class Study:
                 cannot be written; pieces that were written stay.
         """
         workers, kind = _checked(workers), format_of(file_format)
+        spare(folder, [*self.model.built.read.document.files, *self.source.document.files])
         with StudyFolder(folder, self.contents(file_format), kind, self.piece) as output:
             output.begin(anew)
             missing = [] if output.is_complete else output.missing()
@@ -269,7 +270,8 @@ def study_of(
     if not isinstance(given, Mapping):
         given = a_path("study", given)
     a_text("format", file_format, '"csv"')
-    study = Study(model, open_study(given))
+    source = open_study(given)
+    study = Study(source.applied_to(model), source)
     if out is None:
         return study.in_memory(workers, progress)
     return study.in_folder(a_path("out", out), workers, file_format, again, progress)
@@ -277,10 +279,10 @@ def study_of(
 
 def _checked(workers: Workers) -> Workers:
     """The same with whole numbers; UsageError where they are none, or too many."""
-    processes = a_whole_number("processes", workers.processes, "how many compute")
+    processes = a_whole_number("processes", workers.processes, "processes")
     if processes > MOST_THREADS:
         raise UsageError(f"processes {processes}: at most {MOST_THREADS}")
-    threads = a_whole_number("threads", workers.threads, "of the kernel")
+    threads = a_whole_number("threads", workers.threads, "threads")
     check_threads(threads)
     return workers._replace(threads=threads, processes=processes)
 

@@ -7,15 +7,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
+from mechkin_cli.interface.study_faults import split
 from mechkin_cli.reading.document import Document, read_document
 from mechkin_cli.schema.validate import InvalidDataError, validate_study
 
 if TYPE_CHECKING:
     from mechkin_cli.interface.model import Model
+    from mechkin_cli.reading.document import KeyPath
     from mechkin_cli.schema.study import StudyFile
 
 DATA = "study"
 """What messages call the dict that a caller gives."""
+
+
+_OUTSIDE = "--set "
+"""In front of parameters from outside the mechanism, in messages about them."""
 
 
 class StudySource(NamedTuple):
@@ -45,10 +51,40 @@ class StudySource(NamedTuple):
             return load(folder / str(self.file.mechanism), {**self.file.set, **parameters})
         except UsageError as error:
             text, _, hint = str(error).partition("; ")
-            at = ("mechanism",) if "--set" not in text else ("set",)
-            self._refuse("mechanism", at, text, hint or "write a path from the study's folder")
+            named, _, own = text.removeprefix(_OUTSIDE).partition(": ")
+            if not text.startswith(_OUTSIDE):
+                hint = hint or "write a path from the study's folder"
+                self._refuse("mechanism", ("mechanism",), text, hint)
+            if named in parameters:
+                raise
+            self._refuse("bad-value", ("set", named), own, hint or "remove it from set:")
+        except InvalidFile as error:
+            raise InvalidFile([self._at_home(d, parameters) for d in error.diagnostics]) from None
 
-    def _refuse(self, code: str, path: tuple[str, ...], text: str, hint: str) -> NoReturn:
+    def applied_to(self, model: Model) -> Model:
+        """A model of Python's with the values of `set:`.
+
+        Raises:
+            InvalidFile: one of them is no parameter, or no value of it.
+        """
+        for name, value in self.file.set.items():
+            try:
+                model = model.with_parameters({name: value})
+            except UsageError as error:
+                self._refuse("bad-value", ("set", name), *split(error))
+        return model
+
+    def _at_home(self, found: Diagnostic, parameters: Mapping[str, str]) -> Diagnostic:
+        """What was said of a value of `set:`, at its place in the study."""
+        place = found.place
+        if place is None or place.in_file or not place.file.startswith(_OUTSIDE):
+            return found
+        name = place.file.removeprefix(_OUTSIDE)
+        if name in parameters or name not in self.file.set:
+            return found
+        return found._replace(place=self.document.place_in(("set", name), place.column - 1))
+
+    def _refuse(self, code: str, path: KeyPath, text: str, hint: str) -> NoReturn:
         place = self.document.place(path)
         raise InvalidFile([Diagnostic(code, "error", text, place, hint=hint)])
 

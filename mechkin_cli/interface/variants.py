@@ -109,7 +109,7 @@ def vary(
         name = response_name(base.model, run)
         return vary_response(base, held, parameters, quantities, reduce, name, lanes, threads)
     lanes = a_whole_number("lanes", lanes, "rows at a time")
-    threads = a_whole_number("threads", threads, "how many split the variants")
+    threads = a_whole_number("threads", threads, "threads")
     check_width(lanes)
     check_threads(threads)
     if SWEEP not in base.model.runs:

@@ -53,6 +53,13 @@ class Document:
     is_data: bool = False
     tables: dict[str, bytes] = field(default_factory=dict)
 
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The file that it is, and those of the tables read so far; none of a text or of data."""
+        if self.folder is None:
+            return ()
+        return (Path(self.file), *(self.folder / name for name in self.tables))
+
     @cached_property
     def data(self) -> dict[str, PlainData]:
         """The file as dict, list and str, with the overrides in place."""

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import logging
+import re
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from importlib import import_module
 from typing import Any, NamedTuple
 
-from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
+
+_ADDRESS = re.compile(
+    r"inproc://\S+|(?:[a-z]+://)?(?:\[[0-9A-Fa-f:.]+(?:%\w+)?\]|[^\s:/\[\]]+):[0-9]{1,5}"
+)
 
 SECONDS = 10
 """How long a scheduler may take to answer."""
@@ -46,6 +51,11 @@ def cluster(address: str) -> Iterator[Cluster]:
     Raises:
         UsageError: dask is not installed, nobody answers, or there are no workers.
     """
+    if not _ADDRESS.fullmatch(address):
+        raise UsageError(
+            f"--scheduler {address[:LONGEST_NAME]}: expected an address such as tcp://host:8786, "
+            "as `dask scheduler` prints it"
+        )
     try:
         # by name: its functions have no types
         distributed: Any = import_module("distributed")

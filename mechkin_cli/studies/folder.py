@@ -13,7 +13,7 @@ import errno
 import json
 import os
 import shutil
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -102,6 +102,8 @@ class StudyFolder:
         found = None if anew else self._manifest()
         with refused(self.folder):
             if found is None:
+                if not anew:
+                    self._refuse_foreign()
                 self._clear()
                 (self.folder / PIECES).mkdir(exist_ok=True)
                 self._write_manifest()
@@ -152,18 +154,17 @@ class StudyFolder:
                 _write_whole(path, partial(_put, content))
 
     def read(self, name: str) -> Iterator[Records]:
-        """The pieces of a result, in order; of a finished study its only file."""
+        """Stretches of the lines of a result, in order; of a finished study from its only file."""
         headings = self.contents.tables[name]
         for path in self._files(name):
             with refused(path, "read"):
                 try:
-                    found = self._format.read(path, headings)
+                    yield from self._format.read(path, headings)
                 except (ValueError, KeyError) as error:
                     raise UsageError(
                         f"{path} is not as it was written: {str(error)[:120]}; begin anew with "
                         "--again"
                     ) from None
-            yield found
 
     def finish(self) -> None:
         """Puts the pieces together, and removes them.
@@ -226,14 +227,44 @@ class StudyFolder:
         text = json.dumps(record, indent=1, ensure_ascii=False) + "\n"
         _write_whole(self.folder / MANIFEST, partial(_put, text.encode()))
 
+    def _refuse_foreign(self) -> None:
+        """Refuses to replace files of which no manifest says that they are a study's."""
+        for path in self.results:
+            if os.path.lexists(path):
+                raise UsageError(
+                    f"{path} is there already, and no {MANIFEST} that says of which study; choose "
+                    "another folder with --out, or replace it with --again"
+                )
+
     def _clear(self) -> None:
-        """Removes what a study left here, and nothing else."""
-        with contextlib.suppress(FileNotFoundError):
-            (self.folder / MANIFEST).unlink()
-        shutil.rmtree(self.folder / PIECES, ignore_errors=True)
-        for path in (self.folder / f"{n}.{f}" for n in (VARIANTS, ROWS) for f in FORMATS):
+        """Removes what a study left here, and nothing else; last what says that it is a study's."""
+        for path in _replaced(self.folder):
             with contextlib.suppress(FileNotFoundError):
                 path.unlink()
+        shutil.rmtree(self.folder / PIECES, ignore_errors=True)
+        with contextlib.suppress(FileNotFoundError):
+            (self.folder / MANIFEST).unlink()
+
+
+def spare(folder: Path, sources: Iterable[Path]) -> None:
+    """Refuses a folder in which results would replace a file that they are made from.
+
+    Raises:
+        UsageError: one of the sources has the name of a result there.
+    """
+    with refused(folder):
+        for path in _replaced(folder):
+            for source in sources:
+                if path.exists() and source.exists() and path.samefile(source):
+                    raise UsageError(
+                        f"{path} is read by the study and would be replaced by its results; choose "
+                        "another folder with --out"
+                    )
+
+
+def _replaced(folder: Path) -> list[Path]:
+    """Files that a study in a folder replaces or removes."""
+    return [folder / f"{name}.{ending}" for name in (VARIANTS, ROWS) for ending in FORMATS]
 
 
 def _is_manifest(found: object) -> bool:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Any, BinaryIO, Protocol
 
@@ -16,6 +17,9 @@ import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.studies.records import Heading, Records
+
+LINES_AT_ONCE = 65536
+"""Lines that are held while a file is read."""
 
 ROW_GROUP = 65536
 """Lines of a row group of Parquet, whatever the pieces were."""
@@ -30,8 +34,12 @@ class Format(Protocol):
         """A file of its own of some lines."""
         ...
 
-    def read(self, path: Path, headings: Sequence[Heading]) -> Records:
-        """The lines of a file."""
+    def read(self, path: Path, headings: Sequence[Heading]) -> Iterator[Records]:
+        """The lines of a file, so many at a time that memory does not grow with it.
+
+        Raises:
+            ValueError: it is not what was written.
+        """
         ...
 
     def join(self, pieces: Iterable[Path], headings: Sequence[Heading], file: BinaryIO) -> None:
@@ -73,12 +81,16 @@ class Csv:
         ]
         return csv_bytes(Columns("study", "", tuple(columns)))
 
-    def read(self, path: Path, headings: Sequence[Heading]) -> Records:
+    def read(self, path: Path, headings: Sequence[Heading]) -> Iterator[Records]:
         """As `Format.read`."""
         with path.open(encoding="utf-8", newline="") as stream:
-            lines = list(csv.reader(stream))[1:]
-        cells = list(zip(*lines, strict=True)) if lines else [()] * len(headings)
-        return {h.label: _read(h.kind, column) for h, column in zip(headings, cells, strict=True)}
+            reader = csv.reader(stream)
+            next(reader, None)
+            while lines := list(islice(reader, LINES_AT_ONCE)):
+                if any(len(line) != len(headings) for line in lines):
+                    raise ValueError(f"a line has not the {len(headings)} cells of the others")
+                cells = zip(*lines, strict=True)
+                yield {h.label: _read(h.kind, c) for h, c in zip(headings, cells, strict=True)}
 
     def join(self, pieces: Iterable[Path], headings: Sequence[Heading], file: BinaryIO) -> None:
         """As `Format.join`."""
@@ -118,21 +130,13 @@ class Parquet:
         pyarrow.parquet.write_table(_arrow(headings, records), buffer)
         return buffer.getvalue()
 
-    def read(self, path: Path, headings: Sequence[Heading]) -> Records:
+    def read(self, path: Path, headings: Sequence[Heading]) -> Iterator[Records]:
         """As `Format.read`."""
         import pyarrow.parquet
 
-        table = pyarrow.parquet.read_table(path)
-        found: Records = {}
-        for heading in headings:
-            column = table.column(heading.label)
-            if heading.kind == "text":
-                found[heading.label] = np.array(column.to_pylist(), dtype=object)
-            elif heading.kind == "whole":
-                found[heading.label] = np.array(column.to_pylist(), dtype=np.int64)
-            else:
-                found[heading.label] = np.asarray(column.to_numpy(), dtype=np.float64)
-        return found
+        with pyarrow.parquet.ParquetFile(path) as file:
+            for batch in file.iter_batches(batch_size=LINES_AT_ONCE):
+                yield {h.label: _read_arrow(h.kind, batch.column(h.label)) for h in headings}
 
     def join(self, pieces: Iterable[Path], headings: Sequence[Heading], file: BinaryIO) -> None:
         """As `Format.join`."""
@@ -141,6 +145,12 @@ class Parquet:
         with pyarrow.parquet.ParquetWriter(file, _schema(headings)) as writer:
             for group in _groups(pieces):
                 writer.write_table(group, row_group_size=ROW_GROUP)
+
+
+def _read_arrow(kind: str, column: Any) -> Any:
+    if kind == "number":
+        return np.asarray(column.to_numpy(zero_copy_only=False), dtype=np.float64)
+    return np.array(column.to_pylist(), dtype=object if kind == "text" else np.int64)
 
 
 def _schema(headings: Sequence[Heading]) -> Any:

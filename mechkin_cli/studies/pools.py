@@ -7,6 +7,7 @@ import os
 import signal
 import threading
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
+from multiprocessing import resource_tracker
 
 from mechkin_cli.diagnostics import UsageError
 
@@ -27,6 +28,24 @@ def processes(count: int) -> ProcessPoolExecutor:
             'work below `if __name__ == "__main__":`, since each of them reads it, too'
         ) from None
     return executor
+
+
+def end_without_warnings() -> None:
+    """For a command that a signal ends at once: what is left of its pools is cleared away by
+    Python's tracker, which is to do so without a warning on the command's stderr.
+
+    Before the first pool; a tracker that runs already is left as it is.
+    """
+    own = "ignore::UserWarning:multiprocessing.resource_tracker"
+    given = os.environ.get("PYTHONWARNINGS")
+    os.environ["PYTHONWARNINGS"] = own if given is None else f"{given},{own}"
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        if given is None:
+            del os.environ["PYTHONWARNINGS"]
+        else:
+            os.environ["PYTHONWARNINGS"] = given
 
 
 def _begin() -> None:
