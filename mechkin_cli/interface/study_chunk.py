@@ -10,8 +10,10 @@ import numpy as np
 
 from mechkin_cli.diagnostics import InvalidFile, MechkinError
 from mechkin_cli.reductions import REDUCTIONS, mean, root_mean_square
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.status import Status
 from mechkin_cli.studies.records import Heading, Records, empty_values
+from mechkin_cli.tolerances import LAST_ROW
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,12 +47,13 @@ LONGEST_MESSAGE = 300
 
 
 class Kept(NamedTuple):
-    """A column of variants: a word of `keep:` for a quantity; `row` is that of `value`."""
+    """A column of variants: a word of `keep:` for a quantity; `at` is the place of `value`, in the
+    file's units."""
 
     heading: Heading
     text: str
     word: str
-    row: int = -1
+    at: float = float("nan")
 
 
 @dataclass(frozen=True)
@@ -144,13 +147,24 @@ def _varied(
 def _kept(values: Floats, kept: Kept, places: Floats | None) -> Floats:
     """One number of the rows of every variant, (variants,)."""
     if kept.word == VALUE:
-        return np.array(values[:, kept.row])
+        return _value_at(kept.at, values, places)
     if kept.word in PLACES:
         return _place(PLACES[kept.word](values), places)
     if kept.word not in ("mean", "rms"):
         return REDUCTIONS[kept.word](values)
     over = mean if kept.word == "mean" else root_mean_square
     return over(values, places)
+
+
+def _value_at(at: float, values: Floats, places: Floats | None) -> Floats:
+    """The value in the first row that stands at a place; nan in variants without such a row."""
+    if places is None:
+        return np.full(len(values), np.nan)
+    off = np.where(np.isnan(places), np.inf, np.abs(places - at))
+    row = np.argmin(off, axis=1)
+    every = np.arange(len(values))
+    way = np.fmax.reduce(places, axis=1) - np.fmin.reduce(places, axis=1)
+    return np.where(off[every, row] <= LAST_ROW * way, values[every, row], np.nan)
 
 
 def _place(sizes: Floats, places: Floats | None) -> Floats:
@@ -189,7 +203,8 @@ def _rows(
     begin: int,
     words: NDArray[np.object_],
 ) -> Records:
-    """All rows of all variants, one below the other."""
+    """All rows of all variants, one below the other; none behind the one at which a stop ends a
+    response."""
     count, rows = found.codes.shape
     records: Records = {
         VARIANT.label: np.repeat(np.arange(begin, begin + count, dtype=np.int64), rows),
@@ -200,4 +215,7 @@ def _rows(
     for heading in question.rows:
         records[heading.label] = found[heading.label].reshape(-1)
     records[VERDICTS[1].label] = words[found.codes.reshape(-1)]
+    if places is not None and question.run != SWEEP:
+        asked = ~(np.isnan(places) & (found.codes == Status.ok)).reshape(-1)
+        records = {label: column[asked] for label, column in records.items()}
     return records

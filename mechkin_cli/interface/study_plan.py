@@ -38,11 +38,10 @@ class StudyPlan(NamedTuple):
 
 
 class _Along(NamedTuple):
-    """What a run goes along, and its values in the file's units over the rows, None where they are
-    not known before."""
+    """What a run goes along, and its values in the file's units over the rows asked for."""
 
     heading: Heading
-    values: Floats | None
+    values: Floats
 
 
 def study_plan(file: written.StudyFile, document: Document, model: Model) -> StudyPlan:
@@ -101,7 +100,8 @@ class _Asking:
     def _along(self) -> _Along | None:
         known, label = self.problem.quantities(), self.problem.units.label
         if self.run != SWEEP:
-            return _Along(Heading("time", label(known["time"].dimension)), None)
+            moments = self.model.problem.responses[self.run].moments.written
+            return _Along(Heading("time", label(known["time"].dimension)), moments)
         way = way_of(self.problem)
         if way is None:
             return None
@@ -122,18 +122,18 @@ class _Asking:
             return []
         found = []
         for word in section.words:
-            row = self._row((*path, "at"), str(section.at)) if word == VALUE else -1
+            at = self._at((*path, "at"), str(section.at)) if word == VALUE else np.nan
             label = _label(section, word)
             if label in taken:
-                at = (*path, "label") if section.label is not None else path
+                where = (*path, "label") if section.label is not None else path
                 text = f"there are two columns {label!r}"
-                self.faults.error("label-clash", at, text, "give one of them another label:")
+                self.faults.error("label-clash", where, text, "give one of them another label:")
             taken.add(label)
             if word.startswith("place"):
                 own = self.along.heading.unit if self.along is not None else ""
             else:
                 own = unit
-            found.append(Kept(Heading(label, own), section.of, word, row))
+            found.append(Kept(Heading(label, own), section.of, word, at))
         return found
 
     def _unit(self, path: KeyPath, text: str) -> str | None:
@@ -159,18 +159,18 @@ class _Asking:
             return None
         return problem.units.label(found.dimension)
 
-    def _row(self, path: KeyPath, text: str) -> int:
-        """The row that stands at a place."""
-        if self.along is None or self.along.values is None:
-            what = "nothing moves" if self.along is None else "a stop may end a response early"
+    def _at(self, path: KeyPath, text: str) -> float:
+        """A place at which a row stands, in the file's units."""
+        if self.along is None:
             hint = "keep its rows: and read them there"
-            self.faults.error("no-place", path, f"{what}, so no row has a place to name", hint)
-            return -1
+            text = "nothing moves, so no row has a place to name"
+            self.faults.error("no-place", path, text, hint)
+            return np.nan
         heading, values = self.along.heading, self.along.values
         dimension = self.problem.quantities()[heading.label].dimension
         at = self.faults.value(path, heading.label, text, dimension, self.problem.units)
         if at is None:
-            return -1
+            return np.nan
         off = np.abs(values - at)
         row = int(off.argmin())
         if off[row] > LAST_ROW * float(np.ptp(values)):
@@ -178,7 +178,7 @@ class _Asking:
             unit = f" {heading.unit}".rstrip()
             hint = f"the nearest stand at {' and '.join(f'{one:.12g}' for one in near)}{unit}"
             self.faults.error("no-row", path, f"no row has {heading.label} = {at:.12g}{unit}", hint)
-        return row
+        return at
 
 
 def _label(section: written.Kept, word: str) -> str:
