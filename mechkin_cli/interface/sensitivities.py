@@ -16,7 +16,7 @@ from mechkin_cli.interface.arguments import a_text, texts
 from mechkin_cli.interface.asking import run_name
 from mechkin_cli.interface.places import Along
 from mechkin_cli.interface.shifts import Shifting
-from mechkin_cli.interface.slopes import Slope, slope_of
+from mechkin_cli.interface.slopes import Sizes, Slope, slope_of
 from mechkin_cli.interface.variant_runs import sample_of
 from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.mechanism.bearing_loads import read_for
@@ -24,7 +24,7 @@ from mechkin_cli.nearest import nearest_hint
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.status import Status
 from mechkin_cli.tables.layout import row_texts
-from mechkin_cli.units import ANGLE
+from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH
 
 if TYPE_CHECKING:
     import pandas  # type: ignore[import-untyped]
@@ -82,12 +82,14 @@ class Sensitivities(Listed):
         self.place: Floats = along.values[self.rows]
         chosen = np.zeros(analysis.rows, dtype=np.bool_)
         chosen[self.rows] = True
-        self._shifting = Shifting(analysis, chosen)
         self._expressions = {text: expression_of(analysis, text) for text in self.quantities}
         self._dimensions = {
             text: _dimension(analysis.result.problem, expression)
             for text, expression in self._expressions.items()
         }
+        known = analysis.result.problem.quantities()
+        asked = [n for e in self._expressions.values() for n in used_names(e, known)]
+        self._shifting = Shifting(analysis, chosen, asked)
         self._values: dict[str, Floats] = {}
         self._slopes: dict[tuple[str, str], Slope | str] = {}
         for name in self.parameters:
@@ -226,6 +228,14 @@ class Sensitivities(Listed):
         values = self._cells(text)
         return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
 
+    def _usual(self, text: str) -> float:
+        """What is large for a position in this mechanism, in the file's units; 0 for others."""
+        dimension, result = self._dimensions[text], self._analysis.result
+        one = {LENGTH: result.session.layout.length, ANGLE: 1.0, DIMENSIONLESS: 1.0}.get(
+            dimension, 0.0
+        )
+        return float(result.units.from_si(one, dimension))
+
     def _cells(self, text: str) -> Floats:
         """A quantity in the chosen rows; kept."""
         if text not in self._values:
@@ -268,8 +278,7 @@ class Sensitivities(Listed):
                 self._slopes[text, name] = str(reason)
             return
         known = self._analysis.result.problem.quantities()
-        used = [n for e in self._expressions.values() for n in used_names(e, known)]
-        wanted = [known[n] for n in read_for(used, known)]
+        wanted = [known[n] for n in read_for(self._shifting.asked, known)]
         problem = self._analysis.result.problem
         for rows in sides.rows:
             with suppress(NotRepeated):  # what cannot be repeated says so for its own quantity
@@ -277,8 +286,8 @@ class Sensitivities(Listed):
         for text, expression in self._expressions.items():
             turned = self._dimensions[text] == ANGLE
             try:
-                cells = self._largest_cell(text)
-                found = slope_of(expression, name, sides, self._shifting, turned, cells)
+                sizes = Sizes(self._largest_cell(text), self._usual(text))
+                found = slope_of(expression, name, sides, self._shifting, turned, sizes)
             except NotRepeated as reason:
                 self._slopes[text, name] = str(reason)
             else:

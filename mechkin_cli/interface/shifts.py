@@ -7,9 +7,10 @@ made and run anew with both values, and each run is repeated.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -44,6 +45,7 @@ class Sides:
         scale: of the parameter, of which the distances are small parts, in the file's units.
         rows: of the lower value, of its own, of the higher one.
         opened: (rows,) whether closure is lost with the parameter changed.
+        lost: (rows,) whether a row has no position with the parameter changed.
     """
 
     below: DoubleDoubles
@@ -51,6 +53,7 @@ class Sides:
     scale: float
     rows: tuple[Repeated, Repeated, Repeated]
     opened: Callable[[], Bools]
+    lost: Callable[[], Bools]
 
 
 class Shifting:
@@ -59,10 +62,12 @@ class Shifting:
     Args:
         analysis: the run.
         chosen: rows that are wanted (rows,).
+        asked: quantities that are wanted, so that a run of the model anew follows their loops.
     """
 
-    def __init__(self, analysis: Analysis, chosen: Bools) -> None:
+    def __init__(self, analysis: Analysis, chosen: Bools, asked: Sequence[str]) -> None:
         self.analysis = analysis
+        self.asked = tuple(asked)
         self.model: Model = analysis.model
         self.result = analysis.result
         self.chosen = chosen
@@ -121,7 +126,7 @@ class Shifting:
             self._own[True] = repeated(Fraction(0))
         rows = repeated(-amount), self._own[True], repeated(amount)
         away = self._in_file_units(name, amount)
-        return Sides(away, away, self._scale_of(name), rows, lambda: self._opened(rows))
+        return Sides(away, away, self._scale_of(name), rows, *self._whether(rows))
 
     def _anew(self, name: str, amount: Fraction) -> Sides:
         problem = self.model.problem
@@ -139,7 +144,7 @@ class Shifting:
             gap = side * (found - Fraction(float(exact.high)) - Fraction(float(exact.low)))
             away.append(self._in_file_units(name, gap))
         rows = around[0], own, around[1]
-        return Sides(away[0], away[1], self._scale_of(name), rows, lambda: self._opened(rows))
+        return Sides(away[0], away[1], self._scale_of(name), rows, *self._whether(rows))
 
     def _run(self, name: str, value: float) -> Analysis:
         """The run with another value in SI."""
@@ -148,7 +153,10 @@ class Shifting:
         try:
             varied = self.model.with_parameters({name: given})
             run = self.analysis.run
-            found = varied.analyze(tables=[]) if self.is_sweep else varied.respond(run, tables=[])
+            if self.is_sweep:
+                found = varied.analyze(self.asked, tables=[])
+            else:
+                found = varied.respond(run, tables=[])
         except (InvalidFile, UsageError):
             raise NotRepeated(ONE_SIDE) from None
         if found.result.rows != self.result.rows:
@@ -159,6 +167,18 @@ class Shifting:
         dimension = self.model.problem.parameters[name].dimension
         factor = self.model.problem.units.unit(dimension).factor
         return DoubleDoubles.of_fraction(amount / factor)
+
+    def _whether(self, rows: tuple[Repeated, ...]) -> tuple[Callable[[], Bools], ...]:
+        """Questions to the rows that are closed for them at most once."""
+        return cache(lambda: self._opened(rows)), cache(lambda: self._lost(rows))
+
+    def _lost(self, rows: tuple[Repeated, ...]) -> Bools:
+        """Rows with a position whose neighbours have none. An input has its value there, too."""
+        if not self.is_sweep:
+            return np.zeros(self.result.rows, dtype=np.bool_)
+        below, own, above = (np.isfinite(one.wide.states.high).all(axis=0) for one in rows)
+        lost: Bools = np.asarray(own & ~(below & above), dtype=np.bool_)
+        return lost
 
     def _opened(self, rows: tuple[Repeated, ...]) -> Bools:
         """Rows whose residual grows with the shift: their loops do not close beside it."""
@@ -174,4 +194,5 @@ class Shifting:
 def _residual(repeated: Repeated) -> Floats:
     wide = repeated.wide
     assert isinstance(wide, KernelRows)
+    _ = wide.states  # closes the rows where nothing else that was asked for did
     return wide.residual

@@ -41,11 +41,22 @@ class Slope(NamedTuple):
     bent: Bools
 
 
+class Sizes(NamedTuple):
+    """What a column is judged by, in the file's units.
+
+    Attributes:
+        cells: the largest of its numbers in doubles.
+        usual: what is large for anything of its dimension in this mechanism; 0 where not known.
+    """
+
+    cells: float
+    usual: float
+
+
 def slope_of(
-    expression: Expression, name: str, sides: Sides, shifting: Shifting, turned: bool, cells: float
+    expression: Expression, name: str, sides: Sides, shifting: Shifting, turned: bool, sizes: Sizes
 ) -> Slope:
-    """Slope and curvature of an expression; `turned`: it is an angle, told up to whole turns;
-    `cells`: the largest of its numbers in doubles.
+    """Slope and curvature of an expression; `turned`: it is an angle, told up to whole turns.
 
     Raises:
         NotRepeated: why there are none.
@@ -53,13 +64,14 @@ def slope_of(
     parts = _values(expression, sides)
     size = max(_largest(part[1].high) for part in parts)
     turn = _turn(shifting, turned)
-    found = [_of_part(*part, sides, turn, size, cells) for part in parts]
+    found = [_of_part(*part, sides, turn, size, sizes) for part in parts]
     slopes, curvatures, lost, bent, leaping = (np.stack(part) for part in zip(*found, strict=True))
     opened = sides.opened()
+    lost |= sides.lost()
     if leaping.any():
         nearer = shifting.sides(name, 0.25)
         others = [
-            _of_part(*part, nearer, turn, size, cells)[0] for part in _values(expression, nearer)
+            _of_part(*part, nearer, turn, size, sizes)[0] for part in _values(expression, nearer)
         ]
         bent |= leaping & ~_agree(slopes, np.stack(others))
     return Slope(slopes, curvatures, lost, opened, bent)
@@ -85,7 +97,7 @@ def _of_part(
     sides: Sides,
     turn: DoubleDoubles | None,
     size: float,
-    cells: float,
+    sizes: Sizes,
 ) -> tuple[Any, ...]:
     """Slope, curvature, and where rows are lost, bent, or change by much."""
     with np.errstate(all="ignore"):
@@ -95,14 +107,16 @@ def _of_part(
         slope = ((left * sides.above + right * sides.below) / both).high
         curvature = ((right - left) * 2.0 / both).high
         bend = np.abs((right - left).high)
-        is_zero = size <= tolerances.ZERO_BUT_FOR_ROUNDING * cells
-        noise = tolerances.ZERO_ROUNDING * cells if is_zero else tolerances.BENT_ROUNDING * size
+        is_zero = size <= tolerances.ZERO_BUT_FOR_ROUNDING * sizes.cells
+        noise = tolerances.ZERO_ROUNDING * sizes.cells if is_zero else 0.0
+        # a position that is zero throughout is known as well as those that are not
+        noise = max(noise, tolerances.BENT_ROUNDING * max(size, sizes.usual))
         rounding = noise / float(sides.below.high)
         usual = _usual(slope)
         steep = np.fmax(np.abs(slope), max(usual, size / sides.scale))
         bent = bend > tolerances.BENT * steep + rounding
         change = np.fmax(np.abs(down.high), np.abs(up.high))
-        leaping = (change > tolerances.LEAP * max(size, cells)) & ~bent
+        leaping = (change > max(tolerances.LEAP * max(size, sizes.cells), noise)) & ~bent
     is_lost = np.isfinite(own.high) & ~(np.isfinite(below.high) & np.isfinite(above.high))
     return slope, curvature, is_lost, bent, leaping
 

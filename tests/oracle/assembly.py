@@ -246,7 +246,7 @@ def _rates(
                 entry[order] += mp.mpf(x) * u
             largest = float(np.max(np.abs(change)))
             first = first or largest
-            if largest <= first * 10.0 ** (-0.85 * mp.dps):
+            if largest <= max(first * 10.0 ** (-0.85 * mp.dps), 10.0 ** (8 - mp.dps)):
                 break
         else:
             raise UnsolvableError("redundant constraints disagree about the rates")

@@ -35,6 +35,9 @@ _FUNCTIONS = {
     "atan2": mp.atan2,
     "sqrt": mp.sqrt,
     "abs": abs,
+    "sign": mp.sign,
+    "max": max,
+    "min": min,
     "exp": mp.exp,
     "log": mp.log,
 }

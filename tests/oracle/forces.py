@@ -89,7 +89,7 @@ def newton_euler(
     about_origin = {
         n: add(moment[n], cross(solution.joint_point(n), force[n])) for n in mechanism.joints
     }
-    powers = _powers(mechanism, solution, effort)
+    powers = powers_of(mechanism, solution, effort)
     holding = [found[columns[f"leg {k}"]] for k in range(len(lines))]
     total, absolute = mp.fsum(powers), mp.fsum(powers, absolute=True)
     return Reactions(force, moment, about_origin, effort, holding, total, absolute)
@@ -205,13 +205,13 @@ def _wrenches(mechanism: Mechanism, solution: Solution, load: Load) -> list[tupl
     if load.joint:
         joint = mechanism.joints[load.joint]
         kind = "s" if load.type == "force" else "theta"
-        values = scale(unit_effort(solution, load.joint, kind), _amount(load.value, solution))
+        values = scale(unit_effort(solution, load.joint, kind), amount(load.value, solution))
         force, moment = values[:3], values[3:]
         return [
             (joint.second, (force, moment)),
             (joint.first, (scale(force, -1), scale(moment, -1))),
         ]
-    vector = [_amount(component, solution) for component in load.vector]
+    vector = [amount(component, solution) for component in load.vector]
     if load.turns_with_link:
         vector = apply(solution.rotation(load.link)[0], vector)
     if load.type == "torque":
@@ -219,7 +219,7 @@ def _wrenches(mechanism: Mechanism, solution: Solution, load: Load) -> list[tupl
     return [(load.link, (vector, cross(solution.motion(load.link, load.point)[0], vector)))]
 
 
-def _amount(value: Any, solution: Solution) -> Number:
+def amount(value: Any, solution: Solution) -> Number:
     """A number, or a law of the solution's quantities."""
     if not callable(value):
         return value
@@ -260,7 +260,7 @@ def _freedoms(joint: Joint, solution: Solution, name: str) -> list[list[Number]]
     return {"R": [turning], "P": [sliding], "C": [turning, sliding]}[joint.type]
 
 
-def _powers(mechanism: Mechanism, solution: Solution, effort: dict[str, Number]) -> list[Number]:
+def powers_of(mechanism: Mechanism, solution: Solution, effort: dict[str, Number]) -> list[Number]:
     """Powers of the inputs, of the loads, and less the rates of kinetic energy."""
     powers = [value * solution[name + "_dot"] for name, value in effort.items()]
     for load in mechanism.loads:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from oracle.numerics import Number
+from oracle.numerics import Number, mp
 from oracle.units import Units
 
 COORDINATES: dict[str, tuple[str, ...]] = {
@@ -108,7 +108,9 @@ class Mechanism:
 
     @property
     def size(self) -> Number:
-        """The largest absolute coordinate of a joint point in the home drawing, or 1."""
+        """The largest absolute coordinate of a joint point in the home drawing, or 1 where all are
+        zero, or as good as zero beside it."""
         places = [p for j in self.joints.values() if j.type != "W" for p in j.points]
         largest = max(abs(x) for p in places for x in p)
-        return largest or self.units.of("number")
+        one = self.units.of("number")
+        return largest if largest > mp.mpf("1e-18") * one else one

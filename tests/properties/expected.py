@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from oracle import Mechanism, Reactions, Solution
-from oracle.forces import unit_effort
+from oracle.forces import amount, unit_effort
 from oracle.vectors import add, apply, cross, dot, product, scale, subtract, transpose
 
 _COORDINATE_OF = {"torque": "theta", "force": "s"}
@@ -14,6 +14,23 @@ _COORDINATE_OF = {"torque": "theta", "force": "s"}
 
 def expected(mechanism: Mechanism, solution: Solution, loads: Reactions) -> dict[str, np.ndarray]:
     """Coordinates, points, links, joints, reactions, efforts, what ground feels."""
+    found: dict[str, Any] = {}
+    for name, joint in mechanism.joints.items():
+        # a weld has no place of its own
+        if joint.type != "W":
+            found[f"{name}.moment"] = loads.moment[name]
+            found[f"{name}.total_moment"] = _total(solution, loads, name)[3:]
+        found[f"{name}.force"] = loads.force[name]
+        found[f"{name}.total_force"] = _total(solution, loads, name)[:3]
+        found[f"{name}.moment_about_origin"] = loads.moment_about_origin[name]
+    found |= {f"{name}.effort": effort for name, effort in loads.effort.items()}
+    shaking = _on_ground(mechanism, solution, loads)
+    found |= {"ground.shaking_force": shaking[:3], "ground.shaking_moment": shaking[3:]}
+    return motion_of(mechanism, solution) | _arrays(found)
+
+
+def motion_of(mechanism: Mechanism, solution: Solution) -> dict[str, np.ndarray]:
+    """What needs no reactions: coordinates, points, links, inertia forces, energies."""
     found: dict[str, Any] = {}
     for name, joint in mechanism.joints.items():
         for coordinate in joint.coordinates:
@@ -24,26 +41,21 @@ def expected(mechanism: Mechanism, solution: Solution, loads: Reactions) -> dict
         if joint.type in ("Sp", "Sg"):
             contact = solution.motion(joint.second, joint.points[1])[0]
             found[f"{name}.slip"] = subtract(solution.joint_point(name), contact)
-        # a weld has no place of its own
         if joint.type != "W":
             found[f"{name}.point"] = solution.joint_point(name)
-            found[f"{name}.moment"] = loads.moment[name]
-            found[f"{name}.total_moment"] = _total(solution, loads, name)[3:]
-        found[f"{name}.force"] = loads.force[name]
-        found[f"{name}.total_force"] = _total(solution, loads, name)[:3]
-        found[f"{name}.moment_about_origin"] = loads.moment_about_origin[name]
     for name in mechanism.points:
         words = ("position", "velocity", "acceleration", "jerk")
         found |= {f"{name}.{w}": v for w, v in zip(words, solution.point(name), strict=True)}
     for name in mechanism.links:
         found |= {f"{name}.omega": solution.omega(name), f"{name}.alpha": solution.alpha(name)}
-    found |= {f"{name}.effort": effort for name, effort in loads.effort.items()}
-    shaking = _on_ground(mechanism, solution, loads)
     inertia = _inertia(mechanism, solution)
-    found |= {"ground.shaking_force": shaking[:3], "ground.shaking_moment": shaking[3:]}
     found |= {"ground.inertia_force": inertia[:3], "ground.inertia_moment": inertia[3:]}
     found["row.kinetic_energy"] = _kinetic_energy(mechanism, solution)
     found["row.potential_energy"] = _potential_energy(mechanism, solution)
+    return _arrays(found)
+
+
+def _arrays(found: dict[str, Any]) -> dict[str, np.ndarray]:
     return {name: np.array(value, dtype=object, ndmin=1) for name, value in found.items()}
 
 
@@ -89,7 +101,8 @@ def _on_ground(mechanism: Mechanism, solution: Solution, loads: Reactions) -> li
         sign = (joint.second == "ground") - (joint.first == "ground")
         wrench = [*loads.force[name], *loads.moment_about_origin[name]]
         along = [(c.split(".")[1], e) for c, e in loads.effort.items() if c.split(".")[0] == name]
-        along += [(_COORDINATE_OF[x.type], x.value) for x in mechanism.loads if x.joint == name]
+        own = [x for x in mechanism.loads if x.joint == name]
+        along += [(_COORDINATE_OF[x.type], amount(x.value, solution)) for x in own]
         for coordinate, value in along:
             wrench = add(wrench, scale(unit_effort(solution, name, coordinate), value))
         total = add(total, scale(wrench, sign))

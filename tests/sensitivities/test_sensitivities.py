@@ -249,6 +249,38 @@ def test_lengths_of_a_bennett_linkage_do_not_change_alone() -> None:
     assert set(s.verdict("C.theta", "alpha")) == {"ok"}
 
 
+def test_inputs_are_told_where_the_row_is() -> None:
+    """An input has its value whether the loops close or not, and a row that does not has none."""
+    s = mk.load("mechanisms/bennett.yaml").sensitivities(["A.theta", "C.theta"], ["a", "b"])
+    for name in "ab":
+        words = s.verdict("C.theta", name).tolist()
+        assert s.verdict("A.theta", name).tolist() == words
+        told = np.isfinite(s["A.theta", name])
+        assert told.tolist() == [word == "ok" for word in words]
+
+
+def test_loops_that_are_left_out_and_a_file_that_is_built_anew() -> None:
+    """With another axis the building decides something otherwise, so the file is built anew; the
+    first loop, which alone is followed, feels nothing of it."""
+    text = Path("mechanisms/rcsr_csr_loop_one.yaml").read_text(encoding="utf-8")
+    text = text.replace("  P1: 0.5 in\n", "  P1: 0.5 in\n  tilt: 0\n")
+    joint = text[text.index("  O7:") :]
+    tilted = joint.replace("sin(alpha8)*sin(theta_c1),", "sin(alpha8)*sin(theta_c1) + tilt,", 1)
+    assert tilted != joint
+    s = mk.loads(text.replace(joint, tilted)).sensitivities(["O4.theta"], ["P1", "tilt"])
+    assert s.why("O4.theta", "tilt") == ""
+    assert not s["O4.theta", "tilt"].any()
+    plain = mk.load("mechanisms/rcsr_csr_loop_one.yaml").sensitivities(["O4.theta"], ["P1"])
+    same(s["O4.theta", "P1"], plain["O4.theta", "P1"])
+
+
+def test_a_position_that_is_zero_throughout_is_not_bent() -> None:
+    """The cross of a Hooke joint stays in the origin, to within rounding, whatever the angle."""
+    s = mk.load("mechanisms/hooke.yaml").sensitivities(["U.point", "norm(U.point)"], ["angle"])
+    assert set(s.verdict("U.point", "angle")) == {"ok"}
+    assert np.abs(s["U.point", "angle"]).max() < 1e-20
+
+
 def test_kinks_and_structure() -> None:
     text = TEXT.replace("a: 40 mm,", "a: 40 mm, tilt: 0 deg,")
     text = text.replace("at: [100, 80]", 'at: [100, "2*max(a, 40 mm)"]')

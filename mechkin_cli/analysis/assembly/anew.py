@@ -53,7 +53,9 @@ class AnewSession(Session):
     def derived(self, make: Callable[[Session], Problem]) -> Session:
         """As `Session.derived`, of the base and on the way, too."""
         base, on_the_way = self.base.derived(make), self.on_the_way
-        return AnewSession(make(self), None, base, lambda place: on_the_way(place).derived(make))
+        other = AnewSession(make(self), None, base, lambda place: on_the_way(place).derived(make))
+        other.text = self.text
+        return other
 
     @cached_property
     def continued(self) -> Continued | None:  # type: ignore[override]
