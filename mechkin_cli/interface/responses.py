@@ -59,7 +59,7 @@ def session_at_start(model: Model, run: str) -> Session:
     `Model.session_of`."""
     graph = model.response_graph(run)
     first = response_problem(model.problem, model.problem.responses[run])
-    return Session(first, graph).reading(exactly_read(model.built, first))
+    return Session(first, graph).reading(exactly_read(model.built, first, model._given))
 
 
 def exactly_read(

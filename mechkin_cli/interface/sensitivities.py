@@ -49,7 +49,8 @@ SENTENCES = {
     NOT_CLOSED: "with another value of the parameter the loops, whose constraints are redundant, "
     "do not close.",
     BENT: "a kink, a jump or a dead centre lies next to the parameter's value.",
-    NOT_REPEATED: "the quantity is not repeated in double-double; `why` says the reason.",
+    NOT_REPEATED: "the quantity is not repeated in double-double; `why` says the reason. Of a "
+    "response it is the row of a stop, whose moment no text says.",
 }
 """Verdicts beside those of rows, and what they say."""
 
@@ -130,7 +131,8 @@ class Sensitivities(Listed):
         value = self.value(quantity)
         values = value[:, None] if value.ndim == 1 else value
         slopes = found.slope[:, self.rows]
-        words[solved & ~(np.isfinite(values).all(axis=1) & np.isfinite(slopes).all(axis=0))] = EMPTY
+        words[solved & ~np.isfinite(slopes).all(axis=0)] = NOT_REPEATED
+        words[solved & ~np.isfinite(values).all(axis=1)] = EMPTY
         words[solved & self._any(found.bent)] = BENT
         words[solved & found.opened[self.rows]] = NOT_CLOSED
         words[solved & self._any(found.lost)] = NO_POSITION

@@ -191,7 +191,7 @@ class VariedModel(Model):
     def _fresh(self) -> Model:
         """The same model built anew: no recording holds responses."""
         built = self.built if self._variation is None else self._base.built(self._values)
-        return Model(built, self.stem)
+        return _BuiltAnew(built, self.stem, self._given)
 
     @property
     def view_settings(self) -> ViewSettings:
@@ -208,12 +208,7 @@ class VariedModel(Model):
 
     def session_of(self, run: str) -> Session:
         """As `Model.session_of`."""
-        if run == SWEEP:
-            return self.session
-        from mechkin_cli.interface.responses import exactly_read
-
-        session = self._fresh.session_of(run)
-        return session.reading(exactly_read(self._fresh.built, session.problem, self._given))
+        return self.session if run == SWEEP else self._fresh.session_of(run)
 
     def respond(
         self,
@@ -253,6 +248,18 @@ class VariedModel(Model):
         from mechkin_cli.interface.variants import vary
 
         return vary(self._base, self._values, parameters, quantities, reduce, run, lanes, threads)
+
+
+class _BuiltAnew(Model):
+    """A model that was built with values, which its file does not have; `given` are those in SI."""
+
+    def __init__(self, built: Built, stem: str, given: Mapping[str, Quantity]) -> None:
+        super().__init__(built, stem)
+        self._values_given = given
+
+    @property
+    def _given(self) -> Mapping[str, Quantity]:
+        return self._values_given
 
 
 def _revaried(model: Model, values: Mapping[str, float]) -> Model:
