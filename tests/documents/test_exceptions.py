@@ -6,6 +6,7 @@ import io
 import pkgutil
 import re
 
+import pytest
 from documents.reading import page
 
 import mechkin_cli as mk
@@ -45,3 +46,14 @@ def test_the_example_prints_what_stands_below_it() -> None:
     with contextlib.redirect_stdout(said):
         exec(compile(code, "docs/exceptions.md", "exec"), {})
     assert said.getvalue().strip() == shown
+
+
+def test_attributes_that_the_page_names() -> None:
+    analysis = mk.loads("format: 1\nlinks: {a: {}}\njoints: {A: {type: W, links: [ground, a]}}")
+    run = analysis.analyze()
+    with pytest.raises(mk.ExpressionError) as raised:
+        run["1 + norm(A.force"]
+    named = re.findall(r"`error\.(offset|hint|position)`", PAGE)
+    assert named
+    assert all(hasattr(raised.value, name) for name in named)
+    assert raised.value.offset == "1 + norm(".index("(")
