@@ -28,12 +28,10 @@ from mechkin_cli.building.unused import note_unused
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.expressions.parameters import Move
-from mechkin_cli.mechanism.balance import AnyBalance
 from mechkin_cli.mechanism.model import Attached, Link, Mechanism
 from mechkin_cli.mechanism.motion import Motion
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import TIME_OF_ROW, Wanted
-from mechkin_cli.mechanism.response import Response
 from mechkin_cli.reading.parser import in_order
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.schema.file import MechanismFile
@@ -44,6 +42,8 @@ from mechkin_cli.tables.layout import CoefficientsLayout, TableLayout
 
 if TYPE_CHECKING:
     from mechkin_cli.expressions.nodes import Name, Node
+    from mechkin_cli.mechanism.balance import AnyBalance
+    from mechkin_cli.mechanism.response import Response
     from mechkin_cli.view.settings import ViewSettings
 
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})

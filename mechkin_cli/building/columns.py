@@ -14,7 +14,6 @@ from mechkin_cli.mechanism.derived_quantities import hint_in_plane, hint_of
 from mechkin_cli.mechanism.drives import Drives, without_effort
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
-from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.schema import tables as written
 from mechkin_cli.schema.file import MechanismFile
@@ -55,6 +54,8 @@ def quantities_of(problem: Problem, run: str) -> Mapping[str, Wanted]:
     """The quantities that the rows of a run have, by name."""
     if run == SWEEP:
         return problem.quantities()
+    from mechkin_cli.mechanism.response import response_problem
+
     return response_problem(problem, problem.responses[run]).quantities()
 
 

@@ -24,7 +24,8 @@ _OF_NAMES: Final = ("parameters", "quantities")
 def note_unused(fields: Fields) -> None:
     """A note at every parameter that no expression uses, and at those that only such ones use."""
     # as written: a value from outside that names nothing makes nothing superfluous
-    data = replace(fields.document, overrides={}).data
+    document = fields.document
+    data = (replace(document, overrides={}) if document.overrides else document).data
     section = data.get("parameters")
     if not isinstance(section, dict) or not section:
         return

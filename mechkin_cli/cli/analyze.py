@@ -121,8 +121,6 @@ def analyze_files(
 
 def _one(path: Path, folder: Path, request: _Request, tell: Tell) -> tuple[ExitCode, Record]:
     """Runs one file; what is wrong with it does not stop the others."""
-    from mechkin_cli.tables.json_writer import runs_record
-
     try:
         tell("reading")
         model = model_of(path, request.settings)
@@ -135,6 +133,8 @@ def _one(path: Path, folder: Path, request: _Request, tell: Tell) -> tuple[ExitC
     say_diagnostics((*said, *notes), shown(path))
     record: Record = {}
     if request.json:
+        from mechkin_cli.tables.json_writer import runs_record
+
         results = [_results(analysis, request) for analysis in analyses]
         record = {"file": shown(path)} | runs_record(results)
         if request.explain:

@@ -24,15 +24,12 @@ _TAKES_PARTS = frozenset({"[]", ".x", ".y", ".z"})
 
 def is_infinite(quantity: Quantity) -> bool:
     """Whether a quantity is infinite in some row."""
-    return any(
-        isinstance(part, np.ndarray) and part.dtype == np.float64 and bool(np.isinf(part).any())
-        for part in _parts(quantity)
-    )
+    return any(map(_somewhere, _parts(quantity)))
 
 
 def without_new(operand: Operand) -> Operand:
     """Rows with nan for what is infinite, of operations on what is finite."""
-    if not any(isinstance(p, np.ndarray) and np.isinf(p).any() for p in _parts(operand.quantity)):
+    if not is_infinite(operand.quantity):
         return operand
     return _each(operand, lambda part: np.where(np.isinf(part), np.nan, part))
 
@@ -47,6 +44,13 @@ def of_infinite(symbol: str, operand: Operand, operands: Sequence[Operand]) -> O
             if isinstance(part, np.ndarray):
                 rows = rows | np.isinf(part)
     return _each(operand, lambda part: np.where(np.isinf(part) == rows, part, np.nan))
+
+
+def _somewhere(part: Scalar) -> bool:
+    # both of these go without a wrapper of Python's, and every operation on rows comes by here
+    if not isinstance(part, np.ndarray) or part.dtype.kind != "f":
+        return False
+    return bool(np.logical_or.reduce(np.isinf(part)))
 
 
 def _parts(quantity: Quantity) -> Sequence[Scalar]:

@@ -11,7 +11,6 @@ from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.interface.analysis import Analysis
 from mechkin_cli.interface.arguments import a_text, texts
 from mechkin_cli.interface.asking import a_packing, chosen_tables, known_mode, wanted_names
-from mechkin_cli.mechanism.balance import read_by
 from mechkin_cli.mechanism.legs import find_legs
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.solver.demand import needs_all_links
@@ -51,7 +50,10 @@ def run_sweep(
     balances = chosen(model.built.balances, tables)
     names = wanted_names(session, SWEEP, layouts, quantities)
     asked = tuple(names)
-    names += read_by(balances, problem)
+    if balances:
+        from mechkin_cli.mechanism.balance import read_by
+
+        names += read_by(balances, problem)
     refuse_loaded_spin(session, names)
     result = analyze(session.packed(packing), names)
     systems = chosen(model.built.coefficients, tables)

@@ -101,6 +101,10 @@ Kind = Literal[
 are judged by."""
 
 
+_SEEN = {"xyz": (0, 1, 2), "xy": (0, 1), "z": (2,)}
+"""What is told of a vector -> the places of its components."""
+
+
 class Wanted(NamedTuple):
     """One quantity: its kind, whose it is, which derivative, dimension, whether it is a vector, and
     which of a vector's components users see: in a plane x and y, or z alone."""
@@ -117,7 +121,7 @@ class Wanted(NamedTuple):
     @property
     def places(self) -> tuple[int, ...]:
         """Which of its numbers users see."""
-        return tuple("xyz".index(axis) for axis in self.told) if self.vector else (0,)
+        return _SEEN[self.told] if self.vector else (0,)
 
     def value(self, numbers: Any) -> Value:
         """What users see of its numbers."""

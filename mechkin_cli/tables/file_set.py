@@ -16,7 +16,6 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-import shutil
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
@@ -70,7 +69,9 @@ def settle(attempt: Path) -> None:
                 side = attempt / os.readlink(attempt / "set")
                 _put_file(side / name, attempt.parent / name, attempt)
         if not _links(attempt):
-            shutil.rmtree(attempt, ignore_errors=True)
+            from shutil import rmtree
+
+            rmtree(attempt, ignore_errors=True)
 
 
 def settle_all(folder: Path) -> None:
@@ -116,7 +117,9 @@ def _keep(target: Path, second: Path) -> None:
         try:
             os.link(target, second)
         except OSError:  # a file system without hard links
-            shutil.copy2(target, second)
+            from shutil import copy2
+
+            copy2(target, second)
 
 
 def _link(path: Path, text: str) -> bool:

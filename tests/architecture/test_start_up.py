@@ -6,6 +6,8 @@ import json
 import subprocess
 import sys
 from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 from references import RCSR
@@ -24,11 +26,27 @@ print(json.dumps(sorted(sys.modules)))
 """
 
 
+COMMAND = """
+import json, sys
+from mechkin_cli.cli.main import main
+sys.argv = ["mechkin", "analyze", sys.argv[1], "--quiet", "--out", sys.argv[2]]
+try:
+    main()
+except SystemExit as ended:
+    assert not ended.code
+print(json.dumps(sorted(sys.modules)))
+"""
+
+
 @cache
-def loaded_by(script: str) -> set[str]:
-    command = [sys.executable, "-P", "-c", script, str(RCSR)]
+def modules_of(script: str, *arguments: str) -> frozenset[str]:
+    command = [sys.executable, "-P", "-c", script, str(RCSR), *arguments]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
-    return {name.split(".")[0] for name in json.loads(done.stdout)}
+    return frozenset(json.loads(done.stdout))
+
+
+def loaded_by(script: str) -> set[str]:
+    return {name.split(".")[0] for name in modules_of(script)}
 
 
 @pytest.mark.parametrize(
@@ -46,3 +64,33 @@ def test_the_package_itself_loads_nothing(library: str) -> None:
 @pytest.mark.parametrize("library", ["numpy", "pydantic_core", "yaml"])
 def test_what_an_analysis_needs_is_seen_by_this_test(library: str) -> None:
     assert library in loaded_by(ANALYSIS)
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("tables")
+
+
+@pytest.mark.parametrize(
+    ("module", "needed_by"),
+    [
+        ("mechanism.response", "responses"),
+        ("mechanism.balance", "balances"),
+        ("building.quantities", "named expressions"),
+        ("tables.json_writer", "JSON"),
+        ("tables.summary", "summaries"),
+        ("interface.fits", "fits"),
+        ("interface.sensitivities", "sensitivities"),
+        ("interface.studies", "studies"),
+        ("view.html", "the page of a view"),
+    ],
+)
+def test_a_sweep_leaves_out_what_its_file_does_not_ask_for(
+    module: str, needed_by: str, written: Path
+) -> None:
+    assert f"mechkin_cli.{module}" not in modules_of(COMMAND, str(written)), needed_by
+    assert find_spec(f"mechkin_cli.{module}") is not None  # the name is that of a module
+
+
+def test_what_writes_tables_is_seen_by_this_test(written: Path) -> None:
+    assert "mechkin_cli.tables.csv_writer" in modules_of(COMMAND, str(written))
