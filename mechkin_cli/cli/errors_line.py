@@ -8,7 +8,7 @@ import numpy as np
 
 from mechkin_cli.analysis.errors.reasons import WORDS
 from mechkin_cli.legible import legible
-from mechkin_cli.tables.cell_errors import ALL_COLUMNS, ZERO
+from mechkin_cli.tables.cell_errors import ALL_COLUMNS, AT_DEAD_CENTRE, ZERO, counted_cells
 
 if TYPE_CHECKING:
     from mechkin_cli.interface import Analysis
@@ -42,7 +42,9 @@ def errors_line(analysis: Analysis) -> str:
     parts += [f"{bounds} cells right to at least the digits told"] if bounds else []
     for why in dict.fromkeys(c.lost_why for c in errors.columns if c.lost):
         lost = sum(c.lost for c in errors.columns if c.lost_why == why)
-        parts.append(f"{lost} cells not measured ({why})")
+        parts.append(f"{counted_cells(lost)} not measured ({why})")
+    there = sum(int(np.count_nonzero(c.stands_there)) for c in errors.columns)
+    parts += [f"{counted_cells(there)} without a figure ({AT_DEAD_CENTRE})"] if there else []
     return "; ".join(parts)
 
 

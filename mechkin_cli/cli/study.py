@@ -222,7 +222,7 @@ def _print(found: StudyFiles, quiet: bool) -> None:
     import numpy as np
 
     from mechkin_cli.cli.show import shown_table
-    from mechkin_cli.tables.columns import Column, Columns, words_of
+    from mechkin_cli.tables.columns import Column, Columns, column_of_numbers, words_of
 
     seen = found.overview
     for path in found.files:
@@ -232,7 +232,7 @@ def _print(found: StudyFiles, quiet: bool) -> None:
     spreads = seen.spreads
 
     def numbers(label: str, decimals: int | None, values: list[float]) -> Column:
-        return Column(label, "", np.array(values, dtype=np.float64), decimals)
+        return column_of_numbers(label, "", np.array(values, dtype=np.float64), decimals)
 
     def place(number: int) -> float:
         return float("nan") if number < 0 else float(number)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,7 @@ from mechkin_cli.interface.arguments import a_text, texts
 from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.mechanism.bearing_loads import read_for
 from mechkin_cli.nearest import nearest_hint
+from mechkin_cli.status import Status
 from mechkin_cli.tables.cell_errors import (
     ALL_COLUMNS,
     LOST,
@@ -226,7 +228,9 @@ class Errors(Listed):
         except NotRepeated as reason:
             return not_repeated(table, column.label, column.unit, values, str(reason))
         lost = self.repeated.lost_why or LOST
-        return column_errors(table, column.label, column.unit, values, true, doubt, lost)
+        found = column_errors(table, column.label, column.unit, values, true, doubt, lost)
+        there = self._analysis.result.status == Status.dead_centre
+        return replace(found, there=there) if there.any() else found
 
 
 def _values(column: Column) -> Any:

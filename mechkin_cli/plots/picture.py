@@ -115,7 +115,9 @@ def _picture(
     doubtful = tuple(
         (status.label, result.status == status)
         for status in Status
-        if status is not Status.ok and status.has_solution and bool((result.status == status).any())
+        if status not in (Status.ok, Status.dead_centre)  # the latter is a mark
+        and status.has_solution
+        and bool((result.status == status).any())
     )
     return Picture(title, x, panels, is_plane, along, marks, result.solved, doubtful)
 

@@ -70,13 +70,13 @@ class Csv:
 
     def piece(self, headings: Sequence[Heading], records: Records) -> bytes:
         """As `Format.piece`."""
-        from mechkin_cli.tables.columns import Column, Columns, words_of
+        from mechkin_cli.tables.columns import Column, Columns, column_of_numbers, words_of
         from mechkin_cli.tables.csv_writer import csv_bytes
 
         columns = [
             Column(h.label, h.unit, words_of(records[h.label].tolist()))
             if h.kind == "text"
-            else Column(h.label, h.unit, np.asarray(records[h.label], dtype=np.float64))
+            else column_of_numbers(h.label, h.unit, np.asarray(records[h.label], dtype=np.float64))
             for h in headings
         ]
         return csv_bytes(Columns("study", "", tuple(columns)))

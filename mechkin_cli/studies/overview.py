@@ -41,26 +41,33 @@ class _Column:
     """Sums about the first value, so that a narrow band far from zero keeps its digits."""
 
     count: int = 0
+    finite: int = 0
     origin: float = 0.0
     first: float = 0.0
     second: float = 0.0
     least: tuple[float, int] = (np.inf, -1)
     largest: tuple[float, int] = (-np.inf, -1)
+    infinite: float = 0.0
 
     def add(self, values: Floats, variants: NDArray[np.int64]) -> None:
         there = ~np.isnan(values)
         if not there.any():
             return
         values, variants = values[there], variants[there]
-        if not self.count:
-            self.origin = float(values[0])
         low, high = int(values.argmin()), int(values.argmax())
         if values[low] < self.least[0]:
             self.least = float(values[low]), int(variants[low])
         if values[high] > self.largest[0]:
             self.largest = float(values[high]), int(variants[high])
-        off = values - self.origin
+        finite = values[np.isfinite(values)]
+        if finite.size < values.size:
+            # infinite of both signs have no mean
+            self.infinite += float(np.unique(values[np.isinf(values)]).sum())
+        if finite.size and not self.finite:
+            self.origin = float(finite[0])
+        off = finite - self.origin
         self.count += values.size
+        self.finite += finite.size
         self.first += float(off.sum())
         self.second += float((off * off).sum())
 
@@ -96,6 +103,9 @@ def overview(
 def _spread(label: str, unit: str, column: _Column) -> Spread:
     if not column.count:
         return Spread(label, unit, 0, np.nan, -1, np.nan, -1, np.nan, np.nan)
+    if column.infinite != 0.0:
+        ends = (*column.least, *column.largest)
+        return Spread(label, unit, column.count, *ends, column.infinite, np.nan)
     mean = column.first / column.count
     variance = max(column.second / column.count - mean * mean, 0.0)
     return Spread(

@@ -34,6 +34,9 @@ NO_VALUE = "no value, or none that double-double tells"
 AT_LEAST = "at least so many digits: the repetition itself is known to no more"
 """Said of a cell whose error is that of the repetition, too."""
 
+AT_DEAD_CENTRE = "at a dead centre, where no digit is sure"
+"""Said of a cell without a figure in a row that stands at a dead centre."""
+
 ZERO = "zero but for rounding"
 """Said of a column whose true numbers are none beside its rounding."""
 
@@ -63,6 +66,7 @@ class ColumnErrors:
         is_bound: (rows,) whether it counts: the error is at most so large.
         lost_why: what is said of a cell that the repetition has no number for.
         why: why the column was not repeated, or has no digits; "" of others.
+        there: (rows,) rows that stand at a dead centre; None: no row does.
     """
 
     table: str
@@ -73,6 +77,7 @@ class ColumnErrors:
     is_bound: NDArray[np.bool_]
     why: str = ""
     lost_why: str = LOST
+    there: NDArray[np.bool_] | None = None
 
     @cached_property
     def largest(self) -> float:
@@ -105,10 +110,18 @@ class ColumnErrors:
 
     @cached_property
     def lost(self) -> int:
-        """Cells with a number of which the repetition has none."""
+        """Cells with a number of which the repetition has none, but for those at a dead centre."""
         if self.why:
             return 0
-        return int(np.count_nonzero(np.isfinite(self.values) & ~np.isfinite(self.error)))
+        lost = np.isfinite(self.values) & ~np.isfinite(self.error) & ~self.stands_there
+        return int(np.count_nonzero(lost))
+
+    @cached_property
+    def stands_there(self) -> NDArray[np.bool_]:
+        """Cells without a figure in rows at a dead centre (rows,)."""
+        if self.there is None:
+            return np.zeros(self.error.shape, np.bool_)
+        return self.there & ~np.isfinite(self.error)
 
 
 def not_repeated(
@@ -151,6 +164,15 @@ def column_errors(
         ZERO if zero else "",
         NO_VALUE if none.any() else lost_why,
     )
+
+
+def counted_cells(number: int) -> str:
+    """How many cells.
+
+    >>> counted_cells(1), counted_cells(3)
+    ('1 cell', '3 cells')
+    """
+    return f"{number} cell" if number == 1 else f"{number} cells"
 
 
 def least_digits(columns: Sequence[ColumnErrors]) -> int | None:

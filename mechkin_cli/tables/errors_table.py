@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.runs import SWEEP
-from mechkin_cli.tables.cell_errors import AT_LEAST, EMPTY, NO_DIGITS, ColumnErrors
+from mechkin_cli.tables.cell_errors import (
+    AT_DEAD_CENTRE,
+    AT_LEAST,
+    EMPTY,
+    NO_DIGITS,
+    ColumnErrors,
+    counted_cells,
+)
 from mechkin_cli.tables.columns import Column, Columns, Words, words_of
 
 if TYPE_CHECKING:
@@ -81,9 +88,12 @@ def worst_table(columns: Sequence[ColumnErrors], run: str = SWEEP) -> Columns:
 
 
 def _why(column: ColumnErrors) -> str:
-    if column.why or not column.lost:
-        return column.why or (AT_LEAST if column.is_bound.any() else "")
-    return f"{column.lost} cells without: {column.lost_why}"
+    if column.why:
+        return column.why
+    there = int(np.count_nonzero(column.stands_there))
+    said = [(column.lost, column.lost_why), (there, AT_DEAD_CENTRE)]
+    without = [f"{counted_cells(cells)} without: {why}" for cells, why in said if cells]
+    return "; ".join(without) or (AT_LEAST if column.is_bound.any() else "")
 
 
 def _names(columns: Sequence[ColumnErrors], counts: Sequence[int]) -> tuple[Column, ...]:
@@ -113,7 +123,7 @@ def _cells(column: ColumnErrors) -> tuple[FloatArray, ...]:
 def _whys(columns: Sequence[ColumnErrors], counts: Sequence[int]) -> Words:
     """What is said of each line."""
     lost, whys = [c.lost_why for c in columns], [c.why for c in columns]
-    words = tuple(dict.fromkeys(("", EMPTY, AT_LEAST, *lost, *whys)))
+    words = tuple(dict.fromkeys(("", EMPTY, AT_LEAST, AT_DEAD_CENTRE, *lost, *whys)))
     known = [np.zeros(0, dtype=np.int32)]
     for column, count in zip(columns, counts, strict=True):
         if column.why:
@@ -123,6 +133,7 @@ def _whys(columns: Sequence[ColumnErrors], counts: Sequence[int]) -> Words:
             gone = words.index(column.lost_why)
             measured = np.where(np.isfinite(column.error), measured, gone)
             codes = np.where(np.isfinite(column.values), measured, 1)
+            codes = np.where(column.stands_there, 3, codes)
         known.append(codes.astype(np.int32))
     return Words(np.concatenate(known), words)
 

@@ -28,7 +28,7 @@ def markdown_bytes(columns: Columns, source: Source, threads: int = 0) -> bytes:
     as the table is worth."""
     from mechkin_cli.kernel import _kernel
 
-    headers = [_header(column) for column in columns.columns]
+    headers = [_padded_header(column) for column in columns.columns]
     cells = [
         word_column(column.values, markdown_text)
         if isinstance(column.values, Words)
@@ -37,6 +37,8 @@ def markdown_bytes(columns: Columns, source: Source, threads: int = 0) -> bytes:
     ]
     title = f"# {markdown_text(columns.title or columns.name)}\n\n"
     table: bytes = _kernel.markdown_text(headers, cells, threads_for(columns, threads))
+    if any(column.unbounded is not None for column in columns.columns):
+        table = _to_the_right(table, columns)
     below = "" if columns.summary is None else _below(columns.summary)
     notes = "".join(f"- {note}\n" for note in footnotes(columns, source, markdown_text))
     notes = below + (f"\n{notes}" if notes else "")
@@ -67,9 +69,32 @@ def _numbers(column: Column) -> DecimalColumn | WordColumn:
     assert not isinstance(column.values, Words)
     if column.unbounded is None:
         return decimal_column(column.values, column.decimals)
-    texts = column.texts(column_texts(column.values, column.decimals))
-    width = max(map(len, texts))
+    texts = _texts(column)
+    width = max(len(_header(column)), *map(len, texts))
     return word_column(words_of([text.rjust(width) for text in texts]))
+
+
+def _padded_header(column: Column) -> str:
+    """The header, of cells that the kernel takes as texts as wide as they are."""
+    header = _header(column)
+    if column.unbounded is None:
+        return header
+    return header.rjust(max(map(len, _texts(column))))
+
+
+def _texts(column: Column) -> list[str]:
+    assert not isinstance(column.values, Words)
+    return column.texts(column_texts(column.values, column.decimals))
+
+
+def _to_the_right(table: bytes, columns: Columns) -> bytes:
+    """The table with columns of numbers that the kernel took as texts set to the right."""
+    head, rule, rest = table.split(b"\n", 2)
+    marks = rule.split(b"|")
+    for number, column in enumerate(columns.columns, 1):
+        if column.unbounded is not None:
+            marks[number] = b" " + marks[number].strip()[1:] + b": "
+    return b"\n".join((head, b"|".join(marks), rest))
 
 
 def _header(column: Column) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.solver.inputs import input_text
+from mechkin_cli.status import Status
 from mechkin_cli.units import ANGLE
 
 if TYPE_CHECKING:
@@ -35,6 +36,8 @@ def run_marks(analysis: Readable, label: str, x: Floats) -> list[Plain]:
         if kind is not None:
             for text, place in _places(analysis, diagnostic, label, x):
                 found.append({"x": place, "kind": kind, "text": text})
+    for row in np.flatnonzero(analysis.result.status == Status.dead_centre).tolist():
+        found.append({"x": float(x[row]), "kind": "dead-centre", "text": "row at a dead centre"})
     for row, event in enumerate(analysis.result.events):
         if event:
             found.append({"x": float(x[row]), "kind": "event", "text": event})

@@ -83,7 +83,30 @@ def _rates(
         if one.rate is not None and (one.joint, one.coordinate) not in independent
     ]
     if not others:
-        return rates
+        return _known(session, response, state, rates)
     from mechkin_cli.analysis.response.other_rates import solve_rates
 
     return solve_rates(session, response, state, rates, len(moved))
+
+
+def _known(
+    session: Session, response: Response, state: Floats, rates: Floats
+) -> Floats | Diagnostic:
+    """The rates, or why they say nothing: at its dead centre a coordinate has no rate, and any
+    that it is given stands for infinite ones of others."""
+    from mechkin_cli.analysis.sweep.dead_centre_rows import lost_rates
+
+    if not rates.any():
+        return rates
+    lost = lost_rates(session, session.inputs.reduced[:, :1], state[:, None])[:, 0]
+    inputs = session.problem.motion.inputs
+    named = [one.name for one, given in zip(inputs, lost & (rates != 0.0), strict=True) if given]
+    if not named:
+        return rates
+    return Diagnostic(
+        "start-at-dead-centre",
+        "error",
+        f"the start is a dead centre of {', '.join(named)}: no rate of it is one of the mechanism",
+        response.place,
+        hint="give the rate of a coordinate that moves there, or start beside it",
+    )

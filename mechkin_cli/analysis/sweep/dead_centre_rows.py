@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.batch import Batch
+    from mechkin_cli.solver.demand import Slot
     from mechkin_cli.solver.session import Session
 
 
@@ -57,14 +58,29 @@ def judge_dead_centres(session: Session, rows: Rows) -> None:
 
 
 def _is_lost(session: Session, rows: Rows, near: Bools) -> Bools:
-    """Rows (rows,) whose rates the rounding of an input changes by more than a part of themselves:
-    |x''| times that rounding against |x'|, by each input in turn."""
+    """Rows (rows,) whose rates say nothing."""
     lost: Bools = np.asarray(rows.status == Status.rank_unclear)
     numbers = np.flatnonzero(near & ~lost)
-    if not numbers.size:
-        return lost
-    inputs, states = session.inputs, np.ascontiguousarray(rows.states[:, numbers])
-    values = np.ascontiguousarray(inputs.reduced[:, numbers])
+    if numbers.size:
+        values = np.ascontiguousarray(session.inputs.reduced[:, numbers])
+        states = np.ascontiguousarray(rows.states[:, numbers])
+        lost[numbers] = lost_rates(session, values, states).any(axis=0)
+    return lost
+
+
+def lost_rates(session: Session, values: Floats, states: Floats) -> Bools:
+    """Where the rounding of an input changes the rates at its unit rate by more than a part of
+    themselves: |x''| times that rounding against |x'|.
+
+    Args:
+        session: the mechanism as it is driven.
+        values: (inputs, places) in kernel units, angles within a turn.
+        states: (states, places) closed there.
+
+    Returns:
+        (inputs, places), by each input in turn.
+    """
+    lost = np.zeros(values.shape, dtype=bool)
     still = np.zeros_like(values)
     for number in range(values.shape[0]):
         rates = still.copy()
@@ -82,7 +98,7 @@ def _is_lost(session: Session, rows: Rows, near: Bools) -> Bools:
         assert batch.second is not None
         first, second = (np.abs(part).max(axis=0) for part in (batch.first, batch.second))
         rounding = np.spacing(np.maximum(1.0, np.abs(values[number])))
-        lost[numbers] |= second * rounding >= DEAD_CENTRE_LOST * first
+        lost[number] = ~(second * rounding < DEAD_CENTRE_LOST * first)
     return lost
 
 
@@ -145,16 +161,26 @@ def put_unbounded(
     assert batch.outputs is not None
     slots = session.readout(wanted).slots
     read = [quantity for quantity in wanted if demand_of(session.problem.mechanism, [quantity])]
-    lost = [slots[q.name].first + part for q in read for part in range(slots[q.name].width)]
-    for before in rows.dead_centres if lost else ():
+    forces = [q for q in read if demand_of(session.problem.mechanism, [q]) & Demand.FORCES]
+    rates = [q for q in read if q not in forces]
+    alike = [_slots(slots, some) for some in (rates, forces) if some]
+    for before in rows.dead_centres if alike else ():
         there = places.at([before.row] * 2)._replace(inputs=before.inputs, guess=before.states)
         outputs = session.run(**there.arguments, **asked, iterations=0).outputs
         assert outputs is not None
-        far, close = outputs[lost].T
-        grows = np.abs(close) >= GROWS_WITHOUT_BOUND * np.abs(far)
-        # what is zero but for rounding does not grow with the others
-        grows &= np.abs(close) > REACTION_ROUNDING * np.abs(close).max()
-        batch.outputs[lost, before.row] = np.where(grows, np.copysign(np.inf, close), np.nan)
+        for lost in alike:
+            far, close = outputs[lost].T
+            grows = np.abs(close) >= GROWS_WITHOUT_BOUND * np.abs(far)
+            # what is zero but for rounding does not grow with the others; where friction jams,
+            # forces have no value even before the dead centre
+            level = np.abs(close).max(where=np.isfinite(close), initial=0.0)
+            grows &= np.abs(close) > REACTION_ROUNDING * level
+            batch.outputs[lost, before.row] = np.where(grows, np.copysign(np.inf, close), np.nan)
+
+
+def _slots(slots: Mapping[str, Slot], quantities: Sequence[Wanted]) -> list[int]:
+    """The output rows of some quantities."""
+    return [slots[q.name].first + part for q in quantities for part in range(slots[q.name].width)]
 
 
 def _note(rows: Rows) -> Diagnostic:

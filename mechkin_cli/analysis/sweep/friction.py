@@ -217,6 +217,7 @@ def uncounted_notes(result: Result) -> list[Diagnostic]:
     """Loads of joints that rub which their friction does not go by, for lack of a length."""
     notes: list[Diagnostic] = []
     problem, known = result.problem, result.problem.quantities()
+    sound = result.solved & (result.status != Status.dead_centre)
     for rubbing in problem.mechanism.frictions:
         law = problem.mechanism.joints[rubbing.joint].type.friction
         missed = [(k, w) for k, w in law.missed if getattr(rubbing, k) is None] if law else []
@@ -229,7 +230,7 @@ def uncounted_notes(result: Result) -> list[Diagnostic]:
         for key, load in missed:
             size, dimension = _uncounted(load, force, moment, axis)
             unit = 1.0 if dimension == FORCE else result.session.layout.length
-            counts = result.solved & (size > tolerances.UNIQUE_CELL * level * unit)
+            counts = sound & (size > tolerances.UNIQUE_CELL * level * unit)
             if counts.any():
                 most = float(problem.units.from_si(float(np.max(size[counts])), dimension))
                 measured = f"at most {most:.6g} {problem.units.label(dimension)}"
@@ -248,7 +249,9 @@ def _uncounted(load: str, force: Floats, moment: Floats, axis: Floats) -> tuple[
 
 
 def _dot(a: Floats, b: Floats) -> Floats:
-    product: Floats = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    # what is infinite at a dead centre has no part along an axis
+    with np.errstate(invalid="ignore"):
+        product: Floats = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
     return product
 
 
