@@ -16,7 +16,9 @@ def analyze(
     files: Files,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", parser=folder, help="Folder to write to (out/STEM)."),
+        typer.Option(
+            "--out", metavar="DIR", parser=folder, help="Folder to write to (default: out/STEM)."
+        ),
     ] = None,
     format: Annotated[
         list[str] | None,
@@ -28,7 +30,7 @@ def analyze(
         ),
     ] = None,
     units: Annotated[
-        bool, typer.Option("--units", help="Write units into the headers of CSV: theta [deg].")
+        bool, typer.Option("--units", help="Write units into CSV headers: theta [deg].")
     ] = False,
     set_: Set = None,
     mode: Annotated[
@@ -45,7 +47,11 @@ def analyze(
     ] = None,
     lanes: Annotated[
         int,
-        typer.Option("--lanes", metavar="N", help="Rows at a time: 2, 4 or 8; 0: the most."),
+        typer.Option(
+            "--lanes",
+            metavar="N",
+            help="Rows computed at a time: 2, 4 or 8; 0: the most the machine can.",
+        ),
     ] = 0,
     threads: Annotated[
         int,
@@ -53,13 +59,15 @@ def analyze(
     ] = 0,
     certify: Annotated[
         bool,
-        typer.Option("--certify", help="Prove a sweep's positions, and that they are one branch."),
+        typer.Option(
+            "--certify", help="Prove a sweep's positions, and that they lie on one branch."
+        ),
     ] = False,
     strict: Annotated[
         bool,
         typer.Option(
             "--strict",
-            help="Exit with 4 where a row is near-singular, rank-unclear or at a dead centre.",
+            help="Exit with 4 also if a row is near-singular, rank-unclear or at a dead centre.",
         ),
     ] = False,
     errors: Annotated[
@@ -67,18 +75,21 @@ def analyze(
         typer.Option("--errors", help="Measure the true error of every cell; write errors.csv."),
     ] = False,
     view: Annotated[
-        bool, typer.Option("--view", help="Write view.html, which shows all runs in motion, too.")
+        bool,
+        typer.Option("--view", help="Also write view.html, a page that shows all runs in motion."),
     ] = False,
     explain: Annotated[
-        bool, typer.Option("--explain", help="Show the solver graph and what is skipped.")
+        bool,
+        typer.Option("--explain", help="Show how the loops are solved, what is skipped and why."),
     ] = False,
     messages: Messages = None,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Run the sweep and the responses of each file and write their tables.
+    """Run sweeps and responses; show and write their tables.
 
-    With --json nothing is written, unless --out or --format asks for files, too.
+    Tables go to stdout and to files in out/STEM, messages to stderr. With --json no files are
+    written, unless --out or --format asks for them. The exit code is 4 if rows are missing.
     """
     code = analyze_files(
         files=files,

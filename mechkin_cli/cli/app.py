@@ -27,7 +27,8 @@ from mechkin_cli.version import version as package_version
 
 app = typer.Typer(
     name="mechkin",
-    help="Displacement, rates, reactions and tables of spatial mechanisms from YAML files.",
+    help="Positions, rates, reactions and drive efforts of mechanisms described in YAML files."
+    "\n\nStart with: mechkin new NAME, then mechkin analyze NAME.yaml and mechkin view NAME.yaml.",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
     rich_markup_mode=None,

@@ -33,10 +33,12 @@ def bench(
     context: typer.Context,
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Mechanism files instead of the known ones.", metavar="FILE"),
+        typer.Argument(
+            help="Mechanism files to measure instead of the eight of its own.", metavar="FILE"
+        ),
     ] = None,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Few rounds: seconds, and rougher.")
+        bool, typer.Option("--quick", help="Few rounds: takes seconds, and measures less well.")
     ] = False,
     out: Annotated[
         Path | None,
@@ -59,9 +61,9 @@ def bench(
 ) -> None:
     """Measure run time against error, mechkin's and others'.
 
-    Without files: eight mechanisms, variants and responses. Other methods are those whose
-    libraries are installed (pip install 'mechkin[bench]'). With --stress: hard mechanisms by the
-    thousand, every row decided in double-double.
+    Without files it measures eight mechanisms, variants and responses. Other libraries are measured
+    if they are installed (pip install 'mechkin[bench]'). With --stress it runs hard mechanisms by
+    the thousand instead, and decides every row in double-double.
     """
     _refuse_options_of_the_other(context, stress=stress)
     if stress:

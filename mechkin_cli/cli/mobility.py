@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 
 def mobility(file: File, set_: Set = None, json: Json = False, quiet: Quiet = False) -> None:
-    """Find what can move: mobility, idle freedoms, redundancies.
+    """Find the mobility, idle freedoms and redundant constraints.
 
-    Compares Kutzbach's count with the true mobility.
+    Compares Kutzbach's count with the true mobility. Inputs need not be declared.
     """
     question = Question(
         ask=lambda model: model.mobility(),

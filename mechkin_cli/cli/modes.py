@@ -25,7 +25,8 @@ def modes(
         typer.Option(
             "--at",
             metavar="VALUE",
-            help="Input instead of the first row's; of several as O1.theta=VALUE, repeatable.",
+            help="Value of the input instead of the first row's; of several as O1.theta=VALUE, "
+            "repeatable.",
         ),
     ] = None,
     run: Annotated[
@@ -33,7 +34,7 @@ def modes(
         typer.Option(
             "--run",
             metavar="NAME",
-            help="At the start of this response.",
+            help="Take the modes at the start of this response.",
             autocompletion=run_names,
         ),
     ] = None,
@@ -45,7 +46,7 @@ def modes(
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """List the ways to assemble a mechanism."""
+    """List the assembly modes: the ways to put a mechanism together."""
     question = Question(
         ask=lambda model: model.modes(_place(at), run=run, certify=certify),
         is_answered=lambda found: bool(found.modes),

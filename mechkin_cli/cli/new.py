@@ -14,10 +14,13 @@ from mechkin_cli.diagnostics import UsageError
 
 def new(
     name: Annotated[
-        str | None, typer.Argument(metavar="[NAME]", help="The file to write; .yaml is added.")
+        str | None, typer.Argument(metavar="NAME", help="The file to write; .yaml is added.")
     ] = None,
     template: Annotated[
-        str, typer.Option("--template", metavar="TEMPLATE", help="What to start from.")
+        str,
+        typer.Option(
+            "--template", metavar="TEMPLATE", help="Template to start from; --list names them."
+        ),
     ] = "four-bar",
     list_: Annotated[bool, typer.Option("--list", help="List the templates.")] = False,
 ) -> None:

@@ -26,7 +26,7 @@ def folder(text: str) -> Path:
 Files = Annotated[
     list[Path],
     typer.Argument(
-        help="Mechanism files (YAML, format 1); - is the text on stdin.",
+        help="Mechanism files (YAML, format 1); - reads stdin.",
         metavar="FILE",
         autocompletion=mechanism_files,
     ),
@@ -34,7 +34,7 @@ Files = Annotated[
 File = Annotated[
     Path,
     typer.Argument(
-        help="Mechanism file (YAML, format 1); - is the text on stdin.",
+        help="Mechanism file (YAML, format 1); - reads stdin.",
         metavar="FILE",
         autocompletion=mechanism_files,
     ),
@@ -44,13 +44,13 @@ Set = Annotated[
     typer.Option(
         "--set",
         metavar="NAME=VALUE",
-        help="Replace a parameter, as P1=0.6in; repeatable.",
+        help="Set a parameter, as P1=0.6in; repeatable.",
         autocompletion=parameter_names,
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="One JSON object on stdout and nothing else.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Only warnings and errors.")]
-MESSAGES_HELP = f"How messages are told: {' or '.join(FORMS)} (annotations for CI)."
+MESSAGES_HELP = f"Form of the messages: {' or '.join(FORMS)} (annotations for CI)."
 Messages = Annotated[
     str | None,
     typer.Option(

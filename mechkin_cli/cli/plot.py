@@ -26,12 +26,16 @@ def plot(
     file: File,
     x: Annotated[
         str | None,
-        typer.Option("--x", metavar="NAME", help="What the curves stand against (the input)."),
+        typer.Option(
+            "--x",
+            metavar="NAME",
+            help="What the horizontal axis shows (default: the input or time).",
+        ),
     ] = None,
     y: Annotated[
         list[str] | None,
         typer.Option(
-            "--y", metavar="NAMES", help="What is drawn, with commas between; may be repeated."
+            "--y", metavar="NAMES", help="What is drawn, separated by commas; repeatable."
         ),
     ] = None,
     table: Annotated[
@@ -39,11 +43,14 @@ def plot(
         typer.Option("--table", metavar="NAME", help="Only this table; may be repeated."),
     ] = None,
     run: Annotated[
-        str | None, typer.Option("--run", metavar="NAME", help="Run that --y is of (the first).")
+        str | None,
+        typer.Option(
+            "--run", metavar="NAME", help="Run to draw: sweep, or a response (default: the first)."
+        ),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", metavar="PICTURE", help="A .svg, .png or .pdf file."),
+        typer.Option("-o", "--out", metavar="PICTURE", help="File to write: .svg, .png or .pdf."),
     ] = None,
     mode: Annotated[
         str | None, typer.Option("--mode", metavar="NAME", help="Assembly mode at the first row.")
@@ -51,11 +58,11 @@ def plot(
     set_: Set = None,
     quiet: Quiet = False,
 ) -> None:
-    """Draw the tables of a file, each as its `plot:` says, or what --y names.
+    """Draw curves, coupler curves and polar diagrams of a file.
 
-    Labels of columns, quantities or expressions stand over the run's parameter or over --x;
-    vectors are drawn in a plane: a point's position as its coupler curve, a force as its polar
-    diagram. Without -o the pictures are out/STEM/TABLE.svg. Needs matplotlib: the extra plot.
+    Without --y, one picture for each table, as its `plot:` says, in out/STEM/TABLE.svg. --y takes
+    labels of columns, quantities or expressions. Vectors are drawn in a plane: a point's position
+    as a coupler curve, a force as a polar diagram. Needs matplotlib: pip install 'mechkin[plot]'.
     """
     from mechkin_cli.expressions import ExpressionError
     from mechkin_cli.plots.figure import format_of, image

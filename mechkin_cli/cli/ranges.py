@@ -35,7 +35,7 @@ def ranges(
         typer.Option(
             "--input",
             metavar="NAME",
-            help="Input that moves (the first one swept).",
+            help="Input that moves (default: the first one swept).",
             autocompletion=input_names,
         ),
     ] = None,
@@ -44,14 +44,14 @@ def ranges(
         typer.Option(
             "--output",
             metavar="NAME",
-            help="Coordinate whose own dead centres are located, too; repeatable.",
+            help="Output whose own dead centres are located, too; repeatable.",
         ),
     ] = None,
     set_: Set = None,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Find from where to where an input can go in each mode.
+    """Find the range of an input in each assembly mode.
 
     Lists dead centres, branch points and full turns, and the circuits that the modes form.
     """

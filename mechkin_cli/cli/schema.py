@@ -29,7 +29,7 @@ def schema(
         typer.Option("--check", help="Compare with the files in schemas/ (or --out) instead."),
     ] = False,
     study: Annotated[
-        bool, typer.Option("--study", help="That of study files instead of mechanism files.")
+        bool, typer.Option("--study", help="Print the schema of study files instead.")
     ] = False,
 ) -> None:
     """Print the JSON Schema of mechanism files."""

@@ -20,7 +20,8 @@ Rows = Annotated[
     typer.Option("--rows", min=1, max=MOST_ROWS, help="--stress: rows in all, as 1e6."),
 ]
 Seed = Annotated[
-    int, typer.Option("--seed", min=0, max=MOST_SEED, help="--stress: other mechanisms.")
+    int,
+    typer.Option("--seed", min=0, max=MOST_SEED, help="--stress: seed of the random mechanisms."),
 ]
 Family = Annotated[
     str | None, typer.Option("--family", metavar="NAME", help="--stress: one family alone.")
@@ -39,9 +40,12 @@ Page = Annotated[
     Path | None, typer.Option("--page", metavar="FILE", help="--stress: also write a page.")
 ]
 Check = Annotated[
-    bool, typer.Option("--check", help="--stress: compare the page, and its small set run anew.")
+    bool,
+    typer.Option("--check", help="--stress: run the small set anew and compare it with the page."),
 ]
 Processes = Annotated[
     int,
-    typer.Option("--processes", min=0, max=MOST_PROCESSES, help="--stress: at once; 0: all cores."),
+    typer.Option(
+        "--processes", min=0, max=MOST_PROCESSES, help="--stress: processes at once; 0: all cores."
+    ),
 ]

@@ -29,7 +29,11 @@ def study(
     out: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--out", metavar="FOLDER", parser=folder, help="Folder to write (out/STUDY)."
+            "-o",
+            "--out",
+            metavar="FOLDER",
+            parser=folder,
+            help="Folder to write to (default: out/STUDY).",
         ),
     ] = None,
     set_: Set = None,
@@ -37,17 +41,21 @@ def study(
         str, typer.Option("--format", metavar="FORMAT", help="csv or parquet.")
     ] = "csv",
     again: Annotated[
-        bool, typer.Option("--again", help="Begin anew where the folder has results already.")
+        bool, typer.Option("--again", help="Discard the results in the folder and begin anew.")
     ] = False,
     threads: Annotated[
         int, typer.Option("--threads", help="Threads of each process (0: as many as pay).")
     ] = 0,
     processes: Annotated[
-        int, typer.Option("--processes", help="Compute in so many processes (0: in this one).")
+        int, typer.Option("--processes", help="Number of new processes (0: compute in this one).")
     ] = 0,
     scheduler: Annotated[
         str | None,
-        typer.Option("--scheduler", metavar="ADDRESS", help="Compute on a Dask cluster."),
+        typer.Option(
+            "--scheduler",
+            metavar="ADDRESS",
+            help="Compute on a Dask cluster at this address, as tcp://host:8786.",
+        ),
     ] = None,
     explain: Annotated[
         bool, typer.Option("--explain", help="Estimate time and size from a trial; write nothing.")
@@ -61,8 +69,8 @@ def study(
 ) -> None:
     """Run many variants of a mechanism and keep a few numbers of each.
 
-    Writes variants.csv, a line for each variant, into a folder. What was stopped goes on with the
-    same command.
+    Writes variants.csv, with a line for each variant, into a folder. A study that was stopped is
+    continued by the same command.
     """
     from mechkin_cli.interface.studies import Study, Workers
     from mechkin_cli.interface.study_source import open_study

@@ -45,11 +45,11 @@ def tables(
         ),
     ] = MECHANISMS,
     check: Annotated[
-        bool, typer.Option("--check", help="Compare with the tables on disk, write nothing.")
+        bool, typer.Option("--check", help="Compare with the tables on disk; write nothing.")
     ] = False,
     against: Annotated[
         bool,
-        typer.Option("--against", help="List printed cells that do not agree, write nothing."),
+        typer.Option("--against", help="List printed cells that do not agree; write nothing."),
     ] = False,
     messages: Messages = None,
     json: Json = False,
@@ -57,11 +57,10 @@ def tables(
 ) -> None:
     """Regenerate the tables kept beside mechanism files.
 
-    What mechkin wrote there for a table that the file has no more is removed; other files stay.
-    FOLDER/STEM.yaml has its tables in FOLDER/STEM/TABLE.csv and .md, and a small picture in
-    FOLDER/STEM/picture.svg; where tables name printed
-    values, FOLDER/STEM/errata.md compares them, and disagreements.csv has every printed cell that
-    does not agree. For a folder, FOLDER/README.md is an overview of
+    Writes the tables of FOLDER/STEM.yaml to FOLDER/STEM/TABLE.csv and .md, and a small picture to
+    FOLDER/STEM/picture.svg. If tables name printed values, FOLDER/STEM/errata.md compares them and
+    disagreements.csv lists every printed cell that does not agree. What mechkin wrote for a table
+    that the file no longer has is removed; other files stay. FOLDER/README.md is an overview of
     its mechanisms; a README.md of your own is left alone.
     """
     tell_as(messages)

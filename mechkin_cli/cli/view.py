@@ -22,7 +22,9 @@ def view(
     file: File,
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", metavar="PAGE", help="File to write (out/STEM/view.html)."),
+        typer.Option(
+            "-o", "--out", metavar="PAGE", help="File to write (default: out/STEM/view.html)."
+        ),
     ] = None,
     set_: Set = None,
     mode: Annotated[
@@ -30,13 +32,15 @@ def view(
     ] = None,
     run: Annotated[
         str | None,
-        typer.Option("--run", metavar="NAME", help="Only this run: sweep, or a response."),
+        typer.Option(
+            "--run", metavar="NAME", help="Show only this run: sweep, or the name of a response."
+        ),
     ] = None,
     no_modes: Annotated[
         bool, typer.Option("--no-modes", help="Leave out the other assembly modes.")
     ] = False,
     open_: Annotated[
-        bool, typer.Option("--open", help="Show the page in the browser, too.")
+        bool, typer.Option("--open", help="Also open the page in the browser.")
     ] = False,
     messages: Messages = None,
     quiet: Quiet = False,

@@ -50,8 +50,10 @@ def test_options_in_the_table_of_commands_exist(command: str) -> None:
 
 
 def test_every_option_of_analyze_is_described_and_exists() -> None:
-    (paragraph,) = re.findall(r"^`mechkin analyze` takes (.*?)\n\n", BY_HAND, re.M | re.DOTALL)
-    assert set(re.findall(r"`(--[a-z-]+)", paragraph)) == options()["analyze"]
+    (table,) = re.findall(
+        r"^The options of `mechkin analyze`:\n\n(.*?)\n\n", BY_HAND, re.M | re.DOTALL
+    )
+    assert set(re.findall(r"`(--[a-z-]+)", table)) == options()["analyze"]
 
 
 @pytest.mark.parametrize("name", ["README.md", *(f"docs/{x}.md" for x in ("commands", "verdicts"))])
@@ -64,6 +66,6 @@ def test_every_option_named_anywhere_exists(name: str) -> None:
 
 
 def test_exit_codes() -> None:
-    (sentence,) = re.findall(r"Exit codes: (.*?)\.", COMMANDS, re.DOTALL)
+    (sentence,) = re.findall(r"Exit codes:\*\* (.*?)\.", COMMANDS, re.DOTALL)
     codes = {int(code) for code in re.findall(r"\b\d+\b", sentence)}
     assert codes == {code for code in ExitCode if code != ExitCode.INTERRUPTED}
