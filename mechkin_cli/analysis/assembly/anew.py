@@ -48,7 +48,7 @@ class AnewSession(Session):
         super().__init__(problem, graph, closed_at=base.closed_at, packing=base.packing)
         del self.continued  # found below when it is asked for
         self.base, self.on_the_way = base, on_the_way
-        self.layout = Layout(problem.mechanism, self.graph, base.layout.length)
+        self.layout = _layout(self, base.layout.length)
 
     def derived(self, make: Callable[[Session], Problem]) -> Session:
         """As `Session.derived`, of the base and on the way, too."""
@@ -79,7 +79,7 @@ class AnewSession(Session):
                 between = self.on_the_way(place)
                 if structure_of(between.graph) != structure:
                     raise MechkinError("another structure on the way")
-                plans[place] = Layout(between.problem.mechanism, between.graph, unit).build()
+                plans[place] = _layout(between, unit).build()
             return plans[place]
 
         def at(place: float) -> tuple[Sequence[float], Sequence[float], Sequence[float]]:
@@ -91,6 +91,12 @@ class AnewSession(Session):
             return _at_the_end(Stepper.along(plan, at, True, limits), state)
         except MechkinError:
             return None  # what the file says does not hold somewhere on the way
+
+
+def _layout(session: Session, length: float) -> Layout:
+    """How its mechanism lies in the kernel, with a length unit (m)."""
+    problem = session.problem
+    return Layout(problem.laid_mechanism, session.graph, length, problem.laws)
 
 
 def _at_the_end(stepper: Stepper, state: Floats) -> Floats | None:
