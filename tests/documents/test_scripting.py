@@ -1,5 +1,5 @@
-"""Every script of the page on scripting runs and prints what the page says; the CI job commits the
-tables of a changed file, and nothing where nothing has changed."""
+"""Every script of the pages on scripting and on fits runs and prints what its page says; the CI job
+commits the tables of a changed file, and nothing where nothing has changed."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ from cli import files
 from documents.reading import ROOT, blocks, page
 
 PAGE = page("docs/scripting.md")
-SCRIPTS = re.findall(
+FITS = page("docs/fit_examples.md")
+WITH_OUTPUT = re.compile(
     r"^## ([^\n]*)\n(?:(?!^## ).)*?^```python\n(.*?)^```\n+```text\n(.*?)^```$",
-    PAGE,
     re.MULTILINE | re.DOTALL,
 )
+SCRIPTS = WITH_OUTPUT.findall(PAGE) + WITH_OUTPUT.findall(FITS)
 SECONDS = 300.0
 
 
@@ -27,8 +28,8 @@ def lines(text: str) -> list[str]:
 
 
 def test_every_script_has_its_output() -> None:
-    assert [code for _, code, _ in SCRIPTS] == blocks(PAGE, "python")
-    assert len(SCRIPTS) == 4
+    assert [code for _, code, _ in SCRIPTS] == blocks(PAGE, "python") + blocks(FITS, "python")
+    assert len(SCRIPTS) == 8
 
 
 @pytest.mark.parametrize(
