@@ -39,7 +39,7 @@ def _content(file: Path, most: int) -> bytes:
     except NotRegular:
         raise BadTable(0, 0, "is not a regular file", "name a CSV file") from None
     except FileNotFoundError:
-        hint = "the path leads from the folder of the mechanism file"
+        hint = "the path leads from the folder of the file that names it"
         raise BadTable(0, 0, "does not exist", hint) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)

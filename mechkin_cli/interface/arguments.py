@@ -40,7 +40,8 @@ def shown(value: object) -> str:
     return text if len(text) <= SHOWN else f"{text[: SHOWN - 4]} ..."
 
 
-def _refusal(name: str, wanted: str, value: object) -> UsageError:
+def refusal(name: str, wanted: str, value: object) -> UsageError:
+    """What an argument was expected to be, and what it is."""
     return UsageError(f"{name}: expected {wanted}, not {shown(value)} ({type(value).__name__})")
 
 
@@ -51,7 +52,7 @@ def a_text(name: str, value: object, example: str) -> str:
         UsageError: it is none.
     """
     if not isinstance(value, str):
-        raise _refusal(name, f"a text such as {example}", value)
+        raise refusal(name, f"a text such as {example}", value)
     return value
 
 
@@ -63,16 +64,16 @@ def texts(name: str, value: object, example: str) -> tuple[str, ...]:
     """
     wanted = f"a list of texts such as {example}"
     if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable):
-        raise _refusal(name, wanted, value)
+        raise refusal(name, wanted, value)
     try:
         found = tuple(islice(value, MOST_NAMES + 1))
     except TypeError:  # as a numpy array of no dimension
-        raise _refusal(name, wanted, value) from None
+        raise refusal(name, wanted, value) from None
     if len(found) > MOST_NAMES:
         raise UsageError(f"{name}: more than {MOST_NAMES} names; give a list of those that count")
     for i, item in enumerate(found):
         if not isinstance(item, str):
-            raise _refusal(f"{name}[{i}]", f"a text such as {example.strip('[]')}", item)
+            raise refusal(f"{name}[{i}]", f"a text such as {example.strip('[]')}", item)
     return found
 
 
@@ -86,23 +87,25 @@ def a_path(
     """
     given = os.fspath(value) if isinstance(value, os.PathLike) else value
     if not isinstance(given, str) or "\0" in given or not 0 < len(given) <= LONGEST_PATH:
-        raise _refusal(name, wanted, value)
+        raise refusal(name, wanted, value)
     return Path(given)
 
 
-def a_whole_number(name: str, value: object, meaning: str) -> int:
-    """A whole number from 0 on; `meaning` says what it stands for.
+def a_whole_number(name: str, value: object, meaning: str, least: int | None = None) -> int:
+    """A whole number from `least` on; `meaning` says what it stands for. Without `least` 0 leaves
+    the number to mechkin.
 
     Raises:
         UsageError: it is none.
     """
-    wanted = f"a whole number of {meaning}, 0 to leave it to mechkin"
+    which = "0 to leave it to mechkin" if least is None else f"{least} or more"
+    wanted = f"a whole number{' of ' * bool(meaning)}{meaning}, {which}"
     try:
         number = -1 if isinstance(value, bool) else operator.index(value)  # type: ignore[arg-type]
     except TypeError:
         number = -1
-    if number < 0:
-        raise _refusal(name, wanted, value)
+    if number < (least or 0):
+        raise refusal(name, wanted, value)
     return number
 
 
@@ -116,13 +119,13 @@ def a_setting(name: str, value: object) -> Setting:
         return value
     wanted = 'a number in the file\'s units or a text with a unit such as "0.5 in"'
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise _refusal(name, wanted, value)
+        raise refusal(name, wanted, value)
     try:
         number = float(value)
     except OverflowError:
         number = float("inf")
     if not isfinite(number):
-        raise _refusal(name, f"{wanted} that is finite", value)
+        raise refusal(name, f"{wanted} that is finite", value)
     return number
 
 
@@ -133,7 +136,7 @@ def settings(name: str, value: object, example: str) -> dict[str, Setting]:
         UsageError: it is no mapping of texts to values.
     """
     if not isinstance(value, Mapping):
-        raise _refusal(name, f"a mapping such as {example}", value)
+        raise refusal(name, f"a mapping such as {example}", value)
     return {
         a_text(f"a key of {name}", key, example.strip("{}").partition(":")[0]): a_setting(
             f"{name}[{shown(key)}]", item

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.fitting.measures import Measured
 from mechkin_cli.fitting.search import Progress, found
 from mechkin_cli.interface.arguments import a_whole_number
@@ -31,11 +30,9 @@ def fit_of(
     progress: Progress | None,
 ) -> Fit:
     """`Model.fit`, whose arguments these are."""
-    starts = a_whole_number("starts", starts, "local searches")
-    generations = a_whole_number("generations", generations, "differential evolution")
-    seed = a_whole_number("seed", seed, "the population's")
-    if starts == 0:
-        raise UsageError("starts: at least one local search is needed; write 1 or more")
+    starts = a_whole_number("starts", starts, "local searches", 1)
+    generations = a_whole_number("generations", generations, "generations", 0)
+    seed = a_whole_number("seed", seed, "", 0)
     models = FitModels(model)
     asked = request(model.problem, targets, parameters, constraints)
     values = FitValues(models, asked)

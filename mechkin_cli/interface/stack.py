@@ -17,7 +17,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.interface.arguments import a_setting, a_whole_number, settings
+from mechkin_cli.interface.arguments import a_setting, a_whole_number, refusal, shown
 from mechkin_cli.interface.given import one_value
 from mechkin_cli.interface.sensitivities import Sensitivities, chosen_parameters
 from mechkin_cli.listing import Listed, Listing
@@ -176,7 +176,13 @@ class Tolerances(Listed):
         return Sampled(mean, deviation, of_mean, error, lost)
 
     def quantile(self, quantity: str, part: float) -> Floats:
-        """The value below which a part of the samples lies, of those that have one."""
+        """The value below which a part of the samples lies, of those that have one.
+
+        Raises:
+            UsageError: `part` is not from 0 to 1.
+        """
+        if not 0.0 <= part <= 1.0:
+            raise UsageError(f"part: expected a number from 0 to 1, not {shown(part)}")
         values = self.drawn(quantity)
         found: Floats = np.full(values.shape[1], np.nan)
         some = np.isfinite(values).any(axis=0)
@@ -273,20 +279,25 @@ def stack(
 ) -> Tolerances:
     """`Model.tolerances`; arguments and errors are its."""
     if not isinstance(given, Mapping) or not given:
-        settings("tolerances", given or None, '{"P1": "0.01 in"}')
+        raise refusal("tolerances", 'a mapping such as {"P1": "0.01 in"}', given)
     names = chosen_parameters(model, list(given))
     if method not in METHODS:
         raise UsageError(f"method is one of {', '.join(METHODS)}, not {method}")
     if distribution not in DEVIATIONS:
         raise UsageError(f"distribution is one of {', '.join(DEVIATIONS)}, not {distribution}")
-    samples, seed = a_whole_number("samples", samples, "draws"), a_whole_number("seed", seed, "it")
-    if samples < 2:
-        raise UsageError(f"samples: a standard deviation needs at least 2 of them, not {samples}")
+    samples = a_whole_number("samples", samples, "draws", tolerances.FEWEST_SAMPLES)
+    seed = a_whole_number("seed", seed, "", 0)
     bands = {name: _band(model, name, given[name]) for name in names}
     known, units = model.problem.parameters, model.problem.units
     own = {n: float(units.from_si(float(known[n].value), known[n].dimension)) for n in names}  # type: ignore[arg-type]
     # set one by one: what has a tolerance of its own follows no other
     slopes = model.with_parameters(own).sensitivities(quantities, names, at)
+    numbers = samples * model.problem.motion.rows * len(slopes.texts)
+    if numbers > tolerances.MOST_SAMPLED:
+        raise UsageError(
+            f"samples: {samples} of them hold {numbers} numbers (limit {tolerances.MOST_SAMPLED}); "
+            "take fewer, or a study, which keeps them in files"
+        )
     return Tolerances(slopes, bands, own, samples, method, seed, distribution)
 
 

@@ -65,6 +65,7 @@ class _Reader:
                 lists[name] = self._range(name, form)
             else:
                 drawn[name] = self._distribution(name, form)
+            self._note_replaced(name, form)
         together = self.file.lists == "together"
         if together and len({len(values) for values in lists.values()}) > 1:
             words = ", ".join(f"{name} {len(values)}" for name, values in lists.items())
@@ -77,6 +78,15 @@ class _Reader:
             text = f"the study has {len(found)} variants, {counts} (limit {MOST_VARIANTS})"
             self.faults.error(TOO_MANY, ("vary",), text, "take fewer values, or draw them")
         return found
+
+    def _note_replaced(self, name: str, form: written.Variation) -> None:
+        """A value that is set is the own value of a parameter, about which only some forms vary."""
+        about_own = isinstance(form, written.Tolerance) or (
+            isinstance(form, written.Normal) and form.mean is None
+        )
+        if name in self.file.set and not about_own:
+            text = f"{name} is varied, so what set: gives it counts in no variant"
+            self.faults.note("replaced-value", ("set", name), text, "remove one of the two")
 
     def _value(self, name: str, text: str, *keys: str | int) -> float | None:
         path: KeyPath = ("vary", name, *keys)
@@ -124,10 +134,12 @@ class _Reader:
         limits = [value for value in found if value is not None]
         if len(limits) < len(texts):
             return _NOTHING
-        least, most = limits if len(limits) == 2 else (-abs(limits[0]), abs(limits[0]))
-        if not least < most:
-            text = f"there is nothing between {texts[0]} and {texts[-1]}"
-            hint = "write the smaller limit first" if len(texts) == 2 else "write a positive one"
+        least, most = limits if len(limits) == 2 else (-limits[0], limits[0])
+        if not least < most and len(texts) == 2:
+            text, hint = f"there is nothing between {texts[0]} and {texts[1]}", "write the smaller"
+            self.faults.error("bad-value", ("vary", name, key), text, f"{hint} limit first")
+        elif not least < most:
+            text, hint = f"the tolerance {texts[0]} is not larger than 0", "write a positive one"
             self.faults.error("bad-value", ("vary", name, key), text, hint)
         if isinstance(form, written.Uniform):
             return partial(uniform, least=least, most=most)

@@ -22,6 +22,13 @@ MOST_DRAWN: Final = 50_000_000
 """Numbers of a Latin hypercube, which is drawn whole: 0.4 GB, and as much again while it is
 drawn."""
 
+MOST_SAMPLED: Final = 100_000_000
+"""Numbers that the samples of tolerances may hold in memory: 0.8 GB, and as much again while they
+are put together."""
+
+FEWEST_SAMPLES: Final = 2
+"""Samples of tolerances: a standard deviation of one is none."""
+
 MOST_TABLE_TEXT: Final = 64 << 20
 """Bytes of a study's table of variants: it is held in memory, ten times as large."""
 

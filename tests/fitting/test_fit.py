@@ -143,3 +143,10 @@ TARGET = {"of": "C.theta", "at": [60], "is": [50]}
 def test_bad_questions_are_told_with_a_cure(targets: Any, parameters: Any, told: str) -> None:
     with pytest.raises(mk.UsageError, match=told):
         FOUR_BAR.fit(targets, parameters)
+
+
+@pytest.mark.parametrize("name", ["starts", "generations", "seed"])
+def test_numbers_of_searches_are_told_with_their_least(name: str) -> None:
+    given: Any = {name: -1}
+    with pytest.raises(mk.UsageError, match=rf"{name}: .*{int(name == 'starts')} or more, not -1"):
+        FOUR_BAR.fit(TARGET, {"a": (30, 50)}, **given)

@@ -88,11 +88,21 @@ def test_what_is_refused() -> None:
         ({"a": [1, 2, 3]}, {}, "one number, or two"),
         ({"a": 0.1}, {"method": "dice"}, "method is one of"),
         ({"a": 0.1}, {"distribution": "flat"}, "distribution is one of"),
-        ({"a": 0.1}, {"samples": 1}, "at least 2"),
+        ({"a": 0.1}, {"samples": 1}, "2 or more"),
+        ({"a": 0.1}, {"samples": -3}, "2 or more, not -3"),
+        ({"a": 0.1}, {"samples": 10**12}, r"limit 100000000.*a study"),
+        ({"a": 0.1}, {"seed": -1}, "a whole number, 0 or more, not -1"),
         ("a", {}, "a mapping"),
-        ({}, {}, "a mapping"),
+        ({}, {}, r"a mapping .*not \{\}"),
     ):
         with pytest.raises(mk.UsageError, match=words):
             model.tolerances(given, ["C.theta"], **more)
     with pytest.raises(mk.UsageError, match="is a vector"):
         model.tolerances({"a": 0.1}, ["pen.position"])
+
+
+@pytest.mark.parametrize("part", [-0.1, 2.0, float("nan")])
+def test_a_quantile_is_of_a_part(part: float) -> None:
+    drawn = mk.loads(TEXT).tolerances({"a": 0.1}, ["C.theta"], samples=4)
+    with pytest.raises(mk.UsageError, match="from 0 to 1"):
+        drawn.quantile("C.theta", part)

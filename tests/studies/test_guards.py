@@ -150,3 +150,20 @@ def test_a_signal_ends_processes_quietly(tmp_path: Path, name: str) -> None:
         "mechkin: interrupted; files written so far are whole, and the same command goes on with "
         "them\n"
     )
+
+
+def test_a_value_that_counts_nowhere_is_told(model: mk.Model, tmp_path: Path) -> None:
+    def notes(vary: object) -> list[str]:
+        study = {"set": {"P1": "0.5 in"}, "vary": {"P1": vary}, "keep": KEEP}
+        study |= {"sample": {"count": 2}} if isinstance(vary, dict) else {}
+        return [str(n) for n in model.study(study, tmp_path / repr(len(str(vary)))).diagnostics]
+
+    (told,) = notes([0.4, 0.6])
+    assert "P1 is varied, so what set: gives it counts in no variant" in told
+    assert not notes({"tolerance": "0.01 in"})  # about the value that is set
+
+
+def test_a_tolerance_is_positive(model: mk.Model, tmp_path: Path) -> None:
+    study = {"vary": {"P1": {"tolerance": "-0.01 in"}}, "sample": {"count": 2}, "keep": KEEP}
+    with pytest.raises(InvalidFile, match=r"the tolerance -0.01 in is not larger than 0"):
+        model.study(study, tmp_path / "out")
