@@ -9,7 +9,7 @@ from studies.studies import MECHANISMS
 
 import mechkin_cli as mk
 
-STARTS = 20 if int(os.environ.get("MECHKIN_RANDOM", "1")) > 1 else 3
+STARTS = 20 if int(os.environ.get("MECHKIN_RANDOM", "1")) > 1 else 2
 """Seeds of the nine points; MECHKIN_RANDOM=2 takes twenty."""
 
 FOUR_BAR = mk.load(MECHANISMS / "planar_four_bar.yaml")
@@ -38,13 +38,24 @@ def pen(degrees: list[float]) -> np.ndarray:
 NINE = pen([15, 45, 80, 120, 165, 210, 255, 300, 333])
 
 
+WIDE = {"a": (15, 80), "b": (60, 220), "c": (50, 200), "d": (60, 240)}
+
+
 @pytest.mark.parametrize("seed", range(STARTS))
-def test_nine_points_without_inputs_reach_the_known_linkage(seed: int) -> None:
-    points = NINE[np.random.default_rng(seed).permutation(9)]
-    f = FOUR_BAR.fit({"of": "pen.position", "is": points.tolist()}, BOUNDS, seed=seed)
+@pytest.mark.parametrize("bounds", [BOUNDS, WIDE], ids=["near", "wide"])
+def test_nine_points_are_reached_from_elsewhere(bounds: dict[str, Any], seed: int) -> None:
+    """From own values drawn within the bounds, and by the searches that do not begin there."""
+    random = np.random.default_rng(seed)
+    points = NINE[random.permutation(9)]
+    a, b, c, d = 1.0, 0.0, 0.0, 0.0
+    while a + max(b, c, d) >= 0.95 * (b + c + d - max(b, c, d)):  # so that the crank turns
+        a, b, c, d = (float(random.uniform(*pair)) for pair in bounds.values())
+    own = FOUR_BAR.with_parameters({"a": a, "b": b, "c": c, "d": d})
+    f = own.fit({"of": "pen.position", "is": points.tolist()}, bounds, seed=seed)
     assert f.status == "fitted"
-    assert np.allclose(list(f.parameters.values()), list(KNOWN.values()), rtol=0, atol=1e-7)
+    assert min(f.costs[1:]) < 1e-16
     assert f.targets[0].largest < 1e-8
+    assert np.allclose(list(f.parameters.values()), list(KNOWN.values()), rtol=0, atol=1e-7)
 
 
 def test_three_precision_points_are_freudensteins() -> None:
@@ -84,22 +95,6 @@ def test_a_binding_constraint_holds_and_is_told() -> None:
     )
     assert never.status == "violated"
     assert "C.theta reaches" in never.reason
-
-
-def test_scales_and_the_order_of_targets_do_not_matter() -> None:
-    points = NINE.tolist()
-    one = FOUR_BAR.fit({"of": "pen.position", "is": points}, BOUNDS, starts=1)
-    other = FOUR_BAR.fit(
-        [
-            {"of": "pen.position", "is": points[4:], "within": "0.01 mm"},
-            {"of": "pen.position", "is": points[:4], "within": "0.01 mm"},
-        ],
-        {name: (f"{low / 10} cm", f"{high / 10} cm") for name, (low, high) in BOUNDS.items()},
-        starts=1,
-    )
-    assert list(one.parameters) == list(other.parameters)
-    a, b = list(one.parameters.values()), list(other.parameters.values())
-    assert np.allclose(a, b, rtol=0, atol=1e-7)
 
 
 def test_what_does_not_assemble_is_told() -> None:
