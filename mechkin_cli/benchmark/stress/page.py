@@ -18,39 +18,53 @@ SECTION = re.compile(
 HEAD = """\
 # Hard mechanisms
 
-Written by `mechkin bench --stress --rows {rows} --seed {seed} --page docs/stress.md`; `--check`
-computes the small set again and compares the page. Families of random mechanisms, each hard in one
-way. Every row is decided in double-double arithmetic (about 31 digits) by code of which no line is
-the solver's: a closed form, or for loops that have none the closing equations, followed from the
-drawing. `mechkin bench --stress --family NAME --only K` writes mechanism K of a family as a file.
-Families share the rows evenly, but for loops that take long: spatial loops have a quarter of that,
-many loops a tenth; long sweeps come on top. Numbers depend on rows and seed alone, not on the
-machine.
+How often does mechkin give a wrong row, and how often none although there is one? This page
+answers with random mechanisms that are hard, each family in one way. In the table below, *false
+ok* is the number to look at first: wrong rows that call themselves right.
+
+Every row is judged in double-double arithmetic (about 31 digits) by code that shares no line
+with the solver: by a closed form, or, for loops that have none, by their closing equations,
+followed from the drawing. The page is written by `mechkin bench --stress --rows {rows} --seed
+{seed} --page docs/stress.md`; with `--check` the same command computes the small set at the end
+again and compares it. The numbers depend on rows and seed alone, not on the machine. To see a
+mechanism, `mechkin bench --stress --family NAME --only K` prints mechanism K of a family as a
+file. The families share the rows evenly, except that loops which take long get fewer (spatial
+loops a quarter, many loops a tenth) and that long sweeps come on top.
 
 {families}
 
-- *Right*: within {wrong} u k of the true place, u = 2^-53 and k the row's own condition, or to nine
-  digits (responses: within {tolerances} tolerances), and nearer to it than to the other assembly;
-  *warned*: the row says `near-singular` or `rank-unclear`.
-- *Rightly none*: the branch has ended before, and the row is empty and says so.
-- *Undecided*: rounding of the file's numbers, 64 units in the last place, decides whether there is
-  a row.
-- *As drawn*: a fault of the next kinds in a run whose notes say (`nearly-common`, `conventional`,
-  `undriven-freedom`, `input-locked`) that axes or points which differ by less than 1e-7, or loops
-  that are dependent but for 1e-6, are taken for coinciding (`COMMON_MOTION`, `LOOP_RANK`): numbers
-  of nine digits leave that much. The row is one of such a mechanism. A documented limit.
-- *Rates lost*: the place is right and says ok, a rate is off by more than {wrong} u k^2, an
-  acceleration or a force by more than {wrong} u k^3, and by more than 1e-9 of the row's largest. A
-  rod that is short beside the mechanism has its direction to u over its length only, which
-  `row.condition`, a measure of places, does not see. A documented limit.
-- *Proven*: rows are proven by `--certify`, too, and enclosures of places, rates, accelerations and
-  forces must contain what is true of the numbers that the file says. *Not proven*: there is a row,
-  of which nothing is claimed. *Elsewhere*: an enclosure that is proven, and does not contain it.
-  Every row of most families; one mechanism of some where the way between two rows is many turns,
-  which take up to 25 000 tubes; none of responses, of which there are no proofs.
-- *Wrong, warned*: another place, with a warning. *False alarm*: there is a row, and it stays empty,
-  with a status that says why. Known: change points 47 of seed 7 is `branch-lost` after 23 rows.
-  *False ok*: a wrong place, or one that cannot be, that says ok.
+What can become of a row (u = 2^-53, the rounding of a double; k is the row's own condition):
+
+- *Right*: the place is within {wrong} u k of the true one, or right to nine digits (responses:
+  within {tolerances} tolerances), and it is nearer to the true assembly than to the other.
+  *Right, warned*: right as well, but the row says `near-singular` or `rank-unclear`.
+- *Rightly none*: the branch has ended before this row, and the row is empty and says so.
+- *Undecided*: rounding the file's numbers (by up to 64 units in the last place) decides whether
+  there is a row at all.
+- *As drawn*: one of the faults below, in a run whose notes (`nearly-common`, `conventional`,
+  `undriven-freedom`, `input-locked`) say that axes or points less than 1e-7 apart, or loops that
+  are dependent to 1e-6, are taken for coinciding (`COMMON_MOTION`, `LOOP_RANK`), because numbers
+  of nine digits cannot say more. The row is that of a mechanism in which they coincide. A
+  documented limit.
+- *Rates lost*: the place is right and says ok, but a rate is off by more than {wrong} u k^2, or
+  an acceleration or a force by more than {wrong} u k^3, and by more than 1e-9 of the row's
+  largest. The direction of a rod that is short compared with the mechanism is known only to u
+  over its length, and `row.condition`, a measure of places, does not show that. A documented
+  limit.
+- *Wrong, warned*: a wrong place, with a warning.
+- *False alarm*: the row exists but stays empty, with a status that says why. Known: change
+  points 47 of seed 7 is `branch-lost` after 23 rows.
+- *False ok*: a wrong place, or one that cannot exist, that says ok.
+
+And what [`--certify`](verdicts.md#proofs) makes of the same rows; enclosures of places, rates,
+accelerations and forces must contain the true values of the numbers that the file says:
+
+- *Proven*, or *proven to closure*: as on the page of verdicts. *Not proven*: the row exists, and
+  nothing is claimed of it. *Proven elsewhere*: an enclosure that is proven and does not contain
+  the true value.
+- Of most families every row is tried; of some, in which the mechanism makes many turns between
+  two rows and needs up to 25 000 tubes, one mechanism in so many; of responses none, since there
+  are no proofs of them.
 """
 
 
