@@ -35,11 +35,11 @@ class FitModels:
         model: whose dimensions are sought.
 
     Raises:
-        UsageError: it has no sweep, or no input moves.
+        UsageError: it has nothing that runs.
     """
 
     def __init__(self, model: Model) -> None:
-        if SWEEP not in model.runs:
+        if SWEEP in model.runs and not model.problem.motion.inputs:
             raise UsageError(f"{model.name} has no sweep to fit; give it motion: with an input")
         self.model = model
         self._listed: dict[tuple[float, ...], Model] = {}

@@ -8,20 +8,25 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
-from mechkin_cli.expressions import Vector
-from mechkin_cli.interface.arguments import a_setting, shown
-from mechkin_cli.interface.given import one_value, parameter_values
-from mechkin_cli.interface.settings import input_values
-from mechkin_cli.interface.variant_runs import sample_of
-from mechkin_cli.interface.variants import expressions_of
-from mechkin_cli.nearest import nearest_hint
+from mechkin_cli.interface.arguments import shown
+from mechkin_cli.interface.fit_terms import (
+    input_of,
+    moment_of,
+    points_of,
+    quantity_of,
+    run_of,
+    several,
+    value_of,
+)
+from mechkin_cli.interface.given import parameter_values
+from mechkin_cli.runs import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.mechanism.problem import Problem
 
-TARGET_KEYS = ("of", "is", "at", "least", "within", "label")
-CONSTRAINT_KEYS = ("of", "min", "max", "label")
+TARGET_KEYS = ("of", "run", "is", "at", "least", "within", "label")
+CONSTRAINT_KEYS = ("of", "run", "min", "max", "label")
 LEAST = ("peak", "rms")
 """What of a quantity can be made small."""
 
@@ -44,11 +49,13 @@ class Target(NamedTuple):
     Attributes:
         of: a quantity or an expression.
         wanted: (points, width) in the file's units; none where it is to be `least`.
-        at: inputs of the points in the file's units; None: where the curve comes nearest.
+        at: inputs of the points, or moments of a response, in the file's units; None: where the
+            curve comes nearest.
         least: "peak" or "rms"; "" where values are wanted.
         within: what counts as one, in the file's units.
         unit: of the quantity.
         width: 1, or the components of a vector.
+        run: the sweep, or a response.
     """
 
     of: str
@@ -59,16 +66,18 @@ class Target(NamedTuple):
     label: str
     unit: str
     width: int
+    run: str
 
 
 class Constraint(NamedTuple):
-    """Bounds of an expression in every row of the sweep, in the file's units."""
+    """Bounds of an expression in every row of a run, in the file's units."""
 
     of: str
     lower: float
     upper: float
     label: str
     unit: str
+    run: str
 
     @property
     def bounds(self) -> list[tuple[float, float]]:
@@ -93,14 +102,14 @@ def request(problem: Problem, targets: Any, parameters: Any, constraints: Any) -
     """
     found = tuple(
         _target(problem, f"targets[{k}]", one)
-        for k, one in enumerate(_several("targets", targets, EXAMPLE))
+        for k, one in enumerate(several("targets", targets, EXAMPLE))
     )
     if not found:
         raise UsageError(f"targets: there is none; give one such as {EXAMPLE}")
     example = '{"of": "C.theta", "min": "40 deg"}'
     held = tuple(
         _constraint(problem, f"constraints[{k}]", one)
-        for k, one in enumerate(_several("constraints", constraints, example))
+        for k, one in enumerate(several("constraints", constraints, example))
     )
     units = {target.unit for target, _ in found}
     for number, (target, has_scale) in enumerate(found):
@@ -143,7 +152,8 @@ def _bounds(problem: Problem, parameters: Any) -> tuple[Bounds, ...]:
 
 def _target(problem: Problem, place: str, given: Any) -> tuple[Target, bool]:
     """A target, and whether it says what counts as one."""
-    of, unit, width = _quantity(problem, place, given, TARGET_KEYS, EXAMPLE)
+    run, problem = run_of(problem, place, given)
+    of, unit, width = quantity_of(problem, place, given, TARGET_KEYS, EXAMPLE)
     if ("is" in given) == ("least" in given):
         raise UsageError(
             f"{place}: say either what {of[:LONGEST_NAME]} should be (is:) or that it should be "
@@ -159,106 +169,42 @@ def _target(problem: Problem, place: str, given: Any) -> tuple[Target, bool]:
             raise UsageError(f"{place}: {of} is a vector; write norm({of})")
         wanted = np.zeros((0, width))
     else:
-        wanted = _points(problem, place, of, given["is"], width)
+        wanted = points_of(problem, place, of, given["is"], width)
         if "at" in given:
             items = given["at"]
             items = items if isinstance(items, Iterable) and not isinstance(items, str) else [items]
-            at = tuple(_input(problem, f"{place}: at", item) for item in items)
+            read = input_of if run == SWEEP else moment_of
+            at = tuple(read(problem, f"{place}: at", item) for item in items)
             if len(at) != len(wanted):
                 raise UsageError(
                     f"{place}: {len(wanted)} values and {len(at)} inputs; each needs one"
                 )
+        elif run != SWEEP:
+            raise UsageError(f"{place}: say at which moments of {run}, at: [...]")
         elif width == 1:
             raise UsageError(
                 f"{place}: a number is met somewhere by most curves; say at which inputs, at: [...]"
             )
     within = 1.0
     if "within" in given:
-        within = _value(problem, f"{place}: within", of, given["within"])
+        within = value_of(problem, f"{place}: within", of, given["within"])
         if not within > 0.0:
             raise UsageError(f"{place}: within is {within:g}; write a deviation above zero")
     label = str(given.get("label", of if not least else f"{least}({of})"))
-    return Target(of, wanted, at, least, within, label, unit, width), "within" in given
+    return Target(of, wanted, at, least, within, label, unit, width, run), "within" in given
 
 
 def _constraint(problem: Problem, place: str, given: Any) -> Constraint:
     example = '{"of": "norm(A.force)", "max": "50 N"}'
-    of, unit, width = _quantity(problem, place, given, CONSTRAINT_KEYS, example)
+    run, problem = run_of(problem, place, given)
+    of, unit, width = quantity_of(problem, place, given, CONSTRAINT_KEYS, example)
     if width > 1:
         raise UsageError(f"{place}: {of} is a vector; bound a component or norm({of})")
     if "min" not in given and "max" not in given:
         raise UsageError(f"{place}: add min: or max:, as {example}")
     ends = {"min": -np.inf, "max": np.inf}
     for key in ends.keys() & given.keys():
-        ends[key] = _value(problem, f"{place}: {key}", of, given[key])
+        ends[key] = value_of(problem, f"{place}: {key}", of, given[key])
     if ends["min"] > ends["max"]:
         raise UsageError(f"{place}: min is above max; exchange them")
-    return Constraint(of, ends["min"], ends["max"], str(given.get("label", of)), unit)
-
-
-def _quantity(
-    problem: Problem, place: str, given: Any, keys: Sequence[str], example: str
-) -> tuple[str, str, int]:
-    """Text, unit and width of what a target or a constraint is of."""
-    if not isinstance(given, Mapping) or not isinstance(given.get("of"), str):
-        raise UsageError(f"{place}: expected a dict such as {example}, not {shown(given)}")
-    for key in given:
-        if key not in keys:
-            hint = nearest_hint(str(key), list(keys)) or f"keys are {', '.join(keys)}"
-            raise UsageError(f"{place}: there is no key {str(key)[:LONGEST_NAME]}; {hint}")
-    of = given["of"]
-    try:
-        expression = expressions_of([of], problem)[of]
-    except UsageError as error:
-        raise UsageError(f"{place}: {error}") from None
-    found = expression.evaluate(sample_of(problem), problem.units)
-    width = len(found.value.components) if isinstance(found.value, Vector) else 1
-    return of, problem.units.label(found.dimension), width
-
-
-def _value(problem: Problem, place: str, of: str, value: Any) -> float:
-    """A value with the dimension of an expression, in the file's units."""
-    expression = expressions_of([of], problem)[of]
-    dimension = expression.evaluate(sample_of(problem), problem.units).dimension
-    in_si = one_value(place, a_setting(place, value), dimension, problem.units)
-    return float(problem.units.from_si(in_si, dimension))
-
-
-def _points(problem: Problem, place: str, of: str, given: Any, width: int) -> Floats:
-    """(points, width) in the file's units."""
-    wrong = UsageError(
-        f"{place}: is should be a list of "
-        + ("values" if width == 1 else f"points of {width} numbers")
-        + f", not {shown(given)}"
-    )
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        given = [given]
-    rows = []
-    for point in given:
-        parts = [point] if width == 1 else point
-        if isinstance(parts, str) or not isinstance(parts, Iterable):
-            raise wrong
-        parts = list(parts)
-        if len(parts) != width:
-            raise wrong
-        component = of if width == 1 else f"dot({of}, {of})/norm({of})"
-        rows.append([_value(problem, f"{place}: is", component, part) for part in parts])
-    if not rows:
-        raise wrong
-    return np.array(rows)
-
-
-def _input(problem: Problem, place: str, value: Any) -> float:
-    """A value of the input that moves, in the file's units."""
-    try:
-        return next(iter(input_values(problem, a_setting(place, value)).values()))
-    except UsageError as error:
-        raise UsageError(f"{place}: {error}") from None
-
-
-def _several(name: str, given: Any, example: str) -> list[Any]:
-    if isinstance(given, Mapping):
-        return [given]
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        raise UsageError(f"{name}: expected a list of dicts such as {example}, not {shown(given)}")
-    return list(given)
+    return Constraint(of, ends["min"], ends["max"], str(given.get("label", of)), unit, run)

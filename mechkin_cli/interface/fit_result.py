@@ -11,6 +11,8 @@ from mechkin_cli.fitting.nearest_place import nearest_places
 from mechkin_cli.interface.fit_request import Constraint, Target
 from mechkin_cli.interface.fit_values import SOLVED, FitValues, deviations, margins_of
 from mechkin_cli.listing import Listed, Listing
+from mechkin_cli.mechanism.response import response_problem
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.tolerances import FIT_AT_BOUND, FIT_HELD
 
 if TYPE_CHECKING:
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from mechkin_cli.fitting.search import Found
     from mechkin_cli.interface.analysis import Analysis
     from mechkin_cli.interface.model import Model
+    from mechkin_cli.mechanism.problem import Problem
 
 FITTED = "fitted"
 NOT_CONVERGED = "not-converged"
@@ -83,6 +86,7 @@ class Fit(Listed):
         self, values: FitValues, best: Found, measured: Measured, why: dict[str, str]
     ) -> None:
         self._values, self._best = values, best
+        self._kept: dict[str, Analysis] = {}
         request = values.request
         found = values.values(best.unknowns[:, None])
         self.parameters = {name: float(value[0]) for name, value in found.items()}
@@ -100,8 +104,9 @@ class Fit(Listed):
 
     @cached_property
     def rows_not_ok(self) -> int:
-        """Rows of the sweep without a solution."""
-        return int((~SOLVED[self._sweep.result.status]).sum())
+        """Rows of the sweep, and of responses that were asked for, without a solution."""
+        runs = [self._rows(run) for run in self._values.runs]
+        return sum(int((~SOLVED[one.result.status]).sum()) for one in runs)
 
     @cached_property
     def at_bounds(self) -> dict[str, str]:
@@ -127,11 +132,13 @@ class Fit(Listed):
         """Why that is the status, in a sentence."""
         status = self.status
         if status == NOT_ASSEMBLED:
-            rows = self._sweep.rows
+            runs = self._values.runs
+            rows = sum(self._rows(run).rows for run in runs)
+            told = " and ".join("the sweep" if run == SWEEP else run for run in runs)
             return (
                 f"no variant that was tried has a solution everywhere; the best misses "
-                f"{self.rows_not_ok} of {rows} rows of the sweep; widen the bounds, shorten the "
-                "sweep, or take more generations"
+                f"{self.rows_not_ok} of {rows} rows of {told}; widen the bounds, shorten the "
+                "way, or take more generations"
             )
         if status == VIOLATED:
             worst = next(one for one in self.constraints if not one.holds)
@@ -186,27 +193,40 @@ class Fit(Listed):
         )
         return Listing(head, ("what", "value", "unit", ""), tuple(rows), notes)
 
-    @cached_property
-    def _sweep(self) -> Analysis:
-        texts = self._values.sweep_texts
-        return self.model.analyze(_names(self.model, texts), tables=[])
+    def _rows(self, run: str) -> Analysis:
+        """The rows of a run of the mechanism that was found; kept."""
+        if run not in self._kept:
+            texts = self._values.texts(run)
+            if run == SWEEP:
+                found = self.model.analyze(_names(self.model.problem, texts), tables=[])
+            else:
+                known = response_problem(self.model.problem, self.model.response(run))
+                found = self.model.respond(run, _names(known, texts), tables=[])
+            self._kept[run] = found
+        return self._kept[run]
 
     def _met(self, target: Target) -> Met:
         none = np.zeros(0)
         if target.least:
-            values = self._sweep[target.of]
+            values = self._rows(target.run)[target.of]
             if target.least == "peak":
                 size = np.array([[np.nanmax(np.abs(values), initial=0.0)]])
             else:
-                parts = values.reshape(len(values), -1) * self._values.weights[:, None]
+                weights = self._values.weights[target.run]
+                parts = values.reshape(len(values), -1) * weights[:, None]
                 size = np.array([[np.sqrt(np.nansum(np.square(parts)))]])
             return Met(target.label, target.unit, none, size, size)
+        if target.run != SWEEP:
+            told = self._rows(target.run)[target.of][self._values.rows_of(target)]
+            values = told.reshape(-1, target.width)
+            away = deviations(target, values[None])[0].reshape(values.shape) * target.within
+            return Met(target.label, target.unit, np.array(target.at), values, away)
         inputs = np.array(target.at) if target.at is not None else self._nearest(target)
         # each by itself from the first row, in the order in which they are passed
         order = np.argsort(inputs if self._values.models.ends[1] >= inputs.min() else -inputs)
         listed = self._values.models.listed(tuple(inputs[order].tolist()))
         found = listed.with_parameters(self.parameters).analyze(
-            _names(listed, [target.of]), tables=[]
+            _names(listed.problem, [target.of]), tables=[]
         )
         values = np.empty((len(inputs), target.width))
         values[order] = found[target.of][1:].reshape(-1, target.width)
@@ -224,7 +244,7 @@ class Fit(Listed):
         return found
 
     def _held(self, constraint: Constraint) -> list[Held]:
-        values = self._sweep[constraint.of]
+        values = self._rows(constraint.run)[constraint.of]
         found = []
         all_margins = margins_of(constraint, values)
         for (bound, _), margins in zip(constraint.bounds, all_margins, strict=True):
@@ -247,12 +267,12 @@ def _slopes_told(measured: Measured, why: dict[str, str]) -> str:
     return f"{some}, which have no sensitivity ({told})"
 
 
-def _names(model: Model, texts: list[str]) -> list[str]:
+def _names(problem: Problem, texts: list[str]) -> list[str]:
     """Quantities that expressions read."""
-    known = model.problem.quantities()
+    known = problem.quantities()
     names = []
     for text in texts:
-        for name in sorted(model.problem.definitions.parse(text).names):
+        for name in sorted(problem.definitions.parse(text).names):
             if name in known:
                 names.append(name)
             elif name.rpartition(".")[0] in known:

@@ -9,6 +9,7 @@ import numpy as np
 
 from mechkin_cli.diagnostics import MechkinError
 from mechkin_cli.fitting.nearest_place import nearest_slopes
+from mechkin_cli.runs import SWEEP
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,12 +40,16 @@ class FitSlopes:
         models, request = values.models, values.request
         self.why = {}
         named = {name: float(one[0]) for name, one in values.values(unknowns[:, None]).items()}
-        sweep = self._slopes(models.model, named, values.sweep_texts)
+        rows = {
+            run: self._slopes(models.model, named, values.texts(run), run) for run in values.runs
+        }
         parts = [
-            _weighted(sweep[target.of] / target.within, values.weights)
-            for target in values.least
-            if target.least == "rms"
+            _weighted(rows[one.run][one.of] / one.within, values.weights[one.run])
+            for one in values.least
+            if one.least == "rms"
         ]
+        for one in values.at_moments:
+            parts.append(rows[one.run][one.of][:, values.rows_of(one)] / one.within)
         if values.at_inputs:
             listed = models.listed(values.listed_inputs)
             found = self._slopes(listed, named, [one.of for one in values.at_inputs])
@@ -52,13 +57,15 @@ class FitSlopes:
                 parts.append(found[target.of][:, values.rows_of(target)] / target.within)
         if values.anywhere:
             parts += self._anywhere(named, values.anywhere)
-        parts += [sweep[one.of] / one.within for one in values.least if one.least == "peak"]
+        peaks = [one for one in values.least if one.least == "peak"]
+        parts += [rows[one.run][one.of] / one.within for one in peaks]
         for constraint in request.constraints:
             for bound, sign in constraint.bounds:
-                parts.append(sign * sweep[constraint.of] / (abs(bound) or 1.0))
-        rows = np.concatenate([part.reshape(len(unknowns), -1) for part in parts], axis=1)
-        slopes: Floats = (rows * values.width[:, None]).T
-        return slopes
+                slopes = rows[constraint.run][constraint.of]
+                parts.append(sign * slopes / (abs(bound) or 1.0))
+        stacked = np.concatenate([part.reshape(len(unknowns), -1) for part in parts], axis=1)
+        found_all: Floats = (stacked * values.width[:, None]).T
+        return found_all
 
     def _anywhere(self, named: dict[str, float], targets: Sequence[Target]) -> list[Floats]:
         """Of nearest places, each (parameters, points, width)."""
@@ -71,7 +78,9 @@ class FitSlopes:
             for one in targets
         ]
 
-    def _slopes(self, model: Model, named: dict[str, float], texts: list[str]) -> dict[str, Floats]:
+    def _slopes(
+        self, model: Model, named: dict[str, float], texts: list[str], run: str = SWEEP
+    ) -> dict[str, Floats]:
         """Of expressions over the rows of a run, (parameters, rows) or (parameters, rows, width),
         in the file's units."""
         texts = list(dict.fromkeys(texts))
@@ -79,11 +88,12 @@ class FitSlopes:
             return {}
         names = self._values.names
         try:
-            found = model.with_parameters(named).sensitivities(texts, names)
+            found = model.with_parameters(named).sensitivities(texts, names, run=run)
         except MechkinError as error:
             self.why |= dict.fromkeys(texts, str(error))
-            run = model.vary({name: np.array([value]) for name, value in named.items()}, texts)
-            return {t: np.full((len(names), *run[t].shape[1:]), np.nan) for t in texts}
+            single = {name: np.array([value]) for name, value in named.items()}
+            shapes = model.vary(single, texts, run=run)
+            return {t: np.full((len(names), *shapes[t].shape[1:]), np.nan) for t in texts}
         for text in texts:
             self._note(found, text)
         return {text: np.stack([found[text, name] for name in names]) for text in texts}

@@ -12,6 +12,7 @@ from mechkin_cli.interface.fit_models import FitModels
 from mechkin_cli.interface.fit_request import Constraint, Request, Target
 from mechkin_cli.interface.way import way_of
 from mechkin_cli.reductions import row_weights
+from mechkin_cli.runs import SWEEP
 from mechkin_cli.status import Status
 
 if TYPE_CHECKING:
@@ -30,21 +31,25 @@ class FitValues:
         self.width = np.array([one.upper for one in request.parameters]) - self.lower
         self.names = [one.name for one in request.parameters]
         targets = request.targets
-        self.at_inputs = [one for one in targets if one.at is not None]
+        self.at_inputs = [one for one in targets if one.at is not None and one.run == SWEEP]
+        self.at_moments = [one for one in targets if one.at is not None and one.run != SWEEP]
         self.anywhere = [one for one in targets if one.at is None and not one.least]
         self.least = [one for one in targets if one.least]
-        self.weights = rms_weights(models.model)
+        swept = [SWEEP] if SWEEP in models.model.runs else []
+        asked = [one.run for one in targets] + [one.run for one in request.constraints]
+        self.runs = tuple(dict.fromkeys([*swept, *asked]))
+        self.weights = {run: rms_weights(models.model, run) for run in self.runs}
         # rows in the order of the inputs, so that each is followed from its neighbour
         begin, end = models.ends if self.at_inputs else (0.0, 0.0)
         inputs = sorted({v for one in self.at_inputs for v in one.at or ()}, reverse=end < begin)
         self.listed_inputs = tuple(inputs)
         self._row = {value: number + 1 for number, value in enumerate(inputs)}
 
-    @property
-    def sweep_texts(self) -> list[str]:
-        """What is read of the sweep."""
-        texts = [one.of for one in self.least]
-        return texts + [one.of for one in self.request.constraints]
+    def texts(self, run: str) -> list[str]:
+        """What is read of the rows of a run."""
+        read = [(one.run, one.of) for one in (*self.least, *self.at_moments)]
+        read += [(one.run, one.of) for one in self.request.constraints]
+        return [of for asked, of in read if asked == run]
 
     def values(self, unknowns: Floats) -> dict[str, Floats]:
         """Parameters (S,) by name, in the file's units."""
@@ -52,8 +57,12 @@ class FitValues:
         return dict(zip(self.names, found, strict=True))
 
     def rows_of(self, target: Target) -> list[int]:
-        """The rows among the listed inputs at which a target stands."""
-        return [self._row[value] for value in target.at or ()]
+        """The rows among the listed inputs, or of a response, at which a target stands."""
+        if target.run == SWEEP:
+            return [self._row[value] for value in target.at or ()]
+        response = self.models.model.problem.responses[target.run]
+        moments = response.moments.written.tolist()
+        return [moments.index(value) for value in target.at or ()]
 
     def measure(self, unknowns: Floats) -> Measures:
         """Of a population (unknowns, S)."""
@@ -61,16 +70,24 @@ class FitValues:
         residuals: list[Floats] = []
         peaks: list[Floats] = []
         margins: list[Floats] = []
-        sweep, missing = self._run(self.models.model, values, self.sweep_texts)
+        missing = np.zeros(count)
+        rows: dict[str, dict[str, Floats]] = {}
+        for run in self.runs:
+            rows[run], lost = self._run(self.models.model, values, self.texts(run), run)
+            missing = missing + lost
         for target in self.least:
-            scaled = sweep[target.of] / target.within
+            scaled = rows[target.run][target.of] / target.within
             if target.least == "peak":
                 peaks.append(scaled)
             else:
-                parts = scaled.reshape(count, len(self.weights), -1) * self.weights[:, None]
+                weights = self.weights[target.run]
+                parts = scaled.reshape(count, len(weights), -1) * weights[:, None]
                 residuals.append(parts.reshape(count, -1))
         for constraint in self.request.constraints:
-            margins += margins_of(constraint, sweep[constraint.of])
+            margins += margins_of(constraint, rows[constraint.run][constraint.of])
+        for target in self.at_moments:
+            told = rows[target.run][target.of][:, self.rows_of(target)]
+            residuals.append(deviations(target, told))
         if self.at_inputs:
             listed = self.models.listed(self.listed_inputs)
             found, lost = self._run(listed, values, [one.of for one in self.at_inputs])
@@ -86,15 +103,15 @@ class FitValues:
         return Measures(_beside(residuals, count), tuple(peaks), _beside(margins, count), missing)
 
     def _run(
-        self, model: Model, values: dict[str, Floats], texts: list[str]
+        self, model: Model, values: dict[str, Floats], texts: list[str], run: str = SWEEP
     ) -> tuple[dict[str, Floats], Floats]:
         """Expressions over the rows, and the part of rows or values that are missing (S,)."""
         asked = list(dict.fromkeys(texts)) or [model.problem.motion.inputs[0].name]
-        run = model.vary(values, asked)
-        lost = ~SOLVED[run.codes]
+        variants = model.vary(values, asked, run=run)
+        lost = ~SOLVED[variants.codes]
         found = {}
         for text in asked:
-            value = run[text]
+            value = variants[text]
             empty = ~np.isfinite(value)
             lost = lost | (empty.any(axis=2) if value.ndim == 3 else empty)
             found[text] = np.where(empty, 0.0, value)
@@ -114,8 +131,11 @@ def margins_of(constraint: Constraint, values: Floats) -> list[Floats]:
     return [sign * (values - bound) / (abs(bound) or 1.0) for bound, sign in constraint.bounds]
 
 
-def rms_weights(model: Model) -> Floats:
+def rms_weights(model: Model, run: str) -> Floats:
     """Roots of what each row counts for in a mean over the way (rows,)."""
+    if run != SWEEP:
+        weights = row_weights(model.problem.responses[run].moments.written)
+        return np.asarray(np.sqrt(weights / weights.sum()), dtype=np.float64)
     way = way_of(model.problem)
     at = np.zeros(model.problem.motion.rows) if way is None else way.values
     weights = row_weights(np.asarray(at, dtype=np.float64))

@@ -31,12 +31,14 @@ class Fitted:
         The file's sweep is the range over which the mechanism has to assemble, in its mode.
 
         Args:
-            targets: a quantity or expression (`of`) and what it should be (`is`, values or points)
+            targets: a quantity or expression (`of`; `run`: of a response) and what it should be
+                (`is`, values or points)
                 at inputs (`at`; a curve without it passes its points wherever it comes nearest), or
                 what of it should be `least`, "peak" or "rms" over the sweep's rows; `within` is the
                 deviation that counts as one, 1 of the file's unit where nothing is said.
             parameters: the least and the largest value by name, as in `with_parameters`.
-            constraints: an expression (`of`) and its `min` or `max` in every row of the sweep.
+            constraints: an expression (`of`) and its `min` or `max` in every row of the sweep, or
+                of the response that `run` names.
             starts: local searches, the first from the model's own values, the others from the best
                 of a population; 1: no population.
             generations: of differential evolution before that.
