@@ -9,15 +9,15 @@ r = m.analyze()                        an Analysis: the sweep; m.respond("NAME")
 Of a model
     m.analyze()  m.respond()           the runs
     m.modes()                          the ways to assemble it
-    m.ranges()                         from where to where an input can go: dead centres, circuits
+    m.ranges()                         how far an input can go: dead centres, circuits
     m.mobility()                       what can move
     m.solve({"O1.theta": 161.5})       one position
     m.with_parameters({"P1": 0.48})    the model with other values
     m.vary({"P1": [0.46, 0.48]})       many variants at once
-    m.study("study.yaml", out="lengths")   a hundred thousand of them, drawn or crossed, on disk
+    m.study("study.yaml", out="lengths")   a hundred thousand of them, written to disk
     m.sensitivities(["O4.theta"])      what a change of a parameter does to any quantity
-    m.tolerances({"P1": 0.01}, [...])  what tolerances stack up to, and samples beside
-    m.fit({"of": "pen.position", "is": points}, {"a": (30, 50)})   dimensions that do what is wanted
+    m.tolerances({"P1": 0.01}, [...])  what tolerances add up to, with samples
+    m.fit({"of": "pen.position", "is": points}, {"a": (30, 50)})   dimensions that fit
     m.certify()                        proofs of the sweep's rows
     m.view()                           a page that shows it in motion
 
@@ -29,11 +29,12 @@ Of an analysis
     r.summary()  r.peak("O1.effort")   extremes with their places, means
     r.plot()  r.picture()              curves, drawn or as plain data
     r.errors  r.certificate            true errors of all cells; proofs
-    r.diagnostics  r.complete          what the run has to say; whether every row is solved
+    r.diagnostics  r.complete          messages of the run; whether every row is solved
 
-Errors are a MechkinError: an InvalidFile with one Diagnostic per fault and its place, a UsageError
-for a call that cannot be, an ExpressionError for a quantity that is none. Status has the verdicts
-of rows. `help(mk.Model)` and `help(mk.Analysis)` tell all.
+Every exception is a MechkinError: InvalidFile has one Diagnostic per fault with its place,
+UsageError is raised for a name or an argument that is wrong, ExpressionError for a quantity
+that does not exist. Status has the verdicts of rows. `help(mk.Model)` and `help(mk.Analysis)` list
+all methods.
 """
 
 from __future__ import annotations

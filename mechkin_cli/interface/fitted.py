@@ -49,7 +49,7 @@ class Fitted:
             Parameters, deviations, constraints, and a model; `status` says whether all holds.
 
         Raises:
-            UsageError: scipy is not installed (extra `fit`), an unknown name, a value that is none.
+            UsageError: scipy is not installed (extra `fit`), an unknown name, an invalid value.
 
         Example:
             >>> from mechkin_cli import load

@@ -25,7 +25,7 @@ def parameter_values(problem: Problem, given: Mapping[str, Any]) -> dict[str, fl
     """One value of each parameter, in SI and in the file's order.
 
     Raises:
-        UsageError: no mapping, an unknown parameter, or a value that is none.
+        UsageError: no mapping, an unknown parameter, or an invalid value.
     """
     values = settings("parameters", given, '{"P1": "0.6 in"}')
     return {

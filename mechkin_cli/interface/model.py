@@ -39,7 +39,10 @@ if TYPE_CHECKING:
 
 
 class Model(Kept, Certified, Fitted, Studied, Toleranced, Viewed):
-    """A checked mechanism file."""
+    """A checked mechanism file, as `mk.load` and `mk.loads` return it.
+
+    `analyze` runs its sweep, `respond` its responses; `modes`, `ranges` and `mobility` tell how it
+    can be assembled and moved. Values are in the file's units throughout."""
 
     def __init__(self, built: Built, stem: str) -> None:
         self.built = built
@@ -146,12 +149,17 @@ class Model(Kept, Certified, Fitted, Studied, Toleranced, Viewed):
         """Runs the sweep.
 
         Args:
-            quantities: names to compute beside what the tables read; None: nothing beside them.
+            quantities: names to compute besides those that the tables read; None: no others.
             tables: names of the tables wanted; None: all, [] none.
             mode: assembly mode at the first row instead of the file's choice.
             closed_at: closing joints to use (the answers do not depend on them).
-            lanes, threads: width of packs, how many split the rows; 0: the most (nor on these).
-            errors: measure the true error of every cell now (else when `errors` is first read).
+            lanes: rows computed side by side, 2, 4 or 8; 0: the most the machine can.
+            threads: how many split the rows; 0: all cores. Answers depend on neither.
+            errors: measure the true error of every cell now, not when `errors` is first read.
+
+        Returns:
+            The run: `r["O4.theta"]` is an array (rows,), a vector (rows, 3), or (rows, 2) in a
+            plane; nan where a row has no value, and `r["row.status"]` says why.
 
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
@@ -211,7 +219,7 @@ class Model(Kept, Certified, Fitted, Studied, Toleranced, Viewed):
                 units, a text carries its own.
 
         Raises:
-            UsageError: an unknown parameter, or a value that is none.
+            UsageError: an unknown parameter, or an invalid value.
             InvalidFile: what the file says does not hold for these values.
 
         Example:
@@ -253,7 +261,7 @@ class Model(Kept, Certified, Fitted, Studied, Toleranced, Viewed):
             threads: how many threads split the variants, 0 for as many as pay.
 
         Raises:
-            UsageError: unknown names, values that are none, lengths that differ, a width that the
+            UsageError: unknown names, invalid values, lengths that differ, a width that the
                 machine lacks.
 
         Example:
@@ -298,7 +306,7 @@ class Model(Kept, Certified, Fitted, Studied, Toleranced, Viewed):
             before.
 
         Raises:
-            UsageError: an unknown input or quantity, or a value that is none.
+            UsageError: an unknown input or quantity, or an invalid value.
 
         Example:
             >>> from mechkin_cli import load
@@ -346,7 +354,7 @@ class Model(Kept, Certified, Fitted, Studied, Toleranced, Viewed):
 
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
-            UsageError: an unknown input or run, or a value that is none.
+            UsageError: an unknown input or run, or an invalid value.
 
         Example:
             >>> from mechkin_cli import load
@@ -365,6 +373,9 @@ class Model(Kept, Certified, Fitted, Studied, Toleranced, Viewed):
         Args:
             input: its name; None: the first that the file sweeps. Others stay as in the first row.
             outputs: coordinates whose dead centres (extremes) are wanted, too.
+
+        Returns:
+            A range for each mode, with what ends it, dead centres and circuits.
 
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.

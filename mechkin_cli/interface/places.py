@@ -37,7 +37,7 @@ class Along:
         """Numbers of the rows at some places, from 0; None: of all.
 
         Raises:
-            UsageError: a value that is none, or at which no row stands.
+            UsageError: an invalid value, or one at which there is no row.
         """
         if at is None:
             return np.arange(self.values.size)

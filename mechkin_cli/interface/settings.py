@@ -28,7 +28,7 @@ def input_values(problem: Problem, at: Setting | Mapping[str, Setting]) -> dict[
     """Inputs by name in the file's units; a bare value is for the first input that is swept.
 
     Raises:
-        UsageError: an unknown input, or a value that is none.
+        UsageError: an unknown input, or an invalid value.
     """
     inputs = {item.name: item for item in problem.motion.inputs}
     if not isinstance(at, Mapping):

@@ -116,7 +116,7 @@ class Toleranced:
                 as standard deviation, which nothing cuts off.
 
         Raises:
-            UsageError: unknown names, values that are none, empty bands, a vector.
+            UsageError: unknown names, invalid values, empty bands, a vector.
             ExpressionError: no such quantity, or dimensions that do not fit.
             InvalidFile: the mechanism cannot be solved as it is driven.
 

@@ -91,7 +91,7 @@ def undriven(
         "undriven-freedom",
         "error",
         f"{count} not driven; candidates: {listed(names)}",
-        measured=f"{missing} more unknowns than closing equations",
+        measured=f"{missing} more unknown{'s' * (missing > 1)} than closing equations",
         hint="add inputs under motion",
     )
     around = tuple(joint.name for joint in joints)
