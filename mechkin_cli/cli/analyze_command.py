@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from mechkin_cli.cli.analyze import FORMATS, analyze_files
-from mechkin_cli.cli.completion import format_names, table_names
+from mechkin_cli.cli.completion import format_names, mode_names, table_names
 from mechkin_cli.cli.options import Files, Json, Messages, Quiet, Set, folder
 
 
@@ -34,7 +34,13 @@ def analyze(
     ] = False,
     set_: Set = None,
     mode: Annotated[
-        str | None, typer.Option("--mode", metavar="NAME", help="Assembly mode at the first row.")
+        str | None,
+        typer.Option(
+            "--mode",
+            metavar="NAME",
+            help="Assembly mode at the first row.",
+            autocompletion=mode_names,
+        ),
     ] = None,
     table: Annotated[
         list[str] | None,

@@ -1,12 +1,13 @@
 """What shells offer while a command line is typed: files, and the names that the file holds.
 
-A file is only read, never solved, and one that cannot be read offers nothing: assembly modes, which
-must be searched for, are not among what is offered.
+A file is only read, and one that cannot be read offers nothing. Assembly modes alone are searched
+for, in a process that is given two seconds.
 """
 
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -16,8 +17,32 @@ import typer
 Offers = list[str]
 
 
+MODES_TIME = 2.0
+"""Seconds in which assembly modes are searched for."""
+
+HEAD = 65536
+"""Characters of a file that tell whether it is a study."""
+
+
 def mechanism_files(incomplete: str) -> Offers:
     """Mechanism files, and the folders on the way to them."""
+    return _yaml_files(incomplete)
+
+
+def study_files(incomplete: str) -> Offers:
+    """Study files, and the folders on the way to them."""
+    return [path for path in _yaml_files(incomplete) if path.endswith("/") or _is_study(path)]
+
+
+def _is_study(path: str) -> bool:
+    try:
+        with open(path, encoding="utf-8", errors="replace") as stream:
+            return re.search(r"^study\s*:", stream.read(HEAD), re.MULTILINE) is not None
+    except (OSError, ValueError):
+        return False
+
+
+def _yaml_files(incomplete: str) -> Offers:
     folder, _, start = incomplete.rpartition("/")
     above = f"{folder}/" if "/" in incomplete else ""
     try:
@@ -41,9 +66,49 @@ def table_names(ctx: typer.Context, incomplete: str) -> Offers:
     return _beginning(names, incomplete)
 
 
-def run_names(ctx: typer.Context, incomplete: str) -> Offers:
+def response_names(ctx: typer.Context, incomplete: str) -> Offers:
     """Responses of the file."""
     return _beginning(_keys(ctx, "responses"), incomplete)
+
+
+def run_names(ctx: typer.Context, incomplete: str) -> Offers:
+    """The sweep of the file, where it has one, and its responses."""
+    from mechkin_cli.runs import SWEEP
+
+    sweep = [SWEEP] if any("motion" in data for data in _files(ctx)) else []
+    return _beginning([*sweep, *_keys(ctx, "responses")], incomplete)
+
+
+def mode_names(ctx: typer.Context, incomplete: str) -> Offers:
+    """Assembly modes of the file's first row, or of the start of the run on the line."""
+    import json
+    import subprocess
+    import sys
+
+    paths = _paths(ctx)
+    settings = [word for text in ctx.params.get("set_") or () for word in ("--set", text)]
+    run = ctx.params.get("run")
+    at = ["--run", run] if run in _keys(ctx, "responses") else []
+    if len(paths) != 1 or str(paths[0]) == "-":
+        return []
+    # the shell's words for completion would make the process complete, too
+    own = {name: text for name, text in os.environ.items() if name != "_MECHKIN_COMPLETE"}
+    command = [sys.executable, "-P", "-m", "mechkin_cli", "modes", str(paths[0]), "--json"]
+    try:
+        done = subprocess.run(
+            [*command, *settings, *at], capture_output=True, timeout=MODES_TIME, env=own, check=True
+        )
+        modes = json.loads(done.stdout).get("modes", [])
+    except (subprocess.SubprocessError, OSError, ValueError):
+        return []
+    return _beginning([mode.get("name") for mode in _mappings(modes)], incomplete)
+
+
+def study_format_names(incomplete: str) -> Offers:
+    """Formats of a study's results."""
+    from mechkin_cli.studies.formats import FORMATS
+
+    return _beginning(FORMATS, incomplete)
 
 
 def input_names(ctx: typer.Context, incomplete: str) -> Offers:
@@ -59,7 +124,8 @@ def input_names(ctx: typer.Context, incomplete: str) -> Offers:
 
 
 def parameter_names(ctx: typer.Context, incomplete: str) -> Offers:
-    """Parameters of the files, each with the sign behind which its value stands."""
+    """Parameters of the files, or of a study's mechanism, each with the sign behind which its value
+    stands."""
     return _beginning([f"{name}=" for name in _keys(ctx, "parameters")], incomplete)
 
 
@@ -82,15 +148,23 @@ def _files(ctx: typer.Context) -> list[Mapping[str, Any]]:
     from mechkin_cli.diagnostics import MechkinError
     from mechkin_cli.reading.document import read_document
 
+    found: list[Mapping[str, Any]] = []
+    for path in _paths(ctx):
+        try:
+            data = read_document(path).data
+            if "study" in data and isinstance(mechanism := data.get("mechanism"), str):
+                data = read_document(path.parent / mechanism).data
+        except (MechkinError, ValueError):
+            continue
+        found.append(data)
+    return found
+
+
+def _paths(ctx: typer.Context) -> list[Path]:
+    """The files on the line."""
     # behind an option that still lacks its value, files are words that nothing has taken yet
     given = ctx.params.get("files") or ctx.params.get("file") or ctx.args
-    found: list[Mapping[str, Any]] = []
-    for path in [given] if isinstance(given, str | Path) else given:
-        try:
-            found.append(read_document(path).data)
-        except MechkinError:
-            continue
-    return found
+    return [Path(path) for path in ([given] if isinstance(given, str | Path) else given)]
 
 
 def _keys(ctx: typer.Context, section: str) -> list[str]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mechkin_cli.cli.answer import Question, answer
-from mechkin_cli.cli.completion import run_names
+from mechkin_cli.cli.completion import response_names
 from mechkin_cli.cli.messages import Record, put, say
 from mechkin_cli.cli.options import File, Json, Quiet, Set
 from mechkin_cli.diagnostics import UsageError
@@ -35,7 +35,7 @@ def modes(
             "--run",
             metavar="NAME",
             help="Take the modes at the start of this response.",
-            autocompletion=run_names,
+            autocompletion=response_names,
         ),
     ] = None,
     certify: Annotated[

@@ -7,16 +7,22 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mechkin_cli.cli.completion import mode_names, run_names, table_names
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.given_file import model_of, shown, stem_of
 from mechkin_cli.cli.messages import put, refusal, say_diagnostics
 from mechkin_cli.cli.options import File, Quiet, Set
 from mechkin_cli.cli.parameters import parameters
+from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.runs import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.interface import Analysis, Model
+    from mechkin_cli.plots.picture import Picture
+
+    Drawn = tuple[Analysis, str | None]
+    """A run, and the table of it that is drawn; None: what is named."""
 
 ENDING = "svg"
 """Format of pictures whose file is not named."""
@@ -40,12 +46,20 @@ def plot(
     ] = None,
     table: Annotated[
         list[str] | None,
-        typer.Option("--table", metavar="NAME", help="Only this table; may be repeated."),
+        typer.Option(
+            "--table",
+            metavar="NAME",
+            help="Only this table; may be repeated.",
+            autocompletion=table_names,
+        ),
     ] = None,
     run: Annotated[
         str | None,
         typer.Option(
-            "--run", metavar="NAME", help="Run to draw: sweep, or a response (default: the first)."
+            "--run",
+            metavar="NAME",
+            help="Run to draw: sweep, or a response (default: the first).",
+            autocompletion=run_names,
         ),
     ] = None,
     out: Annotated[
@@ -53,7 +67,13 @@ def plot(
         typer.Option("-o", "--out", metavar="PICTURE", help="File to write: .svg, .png or .pdf."),
     ] = None,
     mode: Annotated[
-        str | None, typer.Option("--mode", metavar="NAME", help="Assembly mode at the first row.")
+        str | None,
+        typer.Option(
+            "--mode",
+            metavar="NAME",
+            help="Assembly mode at the first row.",
+            autocompletion=mode_names,
+        ),
     ] = None,
     set_: Set = None,
     quiet: Quiet = False,
@@ -64,7 +84,6 @@ def plot(
     labels of columns, quantities or expressions. Vectors are drawn in a plane: a point's position
     as a coupler curve, a force as a polar diagram. Needs matplotlib: pip install 'mechkin[plot]'.
     """
-    from mechkin_cli.expressions import ExpressionError
     from mechkin_cli.plots.figure import format_of, image
 
     ending = ENDING if out is None else format_of(out)
@@ -72,20 +91,20 @@ def plot(
     if names and table:
         raise UsageError("--y names what is drawn, --table too; leave one of them out")
     try:
-        model = model_of(file, parameters(set_))
-        analyses = _tables(model, table, run, mode) if not names else {}
-        if names:
-            analyses[stem_of(file)] = _run(model, run, mode), None
-        if out is not None and len(analyses) > 1:
-            tables = ", ".join(analyses)
-            raise UsageError(f"-o is one picture; choose one of {tables} with --table")
-        files = {}
-        for name, (analysis, own) in analyses.items():
-            try:
-                picture = analysis.picture(tuple(names), x, own)
-            except ExpressionError as error:
-                raise UsageError(str(error)) from error
-            files[f"{name}.{ending}" if out is None else out.name] = image(picture, ending)
+        with working(f"{shown(file)}: reading", quiet) as tell:
+            model = model_of(file, parameters(set_))
+            tell(f"{shown(file)}: rows")
+            analyses = _tables(model, table, run, mode) if not names else {}
+            if names:
+                analyses[stem_of(file)] = _run(model, run, mode), None
+            if out is not None and len(analyses) > 1:
+                tables = ", ".join(analyses)
+                raise UsageError(f"-o is one picture; choose one of {tables} with --table")
+            files = {}
+            for name, drawn in analyses.items():
+                tell(f"{shown(file)}: picture of {name}")
+                picture = _picture(drawn, names, x)
+                files[f"{name}.{ending}" if out is None else out.name] = image(picture, ending)
     except (InvalidFile, UsageError) as error:
         code, _ = refusal(file, error)
         raise typer.Exit(code) from error
@@ -95,6 +114,17 @@ def plot(
     say_diagnostics(tuple(said), shown(file))
     if not all(analysis.complete for analysis in found):
         raise typer.Exit(ExitCode.ROWS_MISSING)
+
+
+def _picture(drawn: Drawn, names: list[str], x: str | None) -> Picture:
+    """The picture of a run: of what is named, or of its table."""
+    from mechkin_cli.expressions import ExpressionError
+
+    analysis, table = drawn
+    try:
+        return analysis.picture(tuple(names), x, table)
+    except ExpressionError as error:
+        raise UsageError(str(error)) from error
 
 
 def listed(text: str) -> list[str]:
@@ -123,7 +153,7 @@ def _run(model: Model, run: str | None, mode: str | None) -> Analysis:
 
 def _tables(
     model: Model, names: list[str] | None, run: str | None, mode: str | None
-) -> dict[str, tuple[Analysis, str | None]]:
+) -> dict[str, Drawn]:
     """The tables that are drawn, by name, with their runs."""
     from mechkin_cli.cli.runs import run_all
 

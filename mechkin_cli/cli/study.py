@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from mechkin_cli.cli.completion import study_files, study_format_names
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.interrupts import then
 from mechkin_cli.cli.messages import Record, put, put_json, refusal, say, say_diagnostics, tell_as
@@ -25,7 +26,10 @@ SHOWN_VARIANTS = 6
 
 
 def study(
-    file: Annotated[Path, typer.Argument(help="Study file (YAML).", metavar="STUDY")],
+    file: Annotated[
+        Path,
+        typer.Argument(help="Study file (YAML).", metavar="STUDY", autocompletion=study_files),
+    ],
     out: Annotated[
         Path | None,
         typer.Option(
@@ -38,7 +42,13 @@ def study(
     ] = None,
     set_: Set = None,
     format_: Annotated[
-        str, typer.Option("--format", metavar="FORMAT", help="csv or parquet.")
+        str,
+        typer.Option(
+            "--format",
+            metavar="FORMAT",
+            help="csv or parquet.",
+            autocompletion=study_format_names,
+        ),
     ] = "csv",
     again: Annotated[
         bool, typer.Option("--again", help="Discard the results in the folder and begin anew.")

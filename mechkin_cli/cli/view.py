@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mechkin_cli.cli.completion import mode_names, run_names
 from mechkin_cli.cli.exit_codes import ExitCode
 from mechkin_cli.cli.given_file import model_of, shown, stem_of
 from mechkin_cli.cli.messages import put, refusal, say, say_diagnostics, tell_as
 from mechkin_cli.cli.options import File, Messages, Quiet, Set
 from mechkin_cli.cli.parameters import parameters
+from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
@@ -28,12 +30,21 @@ def view(
     ] = None,
     set_: Set = None,
     mode: Annotated[
-        str | None, typer.Option("--mode", metavar="NAME", help="Assembly mode at the first row.")
+        str | None,
+        typer.Option(
+            "--mode",
+            metavar="NAME",
+            help="Assembly mode at the first row.",
+            autocompletion=mode_names,
+        ),
     ] = None,
     run: Annotated[
         str | None,
         typer.Option(
-            "--run", metavar="NAME", help="Show only this run: sweep, or the name of a response."
+            "--run",
+            metavar="NAME",
+            help="Show only this run: sweep, or the name of a response.",
+            autocompletion=run_names,
         ),
     ] = None,
     no_modes: Annotated[
@@ -55,9 +66,12 @@ def view(
 
     tell_as(messages)
     try:
-        model = model_of(file, parameters(set_))
-        analyses = analyses_of(model, run, mode)
-        page, notes = view_page(analyses, not no_modes)
+        with working(f"{shown(file)}: reading", quiet) as tell:
+            model = model_of(file, parameters(set_))
+            tell(f"{shown(file)}: rows")
+            analyses = analyses_of(model, run, mode)
+            tell(f"{shown(file)}: the page")
+            page, notes = view_page(analyses, not no_modes)
         target = write_view(out or Path("out", stem_of(file), NAME), page)
     except (InvalidFile, UsageError) as error:
         raise typer.Exit(refusal(file, error)[0]) from None

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from cli import files
 
+FOUR_BAR = Path(__file__).parents[2] / "mechanisms" / "planar_four_bar.yaml"
 RESPONSE = "responses: {swing: {start: {O.theta: 0}, time: {from: 0, to: 1, step: 0.5}}}\n"
 
 
@@ -19,6 +20,8 @@ def filled(tmp_path: Path) -> Path:
     (tmp_path / "crank.csv").write_text("a\n")
     (tmp_path / "craned").mkdir()
     (tmp_path / "craned" / "x.yml").write_text("format: [1\n")
+    study = "study: 1\nmechanism: crank.yaml\nvary: {r: [30 mm]}\nkeep: [{of: O.theta, as: max}]\n"
+    (tmp_path / "craned" / "many.yaml").write_text(study)
     return tmp_path
 
 
@@ -48,7 +51,14 @@ def offered(folder: Path, line: str) -> list[str]:
     [
         ("mechkin an", ["analyze"]),
         ("mechkin analyze cr", ["craned/", "crank.yaml"]),
-        ("mechkin analyze craned/", ["craned/x.yml"]),
+        ("mechkin analyze craned/", ["craned/many.yaml", "craned/x.yml"]),
+        ("mechkin study cr", ["craned/"]),
+        ("mechkin study craned/", ["craned/many.yaml"]),
+        ("mechkin study craned/many.yaml --format ", ["csv", "parquet"]),
+        ("mechkin view crank.yaml --run ", ["sweep", "swing"]),
+        ("mechkin plot crank.yaml --run s", ["sweep", "swing"]),
+        ("mechkin plot crank.yaml --table t", ["tip"]),
+        ("mechkin view craned/x.yml --mode ", []),
         ("mechkin analyze crank.yaml --table ", ["tip", "drive"]),
         ("mechkin analyze crank.yaml --table d", ["drive"]),
         ("mechkin analyze crank.yaml --format ", ["csv", "md", "json", "tex"]),
@@ -64,6 +74,19 @@ def offered(folder: Path, line: str) -> list[str]:
 )
 def test_offers(filled: Path, line: str, expected: list[str]) -> None:
     assert offered(filled, line) == expected
+
+
+@pytest.mark.parametrize("command", ["analyze", "view", "plot"])
+def test_assembly_modes_are_searched_for(filled: Path, command: str) -> None:
+    """A four-bar has two."""
+    (filled / "four_bar.yaml").write_bytes(FOUR_BAR.read_bytes())
+    assert offered(filled, f"mechkin {command} four_bar.yaml --mode ") == ["A", "B"]
+    assert offered(filled, f"mechkin {command} four_bar.yaml --mode B") == ["B"]
+
+
+def test_a_study_offers_the_parameters_of_its_mechanism(filled: Path) -> None:
+    (filled / "many.yaml").write_text("study: 1\nmechanism: crank.yaml\n")
+    assert offered(filled, "mechkin study many.yaml --set ") == ["r="]
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

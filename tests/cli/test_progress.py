@@ -8,8 +8,10 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
+from cli import files
 
 HIDE, SHOW = b"\x1b[?25l", b"\x1b[?25h"
 WORK = """
@@ -26,12 +28,14 @@ with working("searching [bold]x[/bold]", quiet=sys.argv[2:] == ["quiet"]) as tel
 """
 
 
-def on_terminal(*words: str, stop_after: float | None = None, **settings: str) -> tuple[int, bytes]:
+def on_terminal(
+    *words: str, stop_after: float | None = None, work: str = WORK, **settings: str
+) -> tuple[int, bytes]:
     """Exit code, and what a terminal of 80 columns gets on stderr."""
     master, slave = pty.openpty()
     environment = os.environ | {"TERM": "xterm", "COLUMNS": "80"} | settings
     process = subprocess.Popen(
-        [sys.executable, "-P", "-c", WORK, *words], stderr=slave, env=environment
+        [sys.executable, "-P", "-c", work, *words], stderr=slave, env=environment
     )
     os.close(slave)
     if stop_after is not None:
@@ -87,3 +91,32 @@ def test_an_interrupt_brings_the_line_and_the_cursor_back() -> None:
     assert text.endswith(
         b"\x1b[2K\x1b[?25hmechkin: interrupted; files written so far are whole\r\n"
     )
+
+
+COMMAND = """
+import sys
+from mechkin_cli.cli import progress
+progress.AFTER = 0.0
+from mechkin_cli.cli.app import app
+app(sys.argv[1:])
+"""
+ENDING = {"view": "html", "plot": "svg"}
+
+
+@pytest.mark.parametrize("command", ["view", "plot"])
+def test_pages_and_pictures_say_what_they_are_at(tmp_path: Path, command: str) -> None:
+    pytest.importorskip("matplotlib")
+    (tmp_path / "crank.yaml").write_text(files.CRANK + files.TABLES)
+    words = [command, str(tmp_path / "crank.yaml"), "-o", str(tmp_path / f"out.{ENDING[command]}")]
+    if command == "plot":
+        words += ["--table", "tip"]
+    code, text = on_terminal(*words, work=COMMAND, COLUMNS="200")
+    assert code == 0, text
+    assert b"crank.yaml: " in text
+    assert text.rindex(SHOW) > text.rindex(HIDE)
+    code, text = on_terminal(*words, "--quiet", work=COMMAND)
+    assert (code, text) == (0, b"")
+    piped = subprocess.run(
+        [sys.executable, "-P", "-c", COMMAND, *words], capture_output=True, timeout=60, check=True
+    )
+    assert b"\x1b" not in piped.stderr + piped.stdout

@@ -72,6 +72,9 @@ class Browser:
     def select(self, selector: str, label: str) -> None:
         self._ask("select", selector=selector, label=label)
 
+    def resize(self, width: int, height: int) -> None:
+        self._ask("resize", width=width, height=height)
+
     def shot(self, path: Path, selector: str | None = None) -> None:
         self._ask("shot", path=str(path), selector=selector)
 

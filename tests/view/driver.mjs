@@ -35,6 +35,7 @@ const does = {
   tap: ({ selector }) => page.locator(selector).first().tap().then(settle),
   fill: ({ selector, value }) => page.locator(selector).first().fill(String(value)),
   select: ({ selector, label }) => page.locator(selector).first().selectOption({ label }),
+  resize: ({ width, height }) => page.setViewportSize({ width, height }).then(settle),
   async shot({ path, selector }) { await (selector ? page.locator(selector).first() : page).screenshot({ path }); },
   async media({ media, scheme }) {
     await page.emulateMedia({ media, colorScheme: scheme });

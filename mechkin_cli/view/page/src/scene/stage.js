@@ -161,6 +161,7 @@ export class Stage {
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     if (first) this.whenSized?.();
+    else this.whenResized?.();
     this.draw();
   }
 

@@ -28,6 +28,9 @@ export class Theatre {
     this.noPose = host.querySelector("#no-pose");
     this.stage.afterDraw = () => this.#name();
     this.stage.whenSized = () => this.home();
+    // until somebody turns or moves it, the view fits the stage, however large that becomes
+    this.stage.whenResized = () => this.fitted && this.lookFrom(this.fitted);
+    this.stage.controls.addEventListener("start", () => (this.fitted = null));
     state.watch((changes) => this.#change(changes));
   }
 
@@ -166,6 +169,7 @@ export class Theatre {
 
   /** Looks along one of the ground axes, or another direction. */
   lookFrom(direction) {
+    this.fitted = direction;
     const room = 2.6 * this.unit;
     const back = direction instanceof Array ? vector(direction) : direction;
     const compared = this.ghosts.flatMap(({ branch }) => placesOf(this.data, branch));
