@@ -1,5 +1,10 @@
 """One number for many rows; rows without a value do not count.
 
+A value may be infinite: what grows without bound towards a row at a dead centre. Extremes count it,
+and are infinite at its place. Means do not: whether the integral up to there is finite (a rate,
+which goes as one over the root of what is left of the way) or not (its square), one row cannot
+tell, so the way ends at the last row beside it, as it does where there is no value.
+
 Sums are added row by row, in order: their bits do not depend on the machine.
 """
 
@@ -35,13 +40,14 @@ def peak(values: Floats) -> Floats:
 
 
 def span(values: Floats) -> Floats:
-    """The difference of the largest and the smallest value."""
-    return largest(values) - smallest(values)
+    """The difference of the largest and the smallest value; none between infinite ones."""
+    with np.errstate(invalid="ignore"):
+        return largest(values) - smallest(values)
 
 
 def mean(values: Floats, at: Floats | None = None) -> Floats:
     """The mean over the way, by the trapezoidal rule over the stretches between neighbouring rows
-    that both have a value, divided by their length.
+    that both have a finite value, divided by their length; nan where no row has one.
 
     A row without a neighbour has no way and does not count beside those that have. Where no
     stretch has a length every row counts the same.
@@ -58,7 +64,7 @@ def mean(values: Floats, at: Floats | None = None) -> Floats:
 def root_mean_square(values: Floats, at: Floats | None = None) -> Floats:
     """The root of the mean of the squares, as `mean`."""
     # a power of two in front keeps squares from running over, and changes no bit
-    _, exponent = np.frexp(peak(values))
+    _, exponent = np.frexp(peak(np.where(np.isfinite(values), values, np.nan)))
     scaled = np.ldexp(values, -exponent[:, None])
     total, count = _sum(scaled * scaled, None if at is None else _ways(values, at))
     return np.ldexp(np.sqrt(total / count), exponent)
@@ -73,8 +79,8 @@ def row_weights(at: Floats) -> Floats:
 
 def _ways(values: Floats, at: Floats) -> Floats:
     """What rows count for, (rows,) or (variants, rows): half of each stretch at whose other end
-    there is a value, too."""
-    there = ~np.isnan(values)
+    there is a finite value, too."""
+    there = np.isfinite(values)
     if at.ndim == 2 and bool((at == at[:1]).all()):
         at = at[0]
     if at.ndim == 1 and there.all():
@@ -94,16 +100,13 @@ def _halves(stretches: Floats) -> Floats:
 
 
 def _sum(values: Floats, weights: Floats | None) -> tuple[Floats, Floats]:
-    """Weighted sum and weight of the values that are there; nan where there is none."""
-    there = ~np.isnan(values)
+    """Weighted sum and weight of the finite values; nan where there is none."""
+    there = np.isfinite(values)
     if weights is None:
         total = _in_order(np.where(there, values, 0.0))
         count = np.count_nonzero(there, axis=1).astype(np.float64)
     else:
-        # what counts for nothing may be infinite
-        total = _in_order(
-            np.multiply(values, weights, out=np.zeros(values.shape), where=there & (weights > 0.0))
-        )
+        total = _in_order(np.multiply(values, weights, out=np.zeros(values.shape), where=there))
         count = _in_order(np.where(there, weights, 0.0))
     return total, np.where(count == 0.0, np.nan, count)
 

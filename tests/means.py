@@ -4,18 +4,18 @@ import numpy as np
 
 
 def mean_over_the_way(values: np.ndarray, at: np.ndarray) -> float:
-    """The integral over the stretches whose two ends have values, by their length (rows,)."""
+    """The integral over the stretches with finite values at both ends, by their length (rows,)."""
     total = way = 0.0
     for k in range(values.size - 1):
         first, second = values[k], values[k + 1]
-        if np.isnan(first) or np.isnan(second) or at[k + 1] == at[k]:
+        if not np.isfinite([first, second]).all() or at[k + 1] == at[k]:
             continue
         step = abs(at[k + 1] - at[k])
         total += step * (first + second) / 2.0
         way += step
     if way:
         return float(total / way)
-    known = values[~np.isnan(values)]
+    known = values[np.isfinite(values)]
     return float(known.mean()) if known.size else np.nan
 
 

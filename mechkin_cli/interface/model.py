@@ -254,7 +254,7 @@ class Model(Kept, Certified, Fitted, Studied, Toleranced, Viewed):
             reduce: what is kept of the rows: "max", "min", "peak" (largest magnitude), "range",
                 "mean", "rms", a function from (variants, rows) to (variants,), several of these, or
                 any of it by quantity. Rows without a solution (nan) do not count; means are taken
-                over the way, as in `r.summary()`.
+                over the way between finite rows, as in `r.summary()`.
             run: a response instead of the sweep, as `with_parameters(...).respond(run)` gives it;
                 where a stop ends it, its row takes the place of the next moment.
             lanes: width of the kernel's packs, 0 for the widest.

@@ -52,7 +52,8 @@ class Summarized:
         Of a quantity or expression, of a vector by its norm; without one, of every computed column
         of every table: `r.summary()["slider"]["torque"].rms`. Rows without a value do not count:
         `.rows` says how many do. A place is a value of time where the run has one, else of its
-        first input that moves; over that way mean and RMS are taken, by the trapezoidal rule.
+        first input that moves; over that way mean and RMS are taken, by the trapezoidal rule. The
+        way to a row that is infinite is none of it: `.infinite` says how many are.
 
         Raises:
             ExpressionError: no such quantity, or dimensions that do not fit.

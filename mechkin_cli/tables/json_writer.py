@@ -140,7 +140,8 @@ def _column_records(columns: Columns, threads: int) -> list[Plain]:
 
 
 def _summary_record(summary: Summary) -> Plain:
-    """What stands below a table, by column: null where no row has a cell."""
+    """What stands below a table, by column: null where no row has a cell, and for what is infinite,
+    as in the cells; how many of the rows are is said beside."""
     return {
         "at": summary.parameter,
         "at_unit": summary.unit,
@@ -150,6 +151,7 @@ def _summary_record(summary: Summary) -> Plain:
                 "unit": each.unit,
                 **{word: _number(getattr(each.statistics, word)) for word in summary.words},
                 "rows": each.statistics.rows,
+                "infinite": each.statistics.infinite,
             }
             for each in summary.columns
         ],

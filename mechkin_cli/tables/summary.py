@@ -2,8 +2,9 @@
 
 Rows without a cell do not count, and `rows` says how many do. Mean and RMS are integrals over the
 way of the run's parameter by the trapezoidal rule (`reductions.mean`), so that they do not depend
-on where rows are dense; the way to a row without a cell is none of it. Places are values of that
-parameter, of the first row that has the extreme; where nothing moves, numbers of rows.
+on where rows are dense; the way to a row without a cell, or with an infinite one, is none of it.
+Places are values of that parameter, of the first row that has the extreme; where nothing moves,
+numbers of rows.
 """
 
 from __future__ import annotations
@@ -37,7 +38,8 @@ class Statistics(NamedTuple):
     """Of one column, in the file's units; nan where no row has a cell.
 
     `peak` is the largest magnitude, `range` the difference of max and min, `rows` how many rows
-    have a cell.
+    have a cell, `infinite` how many of these are infinite, at a dead centre: they count for no
+    mean.
     """
 
     max: Extreme
@@ -47,6 +49,7 @@ class Statistics(NamedTuple):
     rms: float
     range: float
     rows: int
+    infinite: int = 0
 
 
 class SummaryColumn(NamedTuple):
@@ -123,6 +126,7 @@ def statistics(values: FloatArray, source: Source) -> Statistics:
         float(root_mean_square(row, way)[0]),
         numbers["range"],
         int(np.count_nonzero(~np.isnan(values))),
+        int(np.count_nonzero(np.isinf(values))),
     )
 
 
@@ -143,7 +147,7 @@ def summary_of(
         and layout.expression.text.strip() not in source.inputs
     )
     name, unit = (ROW_NUMBER, "") if along is None else (along.name, along.unit)
-    return Summary(words, name, unit, found, tuple(_notes(found, source)))
+    return Summary(words, name, unit, found, tuple(_notes(words, found, source)))
 
 
 def written_notes(summary: Summary, written: Callable[[str], str] = str) -> list[str]:
@@ -169,20 +173,37 @@ def summary_table(name: str, title: str, summary: Summary) -> Columns:
     return Columns(f"{name}.summary", f"Summary of {title or name}", tuple(columns), of_rows=False)
 
 
-def _notes(columns: Sequence[SummaryColumn], source: Source) -> list[str]:
+def _notes(words: tuple[str, ...], columns: Sequence[SummaryColumn], source: Source) -> list[str]:
     found = []
     missing = {c.label: source.rows - c.statistics.rows for c in columns}
     missing = {label: count for label, count in missing.items() if count}
     if len(missing) == len(columns) and len(set(missing.values())) == 1:
         missing = {"any column": max(missing.values())}
     for label, count in missing.items():
-        verb = "has" if count == 1 else "have"
-        do = "does" if count == 1 else "do"
-        rows = f"{count} of {source.rows} rows"
-        found.append(f"{rows} {verb} no cell of {label} and {do} not count")
+        do = _verb(count, "does", "do")
+        rows = f"{count} of {source.rows} rows {_verb(count, 'has', 'have')}"
+        found.append(f"{rows} no cell of {label} and {do} not count")
+    found += _infinite(words, columns, source)
     for status in Status:
         count = int(np.count_nonzero(source.status == status))
         if status is not Status.ok and status.has_solution and count:
-            verb = "is" if count == 1 else "are"
-            found.append(f"{count} of the rows {verb} {status.label}")
+            found.append(f"{count} of the rows {_verb(count, 'is', 'are')} {status.label}")
     return found
+
+
+def _infinite(
+    words: tuple[str, ...], columns: Sequence[SummaryColumn], source: Source
+) -> list[str]:
+    """Which rows the means below leave out because they are infinite there."""
+    means = " and ".join(word for word in ("mean", "rms") if word in words)
+    counts = {c.label: c.statistics.infinite for c in columns if means}
+    found = []
+    for count in sorted({*counts.values()} - {0}):
+        labels = ", ".join(label for label, each in counts.items() if each == count)
+        rows = f"{count} of {source.rows} rows {_verb(count, 'is', 'are')} infinite in {labels}"
+        found.append(f"{rows} and {_verb(count, 'does', 'do')} not count for {means}")
+    return found
+
+
+def _verb(count: int, one: str, many: str) -> str:
+    return one if count == 1 else many

@@ -126,6 +126,7 @@ def test_json_has_each_number_with_its_place(source, layout):
                 "max": {"value": 2.0, "at": 191.0},
                 "range": 6.0,
                 "rows": 3,
+                "infinite": 0,
             }
         ],
     }
