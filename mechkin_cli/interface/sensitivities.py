@@ -14,6 +14,7 @@ from mechkin_cli.analysis.errors.repeated import NotRepeated
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.interface.arguments import a_text, texts
 from mechkin_cli.interface.asking import run_name
+from mechkin_cli.interface.misleading import misleading
 from mechkin_cli.interface.places import Along
 from mechkin_cli.interface.shifts import Shifting
 from mechkin_cli.interface.slopes import Sizes, Slope, slope_of
@@ -185,7 +186,7 @@ class Sensitivities(Listed):
             f"{len(self.parameters)} parameters, {self.rows.size} rows"
         )
         labels = ("quantity", "parameter", "largest", "unit", f"at {self.along}", "not told")
-        return Listing(head, labels, tuple(rows))
+        return Listing(head, labels, tuple(rows), tuple(misleading(self)))
 
     def to_pandas(self) -> pandas.DataFrame:
         """A line for each row: the place, then a column for each pair, `d O4.theta / d P1`, of a
@@ -225,6 +226,11 @@ class Sensitivities(Listed):
         row = int(np.nanargmax(sizes))
         value = values[row] if values.ndim == 1 else sizes[row]
         return f"{value:.6g}", unit, f"{self.place[row]:.6g} {self.along_unit}".rstrip(), missing
+
+    def scale_of(self, parameter: str) -> float:
+        """What is large for a parameter, in the file's units: the size of the mechanism for a
+        length, a radian, else its own value."""
+        return self._shifting.scale_of(parameter)
 
     def _largest_cell(self, text: str) -> float:
         values = self._cells(text)

@@ -104,7 +104,8 @@ class Shifting:
         one = float(self.model.problem.units.to_si(1.0, known.dimension))
         return abs(float(known.value)) or one  # type: ignore[arg-type]
 
-    def _scale_of(self, name: str) -> float:
+    def scale_of(self, name: str) -> float:
+        """The same in the file's units."""
         return float(self._in_file_units(name, Fraction(self._scale(name))).high)
 
     def _precise(self, name: str, amount: Fraction) -> ShiftingPrecise | None:
@@ -126,7 +127,7 @@ class Shifting:
             self._own[True] = repeated(Fraction(0))
         rows = repeated(-amount), self._own[True], repeated(amount)
         away = self._in_file_units(name, amount)
-        return Sides(away, away, self._scale_of(name), rows, *self._whether(rows))
+        return Sides(away, away, self.scale_of(name), rows, *self._whether(rows))
 
     def _anew(self, name: str, amount: Fraction) -> Sides:
         problem = self.model.problem
@@ -144,7 +145,7 @@ class Shifting:
             gap = side * (found - Fraction(float(exact.high)) - Fraction(float(exact.low)))
             away.append(self._in_file_units(name, gap))
         rows = around[0], own, around[1]
-        return Sides(away[0], away[1], self._scale_of(name), rows, *self._whether(rows))
+        return Sides(away[0], away[1], self.scale_of(name), rows, *self._whether(rows))
 
     def _run(self, name: str, value: float) -> Analysis:
         """The run with another value in SI."""

@@ -24,6 +24,7 @@ from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.studies.draws import draws, normal, uniform
 
 if TYPE_CHECKING:
+    import pandas  # type: ignore[import-untyped]
     from numpy.typing import NDArray
 
     from mechkin_cli.arrays import Bools, Floats
@@ -197,6 +198,37 @@ class Tolerances(Listed):
         """At how many ends of the bands, one parameter at a time, a row has no value (rows,)."""
         lost: NDArray[np.intp] = (~np.isfinite(self._runs(quantity)[self.samples :])).sum(axis=0)
         return np.where(np.isfinite(self.nominal(quantity)), lost, 0)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A line for each row: the place, then of each quantity its columns: `O4.theta`, `least`,
+        `largest`, `scatter`, `sampled mean`, `sampled scatter`, `share of P1`, `misleads`;
+        `attrs["units"]` has their units.
+
+        Raises:
+            UsageError: pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError:
+            raise UsageError("to_pandas needs pandas: pip install 'mechkin[pandas]'") from None
+        columns: dict[str, Any] = {self.slopes.along: self.slopes.place}
+        units = {self.slopes.along: self.slopes.along_unit}
+        for quantity in self.slopes.quantities:
+            (least, largest), sampled = self.worst(quantity), self.sampled(quantity)
+            own = {
+                quantity: self.nominal(quantity),
+                f"{quantity} least": least,
+                f"{quantity} largest": largest,
+                f"{quantity} scatter": self.scatter(quantity),
+                f"{quantity} sampled mean": sampled.mean,
+                f"{quantity} sampled scatter": sampled.deviation,
+            }
+            units |= dict.fromkeys(own, self.slopes.unit_of(quantity))
+            shares = {f"{quantity} share of {n}": v for n, v in self.shares(quantity).items()}
+            columns |= own | shares | {f"{quantity} misleads": self.misleads(quantity)}
+        frame = pandas.DataFrame(columns)
+        frame.attrs["units"] = units
+        return frame
 
     @property
     def listing(self) -> Listing:

@@ -41,5 +41,10 @@ CLOSURE_LOST: Final = 1e-6
 constraints are redundant, does not close. Where it does, the residual stays at the rounding of
 double-double, 1e-31, and grows by nothing."""
 
+SHORT_REACH: Final = 0.005
+"""Of a parameter's scale: where a slope that is not small holds for less than this, a listing says
+so: at rows that lie up to a fortieth of it before a dead centre. No tolerance of a mechanism is as
+large as a two-hundredth of its size."""
+
 LINEAR: Final = 0.1
 """A second-order term beyond this part of the first-order one makes a slope misleading."""
