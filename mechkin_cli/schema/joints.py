@@ -31,19 +31,22 @@ _Vector = TypeVar("_Vector")
 PerLink = Annotated[dict[Name, _Vector], Limits(min_length=2, max_length=2)]
 """One vector for each of the joint's two links."""
 
-Point = Annotated[
+_Place = TypeVar("_Place")
+PlaceOrPerLink = Annotated[
     Annotated[Name, Tag("(name)")]
-    | Annotated[LengthVector, Tag("(vector)")]
-    | Annotated[PerLink[NamedOrGiven], Tag("(per link)")],
+    | Annotated[_Vector, Tag("(vector)")]
+    | Annotated[PerLink[_Place], Tag("(per link)")],
     Choice(place_or_per_link),
-    Named("Point"),
 ]
-Direction = Annotated[
-    Annotated[DirectionVector, Tag("(vector)")]
-    | Annotated[PerLink[DirectionVector], Tag("(per link)")],
+"""A place as a vector or by its name, or one place for each link."""
+DirectionOrPerLink = Annotated[
+    Annotated[_Vector, Tag("(vector)")] | Annotated[PerLink[_Vector], Tag("(per link)")],
     Choice(vector_or_per_link),
-    Named("Direction"),
 ]
+"""A direction, or one for each link."""
+
+Point = Annotated[PlaceOrPerLink[LengthVector, NamedOrGiven], Named("Point")]
+Direction = Annotated[DirectionOrPerLink[DirectionVector], Named("Direction")]
 ZeroReference = Annotated[PerLink[DirectionVector], Named("ZeroReference")]
 
 

@@ -1,7 +1,7 @@
 """A place in the home drawing: its coordinates, or the name of a point that is drawn there."""
 
 import re
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, TypeVar
 
 from mechkin_cli.schema.alternatives import Choice, Tag
 from mechkin_cli.schema.rules import Named
@@ -16,8 +16,10 @@ def name_or_vector(value: Any) -> str:
     return "(name)" if is_name else "(vector)"
 
 
-NamedOrGiven = Annotated[
-    Annotated[Name, Tag("(name)")] | Annotated[LengthVector, Tag("(vector)")],
-    Choice(name_or_vector),
-    Named("NamedOrGiven"),
+_Vector = TypeVar("_Vector")
+NamedOr = Annotated[
+    Annotated[Name, Tag("(name)")] | Annotated[_Vector, Tag("(vector)")], Choice(name_or_vector)
 ]
+"""The name of a point, or coordinates: of space or of a plane."""
+
+NamedOrGiven = Annotated[NamedOr[LengthVector], Named("NamedOrGiven")]

@@ -9,12 +9,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 from mechkin_cli.schema.alternatives import Choice, Tag, by_word
 from mechkin_cli.schema.base import NOTHING, Section, refuse
 from mechkin_cli.schema.file import AnyFile
-from mechkin_cli.schema.joints import (
-    JointBase,
-    PerLink,
-    place_or_per_link,
-    vector_or_per_link,
-)
+from mechkin_cli.schema.joints import DirectionOrPerLink, JointBase, PerLink, PlaceOrPerLink
 from mechkin_cli.schema.links import BodyWithMass
 from mechkin_cli.schema.loads import (
     Axes,
@@ -31,7 +26,7 @@ from mechkin_cli.schema.loads import (
     standard_or_vector,
     tag_of_load,
 )
-from mechkin_cli.schema.places import name_or_vector
+from mechkin_cli.schema.places import NamedOr
 from mechkin_cli.schema.rules import Before, Limits, Named
 from mechkin_cli.schema.scalars import Acceleration, AnyDimension, Inertia, Length, Name
 
@@ -72,24 +67,9 @@ PlaneVector = Annotated[tuple[Length, ...], _TWO, Before(_two_numbers), Named("P
 PlaneDirection = Annotated[
     tuple[AnyDimension, ...], _TWO, Before(_two_numbers), Named("PlaneDirection")
 ]
-PlaneNamedOrGiven = Annotated[
-    Annotated[Name, Tag("(name)")] | Annotated[PlaneVector, Tag("(vector)")],
-    Choice(name_or_vector),
-    Named("PlaneNamedOrGiven"),
-]
-PlanePoint = Annotated[
-    Annotated[Name, Tag("(name)")]
-    | Annotated[PlaneVector, Tag("(vector)")]
-    | Annotated[PerLink[PlaneNamedOrGiven], Tag("(per link)")],
-    Choice(place_or_per_link),
-    Named("PlanePoint"),
-]
-PlaneDirections = Annotated[
-    Annotated[PlaneDirection, Tag("(vector)")]
-    | Annotated[PerLink[PlaneDirection], Tag("(per link)")],
-    Choice(vector_or_per_link),
-    Named("PlaneDirections"),
-]
+PlaneNamedOrGiven = Annotated[NamedOr[PlaneVector], Named("PlaneNamedOrGiven")]
+PlanePoint = Annotated[PlaceOrPerLink[PlaneVector, PlaneNamedOrGiven], Named("PlanePoint")]
+PlaneDirections = Annotated[DirectionOrPerLink[PlaneDirection], Named("PlaneDirections")]
 
 
 class PlaneLink(BodyWithMass):
