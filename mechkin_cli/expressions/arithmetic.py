@@ -14,7 +14,7 @@ from mechkin_cli.expressions.operand import Operand, Site
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Value, Vector
 from mechkin_cli.expressions.scalar_functions import power
 from mechkin_cli.tape.scalars import as_recorded, is_number
-from mechkin_cli.units import Dimension
+from mechkin_cli.units import DIMENSIONLESS, POWER, Dimension
 
 _SUM_WORDS = {
     "+": ("add {left} and {right}", operator.add),
@@ -85,7 +85,15 @@ def divide(site: Site, left: Operand, right: Operand) -> Quantity:
     if constant and is_number(divisor) and divisor == 0.0:
         raise site.error("division by zero", "check the values of the parameters", right)
     quotient = elementwise(operator.truediv, left.value, divisor)
-    return Quantity(quotient, left.dimension / right.dimension)
+    return Quantity(quotient, _quotient(left.dimension, right.dimension))
+
+
+def _quotient(left: Dimension, right: Dimension) -> Dimension:
+    """What a quotient measures. A torque times an angular rate is a power, and as one divided by
+    a power it is a number; a length times an angle, divided by a length, is an angle again."""
+    if left.reduced() == right.reduced() == POWER:
+        return DIMENSIONLESS
+    return left / right
 
 
 def negate(site: Site, operand: Operand) -> Quantity:

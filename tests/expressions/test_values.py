@@ -115,6 +115,10 @@ def test_constant(text: str, value: float, dimension: Dimension) -> None:
     [
         ("O1.theta_dot", [8.0, 2.0], ANGLE / Dimension(time=1)),
         ("O1.effort*O1.theta_dot + 1 W", [13.0, -1.0], POWER),
+        ("O1.effort*O1.theta_dot/(2 W)", [6.0, -1.0], DIMENSIONLESS),
+        ("O1.effort*O1.theta_dot/(2 W*rad)", [6.0, -1.0], DIMENSIONLESS),
+        ("O1.effort*O1.theta_dot/(O1.effort*2)", [4.0, 1.0], ANGLE / Dimension(time=1)),
+        ("P1*O1.theta/P1", [0.5, -4.0], ANGLE),
         ("p.velocity.x", [1.0, 2.0], VELOCITY),
         ("dot(p.velocity, p.velocity)", [5.0, 20.0], VELOCITY**2),
         ("(2*p.velocity + p.velocity).z", [6.0, 12.0], VELOCITY),
