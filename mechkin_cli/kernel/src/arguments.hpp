@@ -11,7 +11,7 @@
 class Arguments {
  public:
   // Numbers of `parts` parts stand in arrays (columns, parts, rows), or (parts, rows) for one per row.
-  explicit Arguments(const nanobind::kwargs& given, int parts = 1) : given_(given), parts_(parts) {}
+  explicit Arguments(const nanobind::kwargs& given, int parts = 1);
 
   // Arrays of float64, C-contiguous; null where the argument is left out or None. (columns, rows), or (rows,) for
   // `columns` ONE_PER_ROW. Rows must be `rows` of the first array asked for.
@@ -41,12 +41,24 @@ class Arguments {
     const char *begin, *end, *name;
     bool written;
   };
+  struct Given {
+    const char* name;
+    PyObject* value;
+  };
+  // An array's memory and shape.
+  struct Memory {
+    void* data;
+    std::size_t bytes, dimensions, shape[3];
+  };
   nanobind::object find(const char* name);
   template <class Array>
-  void check_shape(const Array& array, const char* name, long columns);
+  static Memory memory_of(nanobind::handle object, const char* name, const char* kind);
+  void check_shape(const Memory& array, const char* name, long columns, int parts);
+  void keep(nanobind::object object, const Memory& array, const char* name, bool written);
 
-  const nanobind::kwargs& given_;
   int parts_;
+  std::vector<Given> given_;
+  std::size_t next_ = 0;  // of those given: behind the last one asked for
   std::size_t found_ = 0;
   long rows_ = -1;
   std::vector<const char*> names_;
