@@ -16,15 +16,17 @@ MECHKIN_INLINE Vec3 carried_vector(const Workspace& w, int link, const Number* a
   return link < 0 ? constant(a) : w.pose[link].vector(a);
 }
 
+// Only legs are placed through memory; the pose of any other joint stays in registers until it is whole.
+inline void place_leg(const Plan& p, Workspace& w, int k) {
+  const Leg& leg = p.leg[p.joints[k].leg];
+  Pose pose = placed(p.joints[k].at, pose_of(w, p.joints[k].parent));
+  aim(pose, leg, carried_point(w, leg.second, leg.point));
+  w.pose[k] = pose;
+}
 inline void place_joint(const Plan& p, Workspace& w, int k) {
   const TreeJoint& j = p.joints[k];
+  if (j.type == TREE_L) return place_leg(p, w, k);
   Pose pose = placed(j.at, pose_of(w, j.parent));
-  if (j.type == TREE_L) {
-    const Leg& leg = p.leg[j.leg];
-    aim(pose, leg, carried_point(w, leg.second, leg.point));
-    w.pose[k] = pose;
-    return;
-  }
   with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) { entry.place(pose, j, w.q + j.state); });
   w.pose[k] = pose;
 }
@@ -120,7 +122,7 @@ inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
         for (int f = 0; f < freedoms_of(t.type); ++f) {
           const int u = unknown_index(p, index, t.column + f);
           if (u < 0) continue;
-          Pack column[MAX_CLOSING_ROWS];
+          Pack column[entry.equations];
           entry.column(k, sign * w.screw[t.column + f], column);
           for (int i = 0; i < entry.equations; ++i) rows[i * n + u] = column[i];
         }

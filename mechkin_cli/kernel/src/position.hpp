@@ -207,52 +207,92 @@ inline Mask step_again(const Workspace& w, const BlockMatrices& at, Pack before,
   return Pack(2.0) * length * length <= Pack(coarse) * Pack(coarse) * before;
 }
 
-// Closes one block from the guess in w.q. With `AGAIN` factors serve two steps where they are good enough, which pays
-// where no condition is wanted of them.
-template <bool AGAIN = false>
-inline Closed close_block(const Plan& p, Workspace& w, int index, const Request& r) {
-  const Block& b = p.block[index];
-  const BlockMatrices at = matrices_of(p, w, index);
-  Mask polished = all_lanes(false), done = all_lanes(false);
+// Newton's method on a block for one pack of rows.
+struct Closing {
+  Workspace& w;
+  bool over = false;
+  Mask polished = all_lanes(false), done = all_lanes(false), again = all_lanes(false);
   Residual residual = {};
   Pack correction = 0.0, last_step = __builtin_inf();
+};
+
+// Moves a pack by the step in w.right, or, where the factors of the step before serve again, by that in w.scratch.
+template <bool AGAIN>
+inline void take_step(const Plan& p, Closing& c, int index, const Request& r, int iteration) {
+  Workspace& w = c.w;
+  const int size = p.block[index].size;
+  if (AGAIN && iteration == 1)
+    for (int u = 0; u < size; ++u) w.right[u] = select(c.again, w.scratch[u], w.right[u]);
+  for (int u = 0; u < size; ++u) w.right[u] = -w.right[u];
+  const Pack length = largest(w.right, size);
+  c.last_step = select(c.done, iteration ? c.last_step : Pack(0.0), length);
+  c.polished = c.again | (length <= Pack(r.coarse));
+  // where the Jacobian is singular there is no step: the lane stays where it is (NaN, infinity, or 1e100, whose
+  // products would soon be infinite)
+  c.done = c.done | ~(length < Pack(1e100));
+  // a closed place whose step is yet long is singular, and the step is rounding
+  c.done = c.done | ((c.residual.test <= Pack(r.accept)) & (length > Pack(LONG_STEP)));
+  c.correction += select(c.done, Pack(0.0), length);
+  advance_block(p, w, index, w.right, ~c.done);
+}
+
+// Closes one block from the guesses in the packs' w.q, all of them through each stage of a step: they meet its
+// instructions in the cache, and one is begun while another waits for its results. With `AGAIN` factors serve two steps
+// where they are good enough, which pays where no condition is wanted of them.
+template <bool AGAIN>
+inline void close_packs(const Plan& p, Closing* pack, int count, int index, const Request& r) {
+  const Block& b = p.block[index];
+  const bool square = b.rows == b.size;
   // a lane's factors must not depend on how long its neighbours go on
-  const bool keeps_factors = at.m == at.n && r.demand == DEMAND_CONDITION;
+  const bool keeps_factors = square && r.demand == DEMAND_CONDITION;
+  const auto each = [&](auto&& stage) __attribute__((always_inline)) {
+    for (Closing* c = pack; c < pack + count; ++c)
+      if (!c->over) stage(*c);
+  };
   for (int iteration = 0;; ++iteration) {
-    iteration ? place_moving(p, w, b) : place_block(p, w, b);
-    residual = block_residual(p, w, b);
-    // a short step leaves its square times condition and curvature, which may yet be too much
-    done = done | (polished & (residual.test <= Pack(r.accept))) | (residual.test <= Pack(r.tight));
-    if ((all(done) && !(keeps_factors && iteration == 0)) || iteration == r.iterations) break;
-    Mask again = all_lanes(false);
-    if (AGAIN && iteration == 1) again = step_again(w, at, last_step, r.coarse, w.scratch);
-    if (!AGAIN || !all(again | done)) {
-      moving_screws(p, w, b);
-      const bool keep = keeps_factors && iteration > 0 && any(done);
-      if (keep) keep_factors(w, at);
-      block_jacobian(p, w, index, at.jacobian);
+    each([&](Closing& c) { iteration ? place_moving(p, c.w, b) : place_block(p, c.w, b); });
+    bool over = true;
+    each([&](Closing& c) {
+      c.residual = block_residual(p, c.w, b);
+      // a short step leaves its square times condition and curvature, which may yet be too much
+      c.done = c.done | (c.polished & (c.residual.test <= Pack(r.accept))) | (c.residual.test <= Pack(r.tight));
+      c.over = (all(c.done) && !(keeps_factors && iteration == 0)) || iteration == r.iterations;
+      over = over && c.over;
+    });
+    if (over) return;
+    each([&](Closing& c) {
+      c.again = all_lanes(false);
+      const BlockMatrices at = matrices_of(p, c.w, index);
+      if (AGAIN && iteration == 1) c.again = step_again(c.w, at, c.last_step, r.coarse, c.w.scratch);
+      if (AGAIN && all(c.again | c.done)) return;
+      moving_screws(p, c.w, b);
+      const bool keep = keeps_factors && iteration > 0 && any(c.done);
+      if (keep) keep_factors(c.w, at);
+      block_jacobian(p, c.w, index, at.jacobian);
       at.factor_jacobian();
-      at.solve_equations(w.right);
-      if (keep) take_back_factors(w, at, done);
-    }
-    if (AGAIN && iteration == 1)
-      for (int u = 0; u < b.size; ++u) w.right[u] = select(again, w.scratch[u], w.right[u]);
-    for (int u = 0; u < b.size; ++u) w.right[u] = -w.right[u];
-    const Pack length = largest(w.right, b.size);
-    last_step = select(done, iteration ? last_step : Pack(0.0), length);
-    polished = again | (length <= Pack(r.coarse));
-    // where the Jacobian is singular there is no step: the lane stays where it is (NaN, infinity, or 1e100, whose
-    // products would soon be infinite)
-    done = done | ~(length < Pack(1e100));
-    // a closed place whose step is yet long is singular, and the step is rounding
-    done = done | ((residual.test <= Pack(r.accept)) & (length > Pack(LONG_STEP)));
-    correction += select(done, Pack(0.0), length);
-    advance_block(p, w, index, w.right, ~done);
+      at.solve_equations(c.w.right);
+      if (keep) take_back_factors(c.w, at, c.done);
+    });
+    each([&](Closing& c) { take_step<AGAIN>(p, c, index, r, iteration); });
   }
+}
+
+// What became of a pack of rows.
+inline Closed closed_block(const Plan& p, Closing& c, int index, const Request& r) {
+  const Block& b = p.block[index];
+  Residual& residual = c.residual;
   const Mask near = residual.test <= Pack(r.accept);
   if (!all(near) && r.accept > 0.0)
-    residual.test = select(near, residual.test, residual_with_rounding(p, w, b, r.accept));
-  return {residual.test, correction, last_step, residual.test <= Pack(r.accept), block_side_conditions(p, w, b)};
+    residual.test = select(near, residual.test, residual_with_rounding(p, c.w, b, r.accept));
+  return {residual.test, c.correction, c.last_step, residual.test <= Pack(r.accept), block_side_conditions(p, c.w, b)};
+}
+
+// Closes one block of one pack.
+template <bool AGAIN>
+inline Closed close_block(const Plan& p, Workspace& w, int index, const Request& r) {
+  Closing c = {w};
+  close_packs<AGAIN>(p, &c, 1, index, r);
+  return closed_block(p, c, index, r);
 }
 
 }  // namespace

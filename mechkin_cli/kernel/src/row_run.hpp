@@ -98,124 +98,113 @@ inline auto output_of(const Request& r, int number) {
   }
 }
 
-void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
-  const bool velocities = r.demand & DEMAND_VELOCITY, accelerations = r.demand & DEMAND_ACCELERATION;
-  for (int s = 0; s < p.states; ++s) w.q[s] = in.get(r.guess, s);
-  for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
-
-  if (p.charts) read_chart(p, r, w, in);
-
+// A pack of rows on its way through a request.
+struct RowPack {
+  const Plan& p;
+  const Request& r;
+  Workspace& w;
+  Reader in;
   Pack residual = 0.0, correction = 0.0, condition = 0.0;
   Mask converged = all_lanes(true), side = all_lanes(true);
+
+  Writer writer(double* base) const { return {base, in.rows, in.row, in.count}; }
+
+  void read_guess() {
+    for (int s = 0; s < p.states; ++s) w.q[s] = in.get(r.guess, s);
+    for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
+    if (p.charts) read_chart(p, r, w, in);
+  }
+  void read_columns(const double* given, Pack* to) const {
+    for (int i = 0; i < p.inputs; ++i) to[p.input_column[i]] = in.get(given, i);
+  }
+
   // runs in other arithmetics hold nothing, and their requests tell no turns
-  const auto skips = [&](int b) { return PARTS == 1 && r.held && r.held->use[b] == BLOCK_LEFT; };
-  const auto holds = [&](int b) { return PARTS == 1 && r.held && r.held->use[b] == BLOCK_HELD; };
-  // first unknown and first equation of a held block among those of all
-  const auto first_held = [&](int b) {
-    struct {
-      long unknown, equation;
-    } first = {0, 0};
+  static bool skips(const Request& r, int b) { return PARTS == 1 && r.held && r.held->use[b] == BLOCK_LEFT; }
+  static bool holds(const Request& r, int b) { return PARTS == 1 && r.held && r.held->use[b] == BLOCK_HELD; }
+  // Of a held block's unknowns, or equations, among those of all.
+  auto given(const double* base, int b) const {
+    long first = 0;
     for (int other = 0; other < b; ++other)
-      if (holds(other)) first.unknown += p.block[other].size, first.equation += p.block[other].rows;
-    return first;
-  };
-  const auto given = [&](const double* base, int b) {
-    return [&in, base, from = first_held(b).unknown](int u) { return in.get(base, from + u); };
-  };
-  const auto equations = [&](double* base, int b) {
-    return Writer{base + first_held(b).equation * in.rows, in.rows, in.row, in.count};
-  };
-  const auto writer = [&](double* base) { return Writer{base, in.rows, in.row, in.count}; };
-  const auto write_jacobian = [&](const BlockMatrices& at) {
+      if (holds(r, other)) first += p.block[other].size;
+    return [this, base, first](int u) { return in.get(base, first + u); };
+  }
+  Writer equations(double* base, int b) const {
+    long first = 0;
+    for (int other = 0; other < b; ++other)
+      if (holds(r, other)) first += p.block[other].rows;
+    return writer(base + first * in.rows);
+  }
+  void write_jacobian(const BlockMatrices& at) const {
     if (!r.jacobian) return;
     for (long e = 0; e < at.m * at.n; ++e) writer(r.jacobian).put(at.jacobian - w.jacobian + e, at.jacobian[e]);
-  };
-  for (int b = 0; b < p.blocks; ++b) {
-    if (skips(b)) {
-      leave_block(p, w, b);
-      continue;
-    }
-    if (holds(b)) {
-      const Residual held = hold_block(p, w, b, equations(r.held->equations, b));
-      Mask near = held.test <= Pack(r.accept);
-      if (!all(near)) near = near | (residual_with_rounding(p, w, p.block[b], r.accept) <= Pack(r.accept));
-      converged = converged & near;
-      side = side & block_side_conditions(p, w, p.block[b]);
-      write_jacobian(matrices_of(p, w, b));
-      continue;
-    }
-    const Closed closed = close_block<FACTORS_SERVE_AGAIN>(p, w, b, r);
+  }
+
+  void hold(int b) {
+    const Residual held = hold_block(p, w, b, equations(r.held->equations, b));
+    Mask near = held.test <= Pack(r.accept);
+    if (!all(near)) near = near | (residual_with_rounding(p, w, p.block[b], r.accept) <= Pack(r.accept));
+    converged = converged & near;
+    side = side & block_side_conditions(p, w, p.block[b]);
+    write_jacobian(matrices_of(p, w, b));
+  }
+  void judge(int b, const Closed& closed) {
     // a NaN wins
     residual = select(closed.residual <= residual, residual, closed.residual);
     correction = select(closed.correction <= correction, correction, closed.correction);
     converged = converged & closed.converged;
     side = side & closed.side;
-    if (!r.demand) continue;
-    const BlockVerdict verdict = judge_block(p, w, b, r, closed, write_jacobian);
+    if (!r.demand) return;
+    const BlockVerdict verdict =
+        judge_block(p, w, b, r, closed, [&](const BlockMatrices& at) { write_jacobian(at); });
     condition = max(verdict.condition, condition);
     if (r.side) writer(r.side).put(b, verdict.side);
     if (r.pivot) writer(r.pivot).put(b, matrices_of(p, w, b).least());
   }
-  const int rest_count = r.held && !r.held->complete ? 0 : p.rest_count;
-  const auto tie_value = [&](int t) { return in.get(r.ties, t); };
-  for (int k = 0; k < rest_count; ++k) {
-    place_joint(p, w, p.rest[k]);
-    find_screws(p, w, p.rest[k]);
+  void find_velocities(int b) {
+    if (holds(r, b))
+      hold_velocities(p, w, b, given(r.held->rates, b), equations(r.held->first, b));
+    else if (skips(r, b))
+      move_block(p, w, p.block[b]);
+    else
+      block_velocities(p, w, b);
   }
-  if (r.demand & DEMAND_FORCES && p.actuators) find_influence(p, w, tie_value);
-  if (velocities) {
-    for (int i = 0; i < p.inputs; ++i) w.rate[p.input_column[i]] = in.get(r.rates, i);
-    for (int b = 0; b < p.blocks; ++b)
-      if (holds(b))
-        hold_velocities(p, w, b, given(r.held->rates, b), equations(r.held->first, b));
-      else if (skips(b))
-        move_block(p, w, p.block[b]);
-      else
-        block_velocities(p, w, b);
-    if (rest_count) move_rest(p, w);
-  }
-  if (accelerations) {
-    for (int i = 0; i < p.inputs; ++i) w.acceleration[p.input_column[i]] = in.get(r.accelerations, i);
-    for (int b = 0; b < p.blocks; ++b)
-      if (holds(b))
-        hold_accelerations(p, w, b, given(r.held->accelerations, b), equations(r.held->second, b));
-      else if (skips(b))
-        accelerate_block(p, w, p.block[b], false);
-      else
-        block_accelerations(p, w, b);
-    if (rest_count) accelerate_rest(p, w);
+  void find_accelerations(int b) {
+    if (holds(r, b))
+      hold_accelerations(p, w, b, given(r.held->accelerations, b), equations(r.held->second, b));
+    else if (skips(r, b))
+      accelerate_block(p, w, p.block[b], false);
+    else
+      block_accelerations(p, w, b);
   }
 
-  if (r.demand & DEMAND_JERK) {
-    for (int i = 0; i < p.inputs; ++i) w.jerk[p.input_column[i]] = in.get(r.jerks, i);
-    for (int b = 0; b < p.blocks; ++b) block_jerks(p, w, b);
-    for (int k = 0; k < p.rest_count; ++k) jerk_link(p, w, p.rest[k]);
+  void write_motion() const {
+    if (r.states)
+      for (int s = 0; s < p.states; ++s) writer(r.states).put(s, w.q[s]);
+    if (r.velocities && r.demand & DEMAND_VELOCITY)
+      for (int c = 0; c < p.columns; ++c) writer(r.velocities).put(c, w.rate[c]);
+    if (r.second && r.demand & DEMAND_ACCELERATION)
+      for (int c = 0; c < p.columns; ++c) writer(r.second).put(c, w.acceleration[c]);
+    writer(r.residual).put(0, residual);
+    writer(r.correction).put(0, correction);
+    if (PARTS == 1 && r.turn_count) write_turns(p, w, r, in);
+    if (r.demand & DEMAND_CONDITION) writer(r.condition).put(0, condition);
+    write_flags(r.flags, in, converged, side);
   }
-
-  if (r.states)
-    for (int s = 0; s < p.states; ++s) writer(r.states).put(s, w.q[s]);
-  if (r.velocities && velocities)
-    for (int c = 0; c < p.columns; ++c) writer(r.velocities).put(c, w.rate[c]);
-  if (r.second && accelerations)
-    for (int c = 0; c < p.columns; ++c) writer(r.second).put(c, w.acceleration[c]);
-  writer(r.residual).put(0, residual);
-  writer(r.correction).put(0, correction);
-  if (PARTS == 1 && r.turn_count) write_turns(p, w, r, in);
-  if (r.demand & DEMAND_CONDITION) writer(r.condition).put(0, condition);
-
-  const RowValues row_values = {r, in};
-  const auto outputs = [&](const Balance* balance) {
+  void write_outputs(const Balance* balance) const {
     const Writer out = writer(r.outputs);
-    for (int o = 0; o < r.wanted.count; ++o) write_output(p, w, balance, row_values, output_of(r, o), out);
-  };
-  if (r.demand & DEMAND_FORCES) {
+    for (int o = 0; o < r.wanted.count; ++o)
+      write_output(p, w, balance, RowValues{r, in}, output_of(r, o), out);
+  }
+  template <class TieValue>
+  void balance(const TieValue& tie_value) {
+    const bool velocities = r.demand & DEMAND_VELOCITY, accelerations = r.demand & DEMAND_ACCELERATION;
+    const RowValues row_values = {r, in};
     const Mask undefined = evaluate_loads(p, w, row_values);
     if (r.loads)
       for (int v = 0; v < p.load_values; ++v) writer(r.loads).put(v, w.load[v]);
     if (r.undefined)
       for (int i = 0; i < in.count; ++i) r.undefined[in.row + i] = lane(undefined, i);
-    const Balance balance =
-        balance_with_actuators(p, w, velocities, accelerations, r.shift, row_values, tie_value);
+    const Balance balance = balance_with_actuators(p, w, velocities, accelerations, r.shift, row_values, tie_value);
     // the chart stands in the one block, behind its closing equations
     if (PARTS > 1 && r.chart_forces)
       for (int i = 0; i < p.charts; ++i)
@@ -225,30 +214,95 @@ void run_pack(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
       writer(r.power_error)
           .put(0, velocities ? power_error(p, w, accelerations, balance.level, row_values, actuators)
                              : Pack(__builtin_nan("")));
-    if (r.outputs) outputs(&balance);
-  } else if (r.outputs) {
-    outputs(nullptr);
+    if (r.outputs) write_outputs(&balance);
   }
-  write_flags(r.flags, in, converged, side);
+};
+
+// Packs that go through each stage of a run together: see close_packs. More would not stay in the nearest cache.
+constexpr int TOGETHER = PARTS == 1 ? 2 : 1;
+
+inline void close_rows(const Plan& p, const Request& r, RowPack* pack, int count, int b) {
+  Closing closing[] = {{pack[0].w}, {pack[count - 1].w}};
+  close_packs<FACTORS_SERVE_AGAIN>(p, closing, count, b, r);
+  for (int k = 0; k < count; ++k) pack[k].judge(b, closed_block(p, closing[k], b, r));
+}
+
+void run_packs(const Plan& p, const Request& r, RowPack* pack, int count) {
+  const auto each = [&](auto&& stage) __attribute__((always_inline)) {
+    for (RowPack* k = pack; k < pack + count; ++k) stage(*k);
+  };
+  each([&](RowPack& k) { k.read_guess(); });
+  for (int b = 0; b < p.blocks; ++b)
+    if (RowPack::skips(r, b))
+      each([&](RowPack& k) { leave_block(p, k.w, b); });
+    else if (RowPack::holds(r, b))
+      each([&](RowPack& k) { k.hold(b); });
+    else
+      close_rows(p, r, pack, count, b);
+  const int rest_count = r.held && !r.held->complete ? 0 : p.rest_count;
+  each([&](RowPack& k) {
+    for (int j = 0; j < rest_count; ++j) {
+      place_joint(p, k.w, p.rest[j]);
+      find_screws(p, k.w, p.rest[j]);
+    }
+    if (r.demand & DEMAND_FORCES && p.actuators)
+      find_influence(p, k.w, [&](int t) { return k.in.get(r.ties, t); });
+  });
+  if (r.demand & DEMAND_VELOCITY) {
+    each([&](RowPack& k) { k.read_columns(r.rates, k.w.rate); });
+    for (int b = 0; b < p.blocks; ++b) each([&](RowPack& k) { k.find_velocities(b); });
+    if (rest_count) each([&](RowPack& k) { move_rest(p, k.w); });
+  }
+  if (r.demand & DEMAND_ACCELERATION) {
+    each([&](RowPack& k) { k.read_columns(r.accelerations, k.w.acceleration); });
+    for (int b = 0; b < p.blocks; ++b) each([&](RowPack& k) { k.find_accelerations(b); });
+    if (rest_count) each([&](RowPack& k) { accelerate_rest(p, k.w); });
+  }
+  if (r.demand & DEMAND_JERK) {
+    each([&](RowPack& k) { k.read_columns(r.jerks, k.w.jerk); });
+    for (int b = 0; b < p.blocks; ++b) each([&](RowPack& k) { block_jerks(p, k.w, b); });
+    each([&](RowPack& k) {
+      for (int j = 0; j < p.rest_count; ++j) jerk_link(p, k.w, p.rest[j]);
+    });
+  }
+  each([&](RowPack& k) { k.write_motion(); });
+  each([&](RowPack& k) {
+    if (r.demand & DEMAND_FORCES)
+      k.balance([&](int t) { return k.in.get(r.ties, t); });
+    else if (r.outputs)
+      k.write_outputs(nullptr);
+  });
 }
 
 long workspace_size(const Plan& p) {
   Workspace w;
-  return lay_out(p, nullptr, &w) + 64;
+  return TOGETHER * lay_out(p, nullptr, &w) + 64;
 }
 
-Workspace workspace_at(const Plan& p, char* memory) {
+// The first of the packs that go together, and what it takes of the memory.
+Workspace workspace_at(const Plan& p, char* memory, long* size = nullptr) {
   Workspace w;
-  lay_out(p, memory + (64 - (std::uintptr_t)memory % 64) % 64, &w);
+  const long used = lay_out(p, memory + (64 - (std::uintptr_t)memory % 64) % 64, &w);
+  if (size) *size = used;
   find_moving(p, w);
   return w;
 }
 
 void run_rows(const Plan& p, const Request& r, long begin, long end, char* memory) {
-  Workspace w = workspace_at(p, memory);
-  for (long row = begin; row < end; row += LANES) {
-    const int count = end - row < LANES ? (int)(end - row) : LANES;
-    run_pack(p, r, w, {r.rows, row, count});
+  long size;
+  Workspace w = workspace_at(p, memory, &size), other = w;
+  if (TOGETHER > 1 && end - begin > LANES) other = workspace_at(p, memory + size);
+  const auto pack_at = [&](long row, Workspace& at) -> RowPack {
+    return {p, r, at, {r.rows, row, end - row < LANES ? (int)(end - row) : LANES}};
+  };
+  long row = begin;
+  for (; TOGETHER > 1 && end - row > LANES; row += TOGETHER * LANES) {
+    RowPack pack[] = {pack_at(row, w), pack_at(row + LANES, other)};
+    run_packs(p, r, pack, TOGETHER);
+  }
+  for (; row < end; row += LANES) {
+    RowPack pack = pack_at(row, w);
+    run_packs(p, r, &pack, 1);
   }
 }
 
