@@ -113,7 +113,6 @@ inline Balance balance_with_actuators(const Plan& p, Workspace& w, bool moving, 
       apply_along_coordinate(balance, p.actuator[a].axis, w.actuation.motor[a]);
     distribute(p, w, shift);
   }
-  balance.level = reaction_level(p, w);
   return balance;
 }
 

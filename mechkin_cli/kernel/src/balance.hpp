@@ -23,7 +23,6 @@ inline Balance balance_forces(const Plan& p, Workspace& w, bool moving, bool acc
     apply_friction(balance, accelerating, shift);
   else
     distribute(p, w, shift);
-  balance.level = reaction_level(p, w);
   return balance;
 }
 

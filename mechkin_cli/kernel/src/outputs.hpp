@@ -40,13 +40,18 @@ inline Vec3 ground_moment(const Plan& p, const Wrench& r) {
   return r.moment + (Pack(1.0) / Pack(p.length)) * cross(constant(p.origin), r.force);
 }
 
+inline Vec3 joint_force(const Plan& p, const Workspace& w, const JointPlace& j, const Wrench& r) {
+  return without_free(p, w, j, true, r.force);
+}
+inline Vec3 joint_moment(const Plan& p, const Workspace& w, const JointPlace& j, const Wrench& r) {
+  return without_free(p, w, j, false, r.moment - cross(carried_point(w, j.point_on, j.point), r.force));
+}
 inline Vec3 output_joint(const Plan& p, const Workspace& w, int type, int index) {
   const JointPlace& j = p.place[index];
   const Wrench r = joint_wrench(p, w, j);
-  if (type == OUT_JOINT_FORCE) return without_free(p, w, j, true, r.force);
-  if (type == OUT_JOINT_MOMENT)
-    return without_free(p, w, j, false, r.moment - cross(carried_point(w, j.point_on, j.point), r.force));
-  return ground_moment(p, r);
+  return type == OUT_JOINT_FORCE ? joint_force(p, w, j, r)
+         : type == OUT_JOINT_MOMENT ? joint_moment(p, w, j, r)
+                                    : ground_moment(p, r);
 }
 
 inline Vec3 output_total(const Plan& p, const Workspace& w, int type, int index) {
@@ -138,6 +143,18 @@ inline void write_output(const Plan& p, const Workspace& w, const Balance* balan
   Pack value[3];
   const int width = output_value(p, w, balance, row_value, o, value);
   for (int k = 0; k < width; ++k) out.put(o.slot + k, value[k]);
+}
+
+// A joint's force and moment, which are mostly asked for one after the other, from one wrench; whether these are such.
+template <class Number>
+inline bool write_wrench(const Plan& p, const Workspace& w, const OutputOf<Number>& force,
+                         const OutputOf<Number>& moment, const Writer& out) {
+  if (force.type != OUT_JOINT_FORCE || moment.type != OUT_JOINT_MOMENT || force.index != moment.index) return false;
+  const JointPlace& j = p.place[force.index];
+  const Wrench r = joint_wrench(p, w, j);
+  out.put(force.slot, Pack(force.factor) * joint_force(p, w, j, r));
+  out.put(moment.slot, Pack(moment.factor) * joint_moment(p, w, j, r));
+  return true;
 }
 
 }  // namespace

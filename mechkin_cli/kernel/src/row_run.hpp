@@ -104,6 +104,7 @@ struct RowPack {
   const Request& r;
   Workspace& w;
   Reader in;
+  bool wants_level;
   Pack residual = 0.0, correction = 0.0, condition = 0.0;
   Mask converged = all_lanes(true), side = all_lanes(true);
 
@@ -192,8 +193,12 @@ struct RowPack {
   }
   void write_outputs(const Balance* balance) const {
     const Writer out = writer(r.outputs);
-    for (int o = 0; o < r.wanted.count; ++o)
-      write_output(p, w, balance, RowValues{r, in}, output_of(r, o), out);
+    const int count = r.wanted.count;
+    for (int o = 0; o < count; ++o)
+      if (balance && o + 1 < count && write_wrench(p, w, output_of(r, o), output_of(r, o + 1), out))
+        ++o;
+      else
+        write_output(p, w, balance, RowValues{r, in}, output_of(r, o), out);
   }
   template <class TieValue>
   void balance(const TieValue& tie_value) {
@@ -204,7 +209,8 @@ struct RowPack {
       for (int v = 0; v < p.load_values; ++v) writer(r.loads).put(v, w.load[v]);
     if (r.undefined)
       for (int i = 0; i < in.count; ++i) r.undefined[in.row + i] = lane(undefined, i);
-    const Balance balance = balance_with_actuators(p, w, velocities, accelerations, r.shift, row_values, tie_value);
+    Balance balance = balance_with_actuators(p, w, velocities, accelerations, r.shift, row_values, tie_value);
+    if (wants_level) balance.level = reaction_level(p, w);
     // the chart stands in the one block, behind its closing equations
     if (PARTS > 1 && r.chart_forces)
       for (int i = 0; i < p.charts; ++i)
@@ -217,6 +223,13 @@ struct RowPack {
     if (r.outputs) write_outputs(&balance);
   }
 };
+
+// Whether the level of the joints' wrenches is asked for.
+inline bool level_is_wanted(const Request& r) {
+  bool wanted = r.demand & DEMAND_POWER;
+  for (int o = 0; o < r.wanted.count; ++o) wanted = wanted || r.wanted.output[o].type == OUT_REACTION_LEVEL;
+  return wanted;
+}
 
 // Packs that go through each stage of a run together: see close_packs. More would not stay in the nearest cache.
 constexpr int TOGETHER = PARTS == 1 ? 2 : 1;
@@ -292,8 +305,9 @@ void run_rows(const Plan& p, const Request& r, long begin, long end, char* memor
   long size;
   Workspace w = workspace_at(p, memory, &size), other = w;
   if (TOGETHER > 1 && end - begin > LANES) other = workspace_at(p, memory + size);
+  const bool wants_level = level_is_wanted(r);
   const auto pack_at = [&](long row, Workspace& at) -> RowPack {
-    return {p, r, at, {r.rows, row, end - row < LANES ? (int)(end - row) : LANES}};
+    return {p, r, at, {r.rows, row, end - row < LANES ? (int)(end - row) : LANES}, wants_level};
   };
   long row = begin;
   for (; TOGETHER > 1 && end - row > LANES; row += TOGETHER * LANES) {

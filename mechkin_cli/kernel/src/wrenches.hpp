@@ -13,7 +13,7 @@ struct Balance {
   Workspace& w;
   Wrench inertia, outside;
   bool moving;
-  Pack level;  // of the joints' wrenches
+  Pack level;  // of the joints' wrenches, where it is wanted
 
   MECHKIN_INLINE void apply(int link, const Wrench& load) {
     if (link < 0) return;
