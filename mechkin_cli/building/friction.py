@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.mechanism.friction import FrictionLaw, Rubbing
-from mechkin_cli.mechanism.joint_table import JOINT_TYPES
+from mechkin_cli.mechanism.joint_table import JOINT_TYPES, PLANE_JOINT_TYPES
 from mechkin_cli.mechanism.model import Attached, Joint
 from mechkin_cli.mechanism.vectors import cross, dot, norm, scale, subtract, unit
 from mechkin_cli.schema.loads import FallingCoefficient
@@ -33,7 +33,8 @@ def build_friction(
     """The friction of a joint; None, and errors in `fields`, where it cannot have this one."""
     law = joint.type.friction
     if law is None:
-        known = ", ".join(letter for letter, entry in JOINT_TYPES.items() if entry.friction)
+        types = PLANE_JOINT_TYPES if joint.type.space == 3 else JOINT_TYPES
+        known = ", ".join(letter for letter, entry in types.items() if entry.friction)
         text = f"{joint.name} is of type {joint.letter}, for which there is no law of friction"
         fields.error(CODE, (*path, "joint"), text, f"friction is known for {known}")
         return None

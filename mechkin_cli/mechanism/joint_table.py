@@ -230,6 +230,7 @@ _IN_PLANE = (
         point_on=FIRST,
         closing="Ps2",
         shape="Sg",
+        friction=FrictionLaw(friction.groove, slides="along"),
     ),
     replace(JOINT_TYPES["W"], closing="W2"),
 )

@@ -43,9 +43,14 @@ JOINT_TYPES: Final = {
 
 
 _SPATIAL = "it is a pair in space; a plane has R, P, Ps (a pin in a slot) and W"
+_POSE = (
+    "a pose in a plane is P along x, P along y and R, one after the other through two links "
+    "without mass; their coordinates may be inputs"
+)
 PLANE_JOINT_TYPES: Final = {
     **JOINT_TYPES,
-    **dict.fromkeys(("c", "h", "s", "sp", "u", "e", "ss", "sc", "cp", "f"), _SPATIAL),
+    **dict.fromkeys(("c", "h", "s", "sp", "u", "e", "ss", "sc", "cp"), _SPATIAL),
+    **dict.fromkeys(("f", "free", "pose"), _POSE),
     "sg": "a pin in a slot is Ps, with slot: [x, y]",
     **dict.fromkeys(
         ("pin_in_slot", "slot", "half", "pinslot"), "a pin in a slot is Ps, with slot: [x, y]"

@@ -217,7 +217,8 @@ class PlaneTorque(InRuns):
 
 
 class PlaneFriction(FrictionLoad):
-    """Coulomb friction of a joint R or P, from the joint's own reaction."""
+    """Coulomb friction of a joint R, P or Ps, from the joint's own reaction. A pin rubs along its
+    slot."""
 
     advice: ClassVar[dict[str, str]] = {
         "collar": _LEFT_OUT + "nothing presses along the normal",

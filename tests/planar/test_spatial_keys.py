@@ -45,7 +45,7 @@ CASES = {
     "a screw": ("A: {type: R", "A: {type: H", "joints.A.type", "pair in space"),
     "a groove": ("A: {type: R", "A: {type: Sg", "joints.A.type", "Ps"),
     "a plane pair": ("A: {type: R", "A: {type: E", "joints.A.type", "pair in space"),
-    "a pose": ("A: {type: R", "A: {type: F", "joints.A.type", "pair in space"),
+    "a pose": ("A: {type: R", "A: {type: F", "joints.A.type", "P along x"),
     "a mass centre": ("center_of_mass: [0, 1]", "center_of_mass: [0, 1, 0]", "links.crank", "[x"),
     "a tensor": ("inertia: 2", "inertia: {zz: 2}", "links.crank.inertia", "about the normal"),
     "a named point": ("at: [1, 1]", "at: [1, 1, 0]", "points.p.at", "[x, y]"),
