@@ -21,6 +21,8 @@ from mechkin_cli.solver.follow import TrackEnd
 from mechkin_cli.solver.runaway import Runaway
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from mechkin_cli.arrays import Floats
     from mechkin_cli.solver.follow import Followed
     from mechkin_cli.solver.session import Session
@@ -55,6 +57,13 @@ class Branch:
     lower: End
     upper: End
     places: list[Passage] = field(default_factory=list)
+
+
+def is_open(branches: Sequence[Branch]) -> bool:
+    """Whether a walk through branches may have missed some of their circuit: one could not be
+    followed to its end, or there are too many."""
+    lost = any("branch-lost" in (one.lower.kind, one.upper.kind) for one in branches)
+    return lost or len(branches) > tolerances.MOST_BRANCHES
 
 
 class Walker:
@@ -114,9 +123,11 @@ class Walker:
 
     def _back_to(self, fold: End, start: Passage, direction: float) -> list[Passage]:
         """The place between a dead centre and the first place of the branch beyond it."""
-        value = self._next(start.value, -direction)
+        value = self._next(start.value, -direction, here=True)
         if (fold.value - value) * -direction <= 0.0:
             return []
+        if value == start.value:
+            return [start]
         way = self.follow(np.array([start.value, value]), start.state)
         return [Passage(value, way.state)] if way.end == TrackEnd.FINISHED else []
 
@@ -163,15 +174,23 @@ class Walker:
         found[0, self.number], found[1, self.number] = values, 1.0
         return found
 
-    def _next(self, value: float, direction: float) -> float:
-        """The next value in a direction at which a place is taken, or the end of the reach."""
+    def _next(self, value: float, direction: float, *, here: bool = False) -> float:
+        """The next value in a direction at which a place is taken, or the end of the reach; `here`:
+        the value itself if it is one.
+
+        Values are compared as they are: a range may be narrower than any tolerance.
+        """
         origin = float(self.inputs[self.number])
+
+        def is_ahead(place: float) -> bool:
+            return (place - value) * direction > 0.0 or (here and place == value)
+
         if self.period is None:
-            ahead = (origin - value) * direction > tolerances.PASSED
-            return origin if ahead else value + direction * tolerances.FAR_INPUT
-        turns = (value - origin) / self.period * direction
-        whole = np.floor(turns + tolerances.PASSED) + 1.0
-        return origin + direction * float(whole) * self.period
+            return origin if is_ahead(origin) else value + direction * tolerances.FAR_INPUT
+        whole = float(np.floor((value - origin) / self.period * direction)) - 1.0
+        while not is_ahead(origin + direction * whole * self.period):
+            whole += 1.0
+        return origin + direction * whole * self.period
 
     def _same(self, one: DeadCentre, other: DeadCentre) -> bool:
         return self._is_same(one.state, other.state, tolerances.SAME_DEAD_CENTRE)

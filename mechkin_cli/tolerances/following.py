@@ -173,7 +173,7 @@ MOST_TURNS: Final = 16
 """Whole turns of an input after which an assembly that never came again counts as far."""
 
 PASSED: Final = 1e-6
-"""Distance (rad, length units, turns) beyond which a place still lies ahead on the way."""
+"""Way of the inputs (rad, length units) up to which a branch that ends has not left its start."""
 
 FAR_INPUT: Final = 20.0
 """How far a slide (length units) or a thread (rad) is driven in search of a dead centre."""

@@ -13,12 +13,13 @@ from mechkin_cli import tolerances
 from mechkin_cli.analysis.assembly.home import is_home_assembled, nearest_to_home
 from mechkin_cli.analysis.assembly.named_modes import NamedModes, name_modes
 from mechkin_cli.analysis.assembly.not_assembled import nothing_found
+from mechkin_cli.analysis.ranges.circuits import Circuit, joined, undecided
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.mechanism.joint_table import dimension_of
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.quantities import Wanted
-from mechkin_cli.solver.circuit import Branch, End, Walker
+from mechkin_cli.solver.circuit import Branch, End, Walker, is_open
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.inputs import input_number
@@ -64,7 +65,7 @@ class Ranges(Listed):
     """Ranges of `input` with all others held as in the first row.
 
     `circuits` are the modes joined in one circuit: each is reached from the others by moving the
-    input to and fro. `searched` says how sure it is that these are all modes.
+    input to and fro. A warning `circuits-undecided` names those that may be one.
     """
 
     input: str
@@ -135,8 +136,12 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
         return Ranges(item.name, unit, at, (), (), (*problem.diagnostics, note))
     walker = Walker(session, leader, first, session.tie(leader, row))
     ranges, circuits = _Survey(session, named, walker, number, outputs).ranges()
-    notes = (*problem.diagnostics, *_tied_note(problem, number, leader))
-    return Ranges(item.name, unit, at, ranges, circuits, notes)
+    notes = (
+        *problem.diagnostics,
+        *_tied_note(problem, number, leader),
+        *undecided(circuits, item.name),
+    )
+    return Ranges(item.name, unit, at, ranges, tuple(one.shown for one in circuits), notes)
 
 
 def _leader(session: Session, number: int) -> tuple[int, set[str]]:
@@ -179,17 +184,6 @@ def _input_number(problem: Problem, name: str | None) -> int:
     return names.index(name)
 
 
-def _joined(circuits: list[set[str]]) -> list[set[str]]:
-    """Circuits that share a mode are one: a walk may end early on one side of a narrow place and
-    get through from the other."""
-    last = circuits[-1]
-    apart = [modes for modes in circuits[:-1] if not modes & last]
-    for modes in circuits[:-1]:
-        if modes & last:
-            last = last | modes
-    return [*apart, last]
-
-
 def _lost_ends(item: Range) -> int:
     """Ends of a range at which following stopped without a reason."""
     return sum(end.kind == "branch-lost" for end in (item.lower, item.upper))
@@ -212,10 +206,10 @@ class _Survey:
         self.outputs = [quantities[name] for name in outputs]
         self.keys = pose_keys(self.layout, named.found.states)
 
-    def ranges(self) -> tuple[tuple[Range, ...], tuple[tuple[str, ...], ...]]:
+    def ranges(self) -> tuple[tuple[Range, ...], list[Circuit]]:
         """The ranges in the order of the letters, and the circuits."""
         found: dict[str, Range] = {}
-        circuits: list[set[str]] = []
+        circuits: list[Circuit] = []
         for number, letter in self.named.letters.items():
             if letter in found:
                 continue
@@ -227,18 +221,16 @@ class _Survey:
                     if name is not None and name not in members:
                         members[name] = (branch, value)
             members[letter] = (branches[0], float(self.walker.inputs[self.walker.number]))
-            circuits = _joined([*circuits, set(members)])
+            circuits = joined([*circuits, Circuit(frozenset(members), is_open(branches))])
             for name, (branch, value) in members.items():
                 known = found.get(name)
                 if known is None or _lost_ends(known) > 0:
                     seen = self._range(name, branch, value)
                     found[name] = min((r for r in (known, seen) if r), key=_lost_ends)
         names = list(self.named.letters.values())
-        ordered = sorted(circuits, key=lambda modes: min(names.index(name) for name in modes))
-        number_of = {name: k for k, modes in enumerate(ordered, 1) for name in modes}
-        ranges = (replace(found[name], circuit=number_of[name]) for name in names)
-        shown = tuple(tuple(sorted(modes, key=lambda n: (len(n), n))) for modes in ordered)
-        return tuple(ranges), shown
+        ordered = sorted(circuits, key=lambda one: min(names.index(name) for name in one.modes))
+        number_of = {name: k for k, one in enumerate(ordered, 1) for name in one.modes}
+        return tuple(replace(found[name], circuit=number_of[name]) for name in names), ordered
 
     def _letter(self, state: Floats) -> str | None:
         same = same_poses(self.keys, pose_keys(self.layout, state[:, None]))[:, 0]

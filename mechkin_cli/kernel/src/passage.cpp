@@ -159,14 +159,15 @@ class Walker {
   // Two dead centres in one step would go unseen: sigma's rate keeps its sign at both ends. Between them the rate's
   // cubic Hermite polynomial must not come near zero.
   bool shows_its_turns(const Node& a, const Node& b) const {
-    if (a.rate <= 0.0 || b.rate <= 0.0) return true;
-    const double h = b.place - a.place, least = 0.25 * std::fmin(a.rate, b.rate);
-    if (a.bend >= 0.0 || b.bend <= 0.0) return true;
+    if (a.rate * b.rate <= 0.0) return true;
+    const double sense = std::copysign(1.0, a.rate);
+    const double h = b.place - a.place, least = 0.25 * std::fmin(std::fabs(a.rate), std::fabs(b.rate));
+    if (sense * a.bend >= 0.0 || sense * b.bend <= 0.0) return true;
     for (int i = 1; i < 16; ++i) {
       const double t = i / 16.0, t2 = t * t, t3 = t2 * t;
       const double rate = (1 - 3 * t2 + 2 * t3) * a.rate + (3 * t2 - 2 * t3) * b.rate +
                           h * ((t - 2 * t2 + t3) * a.bend + (t3 - t2) * b.bend);
-      if (rate < least) return h <= 1e-12;
+      if (sense * rate < least) return h <= 1e-12;
     }
     return true;
   }
@@ -193,22 +194,24 @@ class Walker {
   }
 
   // On from the first node behind a dead centre to one that is as regular as the walk's ends are, but not over the next
-  // dead centre: from there the other assembly is followed.
+  // dead centre: from there the other assembly is followed. A branch that is too short for such a node has dead centres
+  // at both ends; the node where sigma moves fastest is the farthest from them.
   Node on_the_other_side(Arc& arc, Node b) const {
-    Node c;
+    Node c, fastest = b;
     double h = arc.wanted_step(b);
     for (int tries = 0; tries < MOST_BEHIND && h >= LEAST_ARC; ++tries) {
       int blame = -1;
-      if (!arc.step(b, h, &c, &blame) || c.rate >= 0.0) {
+      if (!arc.step(b, h, &c, &blame) || c.rate >= 0.0 || !shows_its_turns(b, c)) {
         h *= 0.5;
         continue;
       }
       const bool regular = -std::fmax(b.rate, c.rate) * arc.speed() * h >= 2.0 * limits_.narrow;
       b = c;
-      if (regular) break;
+      if (regular) return b;
+      if (b.rate < fastest.rate) fastest = b;
       h = std::fmin(arc.wanted_step(b), 2.0 * h);
     }
-    return b;
+    return fastest;
   }
 
   // Whether nothing of sigma but a rounding is left before its rate is zero.
