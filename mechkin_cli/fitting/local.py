@@ -44,7 +44,9 @@ def refined(
     if at_start.missing[0] > 0.0:
         return start, False, "something has no value at the start of this search"
     unknowns, ended, reason = start, True, ""
-    if not at_start.peaks:
+    # a search that has ended at a bound would only leave it without the bound
+    binds = np.abs(at_start.margins).min(initial=1.0) <= FIT_HELD
+    if not at_start.peaks and not binds:
         unknowns, ended, reason = _least_squares(measured, start, slopes, steps)
         if measured.one(unknowns).margins.min(initial=1.0) >= -FIT_HELD:
             return unknowns, ended, reason

@@ -9,14 +9,14 @@ import numpy as np
 
 from mechkin_cli.fitting.nearest_place import nearest_places
 from mechkin_cli.interface.fit_request import Constraint, Target
-from mechkin_cli.interface.fit_values import SOLVED, FitValues, deviations, margins_of
+from mechkin_cli.interface.fit_values import SOLVED, TIME, FitValues, deviations, margins_of
 from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.mechanism.response import response_problem
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.tolerances import FIT_AT_BOUND, FIT_HELD
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
+    from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.fitting.measures import Measured
     from mechkin_cli.fitting.search import Found
     from mechkin_cli.interface.analysis import Analysis
@@ -105,8 +105,7 @@ class Fit(Listed):
     @cached_property
     def rows_not_ok(self) -> int:
         """Rows of the sweep, and of responses that were asked for, without a solution."""
-        runs = [self._rows(run) for run in self._values.runs]
-        return sum(int((~SOLVED[one.result.status]).sum()) for one in runs)
+        return sum(int((~self._solved(run)).sum()) for run in self._values.runs)
 
     @cached_property
     def at_bounds(self) -> dict[str, str]:
@@ -133,7 +132,7 @@ class Fit(Listed):
         status = self.status
         if status == NOT_ASSEMBLED:
             runs = self._values.runs
-            rows = sum(self._rows(run).rows for run in runs)
+            rows = sum(self._solved(run).size for run in runs)
             told = " and ".join("the sweep" if run == SWEEP else run for run in runs)
             return (
                 f"no variant that was tried has a solution everywhere; the best misses "
@@ -193,6 +192,26 @@ class Fit(Listed):
         )
         return Listing(head, ("what", "value", "unit", ""), tuple(rows), notes)
 
+    def _solved(self, run: str) -> Bools:
+        """Which of the rows that were asked for have a solution at their places."""
+        rows = self._rows(run)
+        found = SOLVED[rows.result.status]
+        if run == SWEEP:
+            return found
+        times = self._padded(run, TIME)
+        solved = np.zeros(len(times), dtype=np.bool_)
+        solved[: rows.rows] = found[: len(times)]
+        both: Bools = solved & self._values.on_time(run, times)
+        return both
+
+    def _padded(self, run: str, text: str) -> Floats:
+        """A quantity at the moments of a response, nan behind its end."""
+        values = self._rows(run)[text]
+        count = self.model.response(run).rows
+        found: Floats = np.full((count, *values.shape[1:]), np.nan)
+        found[: len(values)] = values[:count]
+        return found
+
     def _rows(self, run: str) -> Analysis:
         """The rows of a run of the mechanism that was found; kept."""
         if run not in self._kept:
@@ -213,11 +232,11 @@ class Fit(Listed):
                 size = np.array([[np.nanmax(np.abs(values), initial=0.0)]])
             else:
                 weights = self._values.weights[target.run]
-                parts = values.reshape(len(values), -1) * weights[:, None]
+                parts = values.reshape(len(values), -1) * weights[: len(values), None]
                 size = np.array([[np.sqrt(np.nansum(np.square(parts)))]])
             return Met(target.label, target.unit, none, size, size)
         if target.run != SWEEP:
-            told = self._rows(target.run)[target.of][self._values.rows_of(target)]
+            told = self._padded(target.run, target.of)[self._values.rows_of(target)]
             values = told.reshape(-1, target.width)
             away = deviations(target, values[None])[0].reshape(values.shape) * target.within
             return Met(target.label, target.unit, np.array(target.at), values, away)

@@ -14,11 +14,13 @@ from mechkin_cli.interface.way import way_of
 from mechkin_cli.reductions import row_weights
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.status import Status
+from mechkin_cli.tolerances import LAST_ROW
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
+    from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.interface.model import Model
 
+TIME = "time"
 SOLVED = np.array([status.has_solution for status in Status])
 
 
@@ -64,6 +66,14 @@ class FitValues:
         moments = response.moments.written.tolist()
         return [moments.index(value) for value in target.at or ()]
 
+    def on_time(self, run: str, times: Floats) -> Bools:
+        """Which rows of a response stand at their moments: that of a stop takes the place of the
+        next one, and those behind it are missing."""
+        moments = self.models.model.problem.responses[run].moments.written
+        with np.errstate(invalid="ignore"):
+            found: Bools = np.abs(times - moments) <= LAST_ROW * np.ptp(moments)
+        return found
+
     def measure(self, unknowns: Floats) -> Measures:
         """Of a population (unknowns, S)."""
         values, count = self.values(unknowns), unknowns.shape[1]
@@ -107,8 +117,12 @@ class FitValues:
     ) -> tuple[dict[str, Floats], Floats]:
         """Expressions over the rows, and the part of rows or values that are missing (S,)."""
         asked = list(dict.fromkeys(texts)) or [model.problem.motion.inputs[0].name]
-        variants = model.vary(values, asked, run=run)
-        lost = ~SOLVED[variants.codes]
+        if run == SWEEP:
+            variants = model.vary(values, asked)
+            lost = ~SOLVED[variants.codes]
+        else:
+            variants = model.vary(values, list(dict.fromkeys((*asked, TIME))), run=run)
+            lost = ~SOLVED[variants.codes] | ~self.on_time(run, variants[TIME])
         found = {}
         for text in asked:
             value = variants[text]

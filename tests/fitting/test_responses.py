@@ -72,6 +72,22 @@ def test_the_damping_of_the_least_mean_square() -> None:
     assert f.targets[0].largest == pytest.approx(size, rel=1e-9)
 
 
+def test_a_stop_before_the_moment_is_no_answer() -> None:
+    """The row of a stop is not that of the moment after it. The dead centre of the pendulum, half a
+    period on, comes after 0.75 s where the pull is small."""
+    text = PENDULUM.replace("step: 0.25}", "step: 0.25}\n    stop: [{dead_centre: A.theta}]")
+    target = {"of": "A.theta", "run": "swing", "at": [0.75], "is": [-140]}
+    late = mk.loads(text).fit(target, {"pull": (10, 15)}, starts=1)
+    assert late.status == "not-assembled"  # at the moment 1 it has stopped
+    assert "misses" in late.reason
+    assert "of 5 rows of swing" in late.reason
+    short = mk.loads(text.replace("to: 1,", "to: 0.75,")).fit(target, {"pull": (10, 21)}, starts=1)
+    plain = mk.loads(PENDULUM).fit(target, {"pull": (10, 21)}, starts=1)
+    assert short.status == plain.status == "fitted"
+    assert short.parameters["pull"] == pytest.approx(plain.parameters["pull"], rel=1e-9)
+    assert short.targets[0].largest < 1e-8
+
+
 @pytest.mark.parametrize(
     ("target", "told"),
     [
