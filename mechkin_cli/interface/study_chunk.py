@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.diagnostics import InvalidFile, MechkinError
+from mechkin_cli.interface.study_messages import messages
 from mechkin_cli.reductions import REDUCTIONS, mean, root_mean_square
 from mechkin_cli.runs import SWEEP
 from mechkin_cli.status import Status
@@ -42,8 +42,6 @@ PLACES: Mapping[str, Callable[[Floats], Floats]] = {
     "place_of_peak": np.abs,
 }
 """Words for places, and that whose largest value stands there."""
-
-LONGEST_MESSAGE = 300
 
 
 class Kept(NamedTuple):
@@ -104,12 +102,12 @@ def chunk(
     not_ok = found.codes != Status.ok
     records[VERDICTS[0].label] = np.count_nonzero(not_ok, axis=1).astype(np.int64)
     verdicts = words[found.codes[np.arange(count), np.argmax(not_ok, axis=1)]]
-    messages = empty_values("text", count)
-    for number, error in found.errors.items():
-        verdicts[number], messages[number] = NOT_BUILT, _message(error)
+    verdicts[list(found.errors)] = NOT_BUILT
     if question.dead_centre is not None:
-        records[question.dead_centre.label] = _dead_centres(model, values, found)
-    records[VERDICTS[1].label], records[VERDICTS[2].label] = verdicts, messages
+        records[question.dead_centre.label] = _dead_centres(model, values, found, places)
+    records[VERDICTS[1].label] = verdicts
+    texts = dict.fromkeys([kept.text for kept in question.kept] + [h.label for h in question.rows])
+    records[VERDICTS[2].label] = messages(found, texts, question.parameter, places)
     tables = {"variants": records}
     if question.rows:
         tables["rows"] = _rows(question, found, places, begin, words)
@@ -175,19 +173,15 @@ def _place(sizes: Floats, places: Floats | None) -> Floats:
     return np.where(there.any(axis=1), at, np.nan)
 
 
-def _message(error: MechkinError) -> str:
-    """What was said of a variant, in one line."""
-    text = str(error)
-    if isinstance(error, InvalidFile):
-        first = next((d for d in error.diagnostics if d.severity == "error"), None)
-        text = str(first._replace(place=None)) if first is not None else text
-    return " ".join(text.split())[:LONGEST_MESSAGE]
-
-
-def _dead_centres(model: Model, values: Mapping[str, Floats], found: Variants) -> Floats:
-    """The input at the dead centre at which a variant's branch ends, in the file's units; nan where
-    it meets none."""
+def _dead_centres(
+    model: Model, values: Mapping[str, Floats], found: Variants, places: Floats | None
+) -> Floats:
+    """The input at the dead centre at which a variant's branch ends, or at which a row stands, in
+    the file's units; nan where it meets none."""
+    stands = found.codes == Status.dead_centre
     ends = np.full(len(found), np.nan)
+    if places is not None and stands.any():
+        ends = np.where(stands.any(axis=1), _place(stands.astype(np.float64), places), np.nan)
     for number in np.flatnonzero((found.codes == Status.beyond_dead_centre).any(axis=1)):
         own = {name: float(column[number]) for name, column in values.items()}
         for diagnostic in model.with_parameters(own).analyze([], tables=[]).diagnostics:

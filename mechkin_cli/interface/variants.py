@@ -86,7 +86,10 @@ class Variants:
 
     @property
     def complete(self) -> NDArray[np.bool_]:
-        """Which variants have a solution in every row (variants,)."""
+        """Which variants have a position in every row (variants,), as `Analysis.complete`.
+
+        A row at a dead centre has one: `status` tells it, and what has no bound there is infinite.
+        """
         solved = np.array([status.has_solution for status in Status])
         found: NDArray[np.bool_] = np.logical_and.reduce(solved[self._codes], axis=1)
         return found
