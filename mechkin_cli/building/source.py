@@ -65,9 +65,9 @@ def _checked(document: Document) -> Source:
     try:
         file = validate(document.data)
     except InvalidDataError as invalid:
-        from mechkin_cli.reading.explain import explain  # only on the way to messages
+        from mechkin_cli.reading.explain import explain, is_study  # only on the way to messages
 
-        raise InvalidFile(explain(invalid.errors, document)) from None
+        raise InvalidFile(is_study(document) or explain(invalid.errors, document)) from None
     if isinstance(file, MechanismFile):
         return Source(file, document)
     from mechkin_cli.building.plane import in_space  # only for files in a plane

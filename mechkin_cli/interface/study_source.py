@@ -105,6 +105,6 @@ def open_study(given: str | Path | Mapping[str, Any]) -> StudySource:
     try:
         return StudySource(validate_study(document.data), document)
     except InvalidDataError as invalid:
-        from mechkin_cli.reading.explain import explain  # only on the way to messages
+        from mechkin_cli.reading.explain import explain, is_mechanism  # only for messages
 
-        raise InvalidFile(explain(invalid.errors, document)) from None
+        raise InvalidFile(is_mechanism(document) or explain(invalid.errors, document)) from None

@@ -133,3 +133,31 @@ def _told(words: wording.Wording, path: KeyPath, place: Place) -> Diagnostic:
     where = "".join(f"#{step + 1}" if isinstance(step, int) else f".{step}" for step in path)
     message = f"{where[1:]}: {words.message}" if where else words.message
     return Diagnostic(words.code, "error", message, place, hint=words.hint)
+
+
+def is_study(document: Document) -> list[Diagnostic]:
+    """One message where a mechanism is needed and the file is a study; none where it is not."""
+    if not _begins(document, "study", "format"):
+        return []
+    text = "this is a study, and a mechanism file is needed"
+    hint = f"run it with mechkin study {document.file}"
+    named = document.data.get("mechanism")
+    if isinstance(named, str):
+        hint += f", or give its mechanism, {named}"
+    return [Diagnostic("a-study", "error", text, document.place(("study",)), hint=hint)]
+
+
+def is_mechanism(document: Document) -> list[Diagnostic]:
+    """One message where a study is needed and the file is a mechanism; none where it is not."""
+    if not _begins(document, "format", "study"):
+        return []
+    text = "this is a mechanism file, and a study is needed"
+    hint = (
+        "write study: 1, mechanism: FILE, vary: {NAME: [VALUES]} and keep: into a file of its own "
+        f"(docs/studies.md), or run this one with mechkin analyze {document.file}"
+    )
+    return [Diagnostic("a-mechanism", "error", text, document.place(("format",)), hint=hint)]
+
+
+def _begins(document: Document, key: str, other: str) -> bool:
+    return key in document.data and other not in document.data

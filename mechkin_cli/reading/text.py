@@ -114,7 +114,7 @@ def _example(folder: Path) -> str:
 
 def _similar(path: Path) -> str:
     try:
-        names = [entry.name for entry in path.parent.glob("*.y*ml")]
+        names = [entry.name for entry in path.parent.glob("*.y*ml") if entry.is_file()]
     except OSError:
         names = []
     name = nearest(path.name, names)
