@@ -43,13 +43,15 @@ class Polynomial(Section):
 
     law: Literal["polynomial"]
     coefficients: Annotated[tuple[AnyDimension, ...], Limits(min_length=1, max_length=20)]
-    """c0, c1, c2, ...; the k-th has the coordinate's dimension per time^k. Those of an angle carry
-    units from c1 on, unless the file's angular rates are in its angle per its time."""
+    """c0, c1, c2, ... of x = c0 + c1*t + c2*t^2 + ..., with t counted from the first moment of
+    `time`, where x is c0; the k-th has the coordinate's dimension per time^k. Those of an angle
+    carry units from c1 on, unless the file's angular rates are in its angle per its time."""
 
 
 class _Rise(Section):
     start: Duration | None = None
-    """When the rise begins; left out, at the first moment of `time`. Before it the input rests."""
+    """When the rise begins, as `time` counts; left out, at the first moment of `time`. Before it
+    the input rests."""
     duration: Duration | None = None
     """How long it lasts; left out, to the last moment of `time`. After it the input rests."""
 
@@ -79,7 +81,8 @@ class TableLaw(JoinedTable):
 
     law: Literal["table"]
     file: CsvPath
-    """CSV file with a header and two columns: time, value; relative to the mechanism file."""
+    """CSV file with a header and two columns: time (as `time` counts) and value; relative to the
+    mechanism file."""
 
     def check(self) -> None:
         """The rate does not jump."""

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from oracle.dynamics.motion import Course
 from oracle.dynamics.response import prepare
 from responses.motions import off, respond
+
+from mechkin_cli.schema.json_schema import json_schema
 
 FILE = """format: 1
 name: slider-crank with a pendulum on its slide
@@ -67,6 +70,24 @@ def test_a_pendulum_on_a_driven_slide(law: str) -> None:
     for component in "xyz":
         name = f"D.force.{component}"
         assert off(found[name], exact[name]) < 1e-9, name
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_law_counts_from_the_first_moment(law: str) -> None:
+    """No load reads the time: the same motion takes place whenever it begins."""
+    text = FILE.format(law=law)
+    first = respond(text)
+    later = respond(text.replace("{from: 0, to: 1.5,", "{from: 0.25, to: 1.75,"))
+    assert later["time"][0] == 0.25
+    values = [LAWS[law](float(t) - 0.25)[0] for t in later["time"]]
+    assert off(later["A.theta"], np.array(values)) < 1e-13
+    for name in ("E.theta", "E.theta_dot", "D.s", "D.force.y"):
+        assert off(later[name], first[name]) < 1e-10, name
+
+
+def test_the_format_says_from_when_a_polynomial_counts() -> None:
+    found = json_schema()["$defs"]["Polynomial"]
+    assert "from the first moment of `time`" in found["properties"]["coefficients"]["description"]
 
 
 @pytest.mark.parametrize("row", [0.5, 1.0])
