@@ -27,6 +27,15 @@ inline void place_joint(const Plan& p, Workspace& w, int k) {
   const TreeJoint& j = p.joints[k];
   if (j.type == TREE_L) return place_leg(p, w, k);
   Pose pose = placed(j.at, pose_of(w, j.parent));
+  if (w.stands[k]) w.frame[k] = pose;
+  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) { entry.place(pose, j, w.q + j.state); });
+  w.pose[k] = pose;
+}
+
+// Places a joint anew whose frame on its parent stands still.
+inline void place_standing(const Plan& p, Workspace& w, int k) {
+  const TreeJoint& j = p.joints[k];
+  Pose pose = w.frame[k];
   with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) { entry.place(pose, j, w.q + j.state); });
   w.pose[k] = pose;
 }
@@ -115,7 +124,11 @@ inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
     const Closure& k = w.closure[c];
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       Pack* const rows = a + j.row * n;
-      for (int e = 0; e < entry.equations * n; ++e) rows[e] = 0.0;
+      const auto clear = [&](int u) __attribute__((always_inline)) {
+        for (int i = 0; i < entry.equations; ++i) rows[i * n + u] = 0.0;
+      };
+      for (int u = 64; u < n; ++u) clear(u);
+      std::uint64_t written = 0;  // of the first 64 columns, a bit each: mostly all of them are
       for (int l = j.loop_begin; l < j.loop_end; ++l) {
         const TreeJoint& t = p.joints[p.loop[l].joint];
         const Pack sign = p.loop[l].sign;
@@ -125,8 +138,11 @@ inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
           Pack column[entry.equations];
           entry.column(k, sign * w.screw[t.column + f], column);
           for (int i = 0; i < entry.equations; ++i) rows[i * n + u] = column[i];
+          if (u < 64) written |= std::uint64_t(1) << u;
         }
       }
+      for (int u = 0; u < n && u < 64; ++u)
+        if (!(written >> u & 1)) clear(u);
     });
   }
   if (!b.charts) return;

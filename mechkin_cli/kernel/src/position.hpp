@@ -86,7 +86,7 @@ inline BlockMatrices matrices_of(const Plan& p, const Workspace& w, int block) {
 
 // The joints that Newton moves, which are placed anew in each of its steps; inputs and what they carry stand still.
 inline void find_moving(const Plan& p, Workspace& w) {
-  for (int k = 0; k < p.links; ++k) w.moves[k] = false;
+  for (int k = 0; k < p.links; ++k) w.moves[k] = w.stands[k] = false;
   for (int b = 0; b < p.blocks; ++b)
     for (int o = p.block[b].joint_begin; o < p.block[b].joint_end; ++o) {
       const int k = p.order[o];
@@ -97,11 +97,12 @@ inline void find_moving(const Plan& p, Workspace& w) {
         for (int f = 0; f < entry.freedoms; ++f) moves = moves || unknown_index(p, b, j.column + f) >= 0;
       });
       w.moves[k] = moves;
+      w.stands[k] = moves && j.type != TREE_L && j.parent >= 0 && !w.moves[j.parent];
     }
 }
 inline void place_moving(const Plan& p, Workspace& w, const Block& b) {
   for (int o = b.joint_begin; o < b.joint_end; ++o)
-    if (w.moves[p.order[o]]) place_joint(p, w, p.order[o]);
+    if (const int k = p.order[o]; w.moves[k]) w.stands[k] ? place_standing(p, w, k) : place_joint(p, w, k);
 }
 inline void moving_screws(const Plan& p, Workspace& w, const Block& b) {
   for (int o = b.joint_begin; o < b.joint_end; ++o)

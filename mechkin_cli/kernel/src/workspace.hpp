@@ -40,6 +40,8 @@ struct Workspace {
   Pack* load;                     // load values: of loads that vary
   Pack* law;                      // registers of Plan::law
   bool* moves;                    // links: whether Newton on the link's block moves it (find_moving)
+  bool* stands;                   // links: whether it moves against a parent that carries it and does not
+  Pose* frame;                    // links: the frames of such joints on their parents
   Pack *direction, *origin;       // charts x columns, states: the chart's, see Chart
   Pack *place, *place_rate, *place_acceleration;  // charts
 
@@ -82,6 +84,8 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->kept = (Pack*)take(largest * largest * pack);
   w->kept_swap = (Mask*)take(largest * largest * sizeof(Mask));
   w->moves = (bool*)take(p.links * sizeof(bool));
+  w->stands = (bool*)take(p.links * sizeof(bool));
+  w->frame = (Pose*)take(p.links * sizeof(Pose));
   w->effort = (Pack*)take((p.inputs + 1) * pack);
   lay_out_actuation(p, take, &w->actuation);
   lay_out_friction(p, take, &w->rubbing);
