@@ -20,13 +20,15 @@ struct Factors {
 
 template <int N>
 MECHKIN_INLINE void factor_sized(Factors f, int runtime) {
+  // short rows are exchanged in less time than a branch takes that is guessed wrong
+  constexpr bool BRANCH = N == 0 || N > 3;
   const int n = N ? N : runtime;
   int s = 0;
   for (int k = 0; k < n; ++k) {
     for (int i = k + 1; i < n; ++i) {
       const Mask c = abs(f.a[i * n + k]) > abs(f.a[k * n + k]);
       f.swap[s++] = c;
-      if (!any(c)) continue;
+      if (BRANCH && !any(c)) continue;
       for (int j = 0; j < n; ++j) {
         const Pack x = f.a[k * n + j], y = f.a[i * n + j];
         f.a[k * n + j] = select(c, y, x);

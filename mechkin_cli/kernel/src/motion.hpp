@@ -29,7 +29,9 @@ inline void block_accelerations(const Plan& p, Workspace& w, int index) {
   second_of_equations(p, w, b);
   at.solve_equations(w.right);
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = w.right[u];
-  accelerate_block(p, w, b, true);
+  // what no unknown moves is accelerated as it was
+  for (int o = b.joint_begin; o < b.joint_end; ++o)
+    if (w.moves[p.order[o]]) accelerate_link(p, w, p.order[o], true);
 }
 
 // As block_accelerations, one order higher.

@@ -11,6 +11,10 @@ MECHKIN_INLINE Motion motion_of(const Workspace& w, int link) {
   return w.motion[link];
 }
 
+MECHKIN_INLINE Twist twist_of(const Workspace& w, int link) {
+  return link < 0 ? zero_twist() : w.motion[link].velocity;
+}
+
 inline void move_leg(const Plan& p, Workspace& w, int k, bool second) {
   const Leg& leg = p.leg[p.joints[k].leg];
   const Vec3 A = w.pose[k].o, B = carried_point(w, leg.second, leg.point);

@@ -10,7 +10,7 @@ namespace {
 MECHKIN_APART void along(const Vec3& axis, const MotionToJerk& m, const Closure& k, const PairMotion& p, Pack* out) {
   out[0] = dot(axis, k.d);
   if (p.order < 1) return;
-  out[1] = dot(axis, first_of_d(k, p.a, p.b)) + dot(m.rate(axis), k.d);
+  if (p.from < 2) out[1] = dot(axis, first_of_d(k, p.a, p.b)) + dot(m.rate(axis), k.d);
   if (p.order < 2) return;
   out[2] = second_along(axis, m, k, p.a, p.b);
   if (p.order < 3) return;
@@ -20,7 +20,7 @@ MECHKIN_APART void along(const Vec3& axis, const MotionToJerk& m, const Closure&
 MECHKIN_APART void about(const Closure& k, const PairMotion& p, Pack* out) {
   if (p.from < 1) out[0] = atan2(dot(k.A.Y, k.B.X), dot(k.A.X, k.B.X));
   if (p.order < 1) return;
-  out[1] = dot(k.A.Z, p.relative_omega());
+  if (p.from < 2) out[1] = dot(k.A.Z, p.relative_omega());
   if (p.order < 2) return;
   out[2] = dot(k.A.Z, p.relative_alpha()) + dot(p.a.rate(k.A.Z), p.relative_omega());
   if (p.order < 3) return;

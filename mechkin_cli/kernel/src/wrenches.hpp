@@ -25,9 +25,8 @@ struct Balance {
   }
 };
 
-// Wrench that accelerates link k: about the kernel's origin, gravity not included.
-inline Wrench inertia_wrench(const LinkInertia& m, const Pose& pose, const Motion& motion) {
-  const Vec3 centre = pose.point(m.centre);
+// Wrench that accelerates a link whose mass centre is at `centre`: about the kernel's origin, gravity not included.
+inline Wrench inertia_wrench(const LinkInertia& m, const Pose& pose, const Vec3& centre, const Motion& motion) {
   const Vec3 force = Pack(m.mass) * motion.point_acceleration(centre);
   const Vec3 omega = pose.components(motion.velocity.angular);
   const Vec3 alpha = pose.components(motion.acceleration.angular);
@@ -47,16 +46,22 @@ inline void apply_inertia(Balance& balance, bool accelerating) {
   const Plan& p = balance.p;
   Workspace& w = balance.w;
   const Vec3 g = constant(p.gravity);
+  Wrench inertia = balance.inertia, outside = balance.outside;
   for (int k = 0; k < p.links; ++k) {
-    w.carried[k] = zero_wrench();
+    Wrench carried = zero_wrench();
     const LinkInertia& m = p.inertia[k];
-    if (!m.present) continue;
-    balance.apply_outside(k, force_at(w.pose[k].point(m.centre), Pack(m.mass) * g));
-    if (!accelerating) continue;
-    const Wrench needed = inertia_wrench(m, w.pose[k], w.motion[k]);
-    w.carried[k] += needed;
-    balance.inertia += needed;
+    if (m.present) {
+      const Vec3 centre = w.pose[k].point(m.centre);
+      const Wrench weight = force_at(centre, Pack(m.mass) * g);
+      carried -= weight, outside += weight;
+      if (accelerating) {
+        const Wrench needed = inertia_wrench(m, w.pose[k], centre, w.motion[k]);
+        carried += needed, inertia += needed;
+      }
+    }
+    w.carried[k] = carried;
   }
+  balance.inertia = inertia, balance.outside = outside;
 }
 
 // The wrench `value` along a coordinate, on the joint's second link.
@@ -75,8 +80,10 @@ inline void closing_coordinate(const Plan& p, const Workspace& w, int c, int fre
   motion.from = from, motion.order = order;
   if (order > 2)
     motion.a = motion_to_jerk(w, j.first), motion.b = motion_to_jerk(w, j.second);
-  else if (order > 0)
+  else if (order > 1)
     static_cast<Motion&>(motion.a) = motion_of(w, j.first), static_cast<Motion&>(motion.b) = motion_of(w, j.second);
+  else if (order > 0)
+    motion.a.velocity = twist_of(w, j.first), motion.b.velocity = twist_of(w, j.second);
   with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
     entry.coordinate(whole_closure(p, w, c), motion, freedom, out);
   });
