@@ -131,7 +131,7 @@ BAD: tuple[tuple[dict[str, Any], str], ...] = (
     ({"vary": {"P1": {"between": [1, 2]}}}, "are drawn: how many?"),
     ({"vary": {"P1": {"between": [2, 1]}}, "sample": {"count": 3}}, "nothing between 2 and 1"),
     ({"vary": {"P1": {"deviation": 0}}, "sample": {"count": 3}}, "not larger than 0"),
-    ({"vary": {"P1": {"tolerance": 0}}, "sample": {"count": 3}}, "nothing between"),
+    ({"vary": {"P1": {"tolerance": 0}}, "sample": {"count": 3}}, "tolerance 0 is not larger"),
     ({"vary": {"P1": [1]}, "sample": {"count": 3}}, "nothing in vary: is drawn"),
     ({"vary": {"P1": {"between": [1, 2]}}, "sample": {"count": 10**12}}, "too many (limit"),
     (
