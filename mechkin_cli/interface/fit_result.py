@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli.fitting.nearest_place import nearest_places
+from mechkin_cli.interface.fit_lacks import Lack, lack_at, lack_of
 from mechkin_cli.interface.fit_request import Constraint, Target
 from mechkin_cli.interface.fit_values import SOLVED, TIME, FitValues, deviations, margins_of
 from mechkin_cli.listing import Listed, Listing
@@ -27,6 +28,7 @@ FITTED = "fitted"
 NOT_CONVERGED = "not-converged"
 VIOLATED = "violated"
 NOT_ASSEMBLED = "not-assembled"
+INFINITE = "infinite"
 
 
 class Met(NamedTuple):
@@ -119,9 +121,10 @@ class Fit(Listed):
     @property
     def status(self) -> str:
         """`fitted`; `not-converged` where the search stopped early; `violated` where a constraint
-        does not hold; `not-assembled` where rows or targets have no solution."""
+        does not hold; `not-assembled` where rows or targets have no solution; `infinite` where they
+        have, but what is asked for has no bound at a dead centre."""
         if self.rows_not_ok or self._best.measures.missing[0] > 0.0:
-            return NOT_ASSEMBLED
+            return INFINITE if self._lack is not None and self._lack.infinite else NOT_ASSEMBLED
         if not all(one.holds for one in self.constraints):
             return VIOLATED
         return FITTED if self._best.ended else NOT_CONVERGED
@@ -130,14 +133,18 @@ class Fit(Listed):
     def reason(self) -> str:
         """Why that is the status, in a sentence."""
         status = self.status
+        if status in (NOT_ASSEMBLED, INFINITE) and self._lack is not None:
+            return self._lack.reason
         if status == NOT_ASSEMBLED:
             runs = self._values.runs
             rows = sum(self._solved(run).size for run in runs)
             told = " and ".join("the sweep" if run == SWEEP else run for run in runs)
+            missed = f"misses {self.rows_not_ok} of {rows} rows of {told}"
+            if not self.rows_not_ok:
+                missed = f"has all {rows} rows of {told}, but not all of the curve between them"
             return (
-                f"no variant that was tried has a solution everywhere; the best misses "
-                f"{self.rows_not_ok} of {rows} rows of {told}; widen the bounds, shorten the "
-                "way, or take more generations"
+                f"no variant that was tried has a solution everywhere; the best {missed}; widen "
+                "the bounds, shorten the way, or take more generations"
             )
         if status == VIOLATED:
             worst = next(one for one in self.constraints if not one.holds)
@@ -211,6 +218,19 @@ class Fit(Listed):
         found: Floats = np.full((count, *values.shape[1:]), np.nan)
         found[: len(values)] = values[:count]
         return found
+
+    @cached_property
+    def _lack(self) -> Lack | None:
+        """What has no finite value although all rows have positions."""
+        if self.rows_not_ok:
+            return None
+        values = self._values
+        found = [lack_of(self._rows(run), values.texts(run)) for run in values.runs]
+        for met, target in zip(self.targets, values.request.targets, strict=True):
+            if target.at is not None and target.run == SWEEP:
+                along = values.models.moved.name, values.models.unit
+                found.append(lack_at(target.of, met.values, met.inputs, *along))
+        return next((lack for lack in found if lack is not None), None)
 
     def _rows(self, run: str) -> Analysis:
         """The rows of a run of the mechanism that was found; kept."""

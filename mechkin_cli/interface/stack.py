@@ -60,7 +60,8 @@ class Sampled(NamedTuple):
         mean, deviation: mean and standard deviation of those that have a value.
         mean_error, deviation_error: standard errors of both, as of independent samples; those of a
             Latin hypercube or a Sobol sequence are off by less where the quantity is nearly linear.
-        lost: how many samples have no value in the row.
+        lost: how many samples have no finite value in the row, where there is one, or an infinite
+            one, for the parameters' own values.
     """
 
     mean: Floats
@@ -168,12 +169,12 @@ class Tolerances(Listed):
         with np.errstate(divide="ignore", invalid="ignore"):
             mean = np.where(known, values, 0.0).sum(axis=0) / count
             off = np.where(known, values - mean, 0.0)
-            square = (off**2).sum(axis=0) / (count - 1)
+            square = (off**2).sum(axis=0) / np.maximum(count - 1, 0)
             fourth = (off**4).sum(axis=0) / count
             deviation = np.sqrt(square)
             error = np.sqrt(np.maximum(fourth - square**2, 0.0) / count) / (2.0 * deviation)
             of_mean = deviation / np.sqrt(count)
-        lost = np.where(np.isfinite(self.nominal(quantity)), self.samples - count, 0)
+        lost = np.where(np.isnan(self.nominal(quantity)), 0, self.samples - count)
         return Sampled(mean, deviation, of_mean, error, lost)
 
     def quantile(self, quantity: str, part: float) -> Floats:
@@ -195,9 +196,10 @@ class Tolerances(Listed):
         return self._runs(quantity)[: self.samples]
 
     def lost_ends(self, quantity: str) -> NDArray[np.intp]:
-        """At how many ends of the bands, one parameter at a time, a row has no value (rows,)."""
+        """At how many ends of the bands, one parameter at a time, there is no finite value (rows,),
+        counted as the samples that are `lost`."""
         lost: NDArray[np.intp] = (~np.isfinite(self._runs(quantity)[self.samples :])).sum(axis=0)
-        return np.where(np.isfinite(self.nominal(quantity)), lost, 0)
+        return np.where(np.isnan(self.nominal(quantity)), 0, lost)
 
     def to_pandas(self) -> pandas.DataFrame:
         """A line for each row: the place, then of each quantity its columns: `O4.theta`, `least`,
@@ -256,8 +258,13 @@ class Tolerances(Listed):
                 notes.append(f"{name} makes {part} of the scatter of {quantity} at {place}")
         count = int(self.misleads(quantity).sum())
         if count:
-            lost = int((self.sampled(quantity).lost + self.lost_ends(quantity) > 0).sum())
-            why = f", {lost} of them have no position somewhere in the bands" if lost else ""
+            infinite = np.isinf(self.nominal(quantity))
+            lost = self.sampled(quantity).lost + self.lost_ends(quantity) > 0
+            rows = int((lost & ~infinite).sum())
+            why = f", {rows} of them have no position somewhere in the bands" if rows else ""
+            if infinite.any():
+                at = f"{self.slopes.place[int(infinite.argmax())]:.6g} {self.slopes.along_unit}"
+                why += f", it is infinite at the dead centre at {at.rstrip()}"
             notes.append(
                 f"{quantity}: slopes mislead in {count} of {self.slopes.rows.size} rows{why}"
             )
