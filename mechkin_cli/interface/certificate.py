@@ -10,12 +10,14 @@ import numpy as np
 from mechkin_cli.analysis.proof.enclosures import (
     bounds,
     enclosures,
+    inside_boxes,
     reason_against,
     reason_unknown,
 )
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number, UsageError
 from mechkin_cli.interface.arguments import a_text
 from mechkin_cli.interface.dead_centre import DeadCentre, counted_tubes
+from mechkin_cli.interface.not_enclosed import not_enclosed
 from mechkin_cli.listing import Listed, Listing
 from mechkin_cli.proof import Proof
 from mechkin_cli.runs import SWEEP
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.analysis.proof import Certificate as Found
     from mechkin_cli.analysis.proof.certificate import Gap
-    from mechkin_cli.arrays import Floats
+    from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.interface.analysis import Analysis
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.enclosures import Enclosure
@@ -129,8 +131,9 @@ class Certificate(Listed):
         """Bounds of a quantity in the file's units: two arrays (rows,), of a vector (rows, 3).
 
         Coordinates, points, rates, accelerations, jerks, reactions and efforts of the mechanism as
-        the file's text says it lie between them, in every row that is proven; nan elsewhere, and
-        where the quantity is not unique.
+        the file's text says it lie between them, in every row that is proven; nan elsewhere. Rows
+        that are proven and have no bounds all the same, as where the quantity is not unique, are
+        told by `not_enclosed`.
 
         Raises:
             UsageError: no such quantity, or one that is not enclosed, with the reason: verdicts,
@@ -153,6 +156,16 @@ class Certificate(Listed):
         rows = result.row_states
         found = enclosures(result.session, self._found, wanted, rows.states, rows.turns)
         return {quantity.name: self._bounds(quantity, found[quantity.name]) for quantity in wanted}
+
+    def not_enclosed(self, name: str) -> tuple[Diagnostic, ...]:
+        """Which rows are proven but have no bounds of a quantity, with the reasons; empty where all
+        have them. Errors as those of `enclosure`."""
+        result = self.analysis.result
+        low, high = self.enclosure(name)
+        values = np.asarray(self.analysis[name])
+        bounded, has_value = (_finite_rows(part) for part in (high - low, values))
+        inside = inside_boxes(result.session)
+        return not_enclosed(name, self._found.on_branch, has_value, inside, bounded)
 
     def _bounds(self, wanted: Wanted, found: Enclosure) -> tuple[Floats, Floats]:
         """Of an enclosure in SI (width, rows), in the file's units."""
@@ -179,3 +192,9 @@ class Certificate(Listed):
         return Diagnostic(
             "not-proven", "warning", text, None, measured, None, _CURE[gap.why], numbers
         )
+
+
+def _finite_rows(values: Floats) -> Bools:
+    """Rows of which all parts are finite (rows,)."""
+    found: Bools = np.logical_and.reduce(np.isfinite(values.reshape(len(values), -1)), axis=1)
+    return found

@@ -172,9 +172,16 @@ def _off_the_text(session: Session) -> Floats:
     except (LookupError, ValueError, TraceLost):
         return np.zeros((len(own.values), 1))
     pairs = ((own.values, found.values), (own.reduced, found.reduced))
-    off = [np.abs((text[:, 0] - mine) + text[:, 1]) for mine, text in pairs]
+    off = [distance(text[:, 0], text[:, 1], mine) for mine, text in pairs]
     largest: Floats = np.maximum(*off).max(axis=1, initial=0.0, keepdims=True)
     return largest * _MEASURED
+
+
+def distance(high: Floats, low: Floats, other: Floats) -> Floats:
+    """How far numbers high + low are from doubles next to them: but for one rounding of it, since
+    those of nearly the same size differ exactly."""
+    found: Floats = np.abs((high - other) + low)
+    return found
 
 
 def prove_boxes(enclosed: Enclosed, nodes: Nodes) -> Boxes:

@@ -12,6 +12,8 @@ from proofs.test_boxes import DEGREE, ROWS, certificate, mechanism
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
+from mechkin_cli.analysis.proof import enclosures
+from mechkin_cli.interface.not_enclosed import not_enclosed
 
 DOUBLES = 1e-13
 """Of the largest of a quantity: what doubles leave, and what bounds in doubles are apart."""
@@ -54,9 +56,53 @@ def test_vectors_and_efforts_have_bounds() -> None:
 
 
 def test_reactions_that_are_not_unique_have_none() -> None:
-    low, high = mk.load(MECHANISMS / "bennett.yaml").certify().enclosure("A.force")
+    proofs = mk.load(MECHANISMS / "bennett.yaml").certify()
+    low, high = proofs.enclosure("A.force")
     assert np.isnan(low).all()
     assert np.isnan(high).all()
+    (note,) = proofs.not_enclosed("A.force")
+    assert note.code == "not-enclosed"
+    assert f"A.force has no bounds in {len(low)} rows from 1 to {len(low)}" in note.message
+    assert "not unique" in note.message
+
+
+def test_nothing_is_told_where_all_rows_have_bounds() -> None:
+    for name in ("O2.force", "O1.effort", "O4.theta"):
+        assert certificate("rcsr").not_enclosed(name) == ()
+
+
+def test_a_row_outside_its_box_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: the text's input of one row lies elsewhere."""
+    inside = enclosures._are_inside
+
+    def but_one(session: Any, given: Any) -> Any:
+        found = inside(session, given)
+        assert found.all()
+        return found & (np.arange(found.size) != 4)
+
+    monkeypatch.setattr(enclosures, "_are_inside", but_one)
+    proofs = mk.load(RCSR).certify()
+    low, high = proofs.enclosure("O4.theta_dot")
+    assert np.flatnonzero(np.isnan(low) | np.isnan(high)).tolist() == [4]
+    (note,) = proofs.not_enclosed("O4.theta_dot")
+    assert "no bounds in row 5, proven as that is: the input is farther" in note.message
+
+
+def test_each_row_without_bounds_has_one_reason() -> None:
+    """Of five rows: bounded, not proven, and one for each reason."""
+    yes, no = True, False
+    notes = not_enclosed(
+        "X.force",
+        proven=np.array([yes, no, yes, yes, yes]),
+        has_value=np.array([yes, no, no, yes, yes]),
+        is_inside=np.array([yes, no, no, no, yes]),
+        bounded=np.array([yes, no, no, no, no]),
+    )
+    words = ("not unique", "farther from what the file's text says", "not bounded over the row's")
+    assert len(notes) == 3
+    for row, note, reason in zip((3, 4, 5), notes, words, strict=True):
+        assert f"in row {row}," in note.message
+        assert reason in note.message
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, LEDGER_KINDS
 from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.solver.enclosures import Enclosure, Given, Positions, enclose
 from mechkin_cli.solver.inputs import input_unit
-from mechkin_cli.solver.proofs import Enclosed, about_high, input_rounding
+from mechkin_cli.solver.proofs import Enclosed, distance, input_rounding
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -69,8 +69,7 @@ def enclosures(
         states: of the rows in doubles (states, rows).
         turned: the closing joints' angles as following has them (turn slots, rows).
     """
-    enclosed = session.once("enclosed", lambda: Enclosed.of(session))
-    given = Given.of(session) if enclosed.of_text else Given.of_doubles(session)
+    enclosed, given = _enclosed(session)
     positions = Positions(enclosed.plan, enclosed.constants, states, certificate.boxes.radius)
     found = enclose(session, positions, given, wanted, turned=turned)
     known = certificate.on_branch & _are_inside(session, given)
@@ -133,10 +132,20 @@ def _is_cyclic(problem: Problem, angle: Wanted) -> bool:
     return kind.chain[kind.freedom_of[angle.coordinate]].is_cyclic
 
 
+def inside_boxes(session: Session) -> Bools:
+    """Rows whose inputs, as the text says them, are among those that the boxes were proven for."""
+    return _are_inside(session, _enclosed(session)[1])
+
+
+def _enclosed(session: Session) -> tuple[Enclosed, Given]:
+    """The mechanism and its inputs, of the text where it can be followed to them."""
+    enclosed = session.once("enclosed", lambda: Enclosed.of(session))
+    return enclosed, Given.of(session) if enclosed.of_text else Given.of_doubles(session)
+
+
 def _are_inside(session: Session, given: Given) -> Bools:
-    """Rows whose inputs are among those that the boxes were proven for."""
     reduced = session.inputs.reduced
-    off = np.abs(given.inputs[:, 0] - reduced) + about_high(given.inputs.transpose(1, 0, 2))
-    inside = off <= input_rounding(session, reduced)
+    high, low, radius = given.inputs.transpose(1, 0, 2)
+    inside = distance(high, low, reduced) + radius <= input_rounding(session, reduced)
     found: Bools = np.asarray(inside.all(axis=0), dtype=np.bool_)
     return found
