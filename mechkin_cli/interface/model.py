@@ -257,29 +257,25 @@ class Model(Kept, Certified, Fitted, Studied, Toleranced, Viewed):
                 over the way between finite rows, as in `r.summary()`.
             run: a response instead of the sweep, as `with_parameters(...).respond(run)` gives it;
                 where a stop ends it, its row takes the place of the next moment.
-            lanes: width of the kernel's packs, 0 for the widest.
-            threads: how many threads split the variants, 0 for as many as pay.
+            lanes, threads: width of the kernel's packs, how many split the variants; 0: the most.
 
         Raises:
-            UsageError: unknown names, invalid values, lengths that differ, a width that the
-                machine lacks.
+            UsageError: unknown names, invalid values, lengths that differ, a width not to be had.
 
         Example:
-            >>> import numpy as np
             >>> from mechkin_cli import load
             >>> m = load("mechanisms/rcsr.yaml")
-            >>> r = m.vary({"P1": np.array([0.48, 0.5, 0.52])}, ["O1.effort"], reduce="peak")
+            >>> r = m.vary({"P1": [0.48, 0.5, 0.52]}, ["O1.effort"], reduce="peak")
             >>> r["O1.effort"].round(2).tolist()
             [147.41, 135.04, 125.93]
 
             The crank that needs the least effort, by scipy:
-
             >>> from scipy.optimize import minimize_scalar
             >>> def effort(crank):
             ...     varied = m.with_parameters({"P1": crank}).analyze(["O1.effort"], tables=[])
-            ...     return np.abs(varied["O1.effort"]).max()
-            >>> found = minimize_scalar(effort, bounds=(0.4, 0.55), method="bounded")
-            >>> bool(found.fun <= effort(0.5))
+            ...     return abs(varied["O1.effort"]).max()
+            >>> least = minimize_scalar(effort, bounds=(0.4, 0.55), method="bounded").fun
+            >>> bool(least <= effort(0.5))
             True
         """
         from mechkin_cli.interface.variants import vary
