@@ -58,7 +58,7 @@ _SOLVED = frozenset(
 )
 
 _SENTENCES = {
-    Status.ok: "solved to full accuracy.",
+    Status.ok: "solved; the position is right to nine digits or more.",
     Status.near_singular: (
         "solved, but close to a singular position: fewer digits of rates and loads are reliable."
     ),

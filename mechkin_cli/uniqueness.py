@@ -33,10 +33,12 @@ def unique_cells(
     sizes = [np.abs(v[np.isfinite(v) & loaded]).max(initial=0.0) for v in (values, *others)]
     limit = np.full(values.shape, UNIQUE_CELL * max(sizes))
     settled = values.copy()
-    # a cell beyond the largest double is one of those that are not unique
     with np.errstate(invalid="ignore"):
         for other in disturbed:
             limit = np.fmax(limit, np.abs(other - values))
         for other in others:
-            settled[~(np.abs(other - values) <= limit)] = np.nan
+            alike = np.abs(other - values) <= limit
+            # infinite at a dead centre, whatever the arbitrary part is
+            alike |= np.isinf(values) & (other == values)
+            settled[~alike] = np.nan
     return settled

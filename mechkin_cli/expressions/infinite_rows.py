@@ -15,9 +15,14 @@ import numpy as np
 
 from mechkin_cli.expressions.operand import Operand
 from mechkin_cli.expressions.quantity import Quantity, Scalar, Vector
+from mechkin_cli.tolerances import KNOWN_AT_DEAD_CENTRE
+from mechkin_cli.units import ANGLE, DIMENSIONLESS
 
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Bools, Floats
+
+_KEEPS_INFINITE = frozenset({"+", "-", "negate", "max", "min", "abs"})
+"""Operations that are infinite where one operand is, whatever the others are."""
 
 _TAKES_PARTS = frozenset({"[]", ".x", ".y", ".z"})
 
@@ -43,7 +48,25 @@ def of_infinite(symbol: str, operand: Operand, operands: Sequence[Operand]) -> O
         for part in _parts(given.quantity):
             if isinstance(part, np.ndarray):
                 rows = rows | np.isinf(part)
-    return _each(operand, lambda part: np.where(np.isinf(part) == rows, part, np.nan))
+    told = _each(operand, lambda part: np.where(np.isinf(part) == rows, part, np.nan))
+    if symbol in _KEEPS_INFINITE:
+        return told
+    lost: Bools | np.bool_ = np.False_
+    for given in operands:
+        lost = lost | _may_vanish(given.quantity)
+    return _each(told, lambda part: np.where(rows & lost, np.nan, part))
+
+
+def _may_vanish(quantity: Quantity) -> Bools | np.bool_:
+    """Rows in which a quantity is zero as far as positions are known at a dead centre, so that its
+    product with what is infinite may have any limit."""
+    rows: Bools | np.bool_ = np.True_
+    plain = 1.0 if quantity.dimension in (ANGLE, DIMENSIONLESS) else 0.0
+    for part in _parts(quantity):
+        size = np.abs(np.asarray(part, dtype=np.float64))
+        scale = max(plain, float(size.max(where=np.isfinite(size), initial=0.0)))
+        rows = rows & (size <= KNOWN_AT_DEAD_CENTRE * scale)
+    return rows
 
 
 def _somewhere(part: Scalar) -> bool:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from math import isfinite
+from collections.abc import Iterable, Mapping, Sequence
+from math import isfinite, pi
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -43,7 +43,9 @@ class Position(dict[str, "float | NDArray[np.float64]"]):
     a solution.
 
     Attributes:
-        status: `ok`, or `branch-lost` where the branch does not lead to the inputs.
+        status: the verdict, as of a row: `ok`; `near-singular` or `dead-centre` close to a place
+            where rates grow without bound; `branch-lost` where the branch does not lead to the
+            inputs.
     """
 
     __slots__ = ("status",)
@@ -67,7 +69,7 @@ class Solver:
     def __init__(self, model: Model, names: tuple[str, ...]) -> None:
         problem = model.problem
         wanted = _wanted(model, names)
-        result = analyze(model.session, [q.name for q in wanted], verdicts=False)
+        result = analyze(model.session, [q.name for q in wanted])
         known = problem.quantities()
         session = result.session
         units = problem.units
@@ -92,8 +94,9 @@ class Solver:
             )
         ]
         self.held = held_values(problem, session.layout)
-        self.problem = problem
-        self.native = _native(result, session, readout.outputs, wanted, readout.slots)
+        self.problem, self.wanted, self.result = problem, wanted, result
+        self.starts = _starts(result)
+        self.native = _native(result, session, readout.outputs, wanted, readout.slots, self.starts)
 
     def solve(self, inputs: Setting | Mapping[str, Setting]) -> Position:
         """The position at some inputs."""
@@ -112,15 +115,35 @@ class Solver:
         whole += [0.0] * len(self.held)
         full += self.held
         found = None if self.native is None else self.native.solve(values, whole, full)
-        if found is None:
-            return Position(self._nothing(), Status.branch_lost.label)
+        if found is None or not found[1] <= tolerances.CONDITION_NEAR_SINGULAR:
+            return self._judged(places, values)
+        outputs = found[0]
         cells: dict[str, float | NDArray[np.float64]] = {}
         for name, slots, conversion in self.columns:
             if len(slots) == 1:
-                cells[name] = conversion.reverse(found[slots[0]])
+                cells[name] = conversion.reverse(outputs[slots[0]])
             else:
-                cells[name] = conversion.reverse(np.array([found[slot] for slot in slots]))
+                cells[name] = conversion.reverse(np.array([outputs[slot] for slot in slots]))
         return Position(cells, "ok")
+
+    def _judged(self, places: Mapping[str, float], values: Sequence[float]) -> Position:
+        """The position where it is near a singular one, or is not reached at once."""
+        if not self.starts.size:
+            return Position(self._nothing(), Status.branch_lost.label)
+        from mechkin_cli.interface.judged_position import judged_position
+
+        known = self.result.session.inputs
+        away = np.abs(known.reduced[:, self.starts] - np.array(values)[:, None]).max(axis=0)
+        # what is infinite at a dead centre shows from a distance
+        far = away > tolerances.BEFORE_DEAD_CENTRE[0]
+        row = int(self.starts[np.where(far, away, away + 2.0 * pi).argmin()])
+        given = np.array([places[name] for name in self.inputs])
+        status, found = judged_position(self.result, row, given, self.wanted)
+        cells = self._nothing()
+        for (name, slots, conversion), parts in zip(self.columns, found, strict=False):
+            told = conversion.reverse(parts)
+            cells[name] = told if len(slots) > 1 else float(told[0])
+        return Position(cells, status.label)
 
     def _check_following(self, given: Mapping[str, float]) -> None:
         """Refuses to leave an input at its first row whose law ties it to one that moves."""
@@ -169,15 +192,22 @@ def _wanted(model: Model, names: tuple[str, ...]) -> list[Wanted]:
     return found
 
 
+def _starts(result: Result) -> NDArray[np.intp]:
+    """The rows to continue from. From those at a dead centre two branches lead on, so they serve
+    only where there are no others."""
+    sure = np.flatnonzero(result.status == Status.ok)
+    return sure if sure.size else np.flatnonzero(result.solved)
+
+
 def _native(
     result: Result,
     session: Session,
     outputs: _kernel.Outputs,
     wanted: list[Wanted],
     readout_slots: Mapping[str, Slot],
+    solved: NDArray[np.intp],
 ) -> _kernel.Positions | None:
     """The kernel's rows to start from; None where no row has a solution."""
-    solved = np.flatnonzero(result.solved)
     if not solved.size:
         return None
     plan, inputs = session.plan, session.inputs
@@ -197,11 +227,16 @@ def _native(
         jerks=rows(inputs.jerks),
         states=rows(result.row_states.states),
         turns=turns,
-        demand=int(demand_of(session.problem.mechanism, wanted)),
+        demand=int(demand_of(session.problem.mechanism, wanted) | _judging(session)),
         iterations=tolerances.NEWTON_ITERATIONS,
         limits=step_limits(straight=session.problem.assembly.straight),
         angles=angles,
     )
+
+
+def _judging(session: Session) -> Demand:
+    """What tells whether a position is near a singular one: loops alone have such."""
+    return Demand.CONDITION if session.graph.blocks else Demand.POSITION
 
 
 def solver_of(model: Model, quantities: Iterable[str] | None) -> Solver:

@@ -505,8 +505,9 @@ class Positions:
     ) -> None: ...
     def solve(
         self, inputs: Sequence[float], whole: Sequence[float], full: Sequence[float]
-    ) -> list[float] | None:
-        """The outputs' slots in SI; None where the branch does not lead there."""
+    ) -> tuple[list[float], float] | None:
+        """The outputs' slots in SI, and the condition where it is demanded, else 0; None where the
+        branch does not lead there."""
 
 class StepLimits:
     """What a step along a path may do; see StepLimits in src/stepper.hpp.

@@ -27,6 +27,15 @@ NEWTON_ITERATIONS: Final = 6
 """A prediction that passes the jump test is within a tenth of a step; squared four times that is
 rounding, and a sixth step allows for a large constant. More would mean that the guess was wrong."""
 
+FOLD_ITERATIONS: Final = 60
+"""On a fold a step halves the distance: 30 steps from a tenth to the root of rounding, 1e-8, beyond
+which nothing changes, and as many again."""
+
+FOLD_CORRECTION: Final = 10.0
+"""By how much more than elsewhere a guess may be off on a fold: what goes as a root is guessed
+worse, and both branches end there, so neither is taken for the other. A guess is off by a tenth of
+its step elsewhere, so here by all of it."""
+
 # --- in double-double ----------------------------------------------------------------------------
 
 PRECISE_RESIDUAL_TIGHT: Final = 2e-32

@@ -17,17 +17,38 @@ CONDITION_RANK_UNCLEAR: Final = 1e12
 """Above it rates and reactions of a row have no digit that means anything; its position still
 has."""
 
-DEAD_CENTRE_LOST: Final = 0.05
-"""Part of a rate by which the rounding of an input changes it, from which on a row stands at a dead
-centre as nearly as a double can say: hardly a digit of the rate is left."""
+CONDITION_SIDE_UNCLEAR: Final = 5e6
+"""Above it a row may lie across its fold, which is 1 / condition away: a row whose loops close to
+`RESIDUAL_ACCEPT`, 1e-14, is known to the root of that, 1e-7."""
+
+DEAD_CENTRE_LOST: Final = 0.015
+"""Part of a rate by which one rounding of an input, or what loops are open by, changes it, from
+which on a row stands at a dead centre as nearly as a double can say. Loops close to some four
+roundings, so of the rate a digit is left at best."""
 
 BEFORE_DEAD_CENTRE: Final = (1e-4, 1e-6)
 """Distances of two places before a dead centre (rad, sizes): what grows as the root of the inverse
 does so tenfold between them, and both are far above rounding."""
 
+OFF_FOLD: Final = 0.5
+"""Part of the distance from a fold by which its parabola may miss a branch: it misses by the square
+of the distance, a hundredth, in parts of the size."""
+
+ON_FOLD: Final = 1e-4
+"""Part of the distance of two branches at `BEFORE_DEAD_CENTRE`, some 1e-2, up to which a row is on
+neither of them clearly: rounding leaves 1e-8 to 1e-7 there."""
+
 GROWS_WITHOUT_BOUND: Final = 5.0
 """Growth between these two places from which on a quantity has no bound: half of the root's. What
 has a bound changes by a hundredth of itself."""
+
+KNOWN_AT_DEAD_CENTRE: Final = 1e-6
+"""Up to this part of its largest, or of one, a position may be zero in a row at a dead centre,
+where it is known to the root of rounding, 1e-8 to 1e-7."""
+
+RESTS: Final = 1e-9
+"""Part of an input's largest rate over the rows up to which it rests in a row: laws come to rest by
+sums and sines of doubles, to 1e-15 of it."""
 
 # --- reactions and actuators ---------------------------------------------------------------------
 

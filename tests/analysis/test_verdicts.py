@@ -54,7 +54,7 @@ def fold() -> float:
 def near_singular(tmp_path: Path) -> Path:
     """A file with a row so close to a dead centre that it is near-singular."""
     path = tmp_path / "near.yaml"
-    path.write_text(FOUR_BAR.replace("VALUES", repr(fold() + 3e-13)), encoding="utf-8")
+    path.write_text(FOUR_BAR.replace("VALUES", repr(fold() + 5e-13)), encoding="utf-8")
     return path
 
 

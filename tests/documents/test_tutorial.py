@@ -98,7 +98,7 @@ def test_the_peak_torque_against_lagranges_equation(done) -> None:
 
 def test_the_page_of_quantities_tells_how_watts_are_written(done) -> None:
     r = mk.load(done[0] / "pump.yaml").analyze()
-    expression = "O.effort*O.theta_dot/(1 W*rad)"
+    expression = "O.effort*O.theta_dot/(1 W)"
     assert f"`{expression}`" in page("docs/quantities.md")
     watts = r["O.effort"] / 1000.0 * 150.0 * 2.0 * pi / 60.0
     assert r[expression] == pytest.approx(watts, rel=1e-12)

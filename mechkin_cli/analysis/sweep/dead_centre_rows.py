@@ -8,19 +8,20 @@ the row: two places a little before it on its branch tell what grows towards it.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli.analysis.sweep.before_dead_centre import Before, at_unit_rate, places_before
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.status import Status
 from mechkin_cli.tolerances import (
-    BEFORE_DEAD_CENTRE,
     DEAD_CENTRE_LOST,
     GROWS_WITHOUT_BOUND,
     REACTION_ROUNDING,
+    RESTS,
 )
 
 if TYPE_CHECKING:
@@ -33,15 +34,6 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.session import Session
 
 
-class Before(NamedTuple):
-    """Two places before a row at a dead centre, the second a hundredth as far from it: inputs
-    (inputs, 2) in kernel units and states (states, 2)."""
-
-    row: int
-    inputs: Floats
-    states: Floats
-
-
 def judge_dead_centres(session: Session, rows: Rows) -> None:
     """Finds the rows that stand at a dead centre as nearly as a double can say, among those near a
     singular position, and says so."""
@@ -49,9 +41,9 @@ def judge_dead_centres(session: Session, rows: Rows) -> None:
     if not near.any() or not session.driven:
         return
     for row in np.flatnonzero(near & _is_lost(session, rows, near)).tolist():
-        found = _before(session, rows, row)
-        if found is not None and _grows(session, found):
-            rows.dead_centres.append(found)
+        found = [way for way in places_before(session, rows, row) if _grows(session, way)]
+        if found:
+            rows.dead_centres += found
             rows.status[row] = Status.dead_centre
     if rows.dead_centres:
         rows.diagnostics.append(_note(rows))
@@ -69,8 +61,8 @@ def _is_lost(session: Session, rows: Rows, near: Bools) -> Bools:
 
 
 def lost_rates(session: Session, values: Floats, states: Floats) -> Bools:
-    """Where the rounding of an input changes the rates at its unit rate by more than a part of
-    themselves: |x''| times that rounding against |x'|.
+    """Where the rounding of an input, or what the loops are open by, changes the rates at its unit
+    rate by more than a part of themselves: |x''| times that against |x'|.
 
     Args:
         session: the mechanism as it is driven.
@@ -81,46 +73,15 @@ def lost_rates(session: Session, values: Floats, states: Floats) -> Bools:
         (inputs, places), by each input in turn.
     """
     lost = np.zeros(values.shape, dtype=bool)
-    still = np.zeros_like(values)
     for number in range(values.shape[0]):
-        rates = still.copy()
-        rates[number] = 1.0
-        batch = session.run(
-            values,
-            states,
-            demand=Demand.VELOCITY | Demand.ACCELERATION,
-            rates=rates,
-            accelerations=still,
-            derivatives=True,
-            iterations=0,
-        )
+        batch = at_unit_rate(session, values, states, number)
         assert batch.first is not None
         assert batch.second is not None
         first, second = (np.abs(part).max(axis=0) for part in (batch.first, batch.second))
         rounding = np.spacing(np.maximum(1.0, np.abs(values[number])))
+        rounding = np.maximum(rounding, batch.residual)
         lost[number] = ~(second * rounding < DEAD_CENTRE_LOST * first)
     return lost
-
-
-def _before(session: Session, rows: Rows, row: int) -> Before | None:
-    """The two places, followed from the nearest row that is far enough away; None where there is
-    none, or where the branch does not lead here."""
-    values = session.inputs.values
-    away = values - values[:, [row]]
-    distance = np.abs(away).max(axis=0)
-    serves = rows.reached & (rows.status == Status.ok) & (rows.section == rows.section[row])
-    numbers = np.flatnonzero(serves & (distance > BEFORE_DEAD_CENTRE[0]))
-    if not numbers.size:
-        return None
-    start = numbers[np.argmin(np.abs(numbers - row))]
-    parts = np.array([1.0, *(part / distance[start] for part in BEFORE_DEAD_CENTRE)])
-    path = values[:, [row]] + away[:, [start]] * parts
-    found = session.follow(path, rows.states[:, start], every_row=True)
-    if found.reached < parts.size:
-        return None
-    places = np.ascontiguousarray(path[:, 1:])
-    batch = session.close(places, np.ascontiguousarray(found.guess[:, 1:]))
-    return Before(row, places, batch.states) if batch.good.all() else None
 
 
 def _grows(session: Session, before: Before) -> bool:
@@ -164,10 +125,12 @@ def put_unbounded(
     forces = [q for q in read if demand_of(session.problem.mechanism, [q]) & Demand.FORCES]
     rates = [q for q in read if q not in forces]
     alike = [_slots(slots, some) for some in (rates, forces) if some]
+    put: set[int] = set()
     for before in rows.dead_centres if alike else ():
         there = places.at([before.row] * 2)._replace(inputs=before.inputs, guess=before.states)
         outputs = session.run(**there.arguments, **asked, iterations=0).outputs
         assert outputs is not None
+        rests = _comes_to_rest(places.rates, before.row)
         for lost in alike:
             far, close = outputs[lost].T
             grows = np.abs(close) >= GROWS_WITHOUT_BOUND * np.abs(far)
@@ -175,7 +138,22 @@ def put_unbounded(
             # forces have no value even before the dead centre
             level = np.abs(close).max(where=np.isfinite(close), initial=0.0)
             grows &= np.abs(close) > REACTION_ROUNDING * level
-            batch.outputs[lost, before.row] = np.where(grows, np.copysign(np.inf, close), np.nan)
+            grows &= not rests
+            told = np.where(grows, np.copysign(np.inf, close), np.nan)
+            if before.row in put:
+                # of two branches that meet in the row
+                told[told != batch.outputs[lost, before.row]] = np.nan
+            batch.outputs[lost, before.row] = told
+        put.add(before.row)
+
+
+def _comes_to_rest(rates: Floats | None, row: int) -> bool:
+    """Whether the inputs (inputs, rows) rest in a row of a motion: the limits are then those of its
+    law, along which rates go to zero with the distance."""
+    if rates is None or not rates.any():
+        return False
+    largest = np.abs(rates).max(axis=1)
+    return bool((np.abs(rates[:, row]) <= RESTS * largest).all())
 
 
 def _slots(slots: Mapping[str, Slot], quantities: Sequence[Wanted]) -> list[int]:
@@ -184,13 +162,21 @@ def _slots(slots: Mapping[str, Slot], quantities: Sequence[Wanted]) -> list[int]
 
 
 def _note(rows: Rows) -> Diagnostic:
-    numbers = [before.row + 1 for before in rows.dead_centres]
+    ways = [before.row + 1 for before in rows.dead_centres]
+    numbers = list(dict.fromkeys(ways))
     where = f"row {numbers[0]} stands" if len(numbers) == 1 else f"{len(numbers)} rows stand"
     first = "" if len(numbers) == 1 else f", the first is row {numbers[0]}"
+    lone = [number for number in numbers if ways.count(number) > 1]
+    both = ""
+    if lone:
+        both = (
+            f"; nothing tells on which of two branches row {lone[0]} is, so what is infinite with "
+            "another sign on each is empty, too"
+        )
     return Diagnostic(
         "at-dead-centre",
         "warning",
         f"{where} at a dead centre of the inputs{first}: cells that grow without bound towards it "
-        "say inf, and others that depend on rates or reactions are empty",
+        f"say inf, and others that depend on rates or reactions are empty{both}",
         hint="end the sweep before it, or drive another coordinate",
     )

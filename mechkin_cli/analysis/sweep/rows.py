@@ -12,7 +12,7 @@ from mechkin_cli.status import Status
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.analysis.sweep.dead_centre_rows import Before
+    from mechkin_cli.analysis.sweep.before_dead_centre import Before
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.solver.branch_limit import EndOfRows
@@ -35,7 +35,7 @@ class Rows:
     rows) are angles and quaternions of closing joints as following carried them along
     (`solver.closing_turns`). `section` (rows,) tells rows apart between which a branch point was
     passed; numbers say nothing but that. `ends` are the dead centres beyond which rows are missing,
-    `dead_centres` the rows that stand at one.
+    `dead_centres` the rows that stand at one, twice where either of two branches may be meant.
     """
 
     states: Floats

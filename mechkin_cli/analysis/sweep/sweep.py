@@ -68,9 +68,15 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     return result
 
 
-def closed_rows(session: Session, start: Start) -> Result:
-    """The rows of a session on the branch through the start, of which nothing is read yet."""
-    return _closed(session, start, question(session, (), verdicts=False))
+def closed_rows(
+    session: Session, start: Start, asked: Sequence[Wanted] = (), *, verdicts: bool = False
+) -> Result:
+    """The rows of a session on the branch through the start, with what is asked for and their
+    conditions where `verdicts` are, too."""
+    wanted = question(session, asked, verdicts=verdicts)
+    result = _closed(session, start, wanted)
+    result.read(wanted.asked)
+    return result
 
 
 def first_assembly(session: Session) -> tuple[Session, Start]:
@@ -111,7 +117,12 @@ def _closed_once(session: Session, start: Start, asked: Question, *, every_row: 
     if not rows.reached.any():
         return result
     batch = result.run(asked.wanted, asked.demand, iterations=tolerances.NEWTON_ITERATIONS)
-    failed = _failed(batch, rows)
+    slow = rows.reached & ~batch.good
+    if result.graph.blocks and (slow | rows.reached & _is_near_singular(batch)).any():
+        batch = _closed_on_fold(result, asked)
+        # what takes more steps and is no fold had a wrong guess
+        slow &= ~_is_near_singular(batch)
+    failed = slow | _failed(batch, rows)
     if failed.any():
         rows.status[failed] = Status.not_converged
         rows.diagnostics.append(not_converged_note(rows, batch.residual))
@@ -129,6 +140,21 @@ def _closed_once(session: Session, start: Start, asked: Question, *, every_row: 
     return result
 
 
+def _is_near_singular(batch: Batch) -> Bools:
+    """Rows (rows,) above that condition, as far as it was computed."""
+    if batch.condition is None:
+        return np.zeros(batch.residual.size, dtype=bool)
+    found: Bools = batch.condition > tolerances.CONDITION_NEAR_SINGULAR
+    return found
+
+
+def _closed_on_fold(result: Result, asked: Question) -> Batch:
+    """The run with so many steps that rows on a fold close, too, where each only halves what is
+    left; and with conditions, which tell that they do."""
+    demand = asked.demand | Demand.CONDITION
+    return result.run(asked.wanted, demand, iterations=tolerances.FOLD_ITERATIONS)
+
+
 def _failed(batch: Batch, rows: Rows) -> Bools:
     """Rows with a guess that did not close near it, on its side of every fold.
 
@@ -143,13 +169,15 @@ def _failed(batch: Batch, rows: Rows) -> Bools:
             0.0,
         )
         limit = np.maximum(limit, known)
+        on_fold = batch.condition > tolerances.CONDITION_SIDE_UNCLEAR
+        limit = np.where(on_fold, tolerances.FOLD_CORRECTION * limit, limit)
     failed: Bools = rows.reached & ~(batch.good & (batch.correction <= limit))
     if not (batch.side != batch.side[:, :1]).any():
         return failed
-    # on a branch point a sign is rounding
+    # on a fold or a branch point a sign is rounding
     told = rows.reached.copy()
     if batch.condition is not None:
-        told &= batch.condition <= tolerances.CONDITION_RANK_UNCLEAR
+        told &= batch.condition <= tolerances.CONDITION_SIDE_UNCLEAR
     # where a branch point was passed sides change with it: each section has its own
     turned = np.zeros(told.size, dtype=bool)
     for section in set(rows.section[told].tolist()):

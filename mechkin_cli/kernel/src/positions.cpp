@@ -36,7 +36,7 @@ Positions::Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRow
   require(!(outputs.demand() & ~demand), "the outputs need more than is demanded");
   require(!(demand & DEMAND_FORCES) || !(program_demand(p.law) & ~demand), "loads that vary need more than is demanded");
   require(!(demand & DEMAND_FORCES) || p.ties == 0, "rates of tied inputs by row have no place here");
-  require(!(demand & (DEMAND_POWER | DEMAND_CONDITION)), "no place for condition and power error");
+  require(!(demand & DEMAND_POWER), "no place for a power error");
   require(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
   require(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");
   require(!(demand & DEMAND_JERK) || demand & DEMAND_ACCELERATION, "jerks need accelerations");
@@ -64,7 +64,7 @@ long Positions::nearest(const double* inputs, const double* whole) const {
   return best;
 }
 
-bool Positions::solve(const double* inputs, const double* whole, const double* full, double* outputs) {
+bool Positions::solve(const double* inputs, const double* whole, const double* full, double* outputs, double* condition) {
   const Plan& p = plan_.view();
   const KernelUnit& unit = *kernel_unit(2);
   const long row = nearest(inputs, whole), n = rows_.rows;
@@ -90,7 +90,7 @@ bool Positions::solve(const double* inputs, const double* whole, const double* f
   for (int s = 0; s < turn_slots_; ++s) turned[s] = way_turn_[2 * s + 1];
   r.turned = turned.data(), r.whole = whole, r.full = full;
   r.wanted = outputs_.view(), r.outputs = outputs;
-  r.residual = &residual, r.correction = &correction, r.flags = &flags;
+  r.residual = &residual, r.correction = &correction, r.flags = &flags, r.condition = condition;
   r.demand = demand_, r.iterations = iterations_;
   r.tight = limits_.tight, r.coarse = limits_.coarse, r.accept = limits_.accept;
   unit.run(p, r, memory_.data());
@@ -110,7 +110,8 @@ std::vector<double> copy_of(const Table& a, long rows, const char* name) {
   return {a.data(), a.data() + a.shape(0) * a.shape(1)};
 }
 
-// The outputs at some inputs in kernel units, None where there is no position.
+// The outputs at some inputs in kernel units and the condition there, 0 where it is not demanded; None where there is no
+// position.
 nb::object solve(Positions& positions, const std::vector<double>& inputs, const std::vector<double>& whole,
                  const std::vector<double>& full) {
   for (const auto* values : {&inputs, &whole, &full})
@@ -118,9 +119,10 @@ nb::object solve(Positions& positions, const std::vector<double>& inputs, const 
   if (!are_whole_turns(whole.data(), whole.size()))
     throw nb::value_error("whole: numbers of turns");
   std::vector<double> outputs(positions.slots());
+  double condition = 0.0;
   FloatingPointState state;
-  if (!positions.solve(inputs.data(), whole.data(), full.data(), outputs.data())) return nb::none();
-  return nb::cast(outputs);
+  if (!positions.solve(inputs.data(), whole.data(), full.data(), outputs.data(), &condition)) return nb::none();
+  return nb::make_tuple(outputs, condition);
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ class Positions {
             const StepLimits& limits, std::vector<TurningOutput> angles);
 
   // Fills `outputs` (slots); false where the branch ends before the inputs (inputs, their whole turns, and with them), or no row
-  // closes there. Rates are those of the nearest row. One call at a time.
-  bool solve(const double* inputs, const double* whole, const double* full, double* outputs);
+  // closes there; and the condition, where it is demanded. Rates are those of the nearest row. One call at a time.
+  bool solve(const double* inputs, const double* whole, const double* full, double* outputs, double* condition);
 
   int inputs() const { return plan_.view().inputs; }
   int slots() const { return outputs_.view().slots; }
