@@ -20,9 +20,16 @@ from mechkin_cli.reading.tree import TooDeepError, TreeBuilder, mark_of
 FASTEST_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 """PyYAML's wrapper of libyaml where it was built, else the parser in Python."""
 
+_LIBRARY_DEPTH = "exceeded maximum nesting depth"
+
 CORRECT_FIRST = "correct these first"
 
 _START_OF_A_FILE = "a mechanism file starts with the line format: 1, a study with study: 1"
+
+
+class _BeyondLibraryError(Exception):
+    """The parser in C gives up at its own depth, before it tells of the brackets that lead there;
+    that in Python tells at which one the limit is passed."""
 
 
 def parse(text: str, file: str, *, loader: Any = FASTEST_LOADER) -> Mapping:
@@ -34,8 +41,13 @@ def parse(text: str, file: str, *, loader: Any = FASTEST_LOADER) -> Mapping:
     """
     check_characters(text, file)
     lines = lines_of(text)
+    whole = f"{text}\n"  # both parsers agree on the end of a whole last line
     builder = TreeBuilder(lines, file)
-    _walk(f"{text}\n", file, loader, builder)  # both parsers agree on the end of a whole last line
+    try:
+        _walk(whole, file, loader, builder)
+    except _BeyondLibraryError:
+        builder = TreeBuilder(lines, file)
+        _walk(whole, file, yaml.SafeLoader, builder)
     diagnostics = builder.diagnostics
     if not diagnostics and isinstance(builder.root, Mapping):
         return builder.root
@@ -82,6 +94,8 @@ def _walk(text: str, file: str, loader: Any, builder: TreeBuilder) -> None:
     except TooDeepError:
         return
     except yaml.YAMLError as error:
+        if _LIBRARY_DEPTH in str(error) and loader is not yaml.SafeLoader:
+            raise _BeyondLibraryError from None
         from mechkin_cli.reading.syntax import syntax_diagnostic  # only on the way to messages
 
         builder.diagnostics.append(builder.cut_off_value() or syntax_diagnostic(error, file, text))

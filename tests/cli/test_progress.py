@@ -97,6 +97,11 @@ COMMAND = """
 import sys
 from mechkin_cli.cli import progress
 progress.AFTER = 0.0
+waits = progress._Display.wait
+def shows(display):
+    waits(display)
+    display._timer.join()
+progress._Display.wait = shows
 from mechkin_cli.cli.app import app
 app(sys.argv[1:])
 """

@@ -99,7 +99,8 @@ def _left_for(session: Session, rows: Rows, row: int) -> list[Before]:
     assert second is not None
     with np.errstate(all="ignore"):
         way = first / sizes[number]
-        bend = float(np.abs(second).max()) / sizes[number] ** 3
+        size = sizes[number]
+        bend = float(np.abs(second).max()) / (size * size * size)
     if not (np.isfinite(way).all() and 0.0 < bend < np.inf):
         return []
     before = np.array(BEFORE_DEAD_CENTRE)
@@ -127,10 +128,10 @@ def _chosen(session: Session, rows: Rows, row: int, ways: list[Before]) -> list[
     tells."""
     if len(ways) < 2:
         return ways
-    apart = ways[0].states[:, 0] - ways[1].states[:, 0]
+    apart = ways[0].states[:, :1] - ways[1].states[:, :1]
     others = rows.reached & (rows.section == rows.section[row])
-    along = apart @ (rows.states - rows.states[:, [row]])
-    seen = np.flatnonzero(others & (np.abs(along) > ON_FOLD * (apart @ apart)))
+    along = _products(apart, rows.states - rows.states[:, [row]])
+    seen = np.flatnonzero(others & (np.abs(along) > ON_FOLD * _products(apart, apart)))
     if seen.size:
         nearest = seen[np.argmin(np.abs(seen - row))]
         return [ways[0 if along[nearest] > 0.0 else 1]]
@@ -141,3 +142,11 @@ def _chosen(session: Session, rows: Rows, row: int, ways: list[Before]) -> list[
     states = np.stack([way.states[:, 0] for way in ways], axis=1)
     distances, _ = distances_of(session, ways[0].inputs[:, 0], states)
     return ways if is_unclear(*distances) else [ways[int(np.argmin(distances))]]
+
+
+def _products(way: Floats, states: Floats) -> Floats:
+    """Scalar products (places,) with a way (states, 1), added up in the order of the states."""
+    total = np.zeros(states.shape[1])
+    for along, state in zip(way[:, 0], states, strict=True):
+        total = total + along * state
+    return total
