@@ -21,10 +21,9 @@ CONDITION_SIDE_UNCLEAR: Final = 5e6
 """Above it a row may lie across its fold, which is 1 / condition away: a row whose loops close to
 `RESIDUAL_ACCEPT`, 1e-14, is known to the root of that, 1e-7."""
 
-DEAD_CENTRE_LOST: Final = 0.015
-"""Part of a rate by which one rounding of an input, or what loops are open by, changes it, from
-which on a row stands at a dead centre as nearly as a double can say. Loops close to some four
-roundings, so of the rate a digit is left at best."""
+DEAD_CENTRE_LOST: Final = 0.1
+"""Part of a rate by which it is wrong, as double-double tells, from which on a row stands at a dead
+centre as nearly as a double can say: no digit is left. At a dead centre itself the part is 1."""
 
 BEFORE_DEAD_CENTRE: Final = (1e-4, 1e-6)
 """Distances of two places before a dead centre (rad, sizes): what grows as the root of the inverse

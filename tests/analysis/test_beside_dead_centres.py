@@ -24,6 +24,10 @@ BEFORE = (1.0, 1e-3, 1e-6, 1e-9, 1e-11)
 """Distances of the driven coordinate from its dead centre, in degrees or mm."""
 
 
+CLOSEST = tuple(part / 10**k for k in range(10, 15) for part in (1.0, 0.3))
+"""The same where rates lose their last digit."""
+
+
 def bent(gap: Callable[[Any, Any], Any]) -> tuple[Any, Any]:
     """Of the closure's error at the dead centre: the slope by the driven coordinate, and what goes
     with the square of the crank's angle."""
@@ -237,6 +241,27 @@ def test_a_row_alone_at_a_dead_centre(case: Case) -> None:
     # two branches meet there; which is meant may stay open, but no number is told
     assert not np.isfinite(r["A.theta_dot"]).any()
     assert not np.isfinite(r["D.effort"]).any()
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_rate_has_a_right_digit_or_none_is_told(case: Case) -> None:
+    """Down to the roundings of the place itself; a row that says it stands at the dead centre is as
+    far from it as roundings are in the loop's squared lengths, some ten each."""
+    places = [1e-3, *CLOSEST]
+    r = case.swept(places)
+    case = case._replace(side=int(np.sign(r["A.theta"][0])))
+    for row, place in enumerate(places):
+        told, speed = r["row.status"][row], r["A.theta_dot"][row]
+        driven = mp.mpf(repr(place)) * case.unit * case.inward
+        is_one = abs(case.gap(0, driven)) < 300 * np.spacing(1.0)
+        if told == "dead-centre":
+            assert is_one
+            assert not np.isfinite(speed)
+        elif told in ("ok", "near-singular"):
+            assert speed == pytest.approx(float(case.speed(driven)), rel=0.15)
+        else:  # the rounding of the file's dimensions may put it beyond
+            assert told == "beyond-dead-centre"
+            assert is_one
 
 
 @pytest.mark.parametrize("case", CASES)

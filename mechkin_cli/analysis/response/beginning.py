@@ -94,11 +94,11 @@ def _known(
 ) -> Floats | Diagnostic:
     """The rates, or why they say nothing: at its dead centre a coordinate has no rate, and any
     that it is given stands for infinite ones of others."""
-    from mechkin_cli.analysis.sweep.dead_centre_rows import lost_rates
+    from mechkin_cli.analysis.sweep.lost_rates import lost_rates
 
     if not rates.any():
         return rates
-    lost = lost_rates(session, session.inputs.reduced[:, :1], state[:, None])[:, 0]
+    lost = lost_rates(session, np.zeros(1, dtype=np.intp), state[:, None])[:, 0]
     inputs = session.problem.motion.inputs
     named = [one.name for one, given in zip(inputs, lost & (rates != 0.0), strict=True) if given]
     if not named:

@@ -32,7 +32,7 @@ class Before(NamedTuple):
 
 
 def places_before(session: Session, rows: Rows, row: int) -> list[Before]:
-    """The places before a row: followed from the nearest row that is far enough away; where there
+    """The places before a row: followed from another row that is clear of the fold; where there
     is none, left for along the branches that meet in the row: along that of other rows, or that
     which `near` means, or along both."""
     found = _followed(session, rows, row)
@@ -42,14 +42,18 @@ def places_before(session: Session, rows: Rows, row: int) -> list[Before]:
 
 
 def _followed(session: Session, rows: Rows, row: int) -> Before | None:
-    """None where there is no such row, or where the branch does not lead here."""
+    """Along the branch of the nearest row that is clear of the fold, towards it or, where that row
+    stands nearer, away from it. None where there is no such row, or where the branch does not lead
+    there."""
     values = session.inputs.values
     away = values - values[:, [row]]
     distance = np.abs(away).max(axis=0)
     serves = rows.reached & (rows.status == Status.ok) & (rows.section == rows.section[row])
-    numbers = np.flatnonzero(serves & (distance > BEFORE_DEAD_CENTRE[0]))
+    numbers = np.flatnonzero(serves & (distance > 0.0))
     if not numbers.size:
         return None
+    far = distance[numbers] > BEFORE_DEAD_CENTRE[0]
+    numbers = numbers[far] if far.any() else numbers
     start = numbers[np.argmin(np.abs(numbers - row))]
     parts = np.array([1.0, *(part / distance[start] for part in BEFORE_DEAD_CENTRE)])
     path = values[:, [row]] + away[:, [start]] * parts
@@ -71,18 +75,22 @@ def at_unit_rate(session: Session, values: Floats, states: Floats, number: int) 
         states: (states, places) closed there.
         number: of the input.
     """
-    still = np.zeros_like(values)
-    rates = still.copy()
-    rates[number] = 1.0
     return session.run(
         values,
         states,
         demand=Demand.VELOCITY | Demand.ACCELERATION,
-        rates=rates,
-        accelerations=still,
+        rates=unit_rates(values, number),
+        accelerations=np.zeros_like(values),
         derivatives=True,
         iterations=0,
     )
+
+
+def unit_rates(values: Floats, number: int) -> Floats:
+    """Rates (inputs, places): 1 of one input, 0 of all others."""
+    rates = np.zeros_like(values)
+    rates[number] = 1.0
+    return rates
 
 
 def _left_for(session: Session, rows: Rows, row: int) -> list[Before]:

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.analysis.sweep.before_dead_centre import Before, at_unit_rate, places_before
+from mechkin_cli.analysis.sweep.before_dead_centre import Before, places_before
+from mechkin_cli.analysis.sweep.lost_rates import lost_rates
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.status import Status
 from mechkin_cli.tolerances import (
-    DEAD_CENTRE_LOST,
     GROWS_WITHOUT_BOUND,
     REACTION_ROUNDING,
     RESTS,
@@ -54,33 +54,8 @@ def _is_lost(session: Session, rows: Rows, near: Bools) -> Bools:
     lost: Bools = np.asarray(rows.status == Status.rank_unclear)
     numbers = np.flatnonzero(near & ~lost)
     if numbers.size:
-        values = np.ascontiguousarray(session.inputs.reduced[:, numbers])
         states = np.ascontiguousarray(rows.states[:, numbers])
-        lost[numbers] = lost_rates(session, values, states).any(axis=0)
-    return lost
-
-
-def lost_rates(session: Session, values: Floats, states: Floats) -> Bools:
-    """Where the rounding of an input, or what the loops are open by, changes the rates at its unit
-    rate by more than a part of themselves: |x''| times that against |x'|.
-
-    Args:
-        session: the mechanism as it is driven.
-        values: (inputs, places) in kernel units, angles within a turn.
-        states: (states, places) closed there.
-
-    Returns:
-        (inputs, places), by each input in turn.
-    """
-    lost = np.zeros(values.shape, dtype=bool)
-    for number in range(values.shape[0]):
-        batch = at_unit_rate(session, values, states, number)
-        assert batch.first is not None
-        assert batch.second is not None
-        first, second = (np.abs(part).max(axis=0) for part in (batch.first, batch.second))
-        rounding = np.spacing(np.maximum(1.0, np.abs(values[number])))
-        rounding = np.maximum(rounding, batch.residual)
-        lost[number] = ~(second * rounding < DEAD_CENTRE_LOST * first)
+        lost[numbers] = lost_rates(session, numbers, states).any(axis=0)
     return lost
 
 
