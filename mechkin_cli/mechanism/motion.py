@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
+from mechkin_cli.tape.rows import differ
+
 if TYPE_CHECKING:
     from mechkin_cli.arrays import Floats
     from mechkin_cli.mechanism.course import Course
@@ -79,7 +81,7 @@ class Motion(NamedTuple):
     @property
     def leading(self) -> DrivenInput | None:
         """The first input that moves over the rows; the first of all if none does."""
-        moving = (i for i in self.inputs if (i.values != i.values[0]).any())
+        moving = (i for i in self.inputs if differ(i.values))
         return next(moving, self.inputs[0] if self.inputs else None)
 
 

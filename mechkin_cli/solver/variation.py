@@ -109,9 +109,7 @@ class Reading:
             start_row=start.row,
             demand=int(demand),
             iterations=tolerances.NEWTON_ITERATIONS,
-            continuation=step_limits(
-                tolerances.LONGEST_DIMENSION_STEP, tolerances.LEAST_DIMENSION_STEP
-            ),
+            continuation=step_limits(tolerances.LONGEST_DIMENSION_STEP),
             following=step_limits(straight=base.problem.assembly.straight),
             angles=angle_slots(base, self.slots),
             half_turn_side=tolerances.HALF_TURN_SIDE,

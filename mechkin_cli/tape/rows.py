@@ -33,3 +33,10 @@ def within(values: Floats, limit: float) -> bool:
     if is_traced(values):
         return all(bool(abs(value) <= limit) for value in values.flat)
     return bool(np.abs(values).max() <= limit)
+
+
+def differ(values: Floats) -> bool:
+    """Whether the numbers are not all the same."""
+    if is_traced(values):
+        return any(bool(value != values[0]) for value in values.flat)
+    return bool((values != values[0]).any())

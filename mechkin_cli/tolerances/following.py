@@ -30,10 +30,6 @@ LONGEST_DIMENSION_STEP: Final = 1.0
 """Longest step from the base variant (0) to another (1): variants are near each other as a rule,
 and the tests of a step shorten it where they are not."""
 
-LEAST_DIMENSION_STEP: Final = 1e-6
-"""Step on the way from the base variant to another (0 to 1) below which a branch that goes no
-farther is lost: a fold is met to this part of the way."""
-
 LEAST_STEP: Final = 1e-15
 """Step (in parts of max(1, |path|)) below which a branch cannot be followed in double precision."""
 
@@ -63,9 +59,9 @@ ARC_STEPS: Final = 4000
 """Steps of one look by arclength. A gap of 1e-12 between two branches takes some two hundred."""
 
 PLAN_STEP: Final = 1e-3
-"""Part of a path of changing dimensions over which its derivatives are read: differences are wrong
-by its square, 1e-6, and rounding leaves 1e-10 in the second ones; both matter to predictions
-only."""
+"""Part of a path of changing dimensions over which its derivatives are read, unless its steps are
+short: differences are wrong by its square, 1e-6, and rounding leaves 1e-10 in the second ones; both
+matter to predictions only."""
 
 MOST_STEPS: Final = 20000
 """Attempts that may take a path a longest step further; it may be as long as it likes. Measured:

@@ -1,8 +1,8 @@
 """A variant that is built anew, continued from the base variant all the same.
 
-Where a recording does not hold (rows that depend on a parameter, loops that `follow:` leaves out)
-the sessions on the way from the base's parameters (0) to the variant's (1) are built one by one;
-the steps between them are those of every continuation (docs/numerics.md, Variants).
+Where a recording does not hold (rows whose number depends on a parameter, loops that `follow:`
+leaves out) the sessions on the way from the base's parameters (0) to the variant's (1) are built
+one by one; the steps between them are those of every continuation (docs/numerics.md, Variants).
 """
 
 from __future__ import annotations
@@ -86,32 +86,18 @@ class AnewSession(Session):
             still = [0.0] * first.size
             return (first + place * (last - first)).tolist(), still, still
 
-        limits = step_limits(tolerances.LONGEST_DIMENSION_STEP, tolerances.LEAST_DIMENSION_STEP)
+        limits = step_limits(tolerances.LONGEST_DIMENSION_STEP)
         try:
-            return _at_the_end(Stepper.along(plan, at, True, limits), state)
+            node = Stepper.along(plan, at, True, limits).to_target(state.tolist())
         except MechkinError:
             return None  # what the file says does not hold somewhere on the way
+        return None if node is None else np.array(node.state)
 
 
 def _layout(session: Session, length: float) -> Layout:
     """How its mechanism lies in the kernel, with a length unit (m)."""
     problem = session.problem
     return Layout(problem.laid_mechanism, session.graph, length, problem.laws)
-
-
-def _at_the_end(stepper: Stepper, state: Floats) -> Floats | None:
-    node = stepper.close(0.0, state.tolist())
-    step = tolerances.LONGEST_DIMENSION_STEP
-    while node is not None and node.sigma < 1.0:
-        step = min(step, 1.0 - node.sigma)
-        following = stepper.step(node, step)
-        if following is not None:
-            node, step = following, 2.0 * step
-            continue
-        step *= 0.5
-        if step < tolerances.LEAST_DIMENSION_STEP:
-            return None
-    return None if node is None else np.array(node.state)
 
 
 def structure_of(graph: SolverGraph) -> object:

@@ -51,10 +51,45 @@ const Plan& DimensionPath::plan(double sigma) const {
   return plan_->view();
 }
 
+namespace {
+
+// Distance from a fold (rad, length units) up to which the branch is its parabola but for parts as small.
+constexpr double ON_PARABOLA = 1e-4;
+// Times that Newton begins again: its steps take that to the root of rounding: on the fold each halves the distance.
+constexpr int COMING_DOWN = 4;
+
+double product(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+// Closes the target from a place next to a fold that is no nearer than the target: at a distance d in sigma from it
+// x' = h / 2d and x'' = h / 4d^2, so h = x'^2 / x'' and d = x' / 2x''. On a parabola Newton's method stays on the side where
+// it begins, and steps that shrink with the distance need not be known to rounding.
+bool come_down(Stepper& stepper, const Node& node, Node* target) {
+  const double first = product(node.state_first, node.state_first);
+  const double second = std::sqrt(product(node.state_second, node.state_second));
+  const double way = first / second, rest = 1.0 - node.sigma;
+  if (!(way <= ON_PARABOLA) || !(product(node.state_first, node.state_second) > 0.0)) return false;
+  if (!(rest * second <= std::sqrt(first))) return false;
+  std::vector<double> guess = node.state;
+  for (int k = 0; !stepper.rest(1.0, guess.data(), target); ++k, guess = target->state)
+    if (k == COMING_DOWN) return false;
+  double square = 0.0;
+  for (std::size_t s = 0; s < node.state.size(); ++s) {
+    const double moved = target->state[s] - node.state[s];
+    square += moved * moved;
+  }
+  return square <= 4.0 * way * way;
+}
+
+}  // namespace
+
 bool follow_to_target(Stepper& stepper, const double* start, Node* node) {
   const StepLimits& limits = stepper.limits();
   Node next;
-  if (!stepper.close(0.0, start, node)) return false;
+  if (!stepper.begin(0.0, start, node)) return false;
   double h = stepper.wanted_step(*node);
   for (int steps = 0; node->sigma < 1.0; ++steps) {
     if (steps >= limits.most_steps) return false;
@@ -68,6 +103,10 @@ bool follow_to_target(Stepper& stepper, const double* start, Node* node) {
     }
     h = 0.5 * step;
     if (h < limits.least_step) return false;
+    if (stepper.suit(h, node)) h = std::fmin(h, stepper.wanted_step(*node));
+    if (!come_down(stepper, *node, &next)) continue;
+    std::swap(*node, next);
+    return true;
   }
   return true;
 }

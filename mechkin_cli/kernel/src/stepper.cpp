@@ -3,6 +3,14 @@
 #include <cmath>
 #include <cstring>
 
+namespace {
+
+// Of a step, for the places from which its derivatives are read: their differences are wrong by its square, a hundredth,
+// and rounding is seen sixty times as large.
+constexpr double PART_OF_STEP = 0.125;
+
+}  // namespace
+
 void Line::at(double sigma, PathPoint* point) const {
   const int n = plan_.inputs;
   point->inputs.resize(n), point->first.assign(u_, u_ + n), point->second.assign(n, 0.0);
@@ -57,8 +65,9 @@ Stepper::Stepper(const Path& path, const KernelUnit& unit, const StepLimits& lim
   for (int b = 0; b < plan_.blocks; ++b) entries_ += plan_.block[b].rows * plan_.block[b].size;
 }
 
-bool Stepper::close(double sigma, const double* guess, Node* node) {
+bool Stepper::close(double sigma, const double* guess, double apart, Node* node) {
   if (!solve(sigma, guess, true, node)) return false;
+  node->apart = apart;
   node->own = path_.varies() ? 1.0 : 0.0, node->own_second = 0.0;
   if (path_.varies()) {
     if (!differentiate_by_plan(node)) return false;
@@ -109,10 +118,30 @@ bool Stepper::solve(double sigma, const double* guess, bool moving, Node* node) 
   return flags == 0;
 }
 
+// Steps towards a fold are parts of the distance from it, beyond which nothing closes: a small part of them is clear of it.
+double Stepper::apart_for(double h) const { return std::fmin(limits_.plan_step, PART_OF_STEP * std::fabs(h)); }
+
+bool Stepper::begin(double sigma, const double* guess, Node* node) {
+  if (close(sigma, guess, node)) return true;
+  for (double h = limits_.plan_step; path_.varies() && h >= limits_.least_step; h *= PART_OF_STEP)
+    if (close(sigma, guess, PART_OF_STEP * h, node)) return true;
+  return false;
+}
+
+bool Stepper::suit(double h, Node* node) {
+  if (!path_.varies() || node->apart <= apart_for(h)) return false;
+  const std::vector<double> state = node->state;
+  Node again;
+  if (!close(node->sigma, state.data(), apart_for(h), &again)) return false;
+  again.danger = node->danger, again.singular = node->singular, again.least = node->least;
+  *node = again;
+  return true;
+}
+
 // The derivatives by sigma where the plan changes with it, from three closed places: symmetric differences, one-sided
 // at the ends of the path, beyond which a plan need not exist.
 bool Stepper::differentiate_by_plan(Node* node) {
-  const double d = limits_.plan_step, sigma = node->sigma;
+  const double d = node->apart, sigma = node->sigma;
   const bool low = sigma < d, high = sigma > 1.0 - d;
   const double one = low || !high ? d : -d, two = low ? 2.0 * d : high ? -2.0 * d : -d;
   Node near, far;
@@ -143,7 +172,7 @@ void Stepper::predict(const Node& n, double h, std::vector<double>* guess) const
 bool Stepper::step(const Node& a, double h, double sigma, Node* b) {
   predict(a, h, &guess_);
   const std::vector<double> guess = guess_;
-  return close(sigma, guess.data(), b) && judge(a, b);
+  return close(sigma, guess.data(), apart_for(h), b) && judge(a, b);
 }
 
 // The inputs are columns too, so the first derivatives hold the whole tangent of the branch.

@@ -35,7 +35,7 @@ struct StepLimits {
   double angle_step;    // a step longer than this is halved where a closing joint's turns are not sure
   double angle_miss;    // rad: largest change of a closing joint's angle against the integral of its rate
   double angle_bend;    // rad: largest part of that integral by the rate's derivatives that is not looked into
-  double plan_step;     // sigma: distance of the places from which the derivatives by the plan's change are read
+  double plan_step;     // sigma: largest distance of the places from which the derivatives by the plan's change are read
 };
 
 // What a path says at one sigma; arrays over the inputs.
@@ -74,6 +74,7 @@ struct Node {
   double place;                                   // the parameter that derivatives are by: sigma, or an arclength
   double rate, bend;                              // sigma's derivatives by it: 1 and 0 where it is sigma
   double correction;                              // largest change of an unknown against the guess
+  double apart = 0.0;                             // distance of the places from which derivatives by the plan are read
   double least = __builtin_inf();                 // at most the blocks' least singular value; infinite where not looked at
   double own = 0.0, own_second = 0.0;             // sigma's part in the tangent besides the inputs', and its derivative
   std::vector<double> inputs;
@@ -105,7 +106,13 @@ class Stepper {
   Stepper(const Path& path, const KernelUnit& unit, const StepLimits& limits);
 
   // Closes the loops at sigma from a guess (states); false if they do not close or a derivative is not finite.
-  bool close(double sigma, const double* guess, Node* node);
+  bool close(double sigma, const double* guess, Node* node) { return close(sigma, guess, limits_.plan_step, node); }
+  // The same at the start of a path: next to a fold derivatives by the plan are read from places as near as it takes.
+  bool begin(double sigma, const double* guess, Node* node);
+  // The same without derivatives: on a fold there are none.
+  bool rest(double sigma, const double* guess, Node* node) { return solve(sigma, guess, false, node); }
+  // Reads a node's derivatives by the plan from places that suit steps as short as h; false as `close`, or where they do.
+  bool suit(double h, Node* node);
   // Second-order prediction of the states a step h away; quaternions have unit length.
   void predict(const Node& node, double h, std::vector<double>* guess) const;
   // Whether b lies on a's branch (judge.cpp); notes the blocks' danger in b.
@@ -153,6 +160,8 @@ class Stepper {
   PathPoint point_;
 
  private:
+  bool close(double sigma, const double* guess, double apart, Node* node);
+  double apart_for(double h) const;
   bool solve(double sigma, const double* guess, bool moving, Node* node);
   bool same_side(const Node& a, Node* b);
   bool is_told(const Node& node);

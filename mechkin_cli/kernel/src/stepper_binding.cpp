@@ -12,6 +12,7 @@
 #include <limits>
 #include <memory>
 
+#include "dimension_path.hpp"
 #include "frozen_plan.hpp"
 #include "same_layout.hpp"
 #include "tracker.hpp"
@@ -199,6 +200,15 @@ std::optional<Node> step_from(OwnedStepper& s, const Node& node, double h) {
   return next;
 }
 
+std::optional<Node> to_target(OwnedStepper& s, const Numbers& start) {
+  need_length(start, s.stepper->plan().states, "start");
+  const Turn turn(s);
+  FloatingPointState state;
+  Node node;
+  if (!follow_to_target(*s.stepper, start.data(), &node)) return std::nullopt;
+  return node;
+}
+
 // (kind, block, inputs, states, derivatives of the columns by arclength, second ones, sigma's second; inputs and states
 // of a place beyond), or None.
 nb::object limit_of(const Followed& found) {
@@ -339,6 +349,7 @@ void bind_stepper(nb::module_& m) {
              return s.stepper->judge(a, &b);
            }, "a"_a, "b"_a)
       .def("step", &step_from, "node"_a, "h"_a)
+      .def("to_target", &to_target, "start"_a)
       .def("wanted_step", [](const OwnedStepper& s, const Node& node) {
              need_node(s, node);
              return s.stepper->wanted_step(node);
