@@ -29,8 +29,14 @@ constexpr int FRICTION_LEVELS = 112;
 constexpr double FRICTION_SHORTEST = 1.0 / 1024.0;
 
 MECHKIN_INLINE Pack magnitude(const Vec3& a) { return sqrt(dot(a, a)); }
-// At least |a|, at most 1.74 times as much.
 MECHKIN_INLINE Pack sum_of_components(const Vec3& a) { return abs(a.x) + abs(a.y) + abs(a.z); }
+// At least |a|, at most 1.16 times as much: it is linear wherever one component is the largest, and not below |a| on the
+// edges of that region, (1, 0, 0), (1, 1, 0) and (1, 1, 1).
+MECHKIN_INLINE Pack above_magnitude(const Vec3& a) {
+  constexpr double ROOT_LESS_ONE = 0.4142135623730951;
+  return Pack(ROOT_LESS_ONE) * sum_of_components(a) +
+         Pack(1.0 - ROOT_LESS_ONE) * max(abs(a.x), max(abs(a.y), abs(a.z)));
+}
 
 // The Lipschitz matrix L of the friction forces into r.bound, `size` being at least the length of a vector.
 template <class Size>
@@ -54,11 +60,9 @@ MECHKIN_INLINE Mask contracts(const Rubbing& r, int n, int k, const Pack* weight
 
 MECHKIN_INLINE Mask doubtful(const Rubbing& r, int k) { return r.state[k] == Pack((double)FRICTION_NOT_UNIQUE); }
 
-// As prove_unique, for lanes in which w = 1 and a coarse bound do not prove it.
-inline void prove_thoroughly(const Plan& p, const Rubbing& r, Mask proven) {
+// w = (I - L)^-1 1 into r.step, L from r.bound.
+inline void weigh(const Plan& p, const Rubbing& r) {
   const int n = p.frictions;
-  const Pack one = 1.0;
-  bound_friction(p, r, [](Vec3 a) { return magnitude(a); });
   for (int k = 0; k < n; ++k) {
     r.step[k] = 1.0;
     for (int j = 0; j < n; ++j) r.matrix[k * n + j] = Pack(k == j ? 1.0 : 0.0) - r.bound[k * n + j];
@@ -66,12 +70,24 @@ inline void prove_thoroughly(const Plan& p, const Rubbing& r, Mask proven) {
   const Factors f = {r.matrix, r.swap, n};
   factor(f);
   solve(f, r.step);
+}
+// Whether these weights, of which only good ones are positive numbers, prove friction k.
+MECHKIN_INLINE Mask weights_prove(const Rubbing& r, int n, int k) {
+  const Mask finite = (r.step[k] > Pack(0.0)) & (r.step[k] < Pack(__builtin_inf()));
+  return finite & contracts(r, n, k, r.step);
+}
+
+// As prove_unique, for lanes that are not `proven` yet; the matrix L is in r.bound.
+inline void prove_thoroughly(const Plan& p, const Rubbing& r, Mask proven) {
+  const int n = p.frictions;
+  weigh(p, r);
+  Mask all_good = all_lanes(true);
   for (int k = 0; k < n; ++k) {
-    const Mask finite = (r.step[k] > Pack(0.0)) & (r.step[k] < Pack(__builtin_inf()));
-    const Mask good = proven | (finite & contracts(r, n, k, r.step));
+    const Mask good = proven | weights_prove(r, n, k);
     r.state[k] = select(good, r.state[k], Pack((double)FRICTION_NOT_UNIQUE));
+    all_good = all_good & good;
   }
-  for (int round = 0; round < n; ++round)
+  for (int round = 0; round < n && !all(all_good); ++round)
     for (int k = 0; k < n; ++k)
       for (int j = 0; j < n; ++j) {
         const Mask follows = doubtful(r, j) & ~(r.bound[k * n + j] == Pack(0.0));
@@ -79,7 +95,7 @@ inline void prove_thoroughly(const Plan& p, const Rubbing& r, Mask proven) {
       }
   for (int k = 0; k < n; ++k) {
     r.coefficient[k] = select(doubtful(r, k), Pack(0.0), r.coefficient[k]);
-    r.weight[k] = select(proven | doubtful(r, k), one, r.step[k]);
+    r.weight[k] = select(proven, r.weight[k], select(doubtful(r, k), Pack(1.0), r.step[k]));
   }
 }
 
@@ -87,11 +103,31 @@ inline void prove_thoroughly(const Plan& p, const Rubbing& r, Mask proven) {
 // marked in r.state and have no friction.
 inline void prove_unique(const Plan& p, const Rubbing& r) {
   const int n = p.frictions;
-  bound_friction(p, r, [](Vec3 a) { return sum_of_components(a); });
   for (int k = 0; k < n; ++k) r.weight[k] = 1.0;
-  Mask proven = all_lanes(true);
-  for (int k = 0; k < n; ++k) proven = proven & contracts(r, n, k, r.weight);
-  if (!all(proven)) prove_thoroughly(p, r, proven);
+  // by a bound without roots first, which mostly does
+  bound_friction(p, r, [](Vec3 a) { return above_magnitude(a); });
+  Mask plainly = all_lanes(true), weighed = all_lanes(true);
+  for (int k = 0; k < n; ++k) plainly = plainly & contracts(r, n, k, r.weight);
+  if (all(plainly)) return;
+  weigh(p, r);
+  for (int k = 0; k < n; ++k) weighed = weighed & weights_prove(r, n, k);
+  for (int k = 0; k < n; ++k) r.weight[k] = select(weighed & ~plainly, r.step[k], r.weight[k]);
+  const Mask proven = plainly | weighed;
+  if (all(proven)) return;
+  bound_friction(p, r, [](Vec3 a) { return magnitude(a); });
+  prove_thoroughly(p, r, proven);
+}
+
+// What a contact carries with the friction forces in r.force. One along a direction has a single component.
+MECHKIN_INLINE Vec3 contact_load(const Plan& p, const Rubbing& r, int c) {
+  const int n = p.frictions;
+  const Vec3* const gain = r.gain + c * n;
+  Vec3 load = r.base[c];
+  if (p.contact[c].code == CONTACT_ALONG)
+    for (int j = 0; j < n; ++j) load.x += r.force[j] * gain[j].x;
+  else
+    for (int j = 0; j < n; ++j) load += r.force[j] * gain[j];
+  return load;
 }
 
 // Normal loads of the friction forces in r.force, with the contacts' loads and their magnitudes, and mu N - z into r.right.
@@ -100,8 +136,7 @@ inline void load_contacts(const Plan& p, const Rubbing& r) {
   for (int k = 0; k < n; ++k) {
     Pack normal = 0.0;
     for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
-      Vec3 load = r.base[c];
-      for (int j = 0; j < n; ++j) load += r.force[j] * r.gain[c * n + j];
+      const Vec3 load = contact_load(p, r, c);
       r.load[c] = load;
       r.size[c] = sqrt(dot(load, load) + r.softness * r.softness);
       normal += Pack(p.contact[c].weight) * r.size[c];
@@ -121,7 +156,11 @@ inline void differentiate_loads(const Plan& p, const Rubbing& r) {
       const Mask none = r.size[c] == Pack(0.0);
       const Vec3 along = select(none, Pack(0.0), Pack(1.0) / select(none, Pack(1.0), r.size[c])) * r.load[c];
       const Pack share = r.coefficient[k] * Pack(p.contact[c].weight);
-      for (int j = 0; j < n; ++j) row[j] -= share * dot(along, r.gain[c * n + j]);
+      const Vec3* const gain = r.gain + c * n;
+      if (p.contact[c].code == CONTACT_ALONG)
+        for (int j = 0; j < n; ++j) row[j] -= share * (along.x * gain[j].x);
+      else
+        for (int j = 0; j < n; ++j) row[j] -= share * dot(along, gain[j]);
     }
   }
 }
