@@ -22,12 +22,22 @@ struct Closure {
   Pack parameter;
 };
 
+// Motion of a link, which is read where it stands, as far as it is known.
+struct LinkMotion {
+  const Motion& motion;
+  const Twist& jerk;
+  MECHKIN_INLINE MotionToJerk to_jerk() const { return {motion, jerk}; }
+};
 // Motion of the two links and how many derivatives of a coordinate are wanted.
 struct PairMotion {
-  MotionToJerk a, b;
+  LinkMotion a, b;
   int from, order;  // the least derivative wanted, for a value is dearer than they are, and the highest
-  MECHKIN_INLINE Vec3 relative_omega() const { return b.velocity.angular - a.velocity.angular; }
-  MECHKIN_INLINE Vec3 relative_alpha() const { return b.acceleration.angular - a.acceleration.angular; }
+  MECHKIN_INLINE Vec3 relative_omega() const {
+    return b.motion.velocity.angular - a.motion.velocity.angular;
+  }
+  MECHKIN_INLINE Vec3 relative_alpha() const {
+    return b.motion.acceleration.angular - a.motion.acceleration.angular;
+  }
   MECHKIN_INLINE Vec3 relative_jerk() const { return b.jerk.angular - a.jerk.angular; }
 };
 
@@ -60,11 +70,13 @@ MECHKIN_APART Pack third_of_product(const Vec3& x, const MotionToJerk& a, const 
 struct OnFirst {
   static MECHKIN_INLINE const MotionToJerk& of(const MotionToJerk& a, const MotionToJerk&) { return a; }
   static MECHKIN_INLINE const Motion& of(const Motion& a, const Motion&) { return a; }
+  static MECHKIN_INLINE const LinkMotion& of(const LinkMotion& a, const LinkMotion&) { return a; }
   static MECHKIN_INLINE Vec3 opposite(const Closure& k) { return k.B.o; }
 };
 struct OnSecond {
   static MECHKIN_INLINE const MotionToJerk& of(const MotionToJerk&, const MotionToJerk& b) { return b; }
   static MECHKIN_INLINE const Motion& of(const Motion&, const Motion& b) { return b; }
+  static MECHKIN_INLINE const LinkMotion& of(const LinkMotion&, const LinkMotion& b) { return b; }
   static MECHKIN_INLINE Vec3 opposite(const Closure& k) { return k.A.o; }
 };
 struct AX : OnFirst {

@@ -88,6 +88,12 @@ struct Coordinates {
     return mask;
   }
 
+  static MECHKIN_INLINE unsigned axes_of(int freedom) {
+    unsigned axes = NO_AXES;
+    int next = 0;
+    ((freedom == next++ ? void(axes = All::axes) : void()), ...);
+    return axes;
+  }
   static MECHKIN_INLINE void coordinate(const Closure& k, const PairMotion& p, int freedom, Pack* out) {
     int next = 0;
     const bool named = ((freedom == next++ ? (All::of(k, p, out), true) : false) || ...);

@@ -6,14 +6,8 @@
 
 namespace {
 
-MECHKIN_INLINE Motion motion_of(const Workspace& w, int link) {
-  if (link < 0) return {zero_twist(), zero_twist()};
-  return w.motion[link];
-}
-
-MECHKIN_INLINE Twist twist_of(const Workspace& w, int link) {
-  return link < 0 ? zero_twist() : w.motion[link].velocity;
-}
+// Of a link, or of ground (-1).
+MECHKIN_INLINE const Motion& motion_of(const Workspace& w, int link) { return w.motion[link]; }
 
 inline void move_leg(const Plan& p, Workspace& w, int k, bool second) {
   const Leg& leg = p.leg[p.joints[k].leg];
@@ -41,7 +35,7 @@ inline void move_link(const Plan& p, Workspace& w, int k) {
 inline void accelerate_link(const Plan& p, Workspace& w, int k, bool again) {
   const TreeJoint& j = p.joints[k];
   if (j.type == TREE_L) return move_leg(p, w, k, true);
-  const Motion parent = motion_of(w, j.parent);
+  const Motion& parent = motion_of(w, j.parent);
   if (!again) w.convective[k] = bracket(parent.velocity, joint_twist(p, w, k, w.rate));
   w.motion[k].acceleration = parent.acceleration + joint_twist(p, w, k, w.acceleration) + w.convective[k];
 }
@@ -88,7 +82,7 @@ inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* righ
 inline void second_of_equations(const Plan& p, Workspace& w, const Block& b) {
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
-    const Motion first = motion_of(w, j.first), other = motion_of(w, j.second);
+    const Motion &first = motion_of(w, j.first), &other = motion_of(w, j.second);
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       Pack r[MAX_CLOSING_ROWS];
       entry.second(w.closure[c], first, other, r);
@@ -101,7 +95,6 @@ inline void second_of_equations(const Plan& p, Workspace& w, const Block& b) {
 
 // A link's motion with its jerk.
 MECHKIN_INLINE MotionToJerk motion_to_jerk(const Workspace& w, int link) {
-  if (link < 0) return {{zero_twist(), zero_twist()}, zero_twist()};
   return {w.motion[link], w.link_jerk[link]};
 }
 

@@ -1,5 +1,5 @@
 // Coordinates of closing pairs with their derivatives from PairMotion::from to PairMotion::order, read off the frames A
-// and B.
+// and B; `axes` are those of them that a coordinate reads.
 #pragma once
 
 #include "closing_equations.hpp"
@@ -7,25 +7,27 @@
 namespace {
 
 // axis.d and its derivatives, for an axis carried by a link with motion m.
-MECHKIN_APART void along(const Vec3& axis, const MotionToJerk& m, const Closure& k, const PairMotion& p, Pack* out) {
+MECHKIN_APART void along(const Vec3& axis, const LinkMotion& m, const Closure& k, const PairMotion& p, Pack* out) {
+  const Motion &a = p.a.motion, &b = p.b.motion;
   out[0] = dot(axis, k.d);
   if (p.order < 1) return;
-  if (p.from < 2) out[1] = dot(axis, first_of_d(k, p.a, p.b)) + dot(m.rate(axis), k.d);
+  if (p.from < 2) out[1] = dot(axis, first_of_d(k, a, b)) + dot(m.motion.rate(axis), k.d);
   if (p.order < 2) return;
-  out[2] = second_along(axis, m, k, p.a, p.b);
+  out[2] = second_along(axis, m.motion, k, a, b);
   if (p.order < 3) return;
-  out[3] = third_along(axis, m, k, p.a, p.b);
+  out[3] = third_along(axis, m.to_jerk(), k, p.a.to_jerk(), p.b.to_jerk());
 }
 // Angle of B.X against A.X about the common axis, and its derivatives.
 MECHKIN_APART void about(const Closure& k, const PairMotion& p, Pack* out) {
+  const Motion& a = p.a.motion;
   if (p.from < 1) out[0] = atan2(dot(k.A.Y, k.B.X), dot(k.A.X, k.B.X));
   if (p.order < 1) return;
   if (p.from < 2) out[1] = dot(k.A.Z, p.relative_omega());
   if (p.order < 2) return;
-  out[2] = dot(k.A.Z, p.relative_alpha()) + dot(p.a.rate(k.A.Z), p.relative_omega());
+  out[2] = dot(k.A.Z, p.relative_alpha()) + dot(a.rate(k.A.Z), p.relative_omega());
   if (p.order < 3) return;
-  out[3] = dot(k.A.Z, p.relative_jerk()) + Pack(2.0) * dot(p.a.rate(k.A.Z), p.relative_alpha()) +
-           dot(p.a.second_rate(k.A.Z), p.relative_omega());
+  out[3] = dot(k.A.Z, p.relative_jerk()) + Pack(2.0) * dot(a.rate(k.A.Z), p.relative_alpha()) +
+           dot(a.second_rate(k.A.Z), p.relative_omega());
 }
 
 // Turns about z_A, fixed in the first link, and then about z_B, fixed in the second; x_A = x_B square to both at home:
@@ -39,7 +41,7 @@ MECHKIN_APART void of_two_turns(const Closure& k, Pack c, const PairMotion& p, i
   }
   if (p.order < 1) return;
   const Vec3 one = turn == 0 ? A.Z : B.Z, other = turn == 0 ? B.Z : A.Z;
-  const Motion &m = turn == 0 ? p.a : p.b, &n = turn == 0 ? p.b : p.a;
+  const Motion &m = turn == 0 ? p.a.motion : p.b.motion, &n = turn == 0 ? p.b.motion : p.a.motion;
   const Vec3 dual = scale * (one - c * other);
   out[1] = dot(dual, p.relative_omega());
   if (p.order < 2) return;
@@ -53,6 +55,7 @@ MECHKIN_APART void of_two_turns(const Closure& k, Pack c, const PairMotion& p, i
 
 // A freedom without a coordinate: the turns of a ball, the slides of a sphere on a plane.
 struct Nameless {
+  static constexpr unsigned axes = NO_AXES;
   static MECHKIN_INLINE void of(const Closure&, const PairMotion& p, Pack* out) {
     for (int order = 0; order <= p.order; ++order) out[order] = Pack(__builtin_nan(""));
   }
@@ -67,10 +70,12 @@ template <class Coordinate>
 constexpr bool is_turn = has_name<Coordinate>;
 
 struct About {
+  static constexpr unsigned axes = X_OF_A | Y_OF_A | Z_OF_A | X_OF_B;
   static MECHKIN_INLINE void of(const Closure& k, const PairMotion& p, Pack* out) { about(k, p, out); }
 };
 template <class U>
 struct Along {
+  static constexpr unsigned axes = U::axes;
   static MECHKIN_INLINE void of(const Closure& k, const PairMotion& p, Pack* out) {
     along(U::vector(k), U::of(p.a, p.b), k, p, out);
   }
@@ -80,12 +85,14 @@ constexpr bool is_turn<Along<U>> = false;
 
 template <class Cosine>
 struct FirstTurn {
+  static constexpr unsigned axes = X_OF_A | Y_OF_A | Z_OF_A | Z_OF_B;
   static MECHKIN_INLINE void of(const Closure& k, const PairMotion& p, Pack* out) {
     of_two_turns(k, Cosine::value(k), p, 0, out);
   }
 };
 template <class Cosine>
 struct SecondTurn {
+  static constexpr unsigned axes = X_OF_B | Y_OF_B | Z_OF_A | Z_OF_B;
   static MECHKIN_INLINE void of(const Closure& k, const PairMotion& p, Pack* out) {
     of_two_turns(k, Cosine::value(k), p, 1, out);
   }

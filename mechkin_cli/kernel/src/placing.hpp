@@ -47,27 +47,34 @@ inline void find_screws(const Plan& p, Workspace& w, int k) {
   });
 }
 
-// Origin of a frame on a link, and those of its axes that the lowest three bits of `axes` name.
+// Those axes of a frame on a link that the lowest three bits of `axes` name.
 MECHKIN_INLINE void place_axes(const Frame& f, const Pose* link, unsigned axes, Pose& at) {
   if (axes & X_OF_A) at.X = link ? link->vector(f.x) : constant(f.x);
   if (axes & Y_OF_A) at.Y = link ? link->vector(f.y) : constant(f.y);
   if (axes & Z_OF_A) at.Z = link ? link->vector(f.z) : constant(f.z);
-  at.o = link ? link->point(f.o) : constant(f.o);
 }
+MECHKIN_INLINE Vec3 placed_origin(const Frame& f, const Pose* link) { return link ? link->point(f.o) : constant(f.o); }
 // The closure of a closing joint at the poses as they are, as far as `axes` are read.
 inline void place_closure(const Plan& p, const Workspace& w, int c, unsigned axes) {
   const ClosingJoint& j = p.closing[c];
   Closure& k = w.closure[c];
   place_axes(j.on_first, pose_of(w, j.first), axes, k.A);
   place_axes(j.on_second, pose_of(w, j.second), axes / X_OF_B, k.B);
+  k.A.o = placed_origin(j.on_first, pose_of(w, j.first));
+  k.B.o = placed_origin(j.on_second, pose_of(w, j.second));
   k.d = k.B.o - k.A.o;
   k.parameter = j.parameter;
   if (j.slide >= 0) k.parameter += Pack(j.slide_sign) * w.q[p.joints[j.slide].state];
-  w.whole[c] = axes == ALL_AXES;
+  w.placed[c] = (unsigned char)axes;
 }
 // The closure for coordinates, which read other axes than the equations do; the poses are those of the equations.
-MECHKIN_INLINE const Closure& whole_closure(const Plan& p, const Workspace& w, int c) {
-  if (!w.whole[c]) place_closure(p, w, c, ALL_AXES);
+inline const Closure& closure_with(const Plan& p, const Workspace& w, int c, unsigned axes) {
+  const unsigned missing = axes & ~w.placed[c];
+  if (!missing) return w.closure[c];
+  const ClosingJoint& j = p.closing[c];
+  place_axes(j.on_first, pose_of(w, j.first), missing, w.closure[c].A);
+  place_axes(j.on_second, pose_of(w, j.second), missing / X_OF_B, w.closure[c].B);
+  w.placed[c] |= (unsigned char)missing;
   return w.closure[c];
 }
 

@@ -21,12 +21,12 @@ inline void closing_turn(const Plan& p, const Workspace& w, const ClosingTurn& t
     return;
   }
   const ClosingJoint& j = p.closing[turn.closing];
-  const Closure& k = whole_closure(p, w, turn.closing);
+  const Closure& k = closure_with(p, w, turn.closing, ALL_AXES);
   const Pose &A = k.A, &B = k.B;
   const Quaternion q = quaternion_of(A.components(B.X), A.components(B.Y), A.components(B.Z));
   out[0][0] = q.w, out[0][1] = q.x, out[0][2] = q.y, out[0][3] = q.z;
   if (order < 2) return;
-  const Motion a = motion_of(w, j.first), b = motion_of(w, j.second);
+  const Motion &a = motion_of(w, j.first), &b = motion_of(w, j.second);
   const Vec3 omega = b.velocity.angular - a.velocity.angular;
   const Vec3 alpha = b.acceleration.angular - a.acceleration.angular - cross(a.velocity.angular, omega);
   const Vec3 first = A.components(omega), second = A.components(alpha);

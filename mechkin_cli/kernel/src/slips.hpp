@@ -120,7 +120,7 @@ inline void find_frame(const Plan& p, const Workspace& w, const ReducedMotion& m
 
 // The derivative of a slip at u'' = 0, right where the joint does not slip: of slides by the accelerations of its point.
 inline Pack convective_slip(const Workspace& w, const JointPlace& j, const Vec3& point, const Wrench& frame) {
-  const Motion a = motion_of(w, j.first), b = motion_of(w, j.second);
+  const Motion &a = motion_of(w, j.first), &b = motion_of(w, j.second);
   const Vec3 carried = cross(b.velocity.angular, b.velocity.at(point)) - cross(a.velocity.angular, a.velocity.at(point));
   return power(b.acceleration - a.acceleration, frame) + dot(carried, frame.force);
 }

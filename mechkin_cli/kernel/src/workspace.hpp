@@ -16,12 +16,12 @@ struct Workspace {
   Pack *q, *rate, *acceleration, *jerk;  // states, columns, columns, columns
   Pose* pose;                     // links
   Twist* screw;                   // columns
-  Motion* motion;                 // links
+  Motion* motion;                 // links; before them, at -1, ground's, which is zero
   Twist* convective;              // links: acceleration against the parent by its motion alone
-  Twist* link_jerk;               // links: second derivative of the twist
+  Twist* link_jerk;               // likewise: second derivative of the twist
   Wrench* carried;                // links: wrench on the link and all that the tree hangs on it
   Closure* closure;               // closing joints
-  bool* whole;                    // closing joints: whether the closure has all axes
+  unsigned char* placed;          // closing joints: axes that the closure has
   Wrench* reaction;               // closing joints: on the second link
   Pack* jacobian;                 // per block rows x size, factored in place
   Mask* swap;
@@ -66,14 +66,14 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->rate = (Pack*)take(p.columns * pack);
   w->acceleration = (Pack*)take(p.columns * pack);
   w->jerk = (Pack*)take(p.columns * pack);
-  w->link_jerk = (Twist*)take((p.links + 1) * sizeof(Twist));
+  w->link_jerk = (Twist*)take((p.links + 1) * sizeof(Twist)) + 1;
   w->pose = (Pose*)take(p.links * sizeof(Pose));
   w->screw = (Twist*)take(p.columns * sizeof(Twist));
-  w->motion = (Motion*)take((p.links + 1) * sizeof(Motion));
+  w->motion = (Motion*)take((p.links + 1) * sizeof(Motion)) + 1;
   w->convective = (Twist*)take(p.links * sizeof(Twist));
   w->carried = (Wrench*)take(p.links * sizeof(Wrench));
   w->closure = (Closure*)take(p.closings * sizeof(Closure));
-  w->whole = (bool*)take(p.closings * sizeof(bool));
+  w->placed = (unsigned char*)take(p.closings);
   w->reaction = (Wrench*)take(p.closings * sizeof(Wrench));
   w->jacobian = (Pack*)take(squares * pack);
   w->swap = (Mask*)take(pairs * sizeof(Mask));
@@ -97,6 +97,7 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->place = (Pack*)take(p.charts * pack);
   w->place_rate = (Pack*)take(p.charts * pack);
   w->place_acceleration = (Pack*)take(p.charts * pack);
+  if (at) w->motion[-1] = {zero_twist(), zero_twist()}, w->link_jerk[-1] = zero_twist();
   w->load = (Pack*)take(p.load_values * pack);
   w->law = (Pack*)take((long)p.law.registers() * pack);
   return used;

@@ -76,16 +76,10 @@ inline Wrench along_coordinate(const Plan& p, const Workspace& w, int axis, Pack
 // A coordinate of a closing joint and its derivatives, those from `from` to `order`.
 inline void closing_coordinate(const Plan& p, const Workspace& w, int c, int freedom, int from, int order, Pack* out) {
   const ClosingJoint& j = p.closing[c];
-  PairMotion motion;
-  motion.from = from, motion.order = order;
-  if (order > 2)
-    motion.a = motion_to_jerk(w, j.first), motion.b = motion_to_jerk(w, j.second);
-  else if (order > 1)
-    static_cast<Motion&>(motion.a) = motion_of(w, j.first), static_cast<Motion&>(motion.b) = motion_of(w, j.second);
-  else if (order > 0)
-    motion.a.velocity = twist_of(w, j.first), motion.b.velocity = twist_of(w, j.second);
+  const auto motion_at = [&](int link) -> LinkMotion { return {w.motion[link], w.link_jerk[link]}; };
+  const PairMotion motion = {motion_at(j.first), motion_at(j.second), from, order};
   with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-    entry.coordinate(whole_closure(p, w, c), motion, freedom, out);
+    entry.coordinate(closure_with(p, w, c, entry.axes_of(freedom)), motion, freedom, out);
   });
 }
 
