@@ -49,9 +49,11 @@ class Linear:
         return sigma
 
     def largest_inverse(self, a: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
-        """Largest singular value of the inverse of diag(rows) A diag(columns), as estimated."""
-        norm = np.empty(LANES)
-        self.library.largest_inverse(a.shape[1], *map(_pointer, (a, rows, columns, norm)))
+        """Largest singular value of the inverse of diag(rows) A diag(columns), as estimated; of one
+        pack of matrices, or of two together."""
+        norm = np.empty(len(a))
+        packs = len(a) // LANES
+        self.library.largest_inverses(packs, a.shape[1], *map(_pointer, (a, rows, columns, norm)))
         return norm
 
 

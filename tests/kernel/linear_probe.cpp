@@ -59,15 +59,22 @@ EXPORTED void least_singular_value(int m, int n, const double* a, double* sigma)
   store(1, &least, sigma);
 }
 
-// a (n x n, row-major) with weights of its rows and columns -> the largest singular value of the weighted inverse.
-EXPORTED void largest_inverse(int n, const double* a, const double* rows, const double* columns, double* norm) {
-  Pack matrix[LARGEST * LARGEST], weight[LARGEST], scratch[3 * LARGEST * LARGEST];
-  Mask swap[LARGEST * LARGEST];
+// `packs` matrices a (n x n, row-major), one pack after the other, with weights of their rows and columns -> the largest
+// singular values of the weighted inverses.
+EXPORTED void largest_inverses(int packs, int n, const double* a, const double* rows, const double* columns, double* norm) {
+  struct Room {
+    Pack matrix[LARGEST * LARGEST], weight[LARGEST], scratch[3 * LARGEST * LARGEST];
+    Mask swap[LARGEST * LARGEST];
+  } room[PACKS_OF_ESTIMATE];
+  InverseNorm found[PACKS_OF_ESTIMATE];
   int unknown[LARGEST];
-  load(n * n, a, matrix);
-  for (int i = 0; i < n; ++i) weight[i] = 1.0 / rows[i], unknown[i] = i;
-  const Factors factors = {matrix, swap, n};
-  factor(factors);
-  const Pack found = inverse_norm(factors, weight, columns, unknown, scratch);
-  store(1, &found, norm);
+  for (int i = 0; i < n; ++i) unknown[i] = i;
+  for (int k = 0; k < packs; ++k) {
+    load(n * n, a + (long)k * LANES * n * n, room[k].matrix);
+    for (int i = 0; i < n; ++i) room[k].weight[i] = 1.0 / rows[i];
+    found[k] = {{room[k].matrix, room[k].swap, n}, room[k].weight, room[k].scratch, Pack(0.0)};
+    factor(found[k].f);
+  }
+  find_inverse_norms(found, packs, columns, unknown);
+  for (int k = 0; k < packs; ++k) store(1, &found[k].value, norm + k * LANES);
 }

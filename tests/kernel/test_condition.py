@@ -99,3 +99,21 @@ def test_a_lane_does_not_depend_on_its_neighbours(linear: Linear, n: int) -> Non
     ones = np.ones(n)
     together, alone = (linear.largest_inverse(m, ones, ones) for m in (a, other))
     assert together[0].tobytes() == alone[0].tobytes()
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 6, 7, 12])
+def test_a_pack_does_not_depend_on_the_one_beside_it(linear: Linear, n: int) -> None:
+    """Two packs are estimated together; each has the bits that it has alone, in either place."""
+    generator = np.random.default_rng(n)
+    one, other = generator.normal(size=(2, LANES, n, n))
+    rows, columns = generator.uniform(0.7, 1.4, n), generator.uniform(0.7, 1.4, n)
+    alone = [linear.largest_inverse(m, rows, columns) for m in (one, other)]
+    for first, second in ((0, 1), (1, 0)):
+        pair = np.concatenate([(one, other)[first], (one, other)[second]])
+        found = linear.largest_inverse(pair, rows, columns)
+        assert found[:LANES].tobytes() == alone[first].tobytes()
+        assert found[LANES:].tobytes() == alone[second].tobytes()
+    beside = linear.largest_inverse(
+        np.concatenate([np.full_like(one, np.nan), other]), rows, columns
+    )
+    assert beside[LANES:].tobytes() == alone[1].tobytes()

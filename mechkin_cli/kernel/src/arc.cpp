@@ -90,7 +90,7 @@ bool Arc::look(const double* guess, bool complete, const std::vector<double>& ra
   r.iterations = iterations;
   r.tight = limits_.tight, r.coarse = limits_.coarse, r.accept = limits_.accept;
   std::fill(node->pivot.begin(), node->pivot.end(), 1.0);
-  unit_.run(plan_, r, memory_.data());
+  unit_.run_row(plan_, r, memory_.data());
   // the held blocks' equations are Newton's business until it has ended
   return complete ? flags == 0 : true;
 }
@@ -339,7 +339,9 @@ bool Arc::same_side(const Node& a, Node* b, int* blame) {
   const double h = b->place - a.place;
   Node half = a;
   half.sigma = 0.5 * (a.sigma + b->sigma) + 5.0 / 32.0 * h * (a.rate - b->rate) + h * h / 64.0 * (a.bend + b->bend);
-  const std::vector<double> guess = middle(a, *b), none(size_, 0.0);
+  const std::vector<double> none(size_, 0.0);
+  std::vector<double> guess;
+  middle(a, *b, &guess);
   std::vector<double> t = tangent(a), other = tangent(*b);
   for (int u = 0; u <= size_; ++u) t[u] += other[u];
   const double size = length_of(t);
@@ -349,13 +351,14 @@ bool Arc::same_side(const Node& a, Node* b, int* blame) {
   half.extended = with_column(own_jacobian(half), seen.first, 1.0 / scale_);
   double own_danger = 0.0;
   const bool own_same =
-      is_regular_segment(bordered(a), with_row(half.extended, t), bordered(*b), limits_.radius, &own_danger, &b->least);
+      is_regular_segment(Factored(bordered(a)), with_row(half.extended, t), Factored(bordered(*b)), limits_.radius,
+                         &own_danger, &b->least);
   for (int k = 0; k < plan_.blocks; ++k) {
     if (!carries(k)) continue;
     double danger = own_danger;
     const bool same = own_[k] ? own_same
-                              : is_regular_segment(block_matrix(a.jacobian, k), block_matrix(half.jacobian, k),
-                                                   block_matrix(b->jacobian, k), limits_.radius, &danger,
+                              : is_regular_segment(Factored(block_matrix(a.jacobian, k)), block_matrix(half.jacobian, k),
+                                                   Factored(block_matrix(b->jacobian, k)), limits_.radius, &danger,
                                                    &b->singular[k]);
     b->danger[k] = danger / std::fabs(h), b->least = std::fmin(b->least, b->singular[k]);
     if (!same || !(b->singular[k] >= limits_.pivot)) {

@@ -11,7 +11,9 @@ constexpr double COINCIDENT = 1e-12;
 }  // namespace
 
 SizeMemory::SizeMemory(const Plan& plan, const KernelUnit& unit)
-    : workspace(unit.workspace_size(plan)), states(plan.states), points(3 * plan.size_points) {}
+    : workspace(unit.workspace_size(plan)), states(plan.states), points(3 * plan.size_points) {
+  unit.prepare(plan, workspace.data());
+}
 
 double assembly_size(const Plan& plan, const KernelUnit& unit, const double* inputs, const double* state,
                      const NewtonLimits& limits, SizeMemory& memory) {
@@ -26,7 +28,7 @@ double assembly_size(const Plan& plan, const KernelUnit& unit, const double* inp
   r.residual = &residual, r.correction = &correction, r.flags = &flags;
   r.iterations = limits.iterations;
   r.tight = limits.tight, r.coarse = limits.coarse, r.accept = limits.accept;
-  unit.run(plan, r, memory.workspace.data());
+  unit.run_row(plan, r, memory.workspace.data());
 
   double extent[3];
   for (int i = 0; i < 3; ++i) {

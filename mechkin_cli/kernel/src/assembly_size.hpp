@@ -5,9 +5,11 @@
 
 #include "unit.hpp"
 
-// Memory of `assembly_size`, kept by a caller that measures many variants of one plan.
+// Memory of `assembly_size`, kept by a caller that measures many variants of one plan, whose workspace points
+// into itself.
 struct SizeMemory {
   SizeMemory(const Plan& plan, const KernelUnit& unit);
+  SizeMemory(const SizeMemory&) = delete;
   std::vector<char> workspace;
   std::vector<double> states, points;
 };

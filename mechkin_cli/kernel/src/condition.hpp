@@ -28,12 +28,17 @@ inline void per_row(const Plan& p, const Block& b, double length, Pack* weight) 
   for (int i = b.rows - b.charts; i < b.rows; ++i) weight[i] = 1.0;
 }
 
-// To 1 % from the block's factors.
-inline Pack estimated_condition(const Plan& p, Workspace& w, int index) {
+// To 1 % from the factors of the packs that go together.
+inline void estimate_conditions(const Plan& p, int index, Judged* pack, int count) {
   const Block& b = p.block[index];
-  const Factors f = matrices_of(p, w, index).lu();
-  per_row(p, b, 1.0 / p.row_weight, w.right);
-  return inverse_norm(f, w.right, p.column_weight, p.unknown + b.column_begin, w.scratch);
+  InverseNorm norm[PACKS_OF_ESTIMATE];
+  for (int k = 0; k < count; ++k) {
+    Workspace& w = pack[k].w;
+    per_row(p, b, 1.0 / p.row_weight, w.right);
+    norm[k] = {matrices_of(p, w, index).lu(), w.right, w.scratch, Pack(0.0)};
+  }
+  find_inverse_norms(norm, count, p.column_weight, p.unknown + b.column_begin);
+  for (int k = 0; k < count; ++k) pack[k].condition = norm[k].value;
 }
 
 // To rounding, from the screws at the closed place.
@@ -49,44 +54,45 @@ inline Pack exact_condition(const Plan& p, Workspace& w, int index) {
   return Pack(1.0) / smallest_singular_value(w.scratch, m, n, w.right);
 }
 
-struct BlockVerdict {
-  Pack side, condition;  // sign of a square block's determinant
-};
-
-// Factors of a block at its closed place, unless only its verdict is wanted and Newton's last ones serve;
-// `keep_jacobian` sees the matrix before it is factored.
+// A block's factors at its closed place.
 template <class F>
-MECHKIN_INLINE BlockVerdict judge_block(const Plan& p, Workspace& w, int index, const Request& r, const Closed& closed,
-                                        F&& keep_jacobian) {
+inline void factor_closed(const Plan& p, Workspace& w, int index, F&& keep_jacobian) {
   const BlockMatrices at = matrices_of(p, w, index);
-  const bool square = at.m == at.n, rounding = r.demand & DEMAND_SINGULAR;
-  const bool by_newton = square && r.demand == DEMAND_CONDITION && !r.pivot && !r.jacobian;
-  BlockVerdict verdict = {Pack(1.0), Pack(0.0)};
-  if (by_newton) {
-    verdict = {determinant_sign(at.lu()), estimated_condition(p, w, index)};
-    const Mask serves = (verdict.condition <= Pack(ESTIMATED_CONDITION)) &
-                        (verdict.condition * closed.last_step <= Pack(FACTORS_OFF));
-    if (all(serves)) return verdict;
-    block_screws(p, w, p.block[index]);
-    verdict.condition = select(serves, verdict.condition, exact_condition(p, w, index));
-    block_jacobian(p, w, index, at.jacobian);
-    at.factor_jacobian();
-    verdict.side = select(serves, verdict.side, determinant_sign(at.lu()));
-    return verdict;
-  }
   block_screws(p, w, p.block[index]);
   block_jacobian(p, w, index, at.jacobian);
   keep_jacobian(at);
   at.factor_jacobian();
-  if (square) verdict.side = determinant_sign(at.lu());
-  if (!(r.demand & DEMAND_CONDITION)) return verdict;
-  Mask serves = all_lanes(false);
-  if (square && !rounding) {
-    verdict.condition = estimated_condition(p, w, index);
-    serves = verdict.condition <= Pack(ESTIMATED_CONDITION);
+}
+
+// Of the packs that go together. Each is factored at its closed place, unless only its verdict is wanted and Newton's last
+// factors serve; `keep_jacobian` sees its matrix before.
+template <class F>
+inline void judge_blocks(const Plan& p, int index, const Request& r, Judged* pack, int count, F&& keep_jacobian) {
+  const bool square = p.block[index].rows == p.block[index].size;
+  const bool by_newton = square && r.demand == DEMAND_CONDITION && !r.pivot && !r.jacobian;
+  const auto side_of = [&](const Judged& j) {
+    return square ? determinant_sign(matrices_of(p, j.w, index).lu()) : Pack(1.0);
+  };
+  for (int k = 0; k < count; ++k) {
+    if (!by_newton) factor_closed(p, pack[k].w, index, [&](const BlockMatrices& at) { keep_jacobian(k, at); });
+    pack[k].side = side_of(pack[k]), pack[k].condition = Pack(0.0);
   }
-  if (!all(serves)) verdict.condition = select(serves, verdict.condition, exact_condition(p, w, index));
-  return verdict;
+  if (!(r.demand & DEMAND_CONDITION)) return;
+  const bool estimates = square && !(r.demand & DEMAND_SINGULAR);
+  if (estimates) estimate_conditions(p, index, pack, count);
+  for (Judged* j = pack; j < pack + count; ++j) {
+    Mask serves = all_lanes(estimates);
+    if (estimates) serves = j->condition <= Pack(ESTIMATED_CONDITION);
+    if (by_newton) serves = serves & (j->condition * j->closed.last_step <= Pack(FACTORS_OFF));
+    if (all(serves)) continue;
+    if (by_newton) block_screws(p, j->w, p.block[index]);
+    j->condition = select(serves, j->condition, exact_condition(p, j->w, index));
+    if (!by_newton) continue;
+    const BlockMatrices at = matrices_of(p, j->w, index);
+    block_jacobian(p, j->w, index, at.jacobian);
+    at.factor_jacobian();
+    j->side = select(serves, j->side, side_of(*j));
+  }
 }
 
 }  // namespace

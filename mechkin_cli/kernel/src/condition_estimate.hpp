@@ -44,16 +44,27 @@ MECHKIN_INLINE void weighted_inverse(Factors f, int runtime, Pack* inverse_weigh
   }
 }
 
-// Half as wide numbers: seven digits are plenty for 1 %, and the powers below take half the time.
-typedef float Singles __attribute__((vector_size(4 * LANES)));
+// Packs whose estimates are made together.
+constexpr int PACKS_OF_ESTIMATE = 2;
+
+// Half as wide numbers, of two packs in the room of one: seven digits are plenty for 1 %, and the powers below take half
+// the time.
+typedef float HalfSingles __attribute__((vector_size(4 * LANES)));
+typedef float Singles __attribute__((vector_size(PACKS_OF_ESTIMATE * 4 * LANES)));
+MECHKIN_INLINE void put_half(Singles& a, int k, HalfSingles x) {
+  __builtin_memcpy(reinterpret_cast<char*>(&a) + k * sizeof x, &x, sizeof x);
+}
+MECHKIN_INLINE Pack half_of(const Singles& a, int k) {
+  HalfSingles x;
+  __builtin_memcpy(&x, reinterpret_cast<const char*>(&a) + k * sizeof x, sizeof x);
+  return Pack(__builtin_convertvector(x, Doubles));
+}
 MECHKIN_INLINE Singles root(Singles a) {
   Singles r;
-  for (int i = 0; i < LANES; ++i) r[i] = __builtin_sqrtf(a[i]);
+  for (int i = 0; i < PACKS_OF_ESTIMATE * LANES; ++i) r[i] = __builtin_sqrtf(a[i]);
   return r;
 }
 MECHKIN_INLINE Doubles root(Doubles a) { return sqrt(Pack(a)).v; }
-MECHKIN_INLINE Doubles doubles(Singles a) { return __builtin_convertvector(a, Doubles); }
-MECHKIN_INLINE Doubles doubles(Doubles a) { return a; }
 MECHKIN_INLINE Singles larger(Singles a, Singles b) { return a < b ? b : a; }
 MECHKIN_INLINE Doubles larger(Doubles a, Doubles b) { return a < b ? b : a; }
 
@@ -84,13 +95,10 @@ MECHKIN_INLINE Numbers multiplicity(Numbers t1, Numbers t2, int n) {
   return n == 1 ? one : root(r * (one + others * y * y));
 }
 
-// Of the n x n matrix c, to 1 %; `power` and `other` are room for n x n numbers each.
+// The largest eigenvalue of a symmetric matrix (n x n, of trace 1), to 2 %; both arrays are room for powers.
 template <int N, class Numbers>
-MECHKIN_INLINE Pack largest_singular_value(const Pack* c, int runtime, Pack* g, Numbers* power, Numbers* other) {
+MECHKIN_INLINE Numbers largest_eigenvalue(Numbers* power, Numbers* other, int runtime) {
   const int n = N ? N : runtime, squarings = n > 6 ? 5 : 4;
-  const Pack trace = gram<N>(&c->v, runtime, &g->v), inverse = Pack(1.0) / trace;
-  // the largest eigenvalue is now between 1 / n and 1
-  for (int e = 0; e < n * n; ++e) power[e] = __builtin_convertvector((g[e] * inverse).v, Numbers);
   Numbers t1 = {}, t2 = {};
   for (int s = 0; s < squarings; ++s) {
     t1 = gram<N>(power, runtime, other);
@@ -100,38 +108,55 @@ MECHKIN_INLINE Pack largest_singular_value(const Pack* c, int runtime, Pack* g, 
   for (int e = 0; e < n * n; ++e) t2 += power[e] * power[e];
   Numbers value = t2 / multiplicity(t1, t2, n);
   for (int s = 0; s <= squarings; ++s) value = root(value);
-  return sqrt(Pack(doubles(value)) * trace);
+  return value;
 }
+
+// The largest singular value of the inverse of diag(1 / inverse_weight) A diag(column_weight), A as factored.
+struct InverseNorm {
+  Factors f;
+  Pack* inverse_weight;  // n, used up
+  Pack* scratch;         // room for 3 n x n
+  Pack value;
+};
 
 template <int N>
-MECHKIN_INLINE void estimate_condition(Factors f, int runtime, Pack* weight, const double* column_weight,
-                                       const int* unknown, Pack* scratch, Pack* result) {
-  const int n = N ? N : runtime;
-  weighted_inverse<N>(f, runtime, weight, column_weight, unknown, scratch);
-  Pack* const g = scratch + n * n;
-  if constexpr (N > 0) {
-    Singles power[2][N * N];
-    *result = largest_singular_value<N>(scratch, runtime, g, power[0], power[1]);
-  } else {
-    *result = largest_singular_value<N>(scratch, runtime, g, &scratch[2 * n * n].v, &scratch->v);
+MECHKIN_INLINE void estimate_together(InverseNorm* pack, int count, const double* column_weight, const int* unknown) {
+  static_assert(N > 0);
+  Singles power[N * N], other[N * N];
+  Pack trace[PACKS_OF_ESTIMATE];
+  for (int k = 0; k < count; ++k) {
+    Pack *const c = pack[k].scratch, *const g = c + N * N;
+    weighted_inverse<N>(pack[k].f, N, pack[k].inverse_weight, column_weight, unknown, c);
+    trace[k] = gram<N>(&c->v, N, &g->v);
+    // the largest eigenvalue is now between 1 / n and 1
+    const Pack inverse = Pack(1.0) / trace[k];
+    for (int e = 0; e < N * N; ++e) put_half(power[e], k, __builtin_convertvector((g[e] * inverse).v, HalfSingles));
   }
+  if (count < PACKS_OF_ESTIMATE)
+    for (int e = 0; e < N * N; ++e) put_half(power[e], 1, HalfSingles{} + 1);
+  const Singles value = largest_eigenvalue<N>(power, other, N);
+  for (int k = 0; k < count; ++k) pack[k].value = sqrt(half_of(value, k) * trace[k]);
 }
 
-// The largest singular value of the inverse of diag(1 / inverse_weight) A diag(column_weight), A as factored;
-// `inverse_weight` (n) is used up, `scratch` is room for 3 n x n packs.
-inline Pack inverse_norm(Factors f, Pack* inverse_weight, const double* column_weight, const int* unknown,
-                         Pack* scratch) {
-  Pack r;
-  switch (f.n) {
-    case 1: estimate_condition<1>(f, 1, inverse_weight, column_weight, unknown, scratch, &r); break;
-    case 2: estimate_condition<2>(f, 2, inverse_weight, column_weight, unknown, scratch, &r); break;
-    case 3: estimate_condition<3>(f, 3, inverse_weight, column_weight, unknown, scratch, &r); break;
-    case 4: estimate_condition<4>(f, 4, inverse_weight, column_weight, unknown, scratch, &r); break;
-    case 5: estimate_condition<5>(f, 5, inverse_weight, column_weight, unknown, scratch, &r); break;
-    case 6: estimate_condition<6>(f, 6, inverse_weight, column_weight, unknown, scratch, &r); break;
-    default: estimate_condition<0>(f, f.n, inverse_weight, column_weight, unknown, scratch, &r);
+inline void estimate_alone(InverseNorm& pack, const double* column_weight, const int* unknown) {
+  const int n = pack.f.n;
+  Pack *const c = pack.scratch, *const g = c + n * n;
+  weighted_inverse<0>(pack.f, n, pack.inverse_weight, column_weight, unknown, c);
+  const Pack trace = gram<0>(&c->v, n, &g->v), inverse = Pack(1.0) / trace;
+  for (int e = 0; e < n * n; ++e) g[n * n + e] = g[e] * inverse;
+  pack.value = sqrt(Pack(largest_eigenvalue<0>(&g[n * n].v, &c->v, n)) * trace);
+}
+
+inline void find_inverse_norms(InverseNorm* pack, int count, const double* column_weight, const int* unknown) {
+  switch (pack->f.n) {
+    case 1: return estimate_together<1>(pack, count, column_weight, unknown);
+    case 2: return estimate_together<2>(pack, count, column_weight, unknown);
+    case 3: return estimate_together<3>(pack, count, column_weight, unknown);
+    case 4: return estimate_together<4>(pack, count, column_weight, unknown);
+    case 5: return estimate_together<5>(pack, count, column_weight, unknown);
+    case 6: return estimate_together<6>(pack, count, column_weight, unknown);
   }
-  return r;
+  for (int k = 0; k < count; ++k) estimate_alone(pack[k], column_weight, unknown);
 }
 
 }  // namespace

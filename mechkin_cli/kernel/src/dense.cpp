@@ -27,8 +27,9 @@ void solve_columns(const Matrix& matrix, const Entries& pivots, const Entries& b
   const int m = N ? N : matrix.rows, n = N ? N : matrix.columns, columns = N ? N : solution->columns;
   const double *const a = matrix.a.begin(), *const pivot = pivots.begin(), *const beta = betas.begin();
   double* const x = solution->a.begin();
-  Entries sums(columns);
-  double* const sum = sums.begin();
+  Entries sums(N ? 0 : columns);
+  double sized[N ? N : 1];
+  double* const sum = N ? sized : sums.begin();
   for (int k = 0; k < n; ++k) {
     for (int j = 0; j < columns; ++j) sum[j] = 0.0;
     for (int i = k; i < m; ++i)
@@ -44,6 +45,49 @@ void solve_columns(const Matrix& matrix, const Entries& pivots, const Entries& b
   }
 }
 
+// The factors of LeastSquares, likewise.
+template <int N>
+void reflect(Matrix* matrix, Entries* pivots, Entries* betas) {
+  const int m = N ? N : matrix->rows, n = N ? N : matrix->columns;
+  double *const a = matrix->a.begin(), *const pivot = pivots->begin(), *const beta = betas->begin();
+  for (int k = 0; k < n; ++k) {
+    double square = 0.0;
+    for (int i = k; i < m; ++i) square += a[i * n + k] * a[i * n + k];
+    const double first = a[k * n + k], length = std::copysign(std::sqrt(square), first);
+    pivot[k] = -length;
+    a[k * n + k] = first + length;
+    const double v2 = 2.0 * (square + std::fabs(first * length));
+    beta[k] = v2 > 0.0 ? 2.0 / v2 : 0.0;
+    for (int j = k + 1; j < n; ++j) {
+      double s = 0.0;
+      for (int i = k; i < m; ++i) s += a[i * n + k] * a[i * n + j];
+      s *= beta[k];
+      for (int i = k; i < m; ++i) a[i * n + j] -= s * a[i * n + k];
+    }
+  }
+}
+
+// Sum of the squares of R^-1, column by column.
+template <int N>
+double inverse_square(const Matrix& matrix, const Entries& pivots) {
+  const int n = N ? N : matrix.columns;
+  const double *const a = matrix.a.begin(), *const pivot = pivots.begin();
+  Entries entries(N ? 0 : n);
+  double sized[N ? N : 1];
+  double* const x = N ? sized : entries.begin();
+  double square = 0.0;
+  for (int c = 0; c < n; ++c) {
+    for (int k = 0; k < c; ++k) x[k] = 0.0;
+    x[c] = 1.0;
+    for (int k = c; k >= 0; --k) {
+      for (int j = k + 1; j <= c; ++j) x[k] -= a[k * n + j] * x[j];
+      x[k] /= pivot[k];
+      square += x[k] * x[k];
+    }
+  }
+  return square;
+}
+
 template <int N>
 void square_into(const Matrix& e, Matrix* product) {
   const int n = N ? N : e.rows;
@@ -57,22 +101,8 @@ void square_into(const Matrix& e, Matrix* product) {
 }  // namespace
 
 LeastSquares::LeastSquares(Matrix matrix) : a_(std::move(matrix)), pivot_(a_.columns), beta_(a_.columns) {
-  const int m = a_.rows, n = a_.columns;
-  for (int k = 0; k < n; ++k) {
-    double square = 0.0;
-    for (int i = k; i < m; ++i) square += a_(i, k) * a_(i, k);
-    const double first = a_(k, k), length = std::copysign(std::sqrt(square), first);
-    pivot_[k] = -length;
-    a_(k, k) = first + length;
-    const double v2 = 2.0 * (square + std::fabs(first * length));
-    beta_[k] = v2 > 0.0 ? 2.0 / v2 : 0.0;
-    for (int j = k + 1; j < n; ++j) {
-      double s = 0.0;
-      for (int i = k; i < m; ++i) s += a_(i, k) * a_(i, j);
-      s *= beta_[k];
-      for (int i = k; i < m; ++i) a_(i, j) -= s * a_(i, k);
-    }
-  }
+  with_size(a_.rows == a_.columns ? a_.columns : 0,
+            [this](auto size) { reflect<size()>(&a_, &pivot_, &beta_); });
 }
 
 std::vector<double> LeastSquares::solve(std::vector<double> b) const {
@@ -110,20 +140,10 @@ double LeastSquares::least_pivot() const {
   return least;
 }
 
-// |R^-1|, column by column
 double LeastSquares::least_singular_bound() const {
   const int n = a_.columns;
   double square = 0.0;
-  std::vector<double> x(n);
-  for (int c = 0; c < n; ++c) {
-    std::fill(x.begin(), x.end(), 0.0);
-    x[c] = 1.0;
-    for (int k = c; k >= 0; --k) {
-      for (int j = k + 1; j <= c; ++j) x[k] -= a_(k, j) * x[j];
-      x[k] /= pivot_[k];
-      square += x[k] * x[k];
-    }
-  }
+  with_size(n, [&](auto size) { square = inverse_square<size()>(a_, pivot_); });
   return square > 0.0 ? 1.0 / std::sqrt(square) : n ? 0.0 : HUGE_VAL;
 }
 

@@ -63,6 +63,13 @@ class LeastSquares {
   Entries pivot_, beta_;
 };
 
+// A matrix with its factors.
+struct Factored {
+  Matrix matrix;
+  LeastSquares squares;
+  explicit Factored(const Matrix& m) : matrix(m), squares(m) {}
+};
+
 // Whether a bound of the spectral radius of E is at most `limit`: |E^k|^(1/k) in Frobenius' norm for k = 1, 2, 4 ... 32.
 // The powers' norms come near the radius, which changes neither with units nor with the order of equations and unknowns
 // nor where independent parts stand in one matrix.

@@ -5,19 +5,19 @@
 
 namespace {
 
-struct BlockVerdict {
-  Pack side, condition;  // sign of a square block's determinant; no number
-};
-
-// `keep_jacobian` sees the matrix before it is factored.
+// Of the packs that go together; `keep_jacobian` sees each one's matrix before it is factored.
 template <class F>
-inline BlockVerdict judge_block(const Plan& p, Workspace& w, int index, const Request&, const Closed&, F&& keep_jacobian) {
-  const BlockMatrices at = matrices_of(p, w, index);
-  block_screws(p, w, p.block[index]);
-  block_jacobian(p, w, index, at.jacobian);
-  keep_jacobian(at);
-  at.factor_jacobian();
-  return {at.m == at.n ? determinant_sign(at.lu()) : Pack(1.0), Pack(__builtin_nan(""))};
+inline void judge_blocks(const Plan& p, int index, const Request&, Judged* pack, int count, F&& keep_jacobian) {
+  for (int k = 0; k < count; ++k) {
+    Workspace& w = pack[k].w;
+    const BlockMatrices at = matrices_of(p, w, index);
+    block_screws(p, w, p.block[index]);
+    block_jacobian(p, w, index, at.jacobian);
+    keep_jacobian(k, at);
+    at.factor_jacobian();
+    pack[k].side = at.m == at.n ? determinant_sign(at.lu()) : Pack(1.0);
+    pack[k].condition = Pack(__builtin_nan(""));
+  }
 }
 
 }  // namespace

@@ -16,18 +16,18 @@ constexpr double NARROW = 1e-3;
 
 }  // namespace
 
-bool is_regular_segment(const Matrix& a, const Matrix& middle, const Matrix& b, double limit, double* danger,
+bool is_regular_segment(const Factored& a, const Matrix& middle, const Factored& b, double limit, double* danger,
                         double* least) {
-  const LeastSquares from(a), to(b);
+  const LeastSquares &from = a.squares, &to = b.squares;
   *least = std::fmin(*least, to.least_singular_bound());
   const auto difference = [](const LeastSquares& at, const Matrix& other) {
     Matrix e = at.solve(other);
     subtract_identity(&e);
     return e;
   };
-  *danger = spectral_radius_bound(difference(to, a));
-  if (!(*danger <= limit) && !spectral_radius_within(difference(to, a), limit) &&
-      !spectral_radius_within(difference(from, b), limit))
+  *danger = spectral_radius_bound(difference(to, a.matrix));
+  if (!(*danger <= limit) && !spectral_radius_within(difference(to, a.matrix), limit) &&
+      !spectral_radius_within(difference(from, b.matrix), limit))
     return false;
   return spectral_radius_within(difference(from, middle), limit) &&
          spectral_radius_within(difference(to, middle), limit);
@@ -41,35 +41,41 @@ Matrix Stepper::block_matrix(const std::vector<double>& jacobian, int block) con
   return matrix;
 }
 
-std::vector<double> Stepper::middle(const Node& a, const Node& b) const {
+void Stepper::middle(const Node& a, const Node& b, std::vector<double>* state) const {
   const double h = b.place - a.place;
-  std::vector<double> state(plan_.states);
+  state->resize(plan_.states);
   for (int s = 0; s < plan_.states; ++s)
-    state[s] = 0.5 * (a.state[s] + b.state[s]) + 5.0 / 32.0 * h * (a.state_first[s] - b.state_first[s]) +
-               h * h / 64.0 * (a.state_second[s] + b.state_second[s]);
-  normalise_quaternions(state.data(), 1);
-  return state;
+    (*state)[s] = 0.5 * (a.state[s] + b.state[s]) + 5.0 / 32.0 * h * (a.state_first[s] - b.state_first[s]) +
+                  h * h / 64.0 * (a.state_second[s] + b.state_second[s]);
+  normalise_quaternions(state->data(), 1);
+}
+
+const std::vector<Factored>& Stepper::factors(const Node& node) const {
+  for (int k = (int)node.factored.size(); k < plan_.blocks; ++k)
+    node.factored.emplace_back(block_matrix(node.jacobian, k));
+  return node.factored;
 }
 
 bool Stepper::same_side(const Node& a, Node* b) {
   const double h = b->place - a.place, half = a.sigma + 0.5 * (b->sigma - a.sigma);
-  const std::vector<double> guess = middle(a, *b);
+  middle(a, *b, &guess_);
   const Plan& plan = path_.plan(half);
   path_.at(half, &point_);
-  std::vector<double> jacobian(entries_);
+  half_way_.resize(entries_);
   double residual = 0.0, correction = 0.0;
   unsigned char flags = 0;
   Request r = {};
-  r.rows = 1, r.inputs = point_.inputs.data(), r.guess = guess.data();
+  r.rows = 1, r.inputs = point_.inputs.data(), r.guess = guess_.data();
   r.residual = &residual, r.correction = &correction, r.flags = &flags;
-  r.jacobian = jacobian.data(), r.demand = DEMAND_JACOBIAN;
-  unit_.run(plan, r, memory_.data());
+  r.jacobian = half_way_.data(), r.demand = DEMAND_JACOBIAN;
+  unit_.run_row(plan, r, memory_.data());
+  const std::vector<Factored>&from = factors(a), &to = factors(*b);
   bool same = true;
   b->least = HUGE_VAL;
   for (int k = 0; k < plan_.blocks; ++k) {
     double danger = 0.0;
-    same = is_regular_segment(block_matrix(a.jacobian, k), block_matrix(jacobian, k), block_matrix(b->jacobian, k),
-                              limits_.radius, &danger, &b->singular[k]) && same;
+    same = is_regular_segment(from[k], block_matrix(half_way_, k), to[k], limits_.radius, &danger,
+                              &b->singular[k]) && same;
     b->danger[k] = danger / std::fabs(h), b->least = std::fmin(b->least, b->singular[k]);
   }
   return same;
@@ -81,11 +87,10 @@ bool Stepper::turned_too_far(const Node& a, const Node& b) const {
 }
 
 // Prediction of a from b: a place on another branch does not look back at where it was predicted from.
-bool Stepper::looks_back(const Node& a, const Node& b, double tolerance) const {
-  std::vector<double> back;
-  predict(b, a.place - b.place, &back);
-  for (std::size_t s = 0; s < back.size(); ++s)
-    if (!(std::fabs(back[s] - a.state[s]) <= tolerance)) return false;
+bool Stepper::looks_back(const Node& a, const Node& b, double tolerance) {
+  predict(b, a.place - b.place, &back_);
+  for (int s = 0; s < plan_.states; ++s)
+    if (!(std::fabs(back_[s] - a.state[s]) <= tolerance)) return false;
   return true;
 }
 

@@ -48,7 +48,7 @@ class RowFollower {
     out_.limit[0] = limits_.jump;
     const bool placed = place_start();
     for (int s = 0; s < plan_.states; ++s) out_.guess[s * out_.rows] = result_.state[s];
-    if (!placed) return result_;
+    if (!placed) return std::move(result_);
     for (const Piece& piece : cut_.pieces(every_row)) {
       if (piece.way == Way::rest) rest(piece);
       if (piece.way == Way::line && !line(piece.first, piece.last, every_row)) return ended();
@@ -84,13 +84,13 @@ class RowFollower {
     for (int i = 0; i < rows_.inputs; ++i) result_.inputs[i] = rows_.at(i, row);
   }
   // The result; inputs that move no loop are where the last row reached has them.
-  Followed& ended() {
+  Followed ended() {
     const long row = std::min(result_.reached, rows_.rows) - 1;
     for (int i = 0; i < rows_.inputs; ++i)
       if (rows_.still[i] && row >= 0) result_.inputs[i] = rows_.true_at(i, row);
     // the inputs' states are the inputs, whole turns and all
     for (int i = 0; i < rows_.inputs; ++i) result_.state[plan_.column_state[plan_.input_column[i]]] = result_.inputs[i];
-    return result_;
+    return std::move(result_);
   }
   // The inputs at a row, angles within half a turn.
   std::vector<double> line_start(long row) const {
@@ -115,21 +115,25 @@ class RowFollower {
     result_.reached = piece.last + 1;
   }
 
-  // Places of rows (first, last] on the straight way from `first`: whole turns of the leading input, and the rest.
-  std::vector<Orbit::Place> places_of(long first, long last, int leading, double sense) const {
-    std::vector<Orbit::Place> places;
-    places.reserve(last - first);
+  // Places of rows on a straight way: whole turns of the leading input, and the rest.
+  struct Places {
+    std::vector<long> turn;
+    std::vector<double> rest;
+  };
+  // Of rows (first, last], from `first` on.
+  Places places_of(long first, long last, int leading, double sense) const {
+    const long count = last - first;
+    Places places = {std::vector<long>(count, 0), std::vector<double>(count)};
+    const double from = rows_.at(leading, first);
     if (!cyclic_[leading]) {
-      for (long row = first + 1; row <= last; ++row)
-        places.push_back({0, std::fabs(rows_.at(leading, row) - rows_.at(leading, first))});
+      for (long k = 0; k < count; ++k) places.rest[k] = std::fabs(rows_.at(leading, first + 1 + k) - from);
       return places;
     }
     const double *value = rows_.values + leading * rows_.rows, *whole = rows_.whole + leading * rows_.rows;
-    for (long row = first + 1; row <= last; ++row) {
-      double rest = sense * (value[row] - value[first]);
-      long turn = (long)(sense * (whole[row] - whole[first]));
-      if (rest < 0.0) rest += FULL_TURN, --turn;
-      places.push_back({turn, rest});
+    for (long k = 0; k < count; ++k) {
+      const long row = first + 1 + k;
+      places.rest[k] = sense * (value[row] - value[first]), places.turn[k] = (long)(sense * (whole[row] - whole[first]));
+      if (places.rest[k] < 0.0) places.rest[k] += FULL_TURN, --places.turn[k];
     }
     return places;
   }
@@ -138,21 +142,20 @@ class RowFollower {
     int leading = 0;
     direction_from(first, &result_.direction, &leading);
     const std::vector<double> u = result_.direction, origin = line_start(first);
-    const std::vector<Orbit::Place> places = places_of(first, last, leading, u[leading]);
+    const Places places = places_of(first, last, leading, u[leading]);
     if (orbit_ && !stays_on_orbit(first, last)) orbit_.reset();
     if (orbit_ && !alone) return go_round(first, last);
-    std::vector<double> x0 = origin, sigma;
-    sigma.reserve(places.size());
+    std::vector<double> x0 = origin;
     long row = first + 1;
     for (long turn = 0;; ++turn) {
       long stop = row;
-      sigma.clear();
-      for (; stop <= last && places[stop - first - 1].turn <= turn; ++stop) sigma.push_back(places[stop - first - 1].rest);
+      while (stop <= last && places.turn[stop - first - 1] <= turn) ++stop;
+      const double* const sigma = places.rest.data() + (row - first - 1);
       const bool goes_on = stop <= last;
       const bool records = goes_on && !alone && (turn == 0 || (orbit_ && orbit_->records()));
-      const double end = goes_on ? FULL_TURN : sigma.back();
+      const double end = goes_on ? FULL_TURN : places.rest.back();
       std::vector<Segment> kept;
-      const Track track = follow_line(plan_, unit_, x0.data(), u.data(), stop - row, sigma.data(), end,
+      const Track track = follow_line(plan_, unit_, x0.data(), u.data(), stop - row, sigma, end,
                                       result_.state.data(), result_.turn, limits_, out_, row,
                                       records ? &kept : nullptr);
       const auto true_inputs = [&](double place, std::vector<double> inputs) {
@@ -172,7 +175,7 @@ class RowFollower {
       for (double place : track.crossings) {
         std::vector<double> inputs = x0;
         for (int i = 0; i < rows_.inputs; ++i) inputs[i] += place * u[i];
-        note_crossing(true_inputs(place, inputs), place, sigma.data(), row - 1, stop - 1);
+        note_crossing(true_inputs(place, inputs), place, sigma, row - 1, stop - 1);
       }
       if (result_.end != TrackEnd::finished) return false;
       row = stop;

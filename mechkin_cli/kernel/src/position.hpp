@@ -180,6 +180,13 @@ struct Closed {
   Mask converged, side;
 };
 
+// A closed block of one pack on its way to its verdict.
+struct Judged {
+  Workspace& w;
+  const Closed& closed;
+  Pack side, condition;  // sign of a square block's determinant; no number where none is wanted
+};
+
 inline void keep_factors(Workspace& w, const BlockMatrices& at) {
   for (int e = 0; e < at.n * at.n; ++e) w.kept[e] = at.jacobian[e];
   for (int s = 0; s < at.n * (at.n - 1) / 2; ++s) w.kept_swap[s] = at.swap[s];

@@ -46,6 +46,7 @@ Positions::Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRow
                 a.turn < turn_slots_,
             "angles: no slot");
   memory_.resize(kernel_unit(2)->workspace_size(p));
+  kernel_unit(2)->prepare(p, memory_.data());
   path_.resize(2 * p.inputs), path_whole_.resize(2 * p.inputs), start_.resize(p.states), turn_.resize(turn_slots_);
   guess_.resize(2 * p.states), limit_.resize(2), way_turn_.resize(2 * turn_slots_);
   rates_.resize(p.inputs), accelerations_.resize(p.inputs), jerks_.resize(p.inputs);
@@ -93,7 +94,7 @@ bool Positions::solve(const double* inputs, const double* whole, const double* f
   r.residual = &residual, r.correction = &correction, r.flags = &flags, r.condition = condition;
   r.demand = demand_, r.iterations = iterations_;
   r.tight = limits_.tight, r.coarse = limits_.coarse, r.accept = limits_.accept;
-  unit.run(p, r, memory_.data());
+  unit.run_row(p, r, memory_.data());
   for (const TurningOutput& a : angles_) {
     const double known = a.turn >= 0 ? turned[a.turn] : whole[-2 - a.turn];
     outputs[a.slot] += FULL_TURN * (a.closing ? std::rint((known - outputs[a.slot]) / FULL_TURN) : known);

@@ -1,6 +1,6 @@
 // The rows of a request: closed, moved, balanced, and what is asked of them written.
 //
-// A unit includes its `judge_block` first: condition.hpp, or where no condition is wanted factored_block.hpp.
+// A unit includes its `judge_blocks` first: condition.hpp, or where no condition is wanted factored_block.hpp.
 #pragma once
 
 #include "actuated_balance.hpp"
@@ -148,15 +148,14 @@ struct RowPack {
     side = side & block_side_conditions(p, w, p.block[b]);
     write_jacobian(matrices_of(p, w, b));
   }
-  void judge(int b, const Closed& closed) {
-    // a NaN wins
+  // How far a block closed; a NaN wins.
+  void take_closed(const Closed& closed) {
     residual = select(closed.residual <= residual, residual, closed.residual);
     correction = select(closed.correction <= correction, correction, closed.correction);
     converged = converged & closed.converged;
     side = side & closed.side;
-    if (!r.demand) return;
-    const BlockVerdict verdict =
-        judge_block(p, w, b, r, closed, [&](const BlockMatrices& at) { write_jacobian(at); });
+  }
+  void take_verdict(int b, const Judged& verdict) {
     condition = max(verdict.condition, condition);
     if (r.side) writer(r.side).put(b, verdict.side);
     if (r.pivot) writer(r.pivot).put(b, matrices_of(p, w, b).least());
@@ -237,7 +236,13 @@ constexpr int TOGETHER = PARTS == 1 ? 2 : 1;
 inline void close_rows(const Plan& p, const Request& r, RowPack* pack, int count, int b) {
   Closing closing[] = {{pack[0].w}, {pack[count - 1].w}};
   close_packs<FACTORS_SERVE_AGAIN>(p, closing, count, b, r);
-  for (int k = 0; k < count; ++k) pack[k].judge(b, closed_block(p, closing[k], b, r));
+  const Closed closed[] = {closed_block(p, closing[0], b, r),
+                           count > 1 ? closed_block(p, closing[1], b, r) : Closed{}};
+  for (int k = 0; k < count; ++k) pack[k].take_closed(closed[k]);
+  if (!r.demand) return;
+  Judged judged[] = {{pack[0].w, closed[0], {}, {}}, {pack[count - 1].w, closed[1], {}, {}}};
+  judge_blocks(p, b, r, judged, count, [&](int k, const BlockMatrices& at) { pack[k].write_jacobian(at); });
+  for (int k = 0; k < count; ++k) pack[k].take_verdict(b, judged[k]);
 }
 
 void run_packs(const Plan& p, const Request& r, RowPack* pack, int count) {
@@ -287,18 +292,33 @@ void run_packs(const Plan& p, const Request& r, RowPack* pack, int count) {
   });
 }
 
+// Room for a workspace that stays laid out, before the arrays that it names.
+constexpr long HEAD = (sizeof(Workspace) + 63) / 64 * 64;
+
 long workspace_size(const Plan& p) {
   Workspace w;
-  return TOGETHER * lay_out(p, nullptr, &w) + 64;
+  return HEAD + TOGETHER * lay_out(p, nullptr, &w) + 64;
 }
+
+inline char* aligned(char* memory) { return memory + (64 - (std::uintptr_t)memory % 64) % 64; }
 
 // The first of the packs that go together, and what it takes of the memory.
 Workspace workspace_at(const Plan& p, char* memory, long* size = nullptr) {
   Workspace w;
-  const long used = lay_out(p, memory + (64 - (std::uintptr_t)memory % 64) % 64, &w);
+  const long used = lay_out(p, aligned(memory), &w);
   if (size) *size = used;
   find_moving(p, w);
   return w;
+}
+
+inline void prepare(const Plan& p, char* memory) {
+  char* const head = aligned(memory);
+  *reinterpret_cast<Workspace*>(head) = workspace_at(p, head + HEAD);
+}
+inline void run_row(const Plan& p, const Request& r, char* memory) {
+  Workspace& w = *reinterpret_cast<Workspace*>(aligned(memory));
+  RowPack pack = {p, r, w, {r.rows, 0, (int)r.rows}, level_is_wanted(r)};
+  run_packs(p, r, &pack, 1);
 }
 
 void run_rows(const Plan& p, const Request& r, long begin, long end, char* memory) {

@@ -62,6 +62,7 @@ Stepper::Stepper(const Path& path, const KernelUnit& unit, const StepLimits& lim
     : path_(path), plan_(path.plan(0.0)), unit_(unit), limits_(limits), memory_(unit.workspace_size(plan_)),
       turns_(closing_turns(plan_, unit)), tree_turns_(::tree_turns(plan_, unit)),
       turn_slots_(::turn_slots(plan_, unit)) {
+  unit.prepare(plan_, memory_.data());
   for (int b = 0; b < plan_.blocks; ++b) entries_ += plan_.block[b].rows * plan_.block[b].size;
 }
 
@@ -85,7 +86,7 @@ void Stepper::size_node(Node* node) const {
   node->state.resize(plan_.states);
   node->first.resize(plan_.columns), node->second.resize(plan_.columns);
   node->side.assign(plan_.blocks, 1.0), node->pivot.resize(plan_.blocks);
-  node->jacobian.resize(entries_), node->danger.assign(plan_.blocks, 0.0);
+  node->jacobian.resize(entries_), node->factored.clear(), node->danger.assign(plan_.blocks, 0.0);
   node->singular.assign(plan_.blocks, HUGE_VAL);
   node->turn.resize(turn_slots_), node->turn_first.resize(turn_slots_), node->turn_second.resize(turn_slots_);
 }
@@ -114,7 +115,7 @@ bool Stepper::solve(double sigma, const double* guess, bool moving, Node* node) 
   if (!moving) r.side = r.pivot = r.jacobian = nullptr, r.turn_count = 0;
   r.iterations = limits_.iterations;
   r.tight = limits_.tight, r.coarse = limits_.coarse, r.accept = limits_.accept;
-  unit_.run(plan, r, memory_.data());
+  unit_.run_row(plan, r, memory_.data());
   return flags == 0;
 }
 
@@ -170,9 +171,8 @@ void Stepper::predict(const Node& n, double h, std::vector<double>* guess) const
 }
 
 bool Stepper::step(const Node& a, double h, double sigma, Node* b) {
-  predict(a, h, &guess_);
-  const std::vector<double> guess = guess_;
-  return close(sigma, guess.data(), apart_for(h), b) && judge(a, b);
+  predict(a, h, &ahead_);
+  return close(sigma, ahead_.data(), apart_for(h), b) && judge(a, b);
 }
 
 // The inputs are columns too, so the first derivatives hold the whole tangent of the branch.

@@ -83,6 +83,7 @@ struct Node {
   std::vector<double> side, pivot;                // blocks: sign of a square block's determinant; least pivot
   std::vector<double> singular;                   // blocks: at most the least singular value; infinite where not looked at
   std::vector<double> jacobian;                   // blocks, one after the other, rows x size
+  mutable std::vector<Factored> factored;         // blocks: the same with factors, from when they are first asked for
   Matrix extended;                                // by arclength: [J g] of its own equations
   std::vector<double> danger;                     // blocks: radius of J^+ J_a - I by a unit of the step that led here from a;
                                                   // about 1 / the distance to a singular place
@@ -102,8 +103,9 @@ bool are_whole_turns(const double* numbers, std::size_t count);
 class Stepper {
  public:
   virtual ~Stepper() = default;
-  // Path, unit and limits must outlive the stepper.
+  // Path, unit and limits must outlive the stepper, whose workspace points into itself.
   Stepper(const Path& path, const KernelUnit& unit, const StepLimits& limits);
+  Stepper(const Stepper&) = delete;
 
   // Closes the loops at sigma from a guess (states); false if they do not close or a derivative is not finite.
   bool close(double sigma, const double* guess, Node* node) { return close(sigma, guess, limits_.plan_step, node); }
@@ -125,7 +127,9 @@ class Stepper {
   double wanted_step(const Node& node) const;
   // Closes the place half way between two nodes, near where their derivatives say.
   virtual bool close_middle(const Node& a, const Node& b, Node* node) {
-    return close(0.5 * (a.sigma + b.sigma), middle(a, b).data(), node);
+    middle(a, b, &guess_);
+    const std::vector<double> guess = guess_;
+    return close(0.5 * (a.sigma + b.sigma), guess.data(), node);
   }
 
   const Plan& plan() const { return plan_; }
@@ -142,11 +146,11 @@ class Stepper {
 
  protected:
   // The states half way between two nodes, by quintic Hermite interpolation.
-  std::vector<double> middle(const Node& a, const Node& b) const;
+  void middle(const Node& a, const Node& b, std::vector<double>* state) const;
   // A block's matrix among those of a node.
   Matrix block_matrix(const std::vector<double>& jacobian, int block) const;
   bool turned_too_far(const Node& a, const Node& b) const;
-  bool looks_back(const Node& a, const Node& b, double tolerance) const;
+  bool looks_back(const Node& a, const Node& b, double tolerance);
   void size_node(Node* node) const;
   virtual double longest_step(const Node& node) const;
   void differentiate_states(Node* node) const;
@@ -164,6 +168,7 @@ class Stepper {
   double apart_for(double h) const;
   bool solve(double sigma, const double* guess, bool moving, Node* node);
   bool same_side(const Node& a, Node* b);
+  const std::vector<Factored>& factors(const Node& node) const;
   bool is_told(const Node& node);
   bool differentiate_by_plan(Node* node);
   void columns_of_states(Node* node) const;
@@ -173,13 +178,14 @@ class Stepper {
   int turn_slots_ = 0;
   long entries_ = 0;
   std::vector<char> upstream_;  // blocks x blocks, where it was needed
-  std::vector<double> guess_;
+  // room for the states that are guessed, for those that a node looks back at, and for the Jacobians half way
+  std::vector<double> guess_, ahead_, back_, half_way_;
 };
 
 // Whether the segments from one matrix to another, by way of a third half way, hold no singular one: the least of the
 // spectral radii of A^+ B - I and B^+ A - I, and both to the middle, are at most `limit`. `danger`: a bound of the radius of
 // B^+ A - I; `least`: at most the least singular value of B, if that is less.
-bool is_regular_segment(const Matrix& a, const Matrix& middle, const Matrix& b, double limit, double* danger,
+bool is_regular_segment(const Factored& a, const Matrix& middle, const Factored& b, double limit, double* danger,
                         double* least);
 
 double tangent_product(const Node& a, const Node& b);

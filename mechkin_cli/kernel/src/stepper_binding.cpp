@@ -254,7 +254,6 @@ nb::tuple follow_table(const FrozenPlan& store, Table inputs, std::optional<Tabl
   {
     nb::gil_scoped_release released;
     FloatingPointState state;
-    forget(out, plan.states, slots, 0);
     found = follow_rows(plan, narrow_unit(), inputs.data(), turned, start.data(), turn, every_row, limits, out, course);
     forget(out, plan.states, slots, found.reached);
   }

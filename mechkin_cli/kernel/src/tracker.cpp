@@ -43,7 +43,7 @@ class Tracker {
   Track follow(double begin, double end, const double* start, const std::vector<double>& turn) {
     if (!stepper_.close(begin, start, &node_)) {
       track_.end = TrackEnd::start_not_closed;
-      return track_;
+      return std::move(track_);
     }
     if (!turn.empty()) adopt_turns(stepper_, turn, &node_);
     reduce(&node_);
@@ -55,8 +55,8 @@ class Tracker {
     while (track_.end == TrackEnd::finished && node_.sigma < end_ && go_on()) {
     }
     track_.reached = row_;
-    track_.last = node_;
-    return track_;
+    track_.last = std::move(node_);
+    return std::move(track_);
   }
 
  private:
@@ -122,7 +122,7 @@ class Tracker {
   void keep(const Node& next) {
     kept_->push_back({node_, next});
     // rows need no Jacobians, which are the largest part of a node
-    kept_->back().from.jacobian = kept_->back().to.jacobian = {};
+    for (Node* node : {&kept_->back().from, &kept_->back().to}) node->jacobian = {}, node->factored = {};
   }
   bool looks() const { return looks_ && !path_.varies() && plan().blocks > 0; }
   const Plan& plan() const { return stepper_.plan(); }

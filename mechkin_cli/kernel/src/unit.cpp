@@ -12,8 +12,6 @@
 
 namespace {
 
-void run(const Plan& p, const Request& r, char* memory) { run_rows(p, r, 0, r.rows, memory); }
-
 void search_rows(const Plan& p, const SearchRequest& r, long begin, long end, char* memory) {
   Workspace w = workspace_at(p, memory);
   for (long row = begin; row < end; row += LANES) {
@@ -51,8 +49,8 @@ constexpr long (*jets_size)(const Tape&) = nullptr;
 constexpr void (*replay_jets)(const Tape&, const double*, const double*, double*, char*) = nullptr;
 #endif
 
-const KernelUnit unit = {LANES, tree_types, PairTypes<Pairs>::table, Pairs::count, workspace_size, run, run_rows, search_rows,
-                         elementwise, replay_size, replay, jets_size, replay_jets};
+const KernelUnit unit = {LANES, tree_types, PairTypes<Pairs>::table, Pairs::count, workspace_size, prepare, run_row, run_rows,
+                         search_rows, elementwise, replay_size, replay, jets_size, replay_jets};
 
 }  // namespace
 

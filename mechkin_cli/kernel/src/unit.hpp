@@ -21,7 +21,9 @@ struct KernelUnit {
   const PairType* pair_types;
   int pair_codes;
   long (*workspace_size)(const Plan&);
-  void (*run)(const Plan&, const Request&, char* workspace);
+  // One row after another, of plans of one structure: `prepare` lays the workspace out once for all calls of `run_row`.
+  void (*prepare)(const Plan&, char* workspace);
+  void (*run_row)(const Plan&, const Request&, char* workspace);
   // Rows [begin, end) alone; what a row gets does not depend on the cut.
   void (*run_rows)(const Plan&, const Request&, long begin, long end, char* workspace);
   void (*search_rows)(const Plan&, const SearchRequest&, long begin, long end, char* workspace);

@@ -109,7 +109,7 @@ class Worker {
     r.iterations = base_.iterations;
     r.tight = base_.following.tight, r.coarse = base_.following.coarse, r.accept = base_.following.accept;
     std::fill(side_.begin(), side_.end(), 1.0);
-    wide_.run(plan_.view(), r, memory_.data());
+    wide_.run_rows(plan_.view(), r, 0, rows, memory_.data());
     for (long row = 0; row < rows; ++row)
       if (flags_[row] || !(correction_[row] <= limit_[row])) return VariantEnd::incomplete;
     // sides change where a branch point is passed
