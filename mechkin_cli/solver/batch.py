@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, overload
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -27,6 +27,18 @@ _VELOCITY, _ACCELERATION, _FORCES = (
 _CONDITION, _POWER = int(Demand.CONDITION), int(Demand.POWER)
 
 
+class ChartArguments(NamedTuple):
+    """What a run is told of a chart, as far as it is demanded."""
+
+    directions: Floats | None = None
+    friction_told: Floats | None = None
+    rates: Floats | None = None
+    accelerations: Floats | None = None
+
+
+NO_CHART = ChartArguments()
+
+
 class Chart(NamedTuple):
     """Directions (charts * columns, rows) of a chart about each row's guess, the rates and
     accelerations (charts, rows) of its coordinates, and what the motion tells of friction (numbers,
@@ -41,20 +53,15 @@ class Chart(NamedTuple):
         """Some of the rows."""
         return Chart(*(array[:, rows] for array in self))
 
-    def arguments(self, demand: Demand) -> dict[str, Floats | None]:
+    def arguments(self, demand: Demand) -> ChartArguments:
         """As `Plan.run` takes them."""
-        return {
-            "chart": _contiguous(self.direction),
-            "friction_told": (
-                _contiguous(self.friction)
-                if self.friction.size and demand & Demand.FORCES
-                else None
-            ),
-            "chart_rates": _contiguous(self.rates) if demand & Demand.VELOCITY else None,
-            "chart_accelerations": (
-                _contiguous(self.accelerations) if demand & Demand.ACCELERATION else None
-            ),
-        }
+        told = self.friction.size and demand & Demand.FORCES
+        return ChartArguments(
+            _contiguous(self.direction),
+            _contiguous(self.friction) if told else None,
+            _contiguous(self.rates) if demand & Demand.VELOCITY else None,
+            _contiguous(self.accelerations) if demand & Demand.ACCELERATION else None,
+        )
 
 
 class Batch(NamedTuple):
@@ -148,25 +155,33 @@ def run(
     values = None if outputs is None else np.empty((outputs.slots, rows))
     first = np.empty((plan.columns, rows)) if derivatives and asked & _VELOCITY else None
     second = np.empty((plan.columns, rows)) if derivatives and asked & _ACCELERATION else None
-    residual, correction, side = np.empty(rows), np.empty(rows), np.ones((plan.blocks, rows))
+    residual, correction = np.empty(rows), np.empty(rows)
+    # signs are told with a demand, of the blocks that are closed
+    told = asked and only is None
+    side = np.empty((plan.blocks, rows)) if told else np.ones((plan.blocks, rows))
     condition = np.empty(rows) if asked & _CONDITION else None
     power_error = np.empty(rows) if asked & _POWER else None
     flags = np.empty(rows, dtype=np.uint8)
     varying = plan.load_values if asked & _FORCES else 0
     loads = np.empty((plan.load_values, rows)) if varying else None
     undefined = np.empty(rows, dtype=np.uint8) if varying else None
+    charted = NO_CHART if chart is None else chart.arguments(demand)
+    # each by name: a mapping among the arguments would cost a short call a tenth
     plan.run(
         inputs=_contiguous(inputs),
         guess=_contiguous(guess),
-        rates=_contiguous(rates),
-        accelerations=_contiguous(accelerations),
-        jerks=_contiguous(jerks),
-        ties=_contiguous(ties),
-        turned=_contiguous(turned),
-        whole=_contiguous(whole),
-        **({} if chart is None else chart.arguments(demand)),
-        full=_contiguous(full),
-        time=_contiguous(time),
+        rates=None if rates is None else _contiguous(rates),
+        accelerations=None if accelerations is None else _contiguous(accelerations),
+        jerks=None if jerks is None else _contiguous(jerks),
+        ties=None if ties is None else _contiguous(ties),
+        turned=None if turned is None else _contiguous(turned),
+        whole=None if whole is None else _contiguous(whole),
+        chart=charted.directions,
+        friction_told=charted.friction_told,
+        chart_rates=charted.rates,
+        chart_accelerations=charted.accelerations,
+        full=None if full is None else _contiguous(full),
+        time=None if time is None else _contiguous(time),
         outputs=outputs,
         states=states,
         values=values,
@@ -203,9 +218,5 @@ def assembly_size(plan: Plan, inputs: Floats, state: Floats) -> float:
     )
 
 
-@overload
-def _contiguous(array: Floats) -> Floats: ...
-@overload
-def _contiguous(array: Floats | None) -> Floats | None: ...
-def _contiguous(array: Floats | None) -> Floats | None:
-    return None if array is None else np.ascontiguousarray(array, np.float64)
+def _contiguous(array: Floats) -> Floats:
+    return np.ascontiguousarray(array, np.float64)

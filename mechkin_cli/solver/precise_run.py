@@ -14,6 +14,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel.width import threads_for, width
+from mechkin_cli.solver.batch import NO_CHART
 from mechkin_cli.solver.codes import Demand, RowFlag
 
 if TYPE_CHECKING:
@@ -116,8 +117,8 @@ def run_precise(
     varying = plan.load_values and demand & Demand.FORCES
     loads = empty(plan.load_values) if varying else None
     undefined = np.empty(rows, dtype=np.uint8) if varying else None
-    charted = {} if chart is None else chart.arguments(demand)
-    chart_forces = empty(plan.charts) if charted and demand & Demand.FORCES else None
+    charted = NO_CHART if chart is None else chart.arguments(demand)
+    chart_forces = empty(plan.charts) if chart is not None and demand & Demand.FORCES else None
     plan.run_precise(
         inputs=in_parts(inputs, 1),
         guess=in_parts(guess, 1),
@@ -127,7 +128,10 @@ def run_precise(
         ties=in_parts(ties, 1),
         turned=in_parts(turned, 1),
         whole=in_parts(whole, 1),
-        **{name: in_parts(array, 1) for name, array in charted.items()},
+        chart=in_parts(charted.directions, 1),
+        friction_told=in_parts(charted.friction_told, 1),
+        chart_rates=in_parts(charted.rates, 1),
+        chart_accelerations=in_parts(charted.accelerations, 1),
         full=in_parts(full, 1),
         time=in_parts(time, 0),
         outputs=outputs,
