@@ -19,6 +19,8 @@ constexpr double SHORTENED = 1.0 / 64.0, STUCK = 1.0 / 1024.0;
 constexpr double SLOW = 1e-2;
 // Correction of such a row: the root of a rounding, by which its place next to a dead centre may be off.
 constexpr double CLOSED = 1e-7;
+// Rounding of sigma, in parts of max(1, |sigma|), below which a row's place on the arc is not told better.
+constexpr double SIGMA_ROUNDING = 2.3e-16;
 // Arclength below which a branch is not resolved: where two branches pass at a gap of 1e-16 of the size, they bend
 // over its root.
 constexpr double LEAST_ARC = 1e-10;
@@ -304,16 +306,20 @@ bool Passage::at(double sigma, Node* node, double* limit) const {
   *limit = std::fmax(CLOSED, arc->limits().infill * (b.place - a.place));
   if (std::fmin(a.rate, b.rate) * arc->scale() >= SLOW) return true;
   // next to a dead centre the place of sigma on the arc counts
-  double h = t * (b.place - a.place);
+  double low = 0.0, high = b.place - a.place, h = t * high;
   const Node between = *node;
   for (int k = 0; k < 40; ++k) {
     if (!arc->close_from(a, h, node)) {
       *node = between;
       return true;
     }
-    const double miss = (node->sigma - sigma) / node->rate;
-    if (!(std::fabs(miss) > 1e-15 * std::fmax(1.0, std::fabs(h)))) break;
-    h = std::fmin(std::fmax(h - miss, 0.0), b.place - a.place);
+    // at the dead centre sigma's rate is rounding, and so is what is left of it
+    const double left = node->sigma - sigma;
+    if (!(std::fabs(left) > SIGMA_ROUNDING * std::fmax(1.0, std::fabs(sigma)))) break;
+    (left > 0.0 ? high : low) = h;
+    const double next = h - left / node->rate, taken = next > low && next < high ? next : 0.5 * (low + high);
+    if (!(std::fabs(taken - h) > 1e-15 * std::fmax(1.0, h))) break;
+    h = taken;
   }
   continue_turns(*arc, a, node);
   return true;
