@@ -156,13 +156,14 @@ def slider_crank(seed: int) -> Case:
     return Case(file, "D.s", "D.effort", millimetre, side, inward(gap), gap, *rates)
 
 
+HARD = (29, 104, 126, 140)
+"""Loops that close some twenty roundings off, or move their driven link by a short arm."""
+
+
 def cases(count: int) -> list[Any]:
-    found = []
-    for seed in range(count):
-        loop = rssr(seed)
-        found += [] if loop is None else [pytest.param(loop, id=f"rssr-{seed}")]
-        found.append(pytest.param(slider_crank(seed), id=f"slider-{seed}"))
-    return found
+    loops = {seed: rssr(seed) for seed in sorted({*range(count), *HARD})}
+    found = [pytest.param(loop, id=f"rssr-{seed}") for seed, loop in loops.items() if loop]
+    return found + [pytest.param(slider_crank(seed), id=f"slider-{seed}") for seed in range(count)]
 
 
 with mp.workdps(50):

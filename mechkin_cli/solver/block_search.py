@@ -200,20 +200,19 @@ def search_round(
         )
 
 
-def _isolated(request: Request, number: int, states: Floats) -> tuple[Floats, Bools, Bools, int]:
-    """The isolated assemblies of a block among end points of its search, which points are near
-    singular, and how many assemblies are not isolated: places where the block moves with all else
+def _isolated(request: Request, number: int, states: Floats) -> tuple[Floats, Bools, Floats, int]:
+    """The isolated assemblies of a block among end points of its search, the conditions of all
+    points, and how many assemblies are not isolated: places where the block moves with all else
     held, or singular ones."""
     count = states.shape[1]
     if count == 0:
-        return states, np.ones(count, dtype=bool), np.zeros(count, dtype=bool), 0
+        return states, np.ones(count, dtype=bool), np.zeros(count), 0
     values = np.repeat(request.inputs[:, None], count, axis=1)
     batch = run(request.plan, values, states, demand=Demand.CONDITION, iterations=20, only=number)
     assert batch.condition is not None
     regular = batch.condition < tolerances.SEARCH_CONDITION
     free = int(np.count_nonzero(batch.good & ~regular))
-    singular = ~(batch.condition < tolerances.CONDITION_NEAR_SINGULAR)
-    return batch.states, batch.good & regular, singular, free
+    return batch.states, batch.good & regular, batch.condition, free
 
 
 def ends(plan: Plan, number: int, values: Floats, states: Floats) -> tuple[Floats, Bools]:

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from mechkin_cli.arrays import Bools, Floats
 
-    Isolated = Callable[[Floats], tuple[Floats, Bools, Bools, int]]
+    Isolated = Callable[[Floats], tuple[Floats, Bools, Floats, int]]
     """From end points (columns) to the points closed as well as possible, which of them are
-    isolated assemblies, which are near singular, and how many are assemblies but not isolated."""
+    isolated assemblies, their conditions, and how many are assemblies but not isolated."""
 
 
 _IN_CACHE = 1 << 14
@@ -36,7 +36,8 @@ class Clusters:
     most log(k (k + 1) / d) / w, whenever one looks (`rest`).
 
     Many different assemblies that are near singular are places on a motion that dimensions only
-    just stop (`SEARCH_MOST_SINGULAR`): they count as free, and so do all that come after.
+    just stop (`SEARCH_MOST_SINGULAR`): they count as free, and so do all that come after. If they
+    stand on few folds they are what rounding leaves of those: one for each.
     """
 
     def __init__(self, layout: Layout, carriers: Sequence[Carrier] | None = None) -> None:
@@ -44,7 +45,8 @@ class Clusters:
         self.states = np.empty((layout.states, 0))
         self.keys: Floats | None = None
         self.met = np.empty(0, dtype=np.int64)
-        self.singular = np.empty(0, dtype=bool)
+        self.condition = np.empty(0)
+        self.is_fold = np.empty(0, dtype=bool)
         self.folds = False
         self.tried = 0
         self.closed = 0
@@ -63,8 +65,9 @@ class Clusters:
         keys = pose_keys(self.layout, states, self.carriers)
         unknown = self._left(keys)
         given = states[:, unknown]
-        ended, good, singular, free = isolated(given)
+        ended, good, condition, free = isolated(given)
         if self.folds:
+            singular = _near_singular(condition)
             free += int(np.count_nonzero(good & singular))
             good = good & ~singular
         closing = np.ones(keys.shape[1], dtype=bool)
@@ -74,15 +77,15 @@ class Clusters:
         self.free += free
         moved = ended is not given
         keys = pose_keys(self.layout, ended, self.carriers) if moved else keys[:, unknown]
-        self._take(ended[:, good], keys[:, good], order[unknown[good]], singular[good])
-        if int(np.count_nonzero(self.singular)) > tolerances.SEARCH_MOST_SINGULAR:
-            self._free_singular()
+        self._take(ended[:, good], keys[:, good], order[unknown[good]], condition[good])
+        if int(np.count_nonzero(_near_singular(self.condition))) > tolerances.SEARCH_MOST_SINGULAR:
+            self._merge_folds()
 
     def _take(
-        self, states: Floats, keys: Floats, order: NDArray[np.int64], singular: Bools
+        self, states: Floats, keys: Floats, order: NDArray[np.int64], condition: Floats
     ) -> None:
         """Takes in those that are still not known, each after those of them that it is."""
-        rest = self._left(keys)
+        rest = self._left(keys, condition)
         chosen, met = [], []
         while rest.size:
             # the others are none of those taken in before
@@ -96,23 +99,57 @@ class Clusters:
         self.keys = np.concatenate([known, keys[:, chosen]], axis=1)
         self.states = np.concatenate([self.states, states[:, chosen]], axis=1)
         self.met = np.append(self.met, np.array(met, dtype=np.int64))
-        self.singular = np.append(self.singular, singular[chosen])
+        self.condition = np.append(self.condition, condition[chosen])
+        self.is_fold = np.append(self.is_fold, np.zeros(len(chosen), dtype=bool))
         self.newest = max(self.newest, int(order[chosen].max()))
+
+    def _merge_folds(self) -> None:
+        """Leaves one of those that are near singular on each fold, unless there are too many folds:
+        that of middle condition, neither the farthest off nor one that has no tangent."""
+        assert self.keys is not None
+        left = np.flatnonzero(_near_singular(self.condition))
+        kept = np.ones(self.number, dtype=bool)
+        folds: list[int] = []
+        while left.size:
+            keys = self.keys[:, left]
+            same = same_poses(keys[:, :1], keys, tolerances.SAME_FOLD)[0]
+            own = left[same]
+            middle = own[np.argsort(self.condition[own], kind="stable")[own.size // 2]]
+            self.met[middle] = int(np.add.reduce(self.met[own]))
+            kept[own] = own == middle
+            folds.append(int(middle))
+            left = left[~same]
+        if len(folds) > tolerances.SEARCH_MOST_SINGULAR:
+            self._free_singular()
+            return
+        self.is_fold[folds] = True
+        self._keep(kept)
+
+    def _keep(self, kept: Bools) -> None:
+        assert self.keys is not None
+        self.states, self.keys = self.states[:, kept], self.keys[:, kept]
+        self.met, self.condition = self.met[kept], self.condition[kept]
+        self.is_fold = self.is_fold[kept]
 
     def _free_singular(self) -> None:
         """Leaves out those that are near singular; the wait for a new one begins again."""
         assert self.keys is not None
-        kept, left_out = ~self.singular, int(np.add.reduce(self.met[self.singular]))
-        self.states, self.keys = self.states[:, kept], self.keys[:, kept]
-        self.met, self.singular = self.met[kept], self.singular[kept]
+        kept = ~_near_singular(self.condition)
+        left_out = int(np.add.reduce(self.met[~kept]))
+        self._keep(kept)
         self.closed = max(self.closed - left_out, self.number)
         self.newest, self.free, self.folds = self.closed, self.free + left_out, True
 
-    def _left(self, keys: Floats) -> NDArray[np.int64]:
-        """Which columns are not known; those that are, are counted."""
+    def _left(self, keys: Floats, condition: Floats | None = None) -> NDArray[np.int64]:
+        """Which columns, of some conditions where these are known, are not known; those that are,
+        are counted."""
         if self.keys is None:
             return np.arange(keys.shape[1])
-        known = same_poses(self.keys, keys)
+        limit: float | Floats = tolerances.SAME_MODE
+        if condition is not None:
+            scattered = self.is_fold[:, None] & _near_singular(condition)
+            limit = np.where(scattered, tolerances.SAME_FOLD, tolerances.SAME_MODE)
+        known = same_poses(self.keys, keys, limit)
         self.met += np.count_nonzero(known, axis=1)
         return np.flatnonzero(~known.any(axis=0))
 
@@ -129,6 +166,11 @@ class Clusters:
             return 1.0
         ways = max(self.number * (self.number + 1), 1)
         return min(1.0, float(functions.log(ways / doubt)) / waited)
+
+
+def _near_singular(condition: Floats) -> Bools:
+    found: Bools = ~(condition < tolerances.CONDITION_NEAR_SINGULAR)
+    return found
 
 
 def pose_keys(
@@ -204,9 +246,10 @@ def _cosines_and_sines(
 
 
 def same_poses(
-    known: Floats, keys: Floats, limit: float = tolerances.SAME_MODE
+    known: Floats, keys: Floats, limit: float | Floats = tolerances.SAME_MODE
 ) -> NDArray[np.bool_]:
-    """Which columns of `keys` are the poses of which columns of `known`: (known, keys)."""
+    """Which columns of `keys` are the poses of which columns of `known`: (known, keys), as `limit`
+    may be."""
     if known.size * keys.shape[1] <= _IN_CACHE:
         near = np.abs(known[:, :, None] - keys[:, None, :]) < limit
         few: NDArray[np.bool_] = np.logical_and.reduce(near, axis=0)

@@ -56,8 +56,8 @@ inputs held; platforms have 40 modes."""
 
 SEARCH_MOST_SINGULAR: Final = 8
 """More different near singular end points of a block (`CONDITION_NEAR_SINGULAR`) at one place are a
-motion that dimensions only just stop. At a dead centre two assemblies merge, by symmetry some
-pairs."""
+motion that dimensions only just stop, unless they stand on as few folds (`SAME_FOLD`). At a dead
+centre two assemblies merge, by symmetry some pairs."""
 
 SEARCH_MOST_PRODUCTS: Final = 16_384
 """Assemblies of the whole mechanism: blocks that are independent multiply theirs, fourteen loops of

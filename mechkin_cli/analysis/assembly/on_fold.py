@@ -1,5 +1,5 @@
-"""A first row on a fold has two branches; which is meant is judged at the second row, unless `near`
-tells them apart at the first."""
+"""A first row on a fold has two branches; which is meant is judged at the next row that is clear of
+it, unless `near` tells them apart at the first."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from mechkin_cli.analysis.assembly.distances import (
 )
 from mechkin_cli.analysis.assembly.named_modes import name_modes
 from mechkin_cli.solver.clusters import pose_keys, same_poses
-from mechkin_cli.solver.codes import Demand
+from mechkin_cli.solver.codes import Demand, PassageEnd
 from mechkin_cli.solver.follow import TrackEnd
 
 if TYPE_CHECKING:
@@ -28,37 +28,77 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.session import Session
 
 
-def judged_at_second_row(session: Session, start: Start) -> Start:
-    """The same start, or where it is singular the assembly at the second row that the file means
-    among those that come back to it."""
-    inputs = session.inputs.reduced
-    if start.state is None or start.row or inputs.shape[1] < 2 or not session.graph.blocks:
+def judged_off_fold(session: Session, start: Start) -> Start:
+    """The same start, or where it is singular the assembly at the next row clear of that which the
+    file means among those that come back to it; of a row alone that on the branch which `near`
+    means."""
+    if start.state is None or start.row or not session.graph.blocks:
         return start
     condition = start.condition
     if condition is None:
-        condition = _condition(session, inputs[:, 0], start.state)
+        condition = _condition(session, session.inputs.reduced[:, 0], start.state)
     if condition is None or condition <= tolerances.CONDITION_NEAR_SINGULAR:
         return start
-    modes = name_modes(session, inputs[:, 1], thorough=False)
+    row = _next_clear(session)
+    return _judged_at(session, start, row) if row else _judged_alone(session, start, start.state)
+
+
+def _judged_alone(session: Session, start: Start, state: Floats) -> Start:
+    from mechkin_cli.analysis.sweep.before_dead_centre import left_for
+
+    ways = left_for(session, 0, state) if session.problem.assembly.near else []
+    if len(ways) < 2:
+        return start
+    off_fold = np.stack([way.states[:, 0] for way in ways], axis=1)
+    distances, _ = distances_of(session, ways[0].inputs[:, 0], off_fold)
+    if is_unclear(*sorted(distances)):
+        return start
+    way = ways[int(np.argmin(distances))]
+    path = np.concatenate([way.inputs, session.inputs.values[:, :1]], axis=1)
+    found = session.follow(path, way.states[:, 0], every_row=True)
+    if found.end != TrackEnd.FINISHED:
+        return start
+    state = np.ascontiguousarray(found.guess[:, -1])
+    condition = _condition(session, session.inputs.reduced[:, 0], state)
+    if condition is None or condition > tolerances.CONDITION_RANK_UNCLEAR:
+        return start  # on the fold itself, where the branches are one
+    how = f"{start.how}; next to a fold, where near tells its branches apart"
+    return replace(start, state=state, how=how)
+
+
+def _judged_at(session: Session, start: Start, row: int) -> Start:
+    assert start.state is not None
+    modes = name_modes(session, session.inputs.reduced[:, row], thorough=False)
     if modes.number == 0:
         return start
     home = distances_home(session, modes.points)
     near = session.problem.assembly.near
     distances = distances_near(session.problem, modes.coordinates) if near else home
-    back = {i: _followed_back(session, modes.found.states[:, i]) for i in in_order(distances, home)}
+    back = {
+        i: _followed_back(session, modes.found.states[:, i], row) for i in in_order(distances, home)
+    }
     order = [i for i, state in back.items() if _is_same(session, state, start.state)]
     if not order:
         return start
     notes = list(start.diagnostics)
-    chosen, how = order[0], "the first row lies on a fold, the second one decides"
+    chosen, how = order[0], f"the first row lies on a fold, row {row + 1} decides"
     told = _told_apart(session, [back[i] for i in order])
     if told is not None:
         chosen, how = order[told], "next to a fold, where near tells its branches apart"
     elif len(order) > 1 and is_unclear(distances[order[0]], distances[order[1]]):
         pair = (distances[order[0]], distances[order[1]])
-        notes.append(unclear("two assemblies of the second row", pair))
+        notes.append(unclear(f"two assemblies of row {row + 1}", pair))
     state = np.ascontiguousarray(modes.found.states[:, chosen])
-    return replace(start, state=state, how=f"{start.how}; {how}", diagnostics=notes, row=1)
+    return replace(start, state=state, how=f"{start.how}; {how}", diagnostics=notes, row=row)
+
+
+def _next_clear(session: Session) -> int:
+    """The first row whose inputs are clear of the first one's as folds go, or the farthest one; 0
+    where none differs."""
+    values = session.inputs.values
+    distance = np.abs(values - values[:, :1]).max(axis=0, initial=0.0)
+    clear = np.flatnonzero(distance >= tolerances.BEFORE_DEAD_CENTRE[1])
+    return int(clear[0]) if clear.size else int(np.argmax(distance))
 
 
 def _condition(session: Session, inputs: Floats, state: Floats) -> float | None:
@@ -67,10 +107,14 @@ def _condition(session: Session, inputs: Floats, state: Floats) -> float | None:
     return float(batch.condition[0]) if batch.good[0] and batch.condition is not None else None
 
 
-def _followed_back(session: Session, state: Floats) -> Floats | None:
-    """The first row's state on the branch of an assembly at the second row; None where it ends."""
-    back = session.follow_rows(state, 1, -1)
-    return back.guess[:, -1] if back.end == TrackEnd.FINISHED else None
+def _followed_back(session: Session, state: Floats, row: int) -> Floats | None:
+    """The first row's state on the branch of an assembly at another, or its end at a dead centre,
+    which rounding may put before that row; None where it ends elsewhere."""
+    back = session.follow_rows(state, row, -1)
+    if back.end == TrackEnd.FINISHED:
+        return back.guess[:, -1]
+    ending = back.ending
+    return ending.state if ending and ending.kind == PassageEnd.DEAD_CENTRE else None
 
 
 def _is_same(session: Session, state: Floats | None, first: Floats) -> bool:

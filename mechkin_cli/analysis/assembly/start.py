@@ -79,9 +79,9 @@ def choose_start(session: Session) -> Start:
 def _judged(session: Session, start: Start) -> Start:
     if start.mode not in (NEAR, HOME) and session.problem.assembly.mode is not None:
         return start
-    from mechkin_cli.analysis.assembly.on_fold import judged_at_second_row
+    from mechkin_cli.analysis.assembly.on_fold import judged_off_fold
 
-    return judged_at_second_row(session, start)
+    return judged_off_fold(session, start)
 
 
 def _continued(continued: Continued) -> Start:

@@ -38,7 +38,7 @@ def places_before(session: Session, rows: Rows, row: int) -> list[Before]:
     found = _followed(session, rows, row)
     if found is not None:
         return [found]
-    return _chosen(session, rows, row, _left_for(session, rows, row))
+    return _chosen(session, rows, row, left_for(session, row, rows.states[:, row]))
 
 
 def _followed(session: Session, rows: Rows, row: int) -> Before | None:
@@ -93,10 +93,10 @@ def unit_rates(values: Floats, number: int) -> Floats:
     return rates
 
 
-def _left_for(session: Session, rows: Rows, row: int) -> list[Before]:
-    """Places on the two branches that meet in a row, both on the side of the fold where they are;
-    none where this is no fold."""
-    state = np.ascontiguousarray(rows.states[:, [row]])
+def left_for(session: Session, row: int, state: Floats) -> list[Before]:
+    """Places on the two branches that meet in a row at a state (states,), both on the side of the
+    fold where they are; none where this is no fold."""
+    state = np.ascontiguousarray(state[:, None])
     reduced = np.ascontiguousarray(session.inputs.reduced[:, [row]])
     inputs = range(reduced.shape[0])
     found = [at_unit_rate(session, reduced, state, number) for number in inputs]
@@ -149,7 +149,7 @@ def _chosen(session: Session, rows: Rows, row: int, ways: list[Before]) -> list[
 
     states = np.stack([way.states[:, 0] for way in ways], axis=1)
     distances, _ = distances_of(session, ways[0].inputs[:, 0], states)
-    return ways if is_unclear(*distances) else [ways[int(np.argmin(distances))]]
+    return ways if is_unclear(*sorted(distances)) else [ways[int(np.argmin(distances))]]
 
 
 def _products(way: Floats, states: Floats) -> Floats:
