@@ -37,7 +37,7 @@ def judged_off_fold(session: Session, start: Start) -> Start:
     condition = start.condition
     if condition is None:
         condition = _condition(session, session.inputs.reduced[:, 0], start.state)
-    if condition is None or condition <= tolerances.CONDITION_NEAR_SINGULAR:
+    if condition is None or condition <= tolerances.CONDITION_SIDE_UNCLEAR:
         return start
     row = _next_clear(session)
     return _judged_at(session, start, row) if row else _judged_alone(session, start, start.state)
