@@ -110,16 +110,18 @@ class Clusters:
         left = np.flatnonzero(_near_singular(self.condition))
         kept = np.ones(self.number, dtype=bool)
         folds: list[int] = []
+        left = left[np.argsort(self.condition[left], kind="stable")]
         while left.size:
             keys = self.keys[:, left]
-            same = same_poses(keys[:, :1], keys, tolerances.SAME_FOLD)[0]
+            limit = _scatter(self.condition[left[:1]], self.condition[left])
+            same = same_poses(keys[:, :1], keys, limit)[0]
             own = left[same]
-            middle = own[np.argsort(self.condition[own], kind="stable")[own.size // 2]]
+            middle = own[own.size // 2]
             self.met[middle] = int(np.add.reduce(self.met[own]))
             kept[own] = own == middle
             folds.append(int(middle))
             left = left[~same]
-        if len(folds) > tolerances.SEARCH_MOST_SINGULAR:
+        if len(folds) > tolerances.SEARCH_MOST_FOLDS:
             self._free_singular()
             return
         self.is_fold[folds] = True
@@ -148,7 +150,8 @@ class Clusters:
         limit: float | Floats = tolerances.SAME_MODE
         if condition is not None:
             scattered = self.is_fold[:, None] & _near_singular(condition)
-            limit = np.where(scattered, tolerances.SAME_FOLD, tolerances.SAME_MODE)
+            reach = np.maximum(_scatter(self.condition, condition), tolerances.SAME_MODE)
+            limit = np.where(scattered, reach, tolerances.SAME_MODE)
         known = same_poses(self.keys, keys, limit)
         self.met += np.count_nonzero(known, axis=1)
         return np.flatnonzero(~known.any(axis=0))
@@ -171,6 +174,13 @@ class Clusters:
 def _near_singular(condition: Floats) -> Bools:
     found: Bools = ~(condition < tolerances.CONDITION_NEAR_SINGULAR)
     return found
+
+
+def _scatter(known: Floats, others: Floats) -> Floats:
+    """By how much poses on one fold may differ, of some conditions (known, others): these go as the
+    inverse of the distance from it, which tells a fold from a motion that hardly ends."""
+    apart: Floats = tolerances.FOLD_CONDITION * (1.0 / known[:, None] + 1.0 / others[None, :])
+    return apart
 
 
 def pose_keys(

@@ -56,8 +56,12 @@ inputs held; platforms have 40 modes."""
 
 SEARCH_MOST_SINGULAR: Final = 8
 """More different near singular end points of a block (`CONDITION_NEAR_SINGULAR`) at one place are a
-motion that dimensions only just stop, unless they stand on as few folds (`SAME_FOLD`). At a dead
-centre two assemblies merge, by symmetry some pairs."""
+motion that dimensions only just stop. At a dead centre two assemblies merge, by symmetry some
+pairs."""
+
+SEARCH_MOST_FOLDS: Final = 4
+"""Unless they stand on so few folds (`FOLD_CONDITION`): a dead centre has one, by symmetry two or
+four."""
 
 SEARCH_MOST_PRODUCTS: Final = 16_384
 """Assemblies of the whole mechanism: blocks that are independent multiply theirs, fourteen loops of
@@ -111,6 +115,10 @@ from it."""
 SAME_FOLD: Final = 1e-3
 """Poses (parts of the size, direction cosines) that differ less stand on one fold: what is found
 there is known to the root of a rounding, and steps from both sides end as near."""
+
+FOLD_CONDITION: Final = 100.0
+"""Largest condition times distance from a fold (rad, sizes): 0.2 to 66 on loops of links that
+differ by ten. Where bodies may spin but for rounding it is 1e3 and more."""
 
 MODE_ORDER: Final = 1e-6
 """Coordinates (rad, parts of the size) that differ less are equal for the order of the modes'

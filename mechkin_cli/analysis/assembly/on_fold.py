@@ -18,6 +18,7 @@ from mechkin_cli.analysis.assembly.distances import (
     unclear,
 )
 from mechkin_cli.analysis.assembly.named_modes import name_modes
+from mechkin_cli.analysis.assembly.off_fold import left_for
 from mechkin_cli.solver.clusters import pose_keys, same_poses
 from mechkin_cli.solver.codes import Demand, PassageEnd
 from mechkin_cli.solver.follow import TrackEnd
@@ -44,8 +45,6 @@ def judged_off_fold(session: Session, start: Start) -> Start:
 
 
 def _judged_alone(session: Session, start: Start, state: Floats) -> Start:
-    from mechkin_cli.analysis.sweep.before_dead_centre import left_for
-
     ways = left_for(session, 0, state) if session.problem.assembly.near else []
     if len(ways) < 2:
         return start

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.analysis.sweep.before_dead_centre import Before, places_before
+from mechkin_cli.analysis.assembly.off_fold import Before
+from mechkin_cli.analysis.sweep.before_dead_centre import places_before
 from mechkin_cli.analysis.sweep.lost_rates import lost_rates
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.solver.codes import Demand

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.analysis.sweep.before_dead_centre import at_unit_rate, unit_rates
+from mechkin_cli.analysis.assembly.off_fold import at_unit_rate, unit_rates
 from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.precise_inputs import precise_inputs
 from mechkin_cli.tape.traced import TraceLost

@@ -12,7 +12,7 @@ from mechkin_cli.status import Status
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.analysis.sweep.before_dead_centre import Before
+    from mechkin_cli.analysis.assembly.off_fold import Before
     from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.solver.branch_limit import EndOfRows
