@@ -21,6 +21,10 @@ CONDITION_SIDE_UNCLEAR: Final = 5e6
 """Above it a row may lie across its fold, which is 1 / condition away: a row whose loops close to
 `RESIDUAL_ACCEPT`, 1e-14, is known to the root of that, 1e-7."""
 
+CONDITION_RATES_UNCLEAR: Final = 1e6
+"""Above it a row's rates may be rounding: condition times distance from a dead centre may be as
+little as 0.2, and rows that stand at one close up to 1e-7 beside it."""
+
 DEAD_CENTRE_LOST: Final = 0.1
 """Part of a rate by which it is wrong, as double-double tells, from which on a row stands at a dead
 centre as nearly as a double can say: no digit is left. At a dead centre itself the part is 1."""

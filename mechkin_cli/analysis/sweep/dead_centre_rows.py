@@ -20,6 +20,7 @@ from mechkin_cli.solver.codes import Demand
 from mechkin_cli.solver.demand import demand_of
 from mechkin_cli.status import Status
 from mechkin_cli.tolerances import (
+    CONDITION_RATES_UNCLEAR,
     GROWS_WITHOUT_BOUND,
     REACTION_ROUNDING,
     RESTS,
@@ -35,10 +36,11 @@ if TYPE_CHECKING:
     from mechkin_cli.solver.session import Session
 
 
-def judge_dead_centres(session: Session, rows: Rows) -> None:
-    """Finds the rows that stand at a dead centre as nearly as a double can say, among those near a
-    singular position, and says so."""
-    near = rows.reached & np.isin(rows.status, (Status.near_singular, Status.rank_unclear))
+def judge_dead_centres(session: Session, rows: Rows, condition: Floats) -> None:
+    """Finds the rows that stand at a dead centre as nearly as a double can say, among those whose
+    condition (rows,) leaves it open, and says so."""
+    judged = np.isin(rows.status, (Status.ok, Status.near_singular, Status.rank_unclear))
+    near = rows.reached & judged & ~(condition <= CONDITION_RATES_UNCLEAR)
     if not near.any() or not session.driven:
         return
     for row in np.flatnonzero(near & _is_lost(session, rows, near)).tolist():

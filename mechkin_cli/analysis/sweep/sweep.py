@@ -189,7 +189,7 @@ def _failed(batch: Batch, rows: Rows) -> Bools:
 def judge_condition(session: Session, rows: Rows, batch: Batch) -> None:
     """Verdicts by condition."""
     condition = batch.condition
-    if condition is None or (condition <= tolerances.CONDITION_NEAR_SINGULAR).all():
+    if condition is None or (condition <= tolerances.CONDITION_RATES_UNCLEAR).all():
         return
     singular = rows.reached & ~(condition <= tolerances.CONDITION_NEAR_SINGULAR)
     unclear = rows.reached & ~(condition <= tolerances.CONDITION_RANK_UNCLEAR)
@@ -197,7 +197,7 @@ def judge_condition(session: Session, rows: Rows, batch: Batch) -> None:
     rows.status[unclear & (rows.status == Status.near_singular)] = Status.rank_unclear
     from mechkin_cli.analysis.sweep.dead_centre_rows import judge_dead_centres
 
-    judge_dead_centres(session, rows)
+    judge_dead_centres(session, rows, condition)
     rows.diagnostics += condition_notes(rows, condition)
 
 
