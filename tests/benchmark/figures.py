@@ -173,29 +173,34 @@ def verdicts(_: int, __: int) -> Table:
 
 def closing(_: int, __: int) -> Table:
     """What a column of the angle at which a 7R closes, and of its rates, costs against a column of
-    the joints' points."""
+    the joints' points, which are only read, and against one of their wrenches."""
     specimen = sevenr_specimen()
     case = KernelCase(specimen, degree_rows(specimen))
     inputs, guesses = repeated(case.inputs), repeated(case.second_order_guesses())
-    tree = {edge.joint.name for edge in case.layout.graph.edges}
+    joints = [edge.joint.name for edge in case.layout.graph.edges]
     angles = list(zip(*specimen.motion, strict=True))
-    own = [name for names in angles for name in names if name.split(".")[0] in tree]
-    at_closing = [name for names in angles for name in names if name.split(".")[0] not in tree]
-    points = [f"{joint}.point" for joint in tree]
-    columns = {"without": 0, "closing angle": len(at_closing), "points": 3 * len(points)}
-    runs = {
-        "without": PlannedRun(case, own),
-        "closing angle": PlannedRun(case, [*own, *at_closing]),
-        "points": PlannedRun(case, [*own, *points]),
+    own = [name for names in angles for name in names if name.split(".")[0] in joints]
+    at_closing = [name for names in angles for name in names if name.split(".")[0] not in joints]
+    points = [f"{joint}.point" for joint in joints]
+    wrenches = [f"{joint}.{kind}" for joint in joints for kind in ("force", "moment")]
+    effort = next(name for name in specimen.levels[2] if name.endswith(".effort"))
+    compared = {
+        "closing angle": (own, at_closing, len(at_closing)),
+        "points": (own, points, 3 * len(points)),
+        "wrenches": ([*own, effort], wrenches, 3 * len(wrenches)),
     }
-    times = in_turns({name: partial(run, inputs, guesses) for name, run in runs.items()})
-    without = times["without"].median
+    calls = {}
+    for name, (base, columns, _) in compared.items():
+        calls[name, "with"] = partial(PlannedRun(case, [*base, *columns]), inputs, guesses)
+        calls[name, "without"] = partial(PlannedRun(case, base), inputs, guesses)
+    times = in_turns(calls)
     cost = {
-        name: 1e9 * (times[name].median - without) / BATCH / columns[name]
-        for name in ("closing angle", "points")
+        name: 1e9 * (times[name, "with"].median - times[name, "without"].median) / BATCH / count
+        for name, (_, _, count) in compared.items()
     }
     rows = [row(name, value, "ns a column and row") for name, value in cost.items()]
-    rows.append(row("ratio", cost["closing angle"] / cost["points"], ""))
+    for name in ("points", "wrenches"):
+        rows.append(row(f"angle over {name}", cost["closing angle"] / cost[name], ""))
     return Table("closing", "general 7R, columns of its closing joint", COLUMNS, rows, ())
 
 
