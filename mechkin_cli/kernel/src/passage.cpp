@@ -21,6 +21,9 @@ constexpr double SLOW = 1e-2;
 constexpr double CLOSED = 1e-7;
 // Rounding of sigma, in parts of max(1, |sigma|), below which a row's place on the arc is not told better.
 constexpr double SIGMA_ROUNDING = 2.3e-16;
+// Step on the arc (rad, length units) by which such a rounding moves a row's place where sigma's rate, 1e-5 and more, is
+// far above its own rounding.
+constexpr double TOLD_STEP = 1e-11;
 // Arclength below which a branch is not resolved: where two branches pass at a gap of 1e-16 of the size, they bend
 // over its root.
 constexpr double LEAST_ARC = 1e-10;
@@ -313,11 +316,13 @@ bool Passage::at(double sigma, Node* node, double* limit) const {
       *node = between;
       return true;
     }
-    // at the dead centre sigma's rate is rounding, and so is what is left of it
-    const double left = node->sigma - sigma;
-    if (!(std::fabs(left) > SIGMA_ROUNDING * std::fmax(1.0, std::fabs(sigma)))) break;
+    // at the dead centre sigma's rate is rounding, and so is what is left of it; where its rate is only small, as that of
+    // a screw of great lead, a step still tells the place better
+    const double left = node->sigma - sigma, step = left / node->rate;
+    const bool rounds = !(std::fabs(left) > SIGMA_ROUNDING * std::fmax(1.0, std::fabs(sigma)));
+    if (left == 0.0 || (rounds && !(std::fabs(step) <= TOLD_STEP))) break;
     (left > 0.0 ? high : low) = h;
-    const double next = h - left / node->rate, taken = next > low && next < high ? next : 0.5 * (low + high);
+    const double next = h - step, taken = next > low && next < high ? next : 0.5 * (low + high);
     if (!(std::fabs(taken - h) > 1e-15 * std::fmax(1.0, h))) break;
     h = taken;
   }
