@@ -47,6 +47,10 @@ struct RowValues {
 };
 
 void write_flags(unsigned char* flags, const Reader& in, Mask converged, Mask side) {
+  if (all(converged & side)) {
+    for (int i = 0; i < in.count; ++i) flags[in.row + i] = ROW_GOOD;
+    return;
+  }
   for (int i = 0; i < in.count; ++i) {
     unsigned f = 0;
     if (!lane(converged, i)) f |= ROW_NOT_CONVERGED;
