@@ -115,7 +115,7 @@ class Solver:
         whole += [0.0] * len(self.held)
         full += self.held
         found = None if self.native is None else self.native.solve(values, whole, full)
-        if found is None or not found[1] <= tolerances.CONDITION_NEAR_SINGULAR:
+        if found is None or not found[1] <= tolerances.CONDITION_RATES_UNCLEAR:
             return self._judged(places, values)
         outputs = found[0]
         cells: dict[str, float | NDArray[np.float64]] = {}

@@ -30,7 +30,7 @@ from mechkin_cli.status import Status
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.arrays import Floats
+    from mechkin_cli.arrays import Bools, Floats
     from mechkin_cli.mechanism.problem import Problem
     from mechkin_cli.mechanism.quantities import Wanted
     from mechkin_cli.solver.session import Session
@@ -60,9 +60,6 @@ REST = " within a turn"
 
 PERIODIC = re.compile(r"\b(?:wrap|sin|cos|tan)\s*\(")
 """Functions to which whole turns of an angle do not matter."""
-
-
-_DOUBTFUL = (int(Status.near_singular), int(Status.rank_unclear))
 
 
 class Study:
@@ -200,9 +197,8 @@ class Study:
             states = [reading.slots[q.name].first for q in self._states(reading)]
             codes[begin : begin + count] = _verdicts(runs, states)
             found = self._evaluated(variation, reading, runs, values, codes[begin : begin + count])
-            # what stands at a dead centre is judged as in a run of its own
-            doubtful = np.isin(codes[begin : begin + count], _DOUBTFUL).any(axis=1)
-            alone = np.flatnonzero((runs.end != int(VariantEnd.COMPLETE)) | doubtful)
+            # what may stand at a dead centre is judged as in a run of its own
+            alone = np.flatnonzero((runs.end != int(VariantEnd.COMPLETE)) | _doubtful(runs))
         for number in alone:
             self._alone(values[:, number], int(begin + number), int(number), found, codes)
         places = None if self.way is None else found[self.way.name]
@@ -359,6 +355,14 @@ def _verdicts(runs: Runs, states: Sequence[int] = ()) -> NDArray[np.int8]:
         undecided = ~(runs.outputs[:, slot, :] == 0.0) & (codes != int(Status.rank_unclear))
         codes[undecided] = int(Status.friction_undecided)
     return codes
+
+
+def _doubtful(runs: Runs) -> Bools:
+    """Variants (variants,) with a row whose rates may be rounding."""
+    if np.isnan(runs.condition).all():
+        return np.zeros(len(runs.condition), dtype=bool)
+    doubtful: Bools = np.any(~(runs.condition <= tolerances.CONDITION_RATES_UNCLEAR), axis=1)
+    return doubtful
 
 
 def _writable(array: Floats) -> Floats:

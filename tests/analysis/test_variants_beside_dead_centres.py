@@ -164,3 +164,100 @@ def test_dimensions_that_come_to_a_dead_centre(end: int) -> None:
             beyond.analyze()["row.status"][0]
             in ("branch-lost", "dead-centre")[: 1 + (exponent > 12)]
         )
+
+
+FLAT = {
+    "format": 1,
+    "units": {"length": "m", "angle": "rad", "mass": "kg", "force": "N"},
+    "links": {"a": {}, "r": {}, "o": {}},
+    "parameters": {"x": "95.65647736549569 m"},
+    "joints": {
+        "I": {
+            "type": "P",
+            "links": ["ground", "a"],
+            "point": ["0.966", "-40.617", "55.338"],
+            "axis": ["-0.654", "0.941", "-0.524"],
+        },
+        "A": {"type": "S", "links": ["a", "r"], "point": ["58.234", "-39.397", "-45.269"]},
+        "B": {
+            "type": "S",
+            "links": ["r", "o"],
+            "point": {
+                "r": ["107.369", "-39.397", "-45.269"],
+                "o": ["-18.870", "10.812", "-40.760"],
+            },
+        },
+        "O": {
+            "type": "P",
+            "links": ["ground", "o"],
+            "point": ["-3.294", "2.247", "33.036"],
+            "axis": ["-0.070", "0.796", "-0.288"],
+        },
+    },
+    "motion": {"inputs": {"I.s": {"values": ["x"], "rate": "3.251 m/s"}}},
+    "assembly": {"near": {"O.s": "14.920437"}},
+}
+"""A flat fold: at the dead centre the condition is below that of near-singular rows."""
+
+
+def test_variants_in_lanes_are_judged_as_one_alone() -> None:
+    """A place 2e-15 from a dead centre, where the rate is -3e7 m/s by 50 digits: a row there has no
+    digit of it."""
+    place = 80.65647736549575
+    model = mk.load(FLAT)
+    alone = model.with_parameters({"x": place}).analyze(["O.s_dot"], tables=[])
+    lanes = model.vary({"x": [90.0, place]}, ["O.s_dot"])
+    solved = model.solve({"I.s": place}, ["O.s_dot"])
+    assert lanes.status.ravel().tolist() == ["ok", "dead-centre"]
+    assert alone["row.status"].tolist() == [solved.status] == ["dead-centre"]
+    assert not np.isfinite(lanes["O.s_dot"][1, 0])
+
+
+def test_near_names_the_branch_where_the_base_stands() -> None:
+    """A four-bar whose follower swings back between the base and the dead centre: `near`, which is
+    the base's, is nearer to the branch that the variant is not on. Nothing may have its sign."""
+    hinges = {"I": (40.834, -36.858), "A": (-31.844, 4.308), "O": (26.318, 1.881)}
+    ends = {"r": (37.01, 4.308), "o": (-26.482, 20.292)}
+    base, place = 2.8394993154368757, 2.5394993154368763
+    file = {
+        "format": 1,
+        "units": {"length": "m", "angle": "rad", "mass": "kg", "force": "N"},
+        "links": {"a": {}, "r": {}, "o": {}},
+        "parameters": {"x": f"{base!r} rad"},
+        "joints": {
+            name: {"type": "R", "links": links, "point": point, "axis": [0, 0, 1]}
+            for name, links, point in (
+                ("I", ["ground", "a"], [*hinges["I"], 0]),
+                ("A", ["a", "r"], [*hinges["A"], 0]),
+                ("B", ["r", "o"], {link: [*end, 0] for link, end in ends.items()}),
+                ("O", ["ground", "o"], [*hinges["O"], 0]),
+            )
+        },
+        "motion": {"inputs": {"I.theta": {"values": ["x"], "rate": "4.542 rad/s"}}},
+        "assembly": {"near": {"O.theta": 2.3293547}},
+    }
+    centre, rod, follower, pivot = (
+        mp.mpc(*(mp.mpf(repr(x)) for x in point))
+        for point in (hinges["I"], hinges["A"], ends["o"], hinges["O"])
+    )
+    length = abs(mp.mpc(*(mp.mpf(repr(x)) for x in ends["r"])) - rod)
+
+    def follower_angle(x: Any, elbow: int) -> Any:
+        """By the law of cosines; each branch keeps its elbow up to the dead centre."""
+        across = centre + (rod - centre) * mp.expj(x) - pivot
+        arm = follower - pivot
+        cosine = (abs(arm) ** 2 + abs(across) ** 2 - length**2) / (2 * abs(arm) * abs(across))
+        y = mp.arg(across) - mp.arg(arm) + elbow * mp.acos(cosine)
+        return y - 2 * mp.pi * mp.nint((y - mp.mpf(2.3)) / (2 * mp.pi))
+
+    (elbow,) = (e for e in (1, -1) if abs(follower_angle(mp.mpf(base), e) - 2.3293547) < 1e-6)
+    x = mp.mpf(place) + mp.mpf(1e-4) * mp.sign(mp.mpf(base) - mp.mpf(place))
+    y, slope = follower_angle(x, elbow), mp.diff(lambda x: follower_angle(x, elbow), x)
+    model = mk.load(file)
+    near = model.with_parameters({"x": float(x)}).analyze(["O.theta", "O.theta_dot"], tables=[])
+    assert near["O.theta"][0] == pytest.approx(float(y), abs=1e-9)
+    assert np.sign(near["O.theta_dot"][0]) == np.sign(float(slope))
+    at = model.with_parameters({"x": place}).analyze(["O.theta_dot"], tables=[])
+    assert at["row.status"].tolist() == ["dead-centre"]
+    rate = at["O.theta_dot"][0]
+    assert np.isnan(rate) or np.sign(rate) == np.sign(float(slope))

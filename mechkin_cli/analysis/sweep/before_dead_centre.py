@@ -62,7 +62,8 @@ def _chosen(session: Session, rows: Rows, row: int, ways: list[Before]) -> list[
     if seen.size:
         nearest = seen[np.argmin(np.abs(seen - row))]
         return [ways[0 if along[nearest] > 0.0 else 1]]
-    if not session.problem.assembly.near:
+    # a variant's branch is the base's, which `near` names where the base stands
+    if not session.problem.assembly.near or session.continued is not None:
         return ways
     from mechkin_cli.analysis.assembly.distances import distances_of, is_unclear
 
