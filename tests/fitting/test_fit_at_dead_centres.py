@@ -10,27 +10,11 @@ from __future__ import annotations
 import mpmath as mp
 import numpy as np
 import pytest
+from pump import pump
 
 import mechkin_cli as mk
 
-TEXT = """
-format: 1
-name: pump
-plane: xy
-units: {length: mm, angle: deg}
-parameters: {r: 30 mm, l: 50 mm, T: 2 N*m}
-links: {crank: {}, rod: {}, block: {}}
-joints:
-  A: {type: R, links: [ground, crank], point: [0, 0]}
-  B: {type: R, links: [crank, rod], point: [0, r]}
-  C: {type: R, links: [rod, block], point: ["sqrt(l^2 - r^2)", 0]}
-  D: {type: P, links: [ground, block], point: ["sqrt(l^2 - r^2)", 0], axis: [1, 0]}
-motion:
-  inputs:
-    D.s: {values: [0 mm, 10 mm, 20 mm, 30 mm, 40 mm], rate: 100 mm/s}
-loads:
-  - {type: torque, link: crank, torque: T}
-"""
+TEXT = pump("T", ", T: 2 N*m")
 PEAK = {"of": "D.effort", "least": "peak"}
 BOUNDS = {"T": ("0.5 N*m", "3 N*m")}
 BEFORE = TEXT.replace(", 40 mm]", "]")

@@ -13,30 +13,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pump import pump
 from studies.studies import study_text
 from typer.testing import CliRunner
 
 import mechkin_cli as mk
 from mechkin_cli.cli.app import app
 
-TEXT = """
-format: 1
-name: pump
-plane: xy
-units: {length: mm, angle: deg}
-parameters: {r: 30 mm, l: 50 mm}
-links: {crank: {}, rod: {}, block: {}}
-joints:
-  A: {type: R, links: [ground, crank], point: [0, 0]}
-  B: {type: R, links: [crank, rod], point: [0, r]}
-  C: {type: R, links: [rod, block], point: ["sqrt(l^2 - r^2)", 0]}
-  D: {type: P, links: [ground, block], point: ["sqrt(l^2 - r^2)", 0], axis: [1, 0]}
-motion:
-  inputs:
-    D.s: {values: [0 mm, 10 mm, 20 mm, 30 mm, 40 mm], rate: 100 mm/s}
-loads:
-  - {type: torque, link: crank, torque: 3 N*m}
-"""
+TEXT = pump("3 N*m")
 CRANKS = [28.0, 30.0, 32.0]
 WORDS = ["max", "min", "peak", "range", "mean", "rms", "place_of_max", "place_of_peak"]
 STUDY = {
