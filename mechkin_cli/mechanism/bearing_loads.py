@@ -35,7 +35,7 @@ _IN_PLANE: dict[Kind, _Load] = {"radial_force": _Load("norm(J.force)", FORCE)}
 
 _TOLD_IN_PLANE = "xy"
 
-BEARING_KINDS = frozenset(_LOADS)
+BEARING_KINDS: frozenset[str] = frozenset(_LOADS)
 
 
 def bearing_catalogue(mechanism: Mechanism) -> dict[str, Wanted]:

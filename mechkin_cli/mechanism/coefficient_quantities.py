@@ -16,7 +16,7 @@ from mechkin_cli.mechanism.joint_table import is_angle
 from mechkin_cli.mechanism.quantities import Kind, Wanted, effort_quantity
 from mechkin_cli.units import ACCELERATION, ANGULAR_ACCELERATION, Dimension
 
-COEFFICIENT_KINDS = {"per_acceleration", "without_acceleration"}
+COEFFICIENT_KINDS: set[str] = {"per_acceleration", "without_acceleration"}
 
 _FORCES = {
     "force",

@@ -43,7 +43,7 @@ class Operation(IntEnum):
     SIGN = 25
 
 
-CONDITIONS = (Operation.LESS, Operation.NOT_MORE, Operation.EQUAL)
+CONDITIONS: tuple[Operation, ...] = (Operation.LESS, Operation.NOT_MORE, Operation.EQUAL)
 """What a guard may ask."""
 
 _ONE = {

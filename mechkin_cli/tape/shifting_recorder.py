@@ -101,10 +101,10 @@ class ShiftingRecorder(ExactRecorder):
         hanging = [0] * len(self.values)
         for leaf, number in self._leaves.items():
             hanging[leaf] = 1 << number
-        for register in sorted(self._written):
-            operation, *operands = self._written[register]
+        for result in sorted(self._written):
+            operation, *operands = self._written[result]
             for operand in operands[: ARITY[operation]]:
-                hanging[register] |= hanging[operand]
+                hanging[result] |= hanging[operand]
         return hanging
 
     def _is_rounded(self, register: int) -> bool:
