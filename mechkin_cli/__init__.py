@@ -39,26 +39,28 @@ all methods.
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # what the package itself loads, every command waits for
+TYPE_CHECKING = False  # typing is not loaded for its flag alone
+
 if TYPE_CHECKING:
     from typing import Any
 
     from mechkin_cli.diagnostics import Diagnostic, InvalidFile, MechkinError, UsageError
     from mechkin_cli.expressions import ExpressionError
-    from mechkin_cli.interface import Analysis, Model, load, loads
-    from mechkin_cli.status import Status
+    from mechkin_cli.model import Analysis, Model, load, loads
+    from mechkin_cli.verdict import Status
+
 
 _PLACES = {
-    "Analysis": "interface",
+    "Analysis": "model",
     "Diagnostic": "diagnostics",
     "ExpressionError": "expressions",
     "InvalidFile": "diagnostics",
     "MechkinError": "diagnostics",
-    "Model": "interface",
-    "Status": "status",
+    "Model": "model",
+    "Status": "verdict",
     "UsageError": "diagnostics",
-    "load": "interface",
-    "loads": "interface",
+    "load": "model",
+    "loads": "model",
 }
 
 __all__ = [

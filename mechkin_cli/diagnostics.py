@@ -7,6 +7,8 @@ A diagnostic names the place, what was measured, the limit and what to do. Unusa
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
 from math import isfinite
 from typing import Literal, NamedTuple
 
@@ -117,3 +119,68 @@ class InvalidFile(MechkinError):
 
 class UsageError(MechkinError):
     """A call that asks for something that does not exist (a table, a mode, a file to write to)."""
+
+
+# Text that cannot be shown as it is: bytes of file names that are no text, control characters.
+
+SURROGATES = re.compile("[\ud800-\udfff]")
+"""Half characters: no encoding has them; Python has them for bytes of file names."""
+
+
+def legible(text: str, also: str = "\n") -> str:
+    r"""The text with every character that does not print, except those in `also`, as an escape.
+
+    Example:
+        >>> legible("a\x1b[31m\udcff")
+        'a\\x1b[31m\\xff'
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or c in also else escape(c) for c in text)
+
+
+def whole(text: str) -> str:
+    """The text with what no encoding has as escapes; all other characters stay."""
+    return SURROGATES.sub(lambda found: escape(found[0]), text)
+
+
+def escape(character: str) -> str:
+    r"""`\xff` for the byte 0xff of a file name, else as Python writes the character in ASCII."""
+    code = ord(character)
+    return f"\\x{code - 0xDC00:02x}" if 0xDC80 <= code <= 0xDCFF else ascii(character)[1:-1]
+
+
+# The known names that a mistyped one is most like, and the hint that says so.
+
+SHORT_LIST = 8
+"""Up to so many known names are listed when none of them is near."""
+
+LONGEST_COMPARED = 100
+"""Characters of a name that are compared; the comparison takes the square of them."""
+
+
+def nearest(name: str, known: Iterable[str]) -> str | None:
+    """The entry of `known` most similar to `name`, or None where nothing is close.
+
+    >>> nearest("axxis", ["point", "axis"])
+    'axis'
+    """
+    return next(iter(_closest(name, known, 1)), None)
+
+
+def nearest_hint(name: str, known: Iterable[str]) -> str | None:
+    """A hint that names the known names most like `name`, or all of them when they are few."""
+    names = sorted(known)
+    close = _closest(name, names, 3)
+    if close:
+        return f"did you mean {' or '.join(close)}?"
+    return f"known are {', '.join(names)}" if 0 < len(names) <= SHORT_LIST else None
+
+
+def _closest(name: str, known: Iterable[str], most: int) -> list[str]:
+    """Best first; letters that differ only in case count as the same."""
+    from difflib import get_close_matches  # only on the way to a message
+
+    by_folded = {candidate.casefold(): candidate for candidate in sorted(known)}
+    asked = name[:LONGEST_COMPARED].casefold()
+    return [by_folded[match] for match in get_close_matches(asked, by_folded, most, 0.6)]

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from mechkin_cli.analysis.assembly.start import Start, choose_start
+from mechkin_cli.assembly.start import AssemblyStart, choose_start
 from mechkin_cli.mechanism.problem import Problem
-from mechkin_cli.solver.inputs import KernelInputs
-from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.session import Session
+from mechkin_cli.plan.layout import Layout
+from mechkin_cli.session.inputs import KernelInputs
+from mechkin_cli.session.session import Session
 
 
 class Setup(NamedTuple):
     session: Session
-    start: Start
+    start: AssemblyStart
 
     @property
     def layout(self) -> Layout:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from means import mean_over_the_way, rms_over_the_way
 
-from mechkin_cli.reductions import REDUCTIONS, mean, root_mean_square
+from mechkin_cli.tables.summary import REDUCTIONS, mean, root_mean_square
 
 
 def some_rows(seed: int) -> tuple[np.ndarray, np.ndarray]:

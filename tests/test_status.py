@@ -2,7 +2,7 @@
 
 import pytest
 
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 LABELS = {
     "ok": 0,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.uniqueness import unique_cells
+from mechkin_cli.tables.columns import unique_cells
 
 
 def test_a_cell_that_any_other_reaction_changes_is_emptied():

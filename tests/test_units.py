@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-from mechkin_cli.units import (
+from mechkin_cli.units.dimension import (
     ACCELERATION,
     ANGLE,
     ANGULAR_ACCELERATION,
@@ -29,11 +29,8 @@ from mechkin_cli.units import (
     TORSIONAL_STIFFNESS,
     VELOCITY,
     Dimension,
-    UnitError,
-    UnitSystem,
-    conversion,
-    parse_unit,
 )
+from mechkin_cli.units.units import UnitError, UnitSystem, conversion, parse_unit
 
 INCH_POUND = UnitSystem.from_mapping(
     {"length": "in", "angle": "deg", "mass": "lbm", "force": "lbm*in/s^2"}

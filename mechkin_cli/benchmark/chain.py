@@ -12,15 +12,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from mechkin_cli.mechanism.frames import Frame
-from mechkin_cli.mechanism.legs import frame_on
-from mechkin_cli.mechanism.vectors import norm
+from mechkin_cli.mechanism import Frame, frame_on, norm
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism.elementary import Part
-    from mechkin_cli.mechanism.model import Joint
-    from mechkin_cli.solver.graph import Closing
-    from mechkin_cli.solver.layout import Layout
+    from mechkin_cli.mechanism import Joint, Part
+    from mechkin_cli.plan import Layout
+    from mechkin_cli.structure import CutJoint
+
 
 GROUND = -1
 Place = tuple[float, float, float]
@@ -182,7 +180,7 @@ class _Builder:
             self.states.append(None if state is None else state + (0 if kind.is_ball else local))
         return Displacement(part.letter, part.before, part.after, joint.pitch, first)
 
-    def _closing(self, closing: Closing) -> Closed:
+    def _closing(self, closing: CutJoint) -> Closed:
         joint, leg, bodies = closing.joint, closing.leg, self.layout.link_number
         if leg is not None:
             ends = frame_on(leg.start, leg.first).o, frame_on(leg.end, leg.second).o

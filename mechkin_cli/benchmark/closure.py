@@ -21,7 +21,7 @@ from mechkin_cli.benchmark.chain import (
     Distance,
     Place,
 )
-from mechkin_cli.mechanism.frames import Frame
+from mechkin_cli.mechanism import Frame
 
 Turned = Mapping[int, Any]
 """The orientation (3, 3) from which each ball counts its three turns, by its first coordinate."""

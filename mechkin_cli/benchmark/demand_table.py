@@ -11,13 +11,13 @@ import sys
 from functools import partial
 from time import perf_counter
 
-from mechkin_cli.analysis.sweep import analyze
 from mechkin_cli.benchmark.report import Cell, Column, Table, key_of
 from mechkin_cli.benchmark.scene import BATCH, Scene
 from mechkin_cli.benchmark.subject import Subject
 from mechkin_cli.benchmark.timing import Timing, in_turns
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.session import Packing
+from mechkin_cli.plan import Demand
+from mechkin_cli.session import Packing
+from mechkin_cli.sweep import analyze
 
 SCRIPT = (
     "import sys, mechkin_cli as mk; "

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from mechkin_cli.benchmark.measurement import Measurement
 
+
 PANEL_WIDTH, PANEL_HEIGHT = 262.0, 176.0
 MARGIN_LEFT, MARGIN_TOP, GAP_X, GAP_Y = 62.0, 58.0, 20.0, 44.0
 LEGEND_LINE, BELOW = 20.0, 46.0

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mechkin_cli.kernel.width import widths
+from mechkin_cli.kernel.functions import widths
 
 
 def machine() -> dict[str, str]:

@@ -13,6 +13,7 @@ from mechkin_cli.benchmark.scene import Asked, Values
 if TYPE_CHECKING:
     from mechkin_cli.benchmark.timing import Timing
 
+
 ZERO = 1e-18
 """Parts of the largest value of its kind up to which a quantity is zero by its nature: beyond the
 last digit of doubles, far above that of double-double."""

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 from mechkin_cli.benchmark.figure import Panel, svg
 from mechkin_cli.benchmark.page import best_table, page
 from mechkin_cli.benchmark.tables import csv_text
-from mechkin_cli.tables.json_writer import json_text
-from mechkin_cli.version import versions
+from mechkin_cli.tables import json_text
+from mechkin_cli.verdict import versions
 
 if TYPE_CHECKING:
     from mechkin_cli.benchmark.report import Table
     from mechkin_cli.benchmark.runs import Bench
+
 
 NAMES = {"json": "bench.json", "csv": "bench.csv", "page": "bench.md", "figure": "bench.svg"}
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from mechkin_cli.benchmark.measurement import Measurement
     from mechkin_cli.benchmark.runs import Bench
 
+
 MOTION = ("position", "velocity", "acceleration")
 SAME = 10.0
 """Errors within this factor count as the same."""

@@ -14,8 +14,9 @@ from mechkin_cli.benchmark.closure import Matrices, Placing
 from mechkin_cli.benchmark.truth import BALL, State, coordinates_of, named_values
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
     from mechkin_cli.benchmark.scene import Scene, Values
+    from mechkin_cli.show import Floats
+
 
 MANY_UNKNOWNS = 12
 """Beyond, differences of the whole closure in Python take tens of milliseconds a row."""

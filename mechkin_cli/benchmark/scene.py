@@ -14,24 +14,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.sweep import analyze
-from mechkin_cli.analysis.sweep.question import at_once
 from mechkin_cli.benchmark.chain import Chain, chain_of
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.mechanism.legs import find_legs
-from mechkin_cli.runs import SWEEP
-from mechkin_cli.solver.batch import RESIDUAL_TESTS, Batch
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import demand_of
-from mechkin_cli.solver.session import Packing, Session
+from mechkin_cli.mechanism import find_legs
+from mechkin_cli.plan import Demand, demand_of
+from mechkin_cli.session import RESIDUAL_TESTS, Batch, Packing, Session
+from mechkin_cli.sweep import analyze, at_once
+from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.arrays import Floats
-    from mechkin_cli.interface.model import Model
-    from mechkin_cli.mechanism.model import Attached
-    from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.mechanism import Attached, Wanted
+    from mechkin_cli.model import Model
+    from mechkin_cli.show import Floats
+
 
 BATCH = 2048
 """Rows of a timed call of the kernel; those of the sweep, over and over."""
@@ -147,7 +144,7 @@ class Scene:
     @cached_property
     def followed(self) -> Floats:
         """As a guess, what following the branch fills in between its nodes (states, rows)."""
-        from mechkin_cli.analysis.sweep.following import follow_rows
+        from mechkin_cli.sweep import follow_rows
 
         rows = follow_rows(self.session, self.result.start, every_row=False)
         found: Floats = np.ascontiguousarray(rows.states[:, self.places])

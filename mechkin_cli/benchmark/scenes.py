@@ -33,7 +33,7 @@ def texts() -> dict[str, Callable[[], str]]:
 
 def subjects() -> list[Subject]:
     """The same, read and checked."""
-    from mechkin_cli.interface import loads
+    from mechkin_cli.model import loads
 
     found = [(name, text()) for name, text in texts().items()]
     return [Subject(name, loads(text, name), text) for name, text in found]

@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from mechkin_cli.interface import Model
+    from mechkin_cli.model import Model
 
 
 class Subject(NamedTuple):

@@ -14,6 +14,7 @@ from mechkin_cli.benchmark.report import Cell, Column, Table, key_of
 if TYPE_CHECKING:
     from mechkin_cli.benchmark.runs import Bench
 
+
 COLUMNS = (
     Column("family", "by"),
     Column("curve", "method"),

@@ -8,7 +8,7 @@ from mechkin_cli.benchmark.report import Cell, Column, Table
 from mechkin_cli.benchmark.scene import Scene
 from mechkin_cli.benchmark.timing import in_turns
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.solver.session import Packing
+from mechkin_cli.session import Packing
 
 ROWS = 50_000
 MICRO = 1000.0 * 1000.0

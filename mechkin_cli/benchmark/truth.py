@@ -15,7 +15,7 @@ from mechkin_cli.benchmark.chain import EQUATIONS, Chain, CommonFrame
 from mechkin_cli.benchmark.closure import Entries, Placing, Turned
 from mechkin_cli.benchmark.jets import Jet, jet
 from mechkin_cli.benchmark.scene import Scene, Values
-from mechkin_cli.elimination import eliminate
+from mechkin_cli.tape import eliminate
 
 STEPS = 4
 """Newton's method starts from doubles: two steps pass 64 bits."""

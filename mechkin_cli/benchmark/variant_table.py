@@ -10,7 +10,7 @@ import numpy as np
 from mechkin_cli.benchmark.report import Cell, Column, Table
 from mechkin_cli.benchmark.scenes import texts
 from mechkin_cli.benchmark.timing import in_turns
-from mechkin_cli.interface import loads
+from mechkin_cli.model import loads
 
 VARIANTS = 1000
 ALONE, FROM_FILE = 40, 5

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.analysis.errors.repeated import NotRepeated
-from mechkin_cli.analysis.errors.wide import wide_run
 from mechkin_cli.benchmark.truth import true_values, width
-from mechkin_cli.solver.demand import demand_of
+from mechkin_cli.errors import NotRepeated, wide_run
+from mechkin_cli.plan import demand_of
 
 if TYPE_CHECKING:
     from mechkin_cli.benchmark.scene import Scene, Values
+
 
 TEXT = "double-double, from the numbers of the file's text"
 

@@ -7,22 +7,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.building.columns import Sample
+from mechkin_cli.building.tables import ColumnSample
 from mechkin_cli.expressions import ExpressionError, Vector
-from mechkin_cli.mechanism.balance import AnyBalance, Cycle, Flywheel, Harmonics, Work
-from mechkin_cli.runs import SWEEP
-from mechkin_cli.schema import balances as written
-from mechkin_cli.solver.inputs import turn_of
+from mechkin_cli.mechanism import AnyBalance, Cycle, Flywheel, Harmonics, WorkBalance
+from mechkin_cli.schema import tables as written
+from mechkin_cli.session import turn_of
 from mechkin_cli.tolerances import EQUAL_STEPS
 from mechkin_cli.units import ANGULAR_RATE, DIMENSIONLESS, Dimension
+from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
     from mechkin_cli.building.fields import Fields, Path
     from mechkin_cli.expressions import Expression
-    from mechkin_cli.mechanism.motion import DrivenInput
-    from mechkin_cli.mechanism.problem import Problem
-    from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.mechanism import DrivenInput, Problem, Wanted
+    from mechkin_cli.show import Floats
+
 
 LEAST_ROWS = 4
 """Rows of a cycle."""
@@ -35,12 +34,12 @@ def build_balances(
     """The balances of a file; what is wrong is noted in `fields`."""
     if not sections:
         return ()
-    builder = _Builder(fields, problem)
+    builder = _BalanceBuilder(fields, problem)
     found = [builder.balance(("balances", i), section) for i, section in enumerate(sections)]
     return tuple(balance for balance in found if balance is not None)
 
 
-class _Builder:
+class _BalanceBuilder:
     def __init__(self, fields: Fields, problem: Problem) -> None:
         self.fields = fields
         self.problem = problem
@@ -61,7 +60,7 @@ class _Builder:
             if cycle is None or rate is None:
                 return None
             return Flywheel(section.name, title, place, cycle, unevenness, rate)
-        return None if cycle is None else Work(section.name, title, place, cycle)
+        return None if cycle is None else WorkBalance(section.name, title, place, cycle)
 
     # --- the cycle ------------------------------------------------------------------------
 
@@ -170,7 +169,7 @@ class _Builder:
         for i, text in enumerate(texts):
             try:
                 expression = self.fields.definitions.parse(text)
-                quantity = expression.evaluate(Sample(self.fields, self.known, SWEEP))
+                quantity = expression.evaluate(ColumnSample(self.fields, self.known, SWEEP))
                 if dimension is not None and not quantity.dimension.compatible(dimension):
                     raise ExpressionError(
                         f"one table holds one dimension; this is {quantity.dimension.phrase}, "

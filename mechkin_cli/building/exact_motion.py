@@ -10,41 +10,112 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import pi, prod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.building.coordinates import dimension_of
-from mechkin_cli.building.curves import joining_of, read_rows
-from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.building.law_numbers import Clock, PowerLaw, coefficients, over_time, span
+from mechkin_cli.building.fields import Fields, Path, dimension_of
+from mechkin_cli.building.load_laws import joining_of, read_rows
 from mechkin_cli.exact import PI, TURN, Exact
-from mechkin_cli.expressions import Expression, Quantity, literal, parse
-from mechkin_cli.expressions.fields import scalar
-from mechkin_cli.mechanism.exact_motion import ExactMotion
-from mechkin_cli.mechanism.joined_curve import joined_curve
-from mechkin_cli.schema.laws import Cycloidal, Harmonic, Law, TableLaw
-from mechkin_cli.schema.motion import (
+from mechkin_cli.expressions import Expression, Quantity, literal, parse, scalar
+from mechkin_cli.mechanism import ExactMotion, joined_curve
+from mechkin_cli.schema import (
+    ConstantAcceleration,
+    ConstantRate,
+    Cycloidal,
     FollowingInput,
+    Harmonic,
     HeldInput,
+    Law,
     ListedInput,
     MotionSection,
+    Polynomial,
     SweptInput,
+    TableLaw,
     TimeSection,
     WithRates,
 )
-from mechkin_cli.tape.exact_rows import ExactRows, Picked
-from mechkin_cli.tape.jet_numbers import JetNumber, orders_of
-from mechkin_cli.tape.scalars import as_recorded, cos, sin
-from mechkin_cli.units import TIME
+from mechkin_cli.show import Floats
+from mechkin_cli.tape import ExactRows, JetNumber, Picked, as_recorded, cos, orders_of, sin
+from mechkin_cli.units import TIME, Conversion, UnitSystem, conversion
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
-    from mechkin_cli.mechanism.motion import Motion
-    from mechkin_cli.mechanism.response import Response
-    from mechkin_cli.schema.responses import ListedTime
-    from mechkin_cli.tape.exact_recorder import ExactRecorder
+    from mechkin_cli.mechanism import MotionInputs, ResponseProblem
+    from mechkin_cli.schema import ListedTime
+    from mechkin_cli.tape import ExactRecorder
     from mechkin_cli.units import Dimension
+
+
+# The numbers of a law of motion as its text says them, in the file's units.
+
+PowerLaw = ConstantRate | ConstantAcceleration | Polynomial
+"""x = c0 + c1 t + c2 t^2 + ..., with t from the first moment of `time`."""
+
+
+class Clock(NamedTuple):
+    """The moments of the rows, and `from` and `to` of `time`, in the file's units."""
+
+    moments: Floats
+    first: float
+    last: float
+
+
+def coefficients(fields: Fields, path: Path, law: PowerLaw, coordinate: str) -> list[float]:
+    """c0, c1, ..., where c_k is in the file's unit of the coordinate's derivative of order k.
+
+    Errors are noted in `fields`; zeros stand in.
+    """
+    written: list[tuple[Path, str]]
+    if isinstance(law, Polynomial):
+        written = [(("coefficients", k), text) for k, text in enumerate(law.coefficients)]
+    else:
+        written = [(("at",), law.at), (("rate",), law.rate)]
+    if isinstance(law, ConstantAcceleration):
+        written.append((("acceleration",), law.acceleration))
+    found = [
+        fields.written((*path, *key), text, dimension_of(coordinate, k))
+        for k, (key, text) in enumerate(written)
+    ]
+    if isinstance(law, ConstantAcceleration):
+        found[2] /= 2.0
+    return found
+
+
+def span(
+    fields: Fields, path: Path, law: Harmonic | Cycloidal, clock: Clock
+) -> tuple[float, float]:
+    """Start and duration of a rise in the file's unit of time.
+
+    Errors are noted in `fields`; a duration of one stands in.
+    """
+    errors = fields.error_count
+    start = clock.first
+    if law.start is not None:
+        start = fields.written((*path, "start"), law.start, TIME)
+    if law.duration is not None:
+        duration = fields.written((*path, "duration"), law.duration, TIME)
+        place: Path = (*path, "duration")
+    else:
+        duration, place = clock.last - start, (*path, "start") if law.start is not None else path
+    if duration > 0.0:
+        return start, duration
+    if fields.error_count == errors:
+        fields.error(
+            "no-duration",
+            place,
+            "a rise takes a positive time",
+            "give start and duration so that there is time for it",
+            measured=f"{duration:g} {fields.units.label(TIME)}",
+        )
+    return start, 1.0
+
+
+def over_time(units: UnitSystem, coordinate: str, have: int, want: int) -> Conversion:
+    """From the unit of order `have` times the unit of time to have - want, to that of order
+    `want`."""
+    before = units.unit(dimension_of(coordinate, have)) * units.unit(TIME ** (have - want))
+    return conversion(before.factor / units.unit(dimension_of(coordinate, want)).factor)
+
 
 Orders = tuple[Any, Any, Any, Any]
 """Value, rate, acceleration, jerk; each a number of the rows or one for all of them."""
@@ -53,7 +124,7 @@ _HALF_TURN = Exact(pi, PI)
 
 
 def exact_motion(
-    fields: Fields, section: MotionSection | None, motion: Motion, recorder: ExactRecorder
+    fields: Fields, section: MotionSection | None, motion: MotionInputs, recorder: ExactRecorder
 ) -> ExactMotion:
     """A motion without errors over its rows.
 
@@ -94,7 +165,7 @@ def exact_moments(
     return over.given(Picked(listed, np.arange(over.rows)))
 
 
-def start_motion(fields: Fields, response: Response, recorder: ExactRecorder) -> ExactMotion:
+def start_motion(fields: Fields, response: ResponseProblem, recorder: ExactRecorder) -> ExactMotion:
     """The first moment of a response, as `mechanism.response.first_motion` has it in doubles.
 
     Args:
@@ -122,7 +193,7 @@ class _Reading:
 
     fields: Fields
     section: MotionSection
-    motion: Motion
+    motion: MotionInputs
     rows: ExactRows
     written: dict[str, Any] = field(default_factory=dict)
     in_si: dict[str, Any] = field(default_factory=dict)
@@ -193,7 +264,7 @@ class _Reading:
                 for k, order in enumerate(orders)
             )
 
-    def tie_rates(self, motion: Motion) -> tuple[Any, ...]:
+    def tie_rates(self, motion: MotionInputs) -> tuple[Any, ...]:
         """The rates of tied inputs by those of their leaders, in the motion's order."""
         names = [item.name for item in motion.inputs]
         found = []

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, nearest_hint
 from mechkin_cli.expressions import (
+    Definitions,
     ExpressionError,
+    Move,
     Quantity,
+    Vector as Components,
     constant,
     constant_in_file_units,
     evaluate_parameters,
@@ -17,17 +20,22 @@ from mechkin_cli.expressions import (
     number_of,
     parse,
 )
-from mechkin_cli.expressions import Vector as Components
-from mechkin_cli.expressions.definitions import Definitions
-from mechkin_cli.expressions.parameters import Move
-from mechkin_cli.mechanism.model import Attached
-from mechkin_cli.mechanism.vectors import ZERO, Vector
-from mechkin_cli.reading.document import Document
-from mechkin_cli.reading.limits import MOST_DIAGNOSTICS
-from mechkin_cli.reading.parser import CORRECT_FIRST, in_order
-from mechkin_cli.tape.scalars import is_number
+from mechkin_cli.mechanism import GROUND_NAME, ZERO, Attached, Joint, Vector, pairs as joint_table
+from mechkin_cli.reading import CORRECT_FIRST, MOST_DIAGNOSTICS, Document, in_order
+from mechkin_cli.schema import MechanismFile, UnitsSection
+from mechkin_cli.tape import is_number
 from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
-from mechkin_cli.units import DIMENSIONLESS, LENGTH, Dimension, UnitSystem
+from mechkin_cli.units import (
+    DIMENSIONLESS,
+    FIELDS,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    TIME,
+    Dimension,
+    UnitError,
+    UnitSystem,
+)
 
 Path = tuple[str | int, ...]
 
@@ -212,7 +220,7 @@ class Fields:
     def direction(self, path: Path, texts: Sequence[str]) -> Vector:
         """A direction: three components of one dimension, not all zero; returned as a unit
         vector."""
-        from mechkin_cli.mechanism.vectors import unit
+        from mechkin_cli.mechanism import unit
 
         values: list[float] = []
         dimensions: list[Dimension] = []
@@ -284,3 +292,174 @@ def _check_overrides(fields: Fields, texts: Mapping[str, str]) -> None:
             f"write a value such as {texts[name] if literal(texts[name]) else 1} {unit}".rstrip(),
         )
         del fields.parameters[name]
+
+
+# Joint coordinates that a file names: what they measure, whether they exist, and what to say where
+# they do not.
+
+CODE = "unknown-coordinate"
+
+
+def dimension_of(coordinate: str, order: int = 0) -> Dimension:
+    """What a coordinate, or its derivative of some order over time, measures."""
+    return joint_table.dimension_of(coordinate) / TIME**order
+
+
+def is_coordinate(fields: Fields, path: Path, name: str, joints: Mapping[str, Joint]) -> bool:
+    """Whether the key at `path` names a coordinate, such as `O2.theta`; if not, that is noted."""
+    wrong = _wrong(fields, name, joints)
+    if wrong:
+        fields.key_error(CODE, path, *wrong)
+    return wrong is None
+
+
+def is_coordinate_at(fields: Fields, path: Path, name: str, joints: Mapping[str, Joint]) -> bool:
+    """The same of the value at `path`."""
+    wrong = _wrong(fields, name, joints)
+    if wrong:
+        fields.error(CODE, path, *wrong)
+    return wrong is None
+
+
+def _wrong(
+    fields: Fields, name: str, joints: Mapping[str, Joint]
+) -> tuple[str, str | None] | tuple[()] | None:
+    """Message and hint where a name is no coordinate; none where that is said elsewhere."""
+    joint, _, coordinate = name.rpartition(".")
+    if joint in joints:
+        if coordinate in joints[joint].type.coordinates:
+            return None
+        return without(joints[joint], coordinate)
+    if fields.is_refused(joint):
+        return ()
+    known = [c for joint in joints.values() for c in joint.coordinates]
+    return f"{name} is no coordinate", nearest_hint(name, known)
+
+
+def without(joint: Joint, coordinate: str) -> tuple[str, str]:
+    """Message and hint for a joint that lacks a coordinate."""
+    have = ", ".join(joint.type.coordinates) or "none"
+    message = f"{joint.name} is of type {joint.letter} and has no coordinate {coordinate}"
+    return message, f"its coordinates: {have}"
+
+
+# Places in the home drawing, as coordinates or as the names of points; and the named points.
+#
+# A name stands for the place where its point is drawn. What is fixed in a link, a mass centre or
+# the point of a force, moves with that link, so the point that it is named by has to be one of that
+# link; the halves of a joint may meet at any place of the drawing.
+
+
+def read_points(fields: Fields, file: MechanismFile) -> dict[str, Attached]:
+    """The named points of the file, which `fields` knows from here on; what is wrong is noted."""
+    links = dict.fromkeys([*file.links, *(row.link for row in file.chain)])
+    links.pop(GROUND_NAME, None)
+    drawn = {
+        name: fields.vector(("points", name, "at"), point.at, LENGTH)
+        for name, point in file.points.items()
+        if not isinstance(point.at, str)
+    }
+    for name in file.points:
+        _follow(fields, file, name, drawn)
+    for name, point in file.points.items():
+        if is_link(fields, ("points", name, "link"), point.link, links) and name in drawn:
+            fields.points[name] = Attached(point.link, drawn[name])
+    return dict(fields.points)
+
+
+def place_at(
+    fields: Fields, path: Path, given: str | tuple[str, ...], link: str | None = None
+) -> Vector:
+    """A place in the drawing, in m; where it is fixed in a `link`, a name has to be of a point of
+    that link. What is wrong is noted, and zero stands in."""
+    if not isinstance(given, str):
+        return fields.vector(path, given, LENGTH)
+    if given not in fields.points:
+        _refuse_unknown(fields, path, given)
+        return ZERO
+    point = fields.points[given]
+    if link is not None and point.link != link:
+        text = f"{given} is a point of {point.link}, and this place moves with {link}"
+        hint = f"name one of {link}, such as {given}_of_{link}: {{link: {link}, at: {given}}}"
+        fields.error("point-of-another-link", path, text, hint)
+    return point.vector
+
+
+def is_link(fields: Fields, path: tuple[str, ...], name: str, links: Iterable[str]) -> bool:
+    """Whether a link is there; if not, that is noted once, at the path of its name."""
+    if name == GROUND_NAME or name in links:
+        return True
+    fields.refused.add(path[1])
+    hint = nearest_hint(name, [GROUND_NAME, *links])
+    fields.error("unknown-link", path, f"there is no link {name}", hint)
+    return False
+
+
+def _follow(fields: Fields, file: MechanismFile, name: str, drawn: dict[str, Vector]) -> None:
+    """Puts a point, and those on the way, at the place of the point that its `at` leads to."""
+    way: list[str] = []
+    while name not in drawn and name in file.points and name not in fields.refused:
+        if name in way:
+            circle = " -> ".join([*way[way.index(name) :], name])
+            text = f"the place of {name} leads back to itself: {circle}"
+            fields.error("circular-place", ("points", name, "at"), text, "write coordinates here")
+            fields.refused.update(way)
+            return
+        way.append(name)
+        at = file.points[name].at
+        assert isinstance(at, str)
+        name = at
+    if name in drawn:
+        drawn.update(dict.fromkeys(way, drawn[name]))
+        return
+    if way:
+        _refuse_unknown(fields, ("points", way[-1], "at"), name)
+        fields.refused.update(way)
+
+
+def _refuse_unknown(fields: Fields, path: Path, name: str) -> None:
+    if fields.is_refused(name):
+        return
+    data = fields.document.data
+    section = data.get("points")
+    known = list(section) if isinstance(section, dict) else []
+    joints = data.get("joints")
+    is_joint = isinstance(joints, dict) and name in joints
+    hint = f"{name} is a joint: name its point under points" if is_joint else None
+    hint = hint or nearest_hint(name, known) or "name it under points"
+    fields.error("unknown-point", path, f"there is no point {name}", hint)
+
+
+# The units section to the file's unit system, and what is to be said of it.
+
+
+def read_units(document: Document, section: UnitsSection) -> tuple[UnitSystem, list[Diagnostic]]:
+    """The file's unit system, and what is wrong with it."""
+    try:
+        return UnitSystem.from_mapping({name: getattr(section, name) for name in FIELDS}), []
+    except UnitError as error:
+        path: Path = ("units", error.key) if error.key else ("units",)
+        place = document.place_in(path, error.offset)
+        return UnitSystem(), [Diagnostic("unit", "error", error.message, place, hint=error.hint)]
+
+
+def note_force_unit(fields: Fields) -> None:
+    """Says in which unit forces are, where the file leaves it out and its mass, length and time
+    would make another."""
+    document, units = fields.document, fields.units
+    named = document.node(("units", "force")) is not None
+    if fields.error_count or named or document.node(("units",)) is None:
+        return
+    coherent = units.mass * units.length * units.time**-2
+    if coherent.factor == units.force.factor:
+        return
+    forces, moments = units.label(FORCE), units.label(MOMENT)
+    fields.note(
+        Diagnostic(
+            "force-unit",
+            "note",
+            f"units: names no force, so forces are in {forces} and moments in {moments}",
+            document.key_place(("units",)),
+            hint=f"write force: {forces} to say so, or another, such as force: {coherent}",
+        )
+    )

@@ -5,16 +5,27 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.mechanism.friction import FrictionLaw, Rubbing
-from mechkin_cli.mechanism.joint_table import JOINT_TYPES, PLANE_JOINT_TYPES
-from mechkin_cli.mechanism.model import Attached, Joint
-from mechkin_cli.mechanism.vectors import cross, dot, norm, scale, subtract, unit
-from mechkin_cli.schema.loads import FallingCoefficient
+from mechkin_cli.mechanism import (
+    JOINT_TYPES,
+    PLANE_JOINT_TYPES,
+    Attached,
+    FrictionLaw,
+    Joint,
+    Rubbing,
+    cross,
+    dot,
+    norm,
+    scale,
+    subtract,
+    unit,
+)
+from mechkin_cli.schema import FallingCoefficient
 from mechkin_cli.tolerances import LARGEST_FLANK, PARALLEL
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, VELOCITY
 
 if TYPE_CHECKING:
-    from mechkin_cli.schema.loads import FrictionAtJoint
+    from mechkin_cli.schema import FrictionAtJoint
+
 
 CODE = "friction"
 LENGTHS = ("radius", "length", "collar", "width")

@@ -2,39 +2,119 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
-from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.building.halves import Halves
-from mechkin_cli.building.per_link import directions_of, place_of, points_of
-from mechkin_cli.mechanism.elementary import Part
-from mechkin_cli.mechanism.frames import (
+from mechkin_cli.building.fields import Fields, Path, place_at
+from mechkin_cli.diagnostics import nearest_hint
+from mechkin_cli.mechanism import (
     GROUND,
+    GROUND_NAME,
+    Drawing,
+    DrawnDirection,
+    Frame,
+    Joint,
+    JointType,
+    Part,
+    Vector,
+    cross,
+    dot,
     frame_about,
+    joint_type,
+    norm,
     perpendicular,
+    scale,
+    subtract,
     turned_shortest,
+    unit,
     upright,
 )
-from mechkin_cli.mechanism.joint_table import joint_type
-from mechkin_cli.mechanism.joint_type import Drawing, JointType
-from mechkin_cli.mechanism.model import GROUND_NAME, Joint
-from mechkin_cli.mechanism.vectors import Vector, cross, dot, norm
-from mechkin_cli.nearest import nearest_hint
-from mechkin_cli.schema.joints import (
+from mechkin_cli.schema import (
     AnyAxisJoint,
     AnyJoint,
     AxisJoint,
+    CylinderPlaneJoint,
     HelicalJoint,
     PlanarJoint,
     PointJoint,
+    SlottedSphereJoint,
+    SphereCylinderJoint,
     SphereGrooveJoint,
     SpherePlaneJoint,
     TwoTurnJoint,
+    UniversalJoint,
     WeldJoint,
 )
-from mechkin_cli.tape.scalars import by_rounding, either, is_settled
-from mechkin_cli.tolerances import PARALLEL
+from mechkin_cli.tape import by_rounding, either, is_settled
+from mechkin_cli.tolerances import AXES_SQUARE, PARALLEL
 from mechkin_cli.units import LENGTH
+
+# A pair as drawn on its two links.
+
+
+class Halves(NamedTuple):
+    """The pair's frames on either link.
+
+    `meeting`: frames, one on either drawing, that coincide where the coordinates are zero, of the
+    part that leads from one drawing to the other; `own`: a frame beside them.
+    """
+
+    on_first: Frame
+    on_second: Frame
+    meeting: tuple[Frame, Frame]
+    own: Frame | None = None
+
+    def along(self, direction: DrawnDirection) -> Frame:
+        """The frame of a part that is drawn on one link, z along the direction."""
+        frame = (self.on_first, self.on_second)[direction.side]
+        if direction.axis == "own":
+            assert self.own is not None
+            return self.own
+        if direction.axis == "z" and not direction.reverse:
+            return frame
+        along: Vector = getattr(frame, direction.axis)
+        across = frame.x if direction.axis == "z" else frame.z
+        return frame_about(scale(-1.0, along) if direction.reverse else along, across, frame.o)
+
+
+# Vectors of a joint that may be given for either link: one vector stands for both.
+
+Texts = tuple[str, ...]
+"""The three components of a vector, as written."""
+
+
+def points_of(fields: Fields, path: Path, section: PointJoint) -> tuple[Vector, Vector]:
+    """The joint's point on either link, in m."""
+
+    def read(where: Path, given: str | Texts) -> Vector:
+        return place_at(fields, where, given)
+
+    return _per_link(read, (*path, "point"), section.point, section.links)
+
+
+def directions_of(
+    fields: Fields, path: Path, section: PointJoint, key: str
+) -> tuple[Vector, Vector]:
+    """The unit vector under `key` on either link."""
+    return _per_link(fields.direction, (*path, key), getattr(section, key), section.links)
+
+
+def place_of(path: Path, section: PointJoint, key: str, side: int) -> Path:
+    """Where the vector for the first (0) or second (1) link stands in the file."""
+    given = getattr(section, key)
+    return (*path, key, section.links[side]) if isinstance(given, Mapping) else (*path, key)
+
+
+def _per_link(
+    read: Callable[[Path, Any], Vector],
+    path: Path,
+    value: Any,
+    links: Sequence[str],
+) -> tuple[Vector, Vector]:
+    if isinstance(value, Mapping):
+        return read((*path, links[0]), value[links[0]]), read((*path, links[1]), value[links[1]])
+    both = read(path, value)
+    return both, both
 
 
 def build_joints(
@@ -143,7 +223,6 @@ def _plane(fields: Fields, path: Path, section: PlanarJoint, drawing: Drawing) -
 
 
 def _two_turns(fields: Fields, path: Path, section: TwoTurnJoint, drawing: Drawing) -> Halves:
-    from mechkin_cli.building.two_turns import DRAWINGS
 
     return DRAWINGS[drawing.kind](fields, path, section, drawing)
 
@@ -205,3 +284,107 @@ def _square(
             "give one that is square to it, or nearly so",
         )
     return perpendicular(axis)
+
+
+# Pairs with two turns: about a direction of the first link, then about one of the second.
+#
+# Both frames have x square to the two directions as drawn (the first cross the second) and z along
+# their own; slides come before the turns or after them.
+
+
+def _oblique(fields: Fields, path: Path, section: UniversalJoint, drawing: Drawing) -> Halves:
+    """About one axis, then about another, at the angle drawn between them."""
+    keys = drawing.keys
+    at = points_of(fields, path, section)
+    errors = fields.error_count
+    one, two = (fields.direction((*path, key), getattr(section, key)) for key in keys)
+    if norm(cross(one, two)) <= PARALLEL:
+        if fields.error_count == errors:
+            fields.error(
+                "parallel-axes",
+                (*path, keys[1]),
+                "the two axes of a universal joint are parallel",
+                "turn one of them, or use type R",
+            )
+        one = perpendicular(two)
+    return _turns((one, one), (two, two), at)
+
+
+def _two_turns_square(
+    fields: Fields, path: Path, section: SlottedSphereJoint | CylinderPlaneJoint, drawing: Drawing
+) -> Halves:
+    """About the first of two square directions, then about the other."""
+    at = points_of(fields, path, section)
+    return _turns(*_square_pairs(fields, path, section, drawing), at)
+
+
+def _slotted(fields: Fields, path: Path, section: SphereCylinderJoint, drawing: Drawing) -> Halves:
+    """Along the cylinder, then about the slot's normal, then about the pin."""
+    axis_key, pin_key = drawing.keys
+    at = points_of(fields, path, section)
+    errors = fields.error_count
+    axes = directions_of(fields, path, section, axis_key)
+    pins = directions_of(fields, path, section, pin_key)
+    normals: list[Vector] = []
+    for side, (axis, pin) in enumerate(zip(axes, pins, strict=True)):
+        normal = cross(pin, axis)
+        if norm(normal) <= PARALLEL:
+            if fields.error_count == errors:
+                fields.error(
+                    "pin-parallel",
+                    place_of(path, section, pin_key, side),
+                    "the pin is parallel to the cylinder's axis: the two do not tell the slot's "
+                    "plane",
+                    "draw the pin where it comes out of the slot",
+                )
+            normal = perpendicular(pin)
+        normals.append(unit(normal))
+    own = frame_about(axes[0], normals[0], at[0])
+    return _turns((normals[0], normals[1]), pins, at)._replace(own=own)
+
+
+def _turns(
+    ones: tuple[Vector, Vector], twos: tuple[Vector, Vector], at: tuple[Vector, Vector]
+) -> Halves:
+    """Turns about `ones`, then about `twos`, each as drawn on either link; the body between
+    stands as drawn on the second."""
+    x_first, x_second = (unit(cross(one, two)) for one, two in zip(ones, twos, strict=True))
+    on_first = frame_about(ones[0], x_first, at[0])
+    between = frame_about(ones[1], x_second, at[1])
+    on_second = frame_about(twos[1], x_second, at[1])
+    return Halves(on_first, on_second, (on_first, between))
+
+
+def _square_pairs(
+    fields: Fields, path: Path, section: PointJoint, drawing: Drawing
+) -> tuple[tuple[Vector, Vector], tuple[Vector, Vector]]:
+    """Two directions on either link, the first made exactly square to the second; refused where
+    they are not drawn square."""
+    keys = drawing.keys
+    errors = fields.error_count
+    ones, twos = (directions_of(fields, path, section, key) for key in keys)
+    squared: list[Vector] = []
+    for side, (one, two) in enumerate(zip(ones, twos, strict=True)):
+        cosine = dot(one, two)
+        if abs(cosine) > AXES_SQUARE:
+            if fields.error_count == errors:
+                fields.error(
+                    "not-square",
+                    place_of(path, section, keys[1], side),
+                    f"{keys[0]} and {keys[1]} of this joint must be square to each other",
+                    drawing.cure,
+                    measured=f"cosine of their angle {cosine:.3g}",
+                    limit=f"{AXES_SQUARE:g}",
+                )
+            squared.append(perpendicular(two))
+            continue
+        squared.append(unit(subtract(one, scale(cosine, two))))
+    return (squared[0], squared[1]), twos
+
+
+DRAWINGS: dict[str, Callable[..., Halves]] = {
+    "two axes": _oblique,
+    "square axes": _two_turns_square,
+    "slotted": _slotted,
+}
+"""Frames on both links, by the kind of drawing."""

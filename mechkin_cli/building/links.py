@@ -1,26 +1,45 @@
 """Links of the file to rigid bodies: mass, mass centre, inertia in ground axes of the home
-drawing."""
+drawing.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import NamedTuple
 
 from mechkin_cli import tolerances
-from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.building.places import place_at
+from mechkin_cli.building.fields import Fields, Path, place_at
+from mechkin_cli.building.joints import build_joints, lead_of
 from mechkin_cli.diagnostics import Diagnostic, Number
-from mechkin_cli.mechanism.model import Link, Tensor
-from mechkin_cli.mechanism.vectors import ZERO, Vector, cross, dot
-from mechkin_cli.schema import links as written
-from mechkin_cli.tape.scalars import Recorded, advice, largest
-from mechkin_cli.units import INERTIA, MASS
+from mechkin_cli.mechanism import (
+    GROUND,
+    GROUND_NAME,
+    ZERO,
+    Frame,
+    Joint,
+    Part,
+    RigidLink,
+    Tensor,
+    Vector,
+    add,
+    cross,
+    dot,
+    frame_about,
+    scale,
+    subtract,
+    unit,
+)
+from mechkin_cli.schema import ChainRow, MechanismFile, links_joints as written
+from mechkin_cli.tape import Recorded, advice, cos, largest, sin
+from mechkin_cli.units import ANGLE, INERTIA, LENGTH, MASS
 
 NO_INERTIA: Tensor = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def build_links(
     fields: Fields, sections: Mapping[str, written.Link], accepted: bool
-) -> dict[str, Link]:
+) -> dict[str, RigidLink]:
     """All links; unphysical inertias warn unless the file acknowledges them."""
     links = {}
     for name, section in sections.items():
@@ -37,7 +56,7 @@ def build_links(
                 tensor = _about_normal(tensor)
             if not accepted:
                 _check_physical(fields, (*path, "inertia"), name, tensor)
-        links[name] = Link(name, mass, centre, tensor)
+        links[name] = RigidLink(name, mass, centre, tensor)
     return links
 
 
@@ -113,7 +132,7 @@ def _check_physical(fields: Fields, path: Path, name: str, tensor: tuple[float, 
     recorded = [entry for entry in tensor if isinstance(entry, Recorded)]
     if recorded:
         if not all(entry.is_settled for entry in recorded) and not _is_surely_physical(tensor):
-            from mechkin_cli.tape.traced import TraceLost
+            from mechkin_cli.tape import TraceLost
 
             raise TraceLost(f"the inertia of {name} belongs to no real body")
         return
@@ -138,3 +157,157 @@ def _check_physical(fields: Fields, path: Path, name: str, tensor: tuple[float, 
             numbers=tuple(Number("principal moment", m, unit) for m in in_file),
         )
     )
+
+
+# Links and what joins them: the joints of `joints:` and `chain:`, and that they reach ground.
+
+
+def build_linkage(
+    fields: Fields, file: MechanismFile
+) -> tuple[dict[str, RigidLink], dict[str, Joint]]:
+    """Links and joints by name; a link that only `chain:` names has no mass."""
+    links = build_links(fields, file.links, "unphysical-inertia" in file.accept)
+    pairs = _chain_pairs(file)
+    links |= {
+        name: RigidLink(name) for _, name in pairs if name != GROUND_NAME and name not in links
+    }
+    return links, _joints(fields, file, links, pairs)
+
+
+def _joints(
+    fields: Fields,
+    file: MechanismFile,
+    links: Mapping[str, RigidLink],
+    chain_pairs: Sequence[tuple[str, str]],
+) -> dict[str, Joint]:
+    """The joints of `joints:` and of `chain:`; every link must be joined to ground by them."""
+    joints = build_joints(fields, file.joints, links)
+    if chain_pairs:
+        joints |= build_chain(fields, file.chain, chain_pairs)
+    pairs = [(joint.links[0], joint.links[1]) for joint in file.joints.values()]
+    _check_connected(fields, links, [*pairs, *chain_pairs])
+    return joints
+
+
+def _chain_pairs(file: MechanismFile) -> list[tuple[str, str]]:
+    """The two links of every joint of the chain: each row's joint lies behind the link before."""
+    return list(pairwise([GROUND_NAME, *(row.link for row in file.chain)]))
+
+
+def _check_connected(
+    fields: Fields, links: Mapping[str, object], pairs: Sequence[tuple[str, str]]
+) -> None:
+    """Every link must be joined, by way of others, to ground."""
+    if any(name not in links and name != GROUND_NAME for pair in pairs for name in pair):
+        return  # a misspelt link, reported at its joint
+    joined: dict[str, list[str]] = {}
+    for first, second in pairs:
+        joined.setdefault(first, []).append(second)
+        joined.setdefault(second, []).append(first)
+    reached, front = {GROUND_NAME}, [GROUND_NAME]
+    for link in front:
+        more = [other for other in joined.get(link, ()) if other not in reached]
+        reached.update(more)
+        front += more
+    for name in links:
+        if name not in reached:
+            fields.key_error(
+                "disconnected-link",
+                ("links", name),
+                f"link {name} is not joined to ground, nor to a link that is",
+                "add a joint, or remove the link",
+            )
+
+
+# Rows (theta, s, alpha, a) of a chain to joints and links of the mechanism.
+#
+# With Z(theta, s) a screw about and along z, and X(alpha, a) one about and along x, the frame
+# behind row i is F_i = F_(i-1) Z(theta_i, s_i) X(alpha_i, a_i), from F_0, the ground axes, on; a
+# loop closes with F_n = F_0. Joint i lies on z of F_(i-1); its point is the foot of the common
+# normal behind it, which is the origin of F_(i-1) Z(theta_i, s_i). That is the drawing, where all
+# coordinates are zero: the angle from x to x about the axis is theta_i plus the joint's coordinate.
+# Row n is drawn twice, behind the rows before it and in front of the ground axes, X(alpha_n,
+# a_n)^-1: where the two differ, the drawing is not assembled. Source: J. Denavit, R. S. Hartenberg,
+# A kinematic notation for lower-pair mechanisms, 1955.
+
+
+class _Row(NamedTuple):
+    """Angles in rad, distances in m."""
+
+    theta: float
+    s: float
+    alpha: float
+    a: float
+
+
+def build_chain(
+    fields: Fields, rows: Sequence[ChainRow], pairs: Sequence[tuple[str, str]]
+) -> dict[str, Joint]:
+    """The joints of a chain, `pairs` their two links; what is wrong is noted in `fields`."""
+    if not _closes_at_ground(fields, rows):
+        fields.refused |= {row.joint for row in rows} | {link for _, link in pairs}
+        return {}
+    joints = {}
+    here = GROUND
+    for i, (row, (first, second)) in enumerate(zip(rows, pairs, strict=True)):
+        numbers = _numbers(fields, i, row)
+        at_joint = _along_z(here, numbers.theta, numbers.s)
+        here = _along_x(at_joint, numbers.alpha, numbers.a)
+        behind = at_joint
+        if second == GROUND_NAME:
+            behind = _along_x(GROUND, -numbers.alpha, -numbers.a)
+        parts = (Part(row.type, at_joint, behind),)
+        lead = lead_of(fields, ("chain", i, "lead"), row.lead) if row.lead is not None else 0.0
+        joints[row.joint] = Joint(row.joint, row.type, first, second, at_joint, behind, parts, lead)
+    return joints
+
+
+def _closes_at_ground(fields: Fields, rows: Sequence[ChainRow]) -> bool:
+    """Whether the rows run from ground over differing links back to ground."""
+    errors = fields.error_count
+    last = len(rows) - 1
+    seen: set[str] = set()
+    for i, row in enumerate(rows):
+        path = ("chain", i, "link")
+        if row.link == GROUND_NAME:
+            if i < last:
+                text = f"the chain is back at ground before its last row ({last + 1})"
+                fields.error("chain-ends-early", path, text, "name the link behind this joint")
+        elif row.link in seen:
+            text = f"the chain comes through link {row.link} twice"
+            fields.error("chain-crosses-itself", path, text, "name another link")
+        elif i == last:
+            text = f"the chain ends at link {row.link}"
+            fields.error("open-chain", path, text, "the last row closes the loop: link: ground")
+        seen.add(row.link)
+    if last == 0 and fields.error_count == errors:
+        text = "a chain of one row joins ground to itself"
+        fields.error("short-chain", ("chain", 0), text, "a loop has two rows or more")
+    return fields.error_count == errors
+
+
+def _numbers(fields: Fields, i: int, row: ChainRow) -> _Row:
+    return _Row(
+        fields.number(("chain", i, "theta"), row.theta, ANGLE),
+        fields.number(("chain", i, "s"), row.s, LENGTH),
+        fields.number(("chain", i, "alpha"), row.alpha, ANGLE),
+        fields.number(("chain", i, "a"), row.a, LENGTH),
+    )
+
+
+def _along_z(frame: Frame, angle: float, distance: float) -> Frame:
+    """The frame moved by a screw about its own z."""
+    x, _ = _turned(frame.x, frame.y, angle)
+    return frame_about(frame.z, x, add(frame.o, scale(distance, frame.z)))
+
+
+def _along_x(frame: Frame, angle: float, distance: float) -> Frame:
+    """The frame moved by a screw about its own x."""
+    _, z = _turned(frame.y, frame.z, angle)
+    return frame_about(unit(z), frame.x, add(frame.o, scale(distance, frame.x)))
+
+
+def _turned(p: Vector, q: Vector, angle: float) -> tuple[Vector, Vector]:
+    """Two square unit vectors turned from p towards q."""
+    c, s = cos(angle), sin(angle)
+    return add(scale(c, p), scale(s, q)), subtract(scale(c, q), scale(s, p))

@@ -5,49 +5,56 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from math import sqrt
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from mechkin_cli.building.coordinates import CODE, without
-from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.building.gravity import gravity_of
-from mechkin_cli.building.places import place_at
-from mechkin_cli.building.run_names import unknown_run
-from mechkin_cli.expressions import ExpressionError
-from mechkin_cli.mechanism.friction import Rubbing
-from mechkin_cli.mechanism.joint_table import is_angle
-from mechkin_cli.mechanism.model import (
+from mechkin_cli.building.fields import CODE, Fields, Path, is_coordinate_at, place_at, without
+from mechkin_cli.building.tables import unknown_run
+from mechkin_cli.diagnostics import Diagnostic, Number, nearest_hint
+from mechkin_cli.expressions import ExpressionError, literal, number_of
+from mechkin_cli.mechanism import (
     GROUND_NAME,
+    ZERO,
     Amount,
     Attached,
     Damper,
+    Drives,
     Joint,
     JointLoad,
-    Link,
     LinkLoad,
     Load,
     Mechanism,
+    MotionInputs,
+    RigidLink,
+    Rubbing,
     Spring,
+    Vector,
+    Wanted,
+    add,
+    is_angle,
     renumbered,
+    scale,
     varying,
 )
-from mechkin_cli.mechanism.quantities import Wanted
-from mechkin_cli.mechanism.vectors import ZERO, Vector, add
-from mechkin_cli.nearest import nearest_hint
-from mechkin_cli.schema.loads import (
+from mechkin_cli.schema import (
     AnyLoad,
     DamperAtJoint,
     DamperBetweenPoints,
+    FollowingInput,
     ForceOnJoint,
     ForceOnLink,
     FrictionAtJoint,
     Gravity,
+    MotionSection,
     SpringAtJoint,
     SpringBetweenPoints,
     TableValue,
     TorqueOnJoint,
     TorqueOnLink,
 )
+from mechkin_cli.tolerances import GRAVITY_ON_EARTH, LARGEST_NUMBER
 from mechkin_cli.units import (
+    ACCELERATION,
     ANGLE,
     DAMPING,
     FORCE,
@@ -57,11 +64,67 @@ from mechkin_cli.units import (
     TORSIONAL_DAMPING,
     TORSIONAL_STIFFNESS,
     Dimension,
+    parse_unit,
 )
 
 if TYPE_CHECKING:
     from mechkin_cli.building.load_laws import LoadLaws
-    from mechkin_cli.mechanism.load_laws import LoadLaw
+    from mechkin_cli.mechanism import LoadLaw
+
+
+# Gravity of the file: its vector in SI, and whether bare numbers are in another unit than meant.
+#
+# A file in mm whose gravity is 9.81 computes with a thousandth of what was meant, and nothing else
+# in it looks wrong.
+
+STANDARD = 9.80665
+"""m/s^2, by the third General Conference on Weights and Measures."""
+
+DOWN: Vector = (0.0, 0.0, -1.0)
+
+USUAL = ("m/s^2", "mm/s^2", "cm/s^2", "in/s^2", "ft/s^2")
+"""Units in which people know the number of gravity."""
+
+
+def gravity_of(fields: Fields, path: Path, section: Gravity) -> Vector:
+    """The acceleration of free fall in m/s^2; doubts are noted in `fields`."""
+    if section.g == "standard":
+        standard = number_of(str(STANDARD))
+        assert standard is not None
+        if section.direction is None:
+            return scale(standard, DOWN)
+        return scale(standard, fields.direction((*path, "direction"), section.direction))
+    found = fields.vector((*path, "g"), section.g, ACCELERATION)
+    _check_unit(fields, (*path, "g"), section.g)
+    return found
+
+
+def _check_unit(fields: Fields, path: Path, texts: tuple[str, ...]) -> None:
+    """Warns where bare numbers are standard gravity in some usual unit, but not in the file's."""
+    bare = [literal(text) or 0.0 for text in texts]
+    number = sqrt(sum(value * value for value in bare if abs(value) < LARGEST_NUMBER))
+    in_si = number * fields.units.factor(ACCELERATION)
+    units = [unit for unit in USUAL if _like_gravity(number * float(parse_unit(unit).factor))]
+    if fields.error_count or _like_gravity(in_si) or not units:
+        return
+    own = fields.units.label(ACCELERATION)
+    pairs = list(zip(bare, texts, strict=True))[: 2 if fields.plane else 3]
+    meant = ", ".join(f"{text.strip()} {units[0]}" if value else text for value, text in pairs)
+    fields.note(
+        Diagnostic(
+            "gravity-unit",
+            "warning",
+            f"gravity is {number:.6g} {own} here, the number of gravity in {units[0]}",
+            fields.document.place(path),
+            measured=f"{in_si:.4g} m/s^2",
+            hint=f"write g: [{meant}], or g: standard with its direction; {own} if that is meant",
+            numbers=(Number("gravity", in_si, "m/s^2"),),
+        )
+    )
+
+
+def _like_gravity(in_si: float) -> bool:
+    return abs(in_si - STANDARD) <= GRAVITY_ON_EARTH * STANDARD
 
 
 class RunLoads(NamedTuple):
@@ -89,7 +152,7 @@ class LoadBuilder:
     def __init__(
         self,
         fields: Fields,
-        links: Mapping[str, Link],
+        links: Mapping[str, RigidLink],
         joints: Mapping[str, Joint],
         points: Mapping[str, Attached],
         runs: Mapping[str, Mapping[str, Wanted]],
@@ -302,3 +365,103 @@ class LoadBuilder:
             self.fields.error("load-on-pose", (*path, "joint"), text, hint)
             return False
         return True
+
+
+# `actuators:` - the coordinates at which efforts act, when not at the inputs; and `drive: tie`.
+
+EFFORT = "effort"
+
+
+def build_drives(
+    fields: Fields,
+    names: tuple[str, ...],
+    section: MotionSection | None,
+    joints: Mapping[str, Joint],
+    motion: MotionInputs,
+) -> Drives:
+    """Where efforts act; what is wrong is noted in `fields`."""
+    errors = fields.error_count
+    actuators = tuple(
+        (joint, coordinate)
+        for number, name in enumerate(names)
+        if _is_actuator(fields, ("actuators", number), name, joints, names[:number])
+        for joint, _, coordinate in (name.rpartition("."),)
+    )
+    drives = Drives(tuple(motion.driven), actuators, motion.tied)
+    if fields.error_count == errors and names:
+        _check_count(fields, drives, section)
+    if fields.error_count > errors:
+        # nothing is said of the efforts that follow from what is wrong here
+        for joint in joints.values():
+            fields.refused.update(f"{n}.{EFFORT}" for n in (joint.name, *joint.coordinates))
+        return Drives(tuple(motion.driven), (), motion.tied)
+    return drives
+
+
+def _is_actuator(
+    fields: Fields,
+    path: Path,
+    name: str,
+    joints: Mapping[str, Joint],
+    before: tuple[str, ...],
+) -> bool:
+    if not is_coordinate_at(fields, path, name, joints):
+        return False
+    if name in before:
+        fields.error("actuator-twice", path, f"{name} is an actuator already", "name it once")
+        return False
+    joint = joints[name.rpartition(".")[0]]
+    if not joint.carries:
+        text = f"{joint.name} is no joint of the machine and carries no effort"
+        fields.error(CODE, path, text, "name coordinates of joints between its links")
+        return False
+    return True
+
+
+def _check_count(fields: Fields, drives: Drives, section: MotionSection | None) -> None:
+    """At least as many actuators as freedoms; more share the load."""
+    count, freedoms = len(drives.actuators), drives.freedoms
+    names = ", ".join(".".join(pair) for pair in drives.inputs)
+    if not freedoms:
+        if section is None or not section.inputs:
+            text = "without inputs nothing moves that actuators could drive"
+            fields.error("too-few-actuators", ("actuators",), text, "add inputs under motion")
+        return
+    if count < freedoms:
+        fields.error(
+            "too-few-actuators",
+            ("actuators",),
+            f"{count} actuator{'s cannot' if count > 1 else ' cannot'} carry the efforts of "
+            f"{freedoms} inputs that move on their own: {names}",
+            "name as many coordinates as inputs, or tie inputs to others ({with: ..., drive: tie})",
+            measured=str(count),
+            limit=f"at least {freedoms}",
+        )
+    elif count > freedoms:
+        more = count - freedoms
+        place = fields.document.place(("actuators",))
+        text = (
+            f"there {'is one actuator' if more == 1 else f'are {more} actuators'} more than "
+            f"freedoms ({count} for {freedoms}): of the efforts that keep up the motion these are "
+            "the ones of least sum of squares, moments taken by the size of the mechanism"
+        )
+        hint = f"name {freedoms} coordinates for efforts that nothing else could be"
+        fields.note(Diagnostic("shared-effort", "note", text, place, hint=hint))
+
+
+def note_own_motors(fields: Fields, section: MotionSection | None, names: tuple[str, ...]) -> None:
+    """Says of inputs that follow others, where the file does not, that each has its own motor."""
+    if section is None or names:
+        return
+    own = [
+        name
+        for name, item in section.inputs.items()
+        if isinstance(item, FollowingInput) and item.drive is None
+    ]
+    if not own:
+        return
+    place = fields.document.key_place(("motion", "inputs", own[0]))
+    text = f"{', '.join(own)} {'has a motor' if len(own) == 1 else 'have motors'} of "
+    text += "its own" if len(own) == 1 else "their own"
+    hint = "write drive: tie where the motor of the input that it follows moves it, else drive: own"
+    fields.note(Diagnostic("own-motor", "note", text, place, hint=hint))

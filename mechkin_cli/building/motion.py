@@ -2,36 +2,192 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass, field
+from decimal import Decimal
+from math import floor, isfinite
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.arrays import Floats
-from mechkin_cli.building.coordinates import dimension_of, is_coordinate
-from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.building.memory import RowLimit
-from mechkin_cli.building.spacing import spaced
+from mechkin_cli import tolerances
+from mechkin_cli.building.fields import Fields, Path, dimension_of, is_coordinate
+from mechkin_cli.building.joints import Halves, parts_of
+from mechkin_cli.diagnostics import Number, nearest_hint
 from mechkin_cli.expressions import Expression
-from mechkin_cli.mechanism.model import Joint
-from mechkin_cli.mechanism.motion import DrivenInput, Moments, Motion
-from mechkin_cli.schema.motion import (
+from mechkin_cli.mechanism import (
+    GROUND,
+    GROUND_NAME,
+    Attached,
+    DrivenInput,
+    Frame,
+    Joint,
+    JointType,
+    Moments,
+    MotionInputs,
+    Part,
+    RigidLink,
+    Vector,
+    frame_about,
+    guide_letter,
+    joint_type,
+    perpendicular,
+    scale,
+    seat_letter,
+    upright,
+)
+from mechkin_cli.schema import (
     FollowingInput,
+    HeldCoordinate,
     HeldInput,
     InputMotion,
     ListedInput,
+    MechanismFile,
     MotionSection,
     SweptInput,
     TimeSection,
     WithRates,
 )
-from mechkin_cli.schema.responses import HeldCoordinate
-from mechkin_cli.tape.rows import of_numbers, with_rates, within
-from mechkin_cli.tolerances import LARGEST_NUMBER
-from mechkin_cli.units import TIME
+from mechkin_cli.show import Floats
+from mechkin_cli.tables import default_table
+from mechkin_cli.tape import of_numbers, with_rates, within
+from mechkin_cli.tolerances import LARGEST_NUMBER, MOST_NUMBERS
+from mechkin_cli.units import TIME, Dimension
 
 if TYPE_CHECKING:
-    from mechkin_cli.building.law_numbers import Clock
+    from mechkin_cli.building.exact_motion import Clock
+
+
+# How many rows a run may have: what it keeps must fit into memory.
+#
+# A sweep is a single line of the file, so its rows are counted before any of them is made.
+
+_ROW_COLUMNS: Final = 6
+"""Columns of rows.csv beside the inputs."""
+
+
+class RowLimit(NamedTuple):
+    """Numbers that each row keeps: the cells of all tables, the columns of rows.csv and the
+    freedoms of all joints."""
+
+    per_row: int
+
+    def is_exceeded(self, fields: Fields, path: Path, rows: float) -> bool:
+        """Whether so many rows are too many; that is noted at `path`, where they are asked for."""
+        numbers = rows * self.per_row
+        if numbers <= MOST_NUMBERS:
+            return False
+        most = MOST_NUMBERS // self.per_row
+        fields.error(
+            "too-many-numbers",
+            path,
+            f"the run has too many numbers, {rows:.12g} rows of {self.per_row}",
+            "take a larger step or fewer columns, or split the sweep into several files",
+            measured=f"{numbers:.12g} numbers",
+            limit=f"{MOST_NUMBERS} numbers, {most} rows",
+            numbers=(Number("numbers", float(numbers), limit=MOST_NUMBERS),),
+        )
+        return True
+
+
+def row_limit(file: MechanismFile, joints: Mapping[str, Joint]) -> RowLimit:
+    """What a row of the file's run keeps."""
+    motion = file.motion
+    inputs = list(motion.inputs) if motion else []
+    cells = sum(len(table.columns) for table in file.tables)
+    if not file.tables:
+        names = [name for joint in joints.values() for name in joint.coordinates]
+        timed = motion is not None and motion.time is not None
+        cells = len(default_table(names, inputs, timed=timed).columns)
+    freedoms = sum(joint.type.freedoms for joint in joints.values())
+    return RowLimit(cells + _ROW_COLUMNS + len(inputs) + freedoms)
+
+
+# Equally spaced values of a sweep, each the double nearest to the decimal number meant.
+#
+# x_i = from + i*step in decimals: 0, 0.1, 0.2, 0.3 and not 0.30000000000000004. The numbers written
+# are fractions over one power of ten, so x_i is a quotient of two whole numbers that doubles hold
+# exactly, and a single division rounds it. Numbers with too many digits for that (results of
+# expressions) are added as doubles.
+
+EXACT = 2**53
+"""Whole numbers up to this one are doubles."""
+
+
+def by_step(first: float, step: float, count: int) -> Floats:
+    """The values first + i*step, shape (count,)."""
+    (start, stride), power = _whole_numbers(first, step)
+    numerators = _exact(start, stride, count)
+    if numerators is None or power > EXACT:
+        return np.asarray(first + np.arange(count) * step, dtype=np.float64)
+    return numerators / float(power)
+
+
+def by_count(first: float, last: float, count: int) -> Floats:
+    """`count` values from `first` to `last`, both included; one value is `first`."""
+    if count == 1:
+        return np.array([first])
+    (start, end), power = _whole_numbers(first, last)
+    gaps = count - 1
+    numerators = _exact(start * gaps, end - start, count)
+    if numerators is None or power * gaps > EXACT:
+        values = np.asarray(first + np.arange(count) * (last / gaps - first / gaps), dtype=float)
+        values[-1] = last
+        return values
+    return numerators / float(power * gaps)
+
+
+def _whole_numbers(*values: float) -> tuple[tuple[int, ...], int]:
+    """Whole numbers and the power of ten over which they are the values' shortest decimals."""
+    decimals = [Decimal(repr(float(value))) for value in values]
+    exponents = [int(number.as_tuple().exponent) for number in decimals]
+    power = 10 ** max(0, *(-exponent for exponent in exponents))
+    return tuple(int(number * power) for number in decimals), power
+
+
+def _exact(start: int, stride: int, count: int) -> Floats | None:
+    """start + i*stride as doubles; None where one of them is no exact double."""
+    if max(abs(start), abs(stride), abs(start + (count - 1) * stride)) > EXACT:
+        return None
+    return np.asarray(start + np.arange(count, dtype=np.int64) * stride, dtype=np.float64)
+
+
+# Fields `from`, `to`, `step` or `count` to the values or moments of the rows.
+#
+# n = floor(|to - from|/|step| + 1e-9) + 1 rows, x_i = from + i*step.
+
+
+def spaced(
+    fields: Fields,
+    path: Path,
+    section: SweptInput | TimeSection,
+    dimension: Dimension,
+    limit: RowLimit,
+) -> Floats:
+    """The values in the file's units; what is wrong is noted in `fields`, one value stands in."""
+    errors = fields.error_count
+    first = fields.written((*path, "from"), section.first, dimension)
+    last = fields.written((*path, "to"), section.last, dimension)
+    if section.count is not None:
+        if fields.error_count > errors or limit.is_exceeded(
+            fields, (*path, "count"), section.count
+        ):
+            return np.array([first])
+        return by_count(first, last, section.count)
+    assert section.step is not None  # the schema wants one of the two
+    step = abs(fields.written((*path, "step"), section.step, dimension))
+    if fields.error_count > errors:
+        return np.array([first])
+    if step == 0.0:
+        if first != last:
+            text = "the step is zero"
+            fields.error("zero-step", (*path, "step"), text, "give the distance of rows")
+        return np.array([first])
+    ratio = abs(last - first) / step + tolerances.LAST_ROW
+    if limit.is_exceeded(fields, (*path, "step"), floor(ratio) + 1 if isfinite(ratio) else ratio):
+        return np.array([first])
+    return by_step(first, step if last >= first else -step, int(ratio) + 1)
 
 
 class Written(NamedTuple):
@@ -50,10 +206,10 @@ _ORDERS = ("value", *_RATES)
 
 def build_motion(
     fields: Fields, section: MotionSection | None, joints: Mapping[str, Joint], limit: RowLimit
-) -> Motion:
+) -> MotionInputs:
     """Inputs with their values; without inputs the motion has one row, or those of `time`."""
     if section is None:
-        return Motion((), 1)
+        return MotionInputs((), 1)
     errors = fields.error_count
     written = Written(section.inputs, ("motion", "inputs"))
     if section.time is not None:
@@ -64,12 +220,12 @@ def build_motion(
     fields.refused.add("time")
     for joint in joints.values():
         fields.refused.update(f"{name}.effort" for name in (joint.name, *joint.coordinates))
-    return Motion((), 1)
+    return MotionInputs((), 1)
 
 
 def build_inputs(
     fields: Fields, written: Written, joints: Mapping[str, Joint], limit: RowLimit
-) -> Motion | None:
+) -> MotionInputs | None:
     """Driven coordinates over the rows and between them; None where an error was noted."""
     errors = fields.error_count
     time = written.time
@@ -81,7 +237,7 @@ def build_inputs(
     expressions: dict[str, Expression] = {}
     tie_rates: dict[tuple[str, str], Floats] = {}
     if fields.error_count == errors and following:
-        from mechkin_cli.building.following import Following
+        from mechkin_cli.building.course import Following
 
         coordinates = frozenset(c for joint in joints.values() for c in joint.coordinates)
         tied = Following(fields, orders, rows, time, written.path)
@@ -100,11 +256,11 @@ def build_inputs(
     ]
     if fields.error_count > errors:
         return None
-    moving = _tied(Motion(tuple(inputs), rows, time), tie_rates)
+    moving = _tied(MotionInputs(tuple(inputs), rows, time), tie_rates)
     return _with_course(fields, written, moving, expressions)
 
 
-def _tied(motion: Motion, rates: Mapping[tuple[str, str], Floats]) -> Motion:
+def _tied(motion: MotionInputs, rates: Mapping[tuple[str, str], Floats]) -> MotionInputs:
     """A motion with the inputs that motors of others move."""
     if not rates:
         return motion
@@ -114,8 +270,8 @@ def _tied(motion: Motion, rates: Mapping[tuple[str, str], Floats]) -> Motion:
 
 
 def _with_course(
-    fields: Fields, written: Written, motion: Motion, expressions: dict[str, Expression]
-) -> Motion:
+    fields: Fields, written: Written, motion: MotionInputs, expressions: dict[str, Expression]
+) -> MotionInputs:
     """A motion with its inputs between the rows, where they do not simply run from one to the
     next."""
     inputs, time = motion.inputs, motion.time
@@ -132,7 +288,7 @@ def _timed(
     fields: Fields, written: Written, path: Path, section: TimeSection, limit: RowLimit
 ) -> Written:
     """With the moments of a section at `path`."""
-    from mechkin_cli.building.law_numbers import Clock
+    from mechkin_cli.building.exact_motion import Clock
 
     moments, last = spaced_moments(fields, path, section, limit)
     clock = Clock(moments.written, float(moments.written[0]), last)
@@ -276,3 +432,136 @@ def _driven(fields: Fields, path: Path, orders: Floats, rows: int) -> DrivenInpu
             )
             break
     return DrivenInput(joint, coordinate, in_si[0], in_si[1], in_si[2], in_si[3], written)
+
+
+# `motion.inputs: {p.position.z: ...}` - one, two or three coordinates of a point as inputs.
+#
+# A slide that no drawing has runs along those axes of the ground and carries a ball on a plane, in
+# a groove or in a socket, in a plane a pin in a slot or in a hole, whose centre is the point: one
+# equation for each coordinate and no unknown more. Its coordinates are those of the point; in the
+# drawing they are not zero.
+
+_NAME = re.compile(r"(?P<point>\w+)\.position\.(?P<axis>[xyz])")
+
+
+@dataclass
+class Guides:
+    """Links and joints that guide points, by name."""
+
+    plane: bool = False
+    links: dict[str, RigidLink] = field(default_factory=dict)
+    joints: dict[str, Joint] = field(default_factory=dict)
+
+    def add(self, name: str, at: Attached, axes: str) -> None:
+        """Guides a point along some of the axes x, y and z."""
+        guide = f"{name}.position"
+        self.links[guide] = RigidLink(guide)
+        slide = joint_type(guide_letter(axes))
+        place = upright(at.vector)
+        parts = tuple(_slide_part(axis, at.vector) for axis in axes)
+        self.joints[guide] = Joint(guide, slide.letter, GROUND_NAME, guide, place, place, parts)
+        held = f"{guide} of {at.link}"
+        hold = _held_pin if self.plane else _held_ball
+        self.joints[held] = hold(held, at, guide, axes)
+
+
+def point_guides(
+    fields: Fields,
+    section: MotionSection | None,
+    points: Mapping[str, Attached],
+) -> Guides:
+    """What guides the points whose coordinates are inputs; what is wrong is noted in `fields`."""
+    guides = Guides(fields.plane)
+    wanted: dict[str, str] = {}
+    for name in section.inputs if section is not None else ():
+        found = _NAME.fullmatch(name)
+        if found and fields.plane and _leaves_plane(fields, name, found["axis"]):
+            continue
+        if found and _is_moving_point(fields, ("motion", "inputs", name), found["point"], points):
+            wanted[found["point"]] = wanted.get(found["point"], "") + found["axis"]
+    for name, axes in wanted.items():
+        guides.add(name, points[name], "".join(sorted(axes)))
+    return guides
+
+
+def _leaves_plane(fields: Fields, name: str, axis: str) -> bool:
+    if axis in "xy":
+        return False
+    text = f"{name} is not free in a plane file"
+    fields.key_error("spatial", ("motion", "inputs", name), text, "drive x and y")
+    fields.refused.add(name.rpartition(".")[0])
+    return True
+
+
+def _is_moving_point(fields: Fields, path: Path, name: str, points: Mapping[str, Attached]) -> bool:
+    if name not in points:
+        if not fields.is_refused(name):
+            hint = nearest_hint(name, list(points)) or "name it under points"
+            fields.key_error("unknown-point", path, f"there is no point {name}", hint)
+            fields.refused.add(f"{name}.position")
+        return False
+    if points[name].link == GROUND_NAME:
+        text = f"{name} is a point of ground and does not move"
+        fields.key_error("point-on-ground", path, text, "drive a point of a moving link")
+        fields.refused.add(f"{name}.position")
+        return False
+    return True
+
+
+def _axis(axis: str) -> Frame:
+    """The frame at the origin whose z runs along x, y or z."""
+    along: Vector = getattr(GROUND, axis)
+    return frame_about(along, perpendicular(along), GROUND.o)
+
+
+def _slide_part(axis: str, at: Vector) -> Part:
+    """A slide whose coordinate is the point's own: zero where that is, and as drawn where the
+    point is drawn."""
+    still = _axis(axis)
+    drawn = at["xyz".index(axis)]
+    x, y, z = scale(drawn, still.z)
+    before = Frame(still.x, still.y, still.z, (at[0] - x, at[1] - y, at[2] - z))
+    return Part("P", before, Frame(still.x, still.y, still.z, at), drawn)
+
+
+def _held_ball(name: str, at: Attached, guide: str, axes: str) -> Joint:
+    """The ball about the point, of its link, on what the slide carries."""
+    kind = joint_type(seat_letter(axes))
+    centre, second = upright(at.vector), _seat(kind, at.vector, axes)
+    meeting = (centre, centre)
+    parts = []
+    for step in kind.steps:
+        along = step.along
+        if along is None:
+            parts.append(Part(step.letter, *meeting))
+            continue
+        direction = getattr(second, along.axis)
+        still = frame_about(
+            scale(-1.0, direction) if along.reverse else direction,
+            second.x if along.axis == "z" else second.z,
+            second.o,
+        )
+        parts.append(Part(step.letter, still, still))
+    return Joint(name, kind.letter, at.link, guide, centre, second, tuple(parts))
+
+
+def _held_pin(name: str, at: Attached, guide: str, axes: str) -> Joint:
+    """The pin about the point, of its link, in a hole of what the slide carries; where one axis
+    alone is guided in a slot square to it."""
+    kind = joint_type(seat_letter(axes, plane=True), plane=True)
+    along = GROUND.y if axes == "x" else GROUND.x
+    pin = frame_about(GROUND.z, along, at.vector)
+    halves = Halves(pin, pin, (pin, pin))
+    return Joint(name, kind.letter, at.link, guide, pin, pin, parts_of(kind, halves), plane=True)
+
+
+def _seat(kind: JointType, at: Vector, axes: str) -> Frame:
+    """The frame of the ball's seat: z along the one axis that guides it, or along the one that does
+    not."""
+    if len(axes) == 1:
+        still = _axis(axes)
+    elif len(axes) == 2:
+        still = _axis(next(axis for axis in "xyz" if axis not in axes))
+    else:
+        return upright(at)
+    return Frame(still.x, still.y, still.z, at)

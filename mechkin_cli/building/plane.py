@@ -9,19 +9,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from mechkin_cli.schema import joints as spatial
-from mechkin_cli.schema import plane as written
-from mechkin_cli.schema.base import fields_of, section_of
-from mechkin_cli.schema.file import AnyFile, MechanismFile
-from mechkin_cli.schema.links import Link, LinkInertia
-from mechkin_cli.schema.loads import (
+from mechkin_cli.schema import (
+    AnyFile,
     AnyLoad,
+    DirectionOfLink,
     ForceOnLink,
     FrictionAtJoint,
     Gravity,
+    Link,
+    LinkInertia,
+    MechanismFile,
+    PointOfLink,
     TorqueOnLink,
+    fields_of,
+    links_joints as spatial,
+    plane as written,
+    section_of,
 )
-from mechkin_cli.schema.points import DirectionOfLink, PointOfLink
 
 Texts = tuple[str, ...]
 Given = str | Texts

@@ -16,31 +16,34 @@ from math import pi
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from mechkin_cli.building.build import Built, build_problem, check_spins, read_fields
+from mechkin_cli.building.builder import Built, build_problem, check_spins, read_fields, settled
 from mechkin_cli.building.exact_motion import exact_moments, exact_motion, start_motion
 from mechkin_cli.building.fields import Fields
-from mechkin_cli.building.idle import settled
 from mechkin_cli.exact import PI
-from mechkin_cli.expressions import Quantity
-from mechkin_cli.expressions.parameters import Move
-from mechkin_cli.expressions.written import numbers_read_by
-from mechkin_cli.mechanism.exact_motion import ExactMoments, ExactMotion
-from mechkin_cli.mechanism.held import Held
-from mechkin_cli.mechanism.problem import Problem
-from mechkin_cli.mechanism.response import response_problem
-from mechkin_cli.runs import SWEEP
-from mechkin_cli.solver.precise import Precise
-from mechkin_cli.solver.shifted import ShiftingPrecise
-from mechkin_cli.tape.exact_recorder import ExactRecorder
-from mechkin_cli.tape.exact_rows import ExactRows
-from mechkin_cli.tape.recorder import Recorder
-from mechkin_cli.tape.scalars import Recorded
-from mechkin_cli.tape.shifting_recorder import ShiftingRecorder
-from mechkin_cli.tape.traced import Traced, TraceLost
+from mechkin_cli.expressions import Move, Quantity, numbers_read_by
+from mechkin_cli.mechanism import (
+    ExactMoments,
+    ExactMotion,
+    LockedFreedom,
+    Problem,
+    response_problem,
+)
+from mechkin_cli.session import Precise, ShiftingPrecise
+from mechkin_cli.tape import (
+    ExactRecorder,
+    ExactRows,
+    Recorded,
+    Recorder,
+    ShiftingRecorder,
+    Traced,
+    TraceLost,
+)
 from mechkin_cli.units import TIME
+from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
+    from mechkin_cli.show import Floats
+
 
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})
 
@@ -163,11 +166,11 @@ def record_response(
     return recording, in_si, written
 
 
-def _held(base: Problem, problem: Problem, recorder: ExactRecorder) -> tuple[Held, ...]:
+def _held(base: Problem, problem: Problem, recorder: ExactRecorder) -> tuple[LockedFreedom, ...]:
     """What holds the idle freedoms, with its pairs on the recording."""
     if not base.held:
         return ()
-    from mechkin_cli.mechanism.exact_holds import exact_holds
+    from mechkin_cli.idle import exact_holds
 
     def lift(value: float) -> Any:
         return recorder.number(recorder.constant(value))

@@ -2,32 +2,224 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.building.assembly import near_values
-from mechkin_cli.building.coordinates import is_coordinate
-from mechkin_cli.building.law_numbers import Clock
+from mechkin_cli.building.builder import held_of, near_values, note_spins, settled
+from mechkin_cli.building.exact_motion import Clock
+from mechkin_cli.building.fields import CODE, dimension_of, is_coordinate, without
+from mechkin_cli.building.load_laws import LoadLaws
 from mechkin_cli.building.motion import Written, build_inputs, spaced_moments
-from mechkin_cli.building.start import build_start
-from mechkin_cli.building.stops import StopBuilder
-from mechkin_cli.mechanism.motion import Moments, Motion
-from mechkin_cli.mechanism.response import Effort, Response
-from mechkin_cli.schema.motion import TimeSection
+from mechkin_cli.diagnostics import Diagnostic, nearest_hint
+from mechkin_cli.mechanism import (
+    CrossingEnd,
+    DeadCentreEnd,
+    Effort,
+    Moments,
+    MotionInputs,
+    ResponseProblem,
+    StartValue,
+    Stop,
+    TurnsEnd,
+    is_angle,
+    response_problem,
+)
+from mechkin_cli.schema import TimeSection, responses as written
+from mechkin_cli.structure import (
+    SolverGraph,
+    UnsolvableGraph,
+    build_graph,
+    is_redundant,
+    left_free,
+    listed,
+)
 from mechkin_cli.units import DIMENSIONLESS, TIME
 
 if TYPE_CHECKING:
     from mechkin_cli.building.fields import Fields, Path
     from mechkin_cli.building.loads import LoadBuilder
-    from mechkin_cli.building.memory import RowLimit
-    from mechkin_cli.mechanism.motion import Assembly
-    from mechkin_cli.mechanism.problem import Problem
-    from mechkin_cli.mechanism.quantities import Wanted
-    from mechkin_cli.schema import responses as written
+    from mechkin_cli.building.motion import RowLimit
+    from mechkin_cli.mechanism import Assembly, Joint, Mechanism, Problem, Wanted
+
+
+# The start of a response: coordinates and rates at its first moment.
+#
+# Values name the independent coordinates. There are as many rates as values: those that are left
+# out are zero, unless a rate of another coordinate stands for one of them; then all are named.
+
+RATE = "_dot"
+
+
+def build_start(
+    fields: Fields, path: Path, section: written.Response, joints: Mapping[str, Joint]
+) -> tuple[StartValue, ...]:
+    """The start of the response at `path`, in the order of the file."""
+    path = (*path, "start")
+    errors = fields.error_count
+    values: dict[str, float] = {}
+    rates: dict[str, float] = {}
+    for key, text in section.start.items():
+        name, place = key.removesuffix(RATE), (*path, key)
+        if not is_coordinate(fields, place, name, joints):
+            continue
+        if _is_prescribed(fields, place, name, section, joints):
+            continue
+        coordinate = name.rpartition(".")[2]
+        if key.endswith(RATE):
+            rates[name] = fields.number(place, text, dimension_of(coordinate, 1))
+        elif not _is_same_freedom(fields, place, name, values, joints):
+            values[name] = fields.number(place, text, dimension_of(coordinate))
+    if fields.error_count == errors:
+        rates = _all_rates(fields, path, values, rates)
+    names = dict.fromkeys(key.removesuffix(RATE) for key in section.start)
+    return tuple(
+        StartValue(*_split(name), values.get(name), rates.get(name))
+        for name in names
+        if name in values or name in rates
+    )
+
+
+def _split(name: str) -> tuple[str, str]:
+    joint, _, coordinate = name.rpartition(".")
+    return joint, coordinate
+
+
+def _all_rates(
+    fields: Fields, path: Path, values: Mapping[str, float], rates: Mapping[str, float]
+) -> dict[str, float]:
+    """As many rates as values."""
+    others = [name for name in rates if name not in values]
+    if not others:
+        return {name: rates.get(name, 0.0) for name in values}
+    if len(rates) == len(values):
+        return dict(rates)
+    place = (*path, f"{others[0]}{RATE}")
+    text = f"start has {_counted(rates, 'rate')} for {_counted(values, 'coordinate')}"
+    if len(rates) > len(values):
+        hint = "give as many rates as coordinates: remove a rate"
+    else:
+        missing = [f"{name}{RATE}" for name in values if name not in rates]
+        hint = f"with a rate of another coordinate name all: add {' or '.join(missing)}"
+    fields.key_error("start-rates", place, text, hint)
+    return dict(rates)
+
+
+def _counted(named: Mapping[str, float], word: str) -> str:
+    return f"{len(named)} {word}{'s' * (len(named) != 1)}"
+
+
+def _is_prescribed(
+    fields: Fields,
+    place: Path,
+    name: str,
+    section: written.Response,
+    joints: Mapping[str, Joint],
+) -> bool:
+    """Whether the motion of a coordinate is driven already; that is noted."""
+    joint, coordinate = _split(name)
+    freedom = joints[joint].type.freedom_of
+    for other in section.driven:
+        owner, driven = _split(other)
+        if owner == joint and driven in freedom and freedom[driven] == freedom[coordinate]:
+            text = f"{name} is driven: its law says where it starts"
+            fields.key_error("start-and-drive", place, text, "remove it here, or under driven:")
+            return True
+    return False
+
+
+def _is_same_freedom(
+    fields: Fields,
+    place: Path,
+    name: str,
+    values: Mapping[str, float],
+    joints: Mapping[str, Joint],
+) -> bool:
+    """Whether a coordinate is the turn or the slide of a thread whose other one is named."""
+    joint, coordinate = _split(name)
+    freedom = joints[joint].type.freedom_of
+    for other in values:
+        owner, known = _split(other)
+        if owner == joint and freedom[known] == freedom[coordinate]:
+            text = f"{other} and {name} are one freedom"
+            fields.key_error("driven-twice", place, text, "start one of them")
+            return True
+    return False
+
+
+# What ends a response: a value that passes another, dead centres, turns.
+
+_WAYS = {"up": " upwards", "down": " downwards", "any": ""}
+
+
+class StopBuilder:
+    """Builds the stops of one run; what is wrong is noted in `fields`."""
+
+    def __init__(
+        self,
+        fields: Fields,
+        joints: Mapping[str, Joint],
+        run: str,
+        quantities: Mapping[str, Wanted],
+    ) -> None:
+        self.fields = fields
+        self.joints = joints
+        self.laws = LoadLaws(fields, {run: quantities}, reader="a stop")
+
+    def build(self, path: Path, sections: Sequence[written.Stop]) -> tuple[Stop, ...]:
+        """The stops of the response at `path`."""
+        found = [self._stop((*path, "stop", i), section) for i, section in enumerate(sections)]
+        return tuple(stop for stop in found if stop is not None)
+
+    def _stop(self, path: Path, section: written.Stop) -> Stop | None:
+        if isinstance(section, written.Crossing):
+            return self._crossing(path, section)
+        place, count = self.fields.document.place(path), section.count
+        if isinstance(section, written.DeadCentre):
+            name = section.dead_centre
+            words = f"dead centre {count} of {name}" if count > 1 else f"dead centre of {name}"
+            if not self._is_known((*path, "dead_centre"), name):
+                return None
+            joint, _, coordinate = name.rpartition(".")
+            return DeadCentreEnd(words, place, joint, coordinate, count)
+        name = section.turns
+        if not self._is_known((*path, "turns"), name):
+            return None
+        joint, _, coordinate = name.rpartition(".")
+        if not is_angle(coordinate):
+            text, hint = f"{name} is a slide and does not turn", "write value: and at: for a slide"
+            self.fields.error("no-angle", (*path, "turns"), text, hint)
+            return None
+        words = f"{count} turn{'s' * (count > 1)} of {name}"
+        return TurnsEnd(words, place, joint, coordinate, count)
+
+    def _crossing(self, path: Path, section: written.Crossing) -> CrossingEnd | None:
+        found = self.laws.watched((*path, "value"), section.value)
+        if found is None:
+            return None
+        law, dimension = found
+        at = self.fields.number((*path, "at"), section.at, dimension)
+        in_file = float(self.fields.units.from_si(at, dimension)) + 0.0  # no -0
+        amount = f"{in_file:.12g} {self.fields.units.label(dimension)}".rstrip()
+        words = f"{section.value.strip()} = {amount}{_WAYS[section.direction]}"
+        return CrossingEnd(words, law.place, law, dimension, at, section.direction)
+
+    def _is_known(self, path: Path, name: str) -> bool:
+        """Whether the value at `path` names a coordinate; if not, that is noted."""
+        owner, _, coordinate = name.rpartition(".")
+        joint = self.joints.get(owner)
+        if joint is not None and coordinate in joint.type.coordinates:
+            return True
+        if joint is not None:
+            self.fields.error(CODE, path, *without(joint, coordinate))
+        elif not self.fields.is_refused(owner):
+            known = [c for one in self.joints.values() for c in one.coordinates]
+            text = f"{name} is no coordinate"
+            self.fields.error(CODE, path, text, nearest_hint(name, known))
+        return False
 
 
 def build_responses(
@@ -36,8 +228,8 @@ def build_responses(
     problem: Problem,
     loads: LoadBuilder,
     limit: RowLimit,
-    known: Mapping[str, Response] | None = None,
-) -> dict[str, Response]:
+    known: Mapping[str, ResponseProblem] | None = None,
+) -> dict[str, ResponseProblem]:
     """The responses of a file; what is wrong is noted in `fields`, and something stands in.
 
     Args:
@@ -49,13 +241,13 @@ def build_responses(
         known: the same responses in doubles, where the file is recorded: moments, drives, stops and
             tolerances are theirs.
     """
-    builder = _Builder(fields, problem, loads, limit)
+    builder = _ResponseBuilder(fields, problem, loads, limit)
     if known is not None:
         return {name: builder.anew(name, sections[name], known[name]) for name in sections}
     return {name: builder.response(name, section) for name, section in sections.items()}
 
 
-class _Builder:
+class _ResponseBuilder:
     """Builds one response after another; arguments as those of `build_responses`."""
 
     def __init__(
@@ -67,18 +259,18 @@ class _Builder:
         self.loads = loads
         self.limit = limit
 
-    def response(self, name: str, section: written.Response) -> Response:
+    def response(self, name: str, section: written.Response) -> ResponseProblem:
         """The response of a name."""
         path: Path = ("responses", name)
         timed = self._timed(path, section)
-        driven = build_inputs(self.fields, timed, self.joints, self.limit) or Motion((), 1)
+        driven = build_inputs(self.fields, timed, self.joints, self.limit) or MotionInputs((), 1)
         efforts = self._efforts(path, section, name)
         acting = self.loads.of_run(name)
         start = build_start(self.fields, path, section, self.joints)
         known: Mapping[str, Wanted] = self.loads.runs[name]
         stops = StopBuilder(self.fields, self.joints, name, known)
         assert timed.time is not None
-        return Response(
+        return ResponseProblem(
             name=name,
             place=self.fields.document.key_place(path),
             start=start,
@@ -94,7 +286,7 @@ class _Builder:
             load_laws=acting.laws,
         )
 
-    def anew(self, name: str, section: written.Response, known: Response) -> Response:
+    def anew(self, name: str, section: written.Response, known: ResponseProblem) -> ResponseProblem:
         """A known response whose start, loads and links are those of the recording."""
         path: Path = ("responses", name)
         efforts = self._efforts(path, section, name)
@@ -196,3 +388,108 @@ class _Builder:
                 limit=f"{most} steps",
             )
         return value
+
+
+# The solver graph of each response at its start, and whether the start names as many coordinates
+# as are free.
+
+Graphs = dict[str, SolverGraph | Diagnostic]
+
+HINT = "start as many independent coordinates as are free: start: {O1.theta: 20}"
+
+
+def with_graphs(fields: Fields, problem: Problem) -> tuple[Problem, Graphs]:
+    """The problem whose responses have their idle freedoms held, and their graphs; what would spin
+    is noted."""
+    responses, graphs = {}, Graphs()
+    for name, response in problem.responses.items():
+        first = response_problem(problem, response)
+        first = replace(first, held=held_of(first))
+        response = replace(response, held=first.held)
+        graphs[name] = response_graph(fields, problem, response)
+        if isinstance(graphs[name], SolverGraph):
+            note_spins(fields, first, free=True)
+            response = replace(response, mechanism=settled(first).mechanism)
+        responses[name] = response
+    return replace(problem, responses=responses), graphs
+
+
+def response_graph(
+    fields: Fields, problem: Problem, response: ResponseProblem
+) -> SolverGraph | Diagnostic:
+    """The solver graph with the start's coordinates driven, or why there is none: the start names
+    too few coordinates or too many.
+
+    Where constraints are redundant their equations do not tell how many are free; then the motion
+    at the assembled start does.
+    """
+    first = response_problem(problem, response)
+    driven, mechanism = first.driven, first.solved_mechanism
+    place = fields.document.place(("responses", response.name, "start"))
+    try:
+        graph = build_graph(mechanism, driven)
+    except UnsolvableGraph as error:
+        if error.missing:
+            return _too_few(response, error)._replace(place=place)
+        return error.diagnostic._replace(place=place)
+    if not is_redundant(graph) and response.independent:
+        return graph
+    at = [float(item.values[0]) for item in first.motion.inputs]
+    standing = dict(zip(driven, [*at, *first.held_at.values()], strict=True))
+    moving = left_free(mechanism, standing)
+    # the drawing alone may be a special position
+    if len(moving) > 1 and all(moving):
+        return _undetermined(response, mechanism, driven)._replace(place=place)
+    for extra in reversed(response.independent):
+        fewer = {one: value for one, value in standing.items() if one != extra}
+        moving = left_free(mechanism, fewer)
+        if moving and not any(moving):
+            return _too_many(response, extra)._replace(place=place)
+    return graph
+
+
+def _too_few(response: ResponseProblem, error: UnsolvableGraph) -> Diagnostic:
+    free = len(response.independent) + error.missing
+    return Diagnostic(
+        "start-count",
+        "error",
+        f"the start of {response.name} names {_coordinates(response.independent)}, but "
+        f"{free} {'is' if free == 1 else 'are'} free; candidates: {listed(error.candidates)}",
+        measured=f"{error.missing} more unknown{'s' * (error.missing > 1)} than closing equations",
+        hint=HINT,
+    )
+
+
+def _undetermined(
+    response: ResponseProblem, mechanism: Mechanism, driven: Sequence[tuple[str, str]]
+) -> Diagnostic:
+    names = [
+        f"{joint.name}.{name}"
+        for joint in mechanism.joints.values()
+        for name in joint.type.coordinates
+        if (joint.name, name) not in driven
+    ]
+    return Diagnostic(
+        "start-count",
+        "error",
+        f"the start of {response.name} names {_coordinates(response.independent)}, but more are "
+        f"free; candidates: {listed(names)}",
+        measured="links move at every assembled place while these coordinates rest",
+        hint=HINT,
+    )
+
+
+def _too_many(response: ResponseProblem, extra: tuple[str, str]) -> Diagnostic:
+    name = ".".join(extra)
+    return Diagnostic(
+        "start-count",
+        "error",
+        f"the start of {response.name} names {_coordinates(response.independent)}, which is more "
+        f"than are free: {name} follows from the others",
+        hint=f"remove {name} from start; to choose among assemblies write near: {{{name}: ...}}",
+    )
+
+
+def _coordinates(named: Sequence[object]) -> str:
+    count = len(named)
+    return "no coordinate" if not count else f"{count} coordinate{'s' * (count > 1)}"

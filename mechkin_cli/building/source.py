@@ -9,15 +9,21 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from mechkin_cli.diagnostics import InvalidFile
-from mechkin_cli.reading.document import Document, document_from_text, read_document
-from mechkin_cli.schema.file import MechanismFile
-from mechkin_cli.schema.validate import InvalidDataError, validate
+from mechkin_cli.reading import (
+    MOST_BYTES,
+    Document,
+    NotRegular,
+    document_from_text,
+    read_document,
+    read_regular,
+)
+from mechkin_cli.schema import InvalidDataError, MechanismFile, validate
 
 _NONE: Mapping[str, str] = MappingProxyType({})
 _NO_TABLES: Mapping[str, bytes] = MappingProxyType({})
 
 
-class Source(NamedTuple):
+class MechanismSource(NamedTuple):
     """The content of a mechanism file, of one in a plane as in space, and the document that knows
     the place of each value."""
 
@@ -25,7 +31,7 @@ class Source(NamedTuple):
     document: Document
 
 
-def open_file(path: str | Path, parameters: Mapping[str, str] = _NONE) -> Source:
+def open_file(path: str | Path, parameters: Mapping[str, str] = _NONE) -> MechanismSource:
     """Read a mechanism file; `parameters` replace values of its `parameters:`, as `--set` does.
 
     Raises `UsageError` for a file that cannot be read or an unknown parameter, `InvalidFile` with
@@ -40,7 +46,7 @@ def open_text(
     parameters: Mapping[str, str] = _NONE,
     folder: Path | None = None,
     tables: Mapping[str, bytes] = _NO_TABLES,
-) -> Source:
+) -> MechanismSource:
     """As `open_file`, for a text; `name` stands for the file in messages, in `folder` are the files
     that the text names; `tables` are contents of such files that are known already."""
     document = replace(document_from_text(text, name), folder=folder, tables=dict(tables))
@@ -53,23 +59,76 @@ def open_data(
     parameters: Mapping[str, str] = _NONE,
     folder: Path | None = None,
     tables: Mapping[str, bytes] = _NO_TABLES,
-) -> Source:
+) -> MechanismSource:
     """As `open_text`, for the plain data of a program; places are ways of keys."""
-    from mechkin_cli.reading.from_data import document_from_data
+    from mechkin_cli.reading import document_from_data
 
     document = replace(document_from_data(data, name, folder), tables=dict(tables))
     return _checked(document.with_parameters(parameters))
 
 
-def _checked(document: Document) -> Source:
+def _checked(document: Document) -> MechanismSource:
     try:
         file = validate(document.data)
     except InvalidDataError as invalid:
-        from mechkin_cli.reading.explain import explain, is_study  # only on the way to messages
+        from mechkin_cli.reading import explain, is_study  # only on the way to messages
 
         raise InvalidFile(is_study(document) or explain(invalid.errors, document)) from None
     if isinstance(file, MechanismFile):
-        return Source(file, document)
+        return MechanismSource(file, document)
     from mechkin_cli.building.plane import in_space  # only for files in a plane
 
-    return Source(in_space(file), document)
+    return MechanismSource(in_space(file), document)
+
+
+# The text of CSV files that a file names, as it was when it was first read.
+
+
+class BadTable(Exception):
+    """What is wrong with a CSV file; `line` and `column` count from 1, line 0 is the whole file."""
+
+    def __init__(self, line: int, column: int, message: str, hint: str) -> None:
+        super().__init__(message)
+        self.line, self.column, self.message, self.hint = line, column, message, hint
+
+
+def table_path(document: Document, name: str) -> Path:
+    """Where a file lies that a document names."""
+    return Path(name) if document.folder is None else document.folder / name
+
+
+def table_text(document: Document, name: str, most: int = MOST_BYTES) -> str:
+    """The text of a file that a document names, of at most so many bytes.
+
+    Raises:
+        BadTable: it cannot be read.
+    """
+    if name not in document.tables:
+        document.tables[name] = _content(table_path(document, name), most)
+    return _text(document.tables[name])
+
+
+def _content(file: Path, most: int) -> bytes:
+    try:
+        content = read_regular(file, most)
+    except NotRegular:
+        raise BadTable(0, 0, "is not a regular file", "name a CSV file") from None
+    except FileNotFoundError:
+        hint = "the path leads from the folder of the file that names it"
+        raise BadTable(0, 0, "does not exist", hint) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise BadTable(0, 0, f"cannot be read: {reason}", "check its rights") from None
+    if len(content) > most:
+        text = f"is too large for a table: more than {most >> 20} MiB (limit {most} bytes)"
+        raise BadTable(0, 0, text, "keep fewer rows: the curve between them is smooth")
+    return content
+
+
+def _text(content: bytes) -> str:
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        text = f"the byte 0x{content[error.start]:02X} is not UTF-8 text"
+        raise BadTable(line, 1, text, "save the file as UTF-8") from None

@@ -2,33 +2,101 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.given_file import model_of, shown, stem_of
 from mechkin_cli.cli.messages import (
     FORMS,
+    ExitCode,
     Record,
+    model_of,
     put,
     put_json,
     refusal,
     say,
     say_diagnostics,
+    shown,
+    stem_of,
     tell_as,
 )
-from mechkin_cli.cli.parameters import parameters
+from mechkin_cli.cli.options import parameters
 from mechkin_cli.cli.progress import Tell, working
-from mechkin_cli.cli.runs import certify_sweeps, run_all
-from mechkin_cli.diagnostics import InvalidFile, UsageError
-from mechkin_cli.runs import SWEEP
-from mechkin_cli.tables.writers import USUAL_FORMATS, WRITERS, Results, written_files
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError
+from mechkin_cli.tables import USUAL_FORMATS, WRITERS, Results, written_files
+from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.diagnostics import Diagnostic
-    from mechkin_cli.interface import Analysis, Model
+    from mechkin_cli.model import Analysis, Model
+
+
+# The runs of one file: its sweep and its responses.
+
+
+def run_all(
+    model: Model,
+    tables: Sequence[str] | None = None,
+    mode: str | None = None,
+    tell: Callable[[str], None] = lambda _: None,
+) -> list[Analysis]:
+    """Every run that has one of the tables wanted (None: all), the sweep first; `tell` hears which
+    is under way.
+
+    Raises:
+        UsageError: no run has a table of a name.
+        InvalidFile: a run cannot be solved as it is driven.
+    """
+    runs = dict.fromkeys(model.runs)
+    wanted = None if tables is None else {run: _of_run(model, tables, run) for run in runs}
+    if wanted is not None:
+        _refuse_unknown(model, tables or ())
+        runs = {run: None for run in runs if wanted[run]}
+    found = []
+    for run in runs:
+        chosen = None if wanted is None else wanted[run]
+        tell(_words(model, run))
+        if run == SWEEP:
+            found.append(model.analyze(tables=chosen, mode=mode))
+        else:
+            found.append(model.respond(run, tables=chosen, mode=mode))
+    return found
+
+
+def _words(model: Model, run: str) -> str:
+    if run != SWEEP:
+        return f"integrating {run}"
+    return f"following {model.problem.motion.rows} rows"
+
+
+def certify_sweeps(analyses: Sequence[Analysis]) -> tuple[Diagnostic, ...]:
+    """Makes the proofs of sweeps; a note for each response, whose rows have none."""
+    notes = []
+    for analysis in analyses:
+        if analysis.run == SWEEP:
+            _ = analysis.certificate
+            continue
+        text = f"the rows of response {analysis.run} are not proven: --certify proves sweeps"
+        notes.append(Diagnostic("not-proven", "note", text))
+    return tuple(notes)
+
+
+def _of_run(model: Model, tables: Sequence[str], run: str) -> list[str]:
+    own = {table.name for table in model.tables if table.run == run}
+    own |= {one.name for one in model.built.coefficients} if run == SWEEP else set()
+    return [name for name in tables if name in own]
+
+
+def _refuse_unknown(model: Model, tables: Sequence[str]) -> None:
+    known = [table.name for table in model.tables]
+    known += sorted(one.name for one in model.built.coefficients)
+    for name in tables:
+        if name not in known:
+            raise UsageError(
+                f"there is no table {name[:LONGEST_NAME]}; tables are {', '.join(known)}"
+            )
+
 
 FORMATS = f"{', '.join(tuple(WRITERS)[:-1])} or {tuple(WRITERS)[-1]}"
 
@@ -79,7 +147,7 @@ def analyze_files(
     Raises:
         UsageError: an option that cannot be.
     """
-    from mechkin_cli.kernel.width import force_threads, force_width
+    from mechkin_cli.kernel.functions import force_threads, force_width
 
     tell_as(messages)
     force_width(lanes)
@@ -133,7 +201,7 @@ def _one(path: Path, folder: Path, request: _Request, tell: Tell) -> tuple[ExitC
     say_diagnostics((*said, *notes), shown(path))
     record: Record = {}
     if request.json:
-        from mechkin_cli.tables.json_writer import runs_record
+        from mechkin_cli.tables import runs_record
 
         results = [_results(analysis, request) for analysis in analyses]
         record = {"file": shown(path)} | runs_record(results)
@@ -153,7 +221,7 @@ def _run(
 ) -> tuple[list[Analysis], tuple[Diagnostic, ...], list[Path]]:
     """The runs, notes on what is not proven, and the files written: alone in their folder from
     before the work on, so that nothing is computed that cannot be written."""
-    from mechkin_cli.tables.files import OutputFolder
+    from mechkin_cli.tables import OutputFolder
 
     with OutputFolder(folder) if request.writes else nullcontext() as output:
         analyses = run_all(model, request.tables, request.mode, tell)
@@ -171,17 +239,15 @@ def _run(
 
 def _add_page(files: dict[str, bytes], analyses: list[Analysis]) -> list[Diagnostic]:
     """Adds the page of some runs to the files; notes on what it leaves out."""
-    from mechkin_cli.interface.viewing import view_page
-    from mechkin_cli.view.html import NAME
+    from mechkin_cli.view import PAGE_NAME, view_page
 
-    files[NAME], notes = view_page(analyses)
+    files[PAGE_NAME], notes = view_page(analyses)
     return notes
 
 
 def _refuse_own_errors(model: Model, wanted: list[str] | None) -> None:
     """Refuses a table of the file whose files `--errors` writes."""
-    from mechkin_cli.tables.errors_table import clashing
-    from mechkin_cli.tables.layout import chosen
+    from mechkin_cli.tables import chosen, clashing
 
     built = model.built
     named = [table.name for table in chosen(built.tables, wanted)]
@@ -246,8 +312,7 @@ def _results(analysis: Analysis, request: _Request) -> Results:
 def _report(
     file: str, analyses: list[Analysis], folder: Path, written: list[Path], request: _Request
 ) -> None:
-    from mechkin_cli.cli.show import shown_tables
-    from mechkin_cli.cli.summary import files_line, summary
+    from mechkin_cli.cli.show import files_line, shown_tables, summary
 
     for analysis in analyses:
         if request.explain:

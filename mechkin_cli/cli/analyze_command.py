@@ -8,8 +8,17 @@ from typing import Annotated
 import typer
 
 from mechkin_cli.cli.analyze import FORMATS, analyze_files
-from mechkin_cli.cli.completion import format_names, mode_names, table_names
-from mechkin_cli.cli.options import Files, Json, Messages, Quiet, Set, folder
+from mechkin_cli.cli.options import (
+    Files,
+    Json,
+    Messages,
+    Quiet,
+    Set,
+    folder,
+    format_names,
+    mode_names,
+    table_names,
+)
 
 
 def analyze(

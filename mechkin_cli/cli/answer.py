@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Generic, Protocol, TypeVar
 
 import typer
 
-from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.given_file import model_of, shown
-from mechkin_cli.cli.messages import Record, put_json, refusal, say_diagnostics
-from mechkin_cli.cli.parameters import parameters
+from mechkin_cli.cli.messages import (
+    ExitCode,
+    Record,
+    model_of,
+    put,
+    put_json,
+    refusal,
+    say,
+    say_diagnostics,
+    shown,
+)
+from mechkin_cli.cli.options import File, Json, Quiet, Set, parameters, response_names
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 
 if TYPE_CHECKING:
-    from mechkin_cli.interface import Model
+    from mechkin_cli.mobility import Mobility
+    from mechkin_cli.model import Model
+    from mechkin_cli.modes import Modes
+    from mechkin_cli.tables import Columns
 
 
 class _Answer(Protocol):
@@ -64,3 +76,208 @@ def answer(file: Path, settings: list[str] | None, json: bool, question: Questio
         put_json(record)
     if code:
         raise typer.Exit(code)
+
+
+# `mechkin mobility`: what can move, by count and in truth.
+
+
+def mobility(file: File, set_: Set = None, json: Json = False, quiet: Quiet = False) -> None:
+    """Find the mobility, idle freedoms and redundant constraints.
+
+    Compares Kutzbach's count with the true mobility. Inputs need not be declared.
+    """
+    question = Question(
+        ask=lambda model: model.mobility(),
+        is_answered=lambda found: found.mobility is not None,
+        record=lambda _, found: _record(found),
+        show=lambda _, found: put("\n".join(_lines(found, quiet)) + "\n"),
+        words="looking for what can move",
+    )
+    answer(file, set_, json, question)
+
+
+def _record(found: Mobility) -> Record:
+    return {
+        "name": found.name,
+        "count": found.count,
+        "mobility": found.mobility,
+        "first_order": found.first_order,
+        "dimensions": list(found.dimensions),
+        "loops": found.loops,
+        "configurations": found.configurations,
+        "inputs": list(found.inputs),
+        "idle": [{"links": list(i.links), "sentence": i.sentence} for i in found.idle],
+        "redundant": [
+            {
+                "number": item.number,
+                "joints": list(item.joints),
+                "wrenches": item.wrenches or None,
+                "sentence": item.sentence,
+            }
+            for item in found.redundant
+        ],
+        "fixed": list(found.fixed),
+        "verdict": found.verdict,
+        "diagnostics": [diagnostic.record() for diagnostic in found.diagnostics],
+    }
+
+
+def _truth(found: Mobility) -> str:
+    """Finite and first-order freedom, inputs among them."""
+    from mechkin_cli.mobility import meeting
+
+    first = "" if found.first_order is None else f"; to first order {found.first_order}"
+    if found.mobility is None:
+        return f"unclear{first}"
+    text = str(found.mobility)
+    if len(found.dimensions) > 1:
+        text += f", where motions of {meeting(found.dimensions)} freedoms meet"
+    same = found.first_order == found.mobility and len(found.dimensions) == 1
+    return f"{text}, to first order, too" if same else text + first
+
+
+def _idle(found: Mobility) -> list[str]:
+    several = Counter(item.sentence for item in found.idle)
+    return [text if n == 1 else f"{text} ({n} freedoms)" for text, n in several.items()]
+
+
+def _lines(found: Mobility, quiet: bool) -> list[str]:
+    lines = [f"{found.name}: {found.verdict}"]
+    if quiet:
+        return lines
+    rows = [
+        ("count", f"{found.count} (Kutzbach)"),
+        ("mobility", _truth(found)),
+        ("loops", str(found.loops)),
+        ("inputs", ", ".join(found.inputs) or "none"),
+        *(("idle", text) for text in _idle(found)),
+        *(("redundant", item.sentence) for item in found.redundant),
+    ]
+    if found.fixed:
+        rows.append(("fixed", f"{', '.join(found.fixed)} never move"))
+    return [*lines, *(f"  {name:<11}{text}" for name, text in rows)]
+
+
+# `mechkin modes`: the ways to assemble a mechanism.
+
+
+def modes(
+    file: File,
+    at: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--at",
+            metavar="VALUE",
+            help="Value of the input instead of the first row's; of several as O1.theta=VALUE, "
+            "repeatable.",
+        ),
+    ] = None,
+    run: Annotated[
+        str | None,
+        typer.Option(
+            "--run",
+            metavar="NAME",
+            help="Take the modes at the start of this response.",
+            autocompletion=response_names,
+        ),
+    ] = None,
+    certify: Annotated[
+        bool,
+        typer.Option("--certify", help="Prove that each exists, and that no two are the same."),
+    ] = False,
+    set_: Set = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """List the assembly modes: the ways to put a mechanism together."""
+    question = Question(
+        ask=lambda model: model.modes(_place(at), run=run, certify=certify),
+        is_answered=lambda found: bool(found.modes),
+        record=_modes_record,
+        show=lambda model, found: _print(model, found, quiet),
+        words="searching for assembly modes",
+    )
+    answer(file, set_, json, question)
+
+
+def _place(texts: list[str] | None) -> str | dict[str, str] | None:
+    if not texts:
+        return None
+    if len(texts) == 1 and "=" not in texts[0]:
+        return texts[0]
+    place = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not value.strip():
+            raise UsageError(f"--at {text}: expected INPUT=VALUE, for example O1.theta=50")
+        place[name.strip()] = value.strip()
+    return place
+
+
+def _modes_record(model: Model, found: Modes) -> Record:
+    record = _found_record(model, found)
+    if found.proofs is not None:
+        for mode, proof in zip(record["modes"], found.proofs.modes, strict=True):
+            mode["proof"] = proof.label
+        record["proofs"] = found.proofs.sentence
+    return record
+
+
+def _found_record(model: Model, found: Modes) -> dict[str, Any]:
+    return {
+        "name": model.name,
+        "inputs": found.inputs,
+        "modes": [mode._asdict() for mode in found.modes],
+        "assembly": found.picked,
+        "search": {
+            "starts": found.starts,
+            "closed": found.closed,
+            "chance": found.chance,
+            "confidence": found.confidence,
+            "stopped": found.stopped,
+            "cut": found.is_cut,
+            "turns": found.turns,
+        },
+        "bound": found.bound,
+        "complete": found.complete,
+        "completeness": found.sentence,
+        "diagnostics": [diagnostic.record() for diagnostic in found.diagnostics],
+    }
+
+
+def _print(model: Model, found: Modes, quiet: bool) -> None:
+    from mechkin_cli.cli.show import shown_table
+    from mechkin_cli.modes import UNNAMED
+
+    if found.modes:
+        put(shown_table(_table(model, found), len(found.modes)))
+    if quiet:
+        return
+    place = ", ".join(f"{name} = {value:.12g}" for name, value in found.inputs.items())
+    say(f"{model.name}{' at ' if place else ''}{place}: {found.sentence}")
+    if found.proofs is not None:
+        say(f"  proofs: {found.proofs.sentence}")
+    if found.picked:
+        say(f"  * mode {found.picked} is the one that the file takes")
+    if any(mode.name == UNNAMED for mode in found.modes):
+        say(f"  {UNNAMED} no branch from the first row comes here")
+
+
+def _table(model: Model, found: Modes) -> Columns:
+    """Name (with a star where the file takes the mode), coordinates, residual, condition."""
+    import numpy as np
+
+    from mechkin_cli.mechanism import dimension_of
+    from mechkin_cli.tables import Columns, TableColumn, Words
+
+    modes, units = found.modes, model.problem.units
+    names = tuple(mode.name + ("*" if mode.name == found.picked else " ") for mode in modes)
+    columns = [TableColumn("mode", "", Words(np.arange(len(modes), dtype=np.int32), names))]
+    for name in modes[0].coordinates:
+        unit = units.label(dimension_of(name.rpartition(".")[2]))
+        columns.append(
+            TableColumn(name, unit, np.array([mode.coordinates[name] for mode in modes]))
+        )
+    columns.append(TableColumn("residual", "", np.array([mode.residual for mode in modes])))
+    columns.append(TableColumn("condition", "", np.array([mode.condition for mode in modes])))
+    return Columns("modes", "assembly modes", tuple(columns))

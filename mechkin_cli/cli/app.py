@@ -10,20 +10,17 @@ from typing import Any
 import typer
 
 from mechkin_cli.cli.analyze_command import analyze
+from mechkin_cli.cli.answer import mobility, modes
 from mechkin_cli.cli.bench import bench
 from mechkin_cli.cli.check import check
-from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.messages import put, say
-from mechkin_cli.cli.mobility import mobility
-from mechkin_cli.cli.modes import modes
-from mechkin_cli.cli.new import new
+from mechkin_cli.cli.messages import ExitCode, put, say
+from mechkin_cli.cli.new import new, schema
 from mechkin_cli.cli.plot import plot
 from mechkin_cli.cli.ranges import ranges
-from mechkin_cli.cli.schema import schema
 from mechkin_cli.cli.study import study
 from mechkin_cli.cli.tables import tables
 from mechkin_cli.cli.view import view
-from mechkin_cli.version import version as package_version
+from mechkin_cli.verdict import version as package_version
 
 app = typer.Typer(
     name="mechkin",

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from mechkin_cli.cli import stress_options as options
-from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.given_file import refuse_stdin
-from mechkin_cli.cli.messages import Record, put, put_json, refusal
+from mechkin_cli.cli.messages import ExitCode, Record, put, put_json, refusal, refuse_stdin, say
 from mechkin_cli.cli.options import Json, folder
 from mechkin_cli.cli.progress import working
-from mechkin_cli.diagnostics import InvalidFile, UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, InvalidFile, UsageError, nearest_hint
 
 if TYPE_CHECKING:
     from rich.table import Table as RichTable
@@ -23,7 +22,55 @@ if TYPE_CHECKING:
     from mechkin_cli.benchmark.report import Table
     from mechkin_cli.benchmark.runs import Bench, Rounds
     from mechkin_cli.benchmark.scene import Scene
+    from mechkin_cli.benchmark.stress.tally import Tally
     from mechkin_cli.benchmark.subject import Subject
+
+
+# Options of `mechkin bench --stress`.
+
+MOST_ROWS = 10**9
+MOST_SEED = 2**63 - 1
+MOST_NUMBER = 10**9
+MOST_PROCESSES = 256
+
+Stress = Annotated[
+    bool, typer.Option("--stress", help="Hard mechanisms by the thousand instead of run times.")
+]
+Rows = Annotated[
+    float,
+    typer.Option("--rows", min=1, max=MOST_ROWS, help="--stress: rows in all, as 1e6."),
+]
+Seed = Annotated[
+    int,
+    typer.Option("--seed", min=0, max=MOST_SEED, help="--stress: seed of the random mechanisms."),
+]
+Family = Annotated[
+    str | None, typer.Option("--family", metavar="NAME", help="--stress: one family alone.")
+]
+Only = Annotated[
+    int | None,
+    typer.Option(
+        "--only",
+        min=0,
+        max=MOST_NUMBER,
+        metavar="K",
+        help="--stress: print mechanism K of the family as a file, and run nothing.",
+    ),
+]
+Page = Annotated[
+    Path | None, typer.Option("--page", metavar="FILE", help="--stress: also write a page.")
+]
+Check = Annotated[
+    bool,
+    typer.Option("--check", help="--stress: run the small set anew and compare it with the page."),
+]
+Processes = Annotated[
+    int,
+    typer.Option(
+        "--processes", min=0, max=MOST_PROCESSES, help="--stress: processes at once; 0: all cores."
+    ),
+]
+
 
 _OF_STRESS = ("rows", "seed", "family", "only", "page", "check", "processes")
 _OF_TIMES = ("files", "quick", "out")
@@ -50,14 +97,14 @@ def bench(
         ),
     ] = None,
     json: Json = False,
-    stress: options.Stress = False,
-    rows: options.Rows = 2_000,
-    seed: options.Seed = 1,
-    family: options.Family = None,
-    only: options.Only = None,
-    page: options.Page = None,
-    check: options.Check = False,
-    processes: options.Processes = 0,
+    stress: Stress = False,
+    rows: Rows = 2_000,
+    seed: Seed = 1,
+    family: Family = None,
+    only: Only = None,
+    page: Page = None,
+    check: Check = False,
+    processes: Processes = 0,
 ) -> None:
     """Measure run time against error, mechkin's and others'.
 
@@ -67,9 +114,7 @@ def bench(
     """
     _refuse_options_of_the_other(context, stress=stress)
     if stress:
-        from mechkin_cli.cli.bench_stress import Stress, stress_command
-
-        asked = Stress(round(rows), seed, family, only, page, check, processes, json)
+        asked = BenchStressStress(round(rows), seed, family, only, page, check, processes, json)
         code = stress_command(asked, _show)
         if code:
             raise typer.Exit(code)
@@ -148,7 +193,7 @@ def _read(files: Sequence[Path]) -> tuple[int, list[Subject], list[Scene], list[
     from mechkin_cli.benchmark.scene import Scene
     from mechkin_cli.benchmark.scenes import subjects
     from mechkin_cli.benchmark.subject import Subject
-    from mechkin_cli.interface import load
+    from mechkin_cli.model import load
 
     if not files:
         known = subjects()
@@ -265,3 +310,136 @@ def _styled(table: Table) -> RichTable:
     for row in table.texts():
         styled.add_row(*row)
     return styled
+
+
+# `mechkin bench --stress`: families of hard mechanisms, every row decided in double-double.
+
+LONG = 60.0
+"""Seconds of work that are told beforehand."""
+
+
+class BenchStressStress(NamedTuple):
+    """What the command line asks for."""
+
+    rows: int
+    seed: int
+    family: str | None
+    only: int | None
+    page: Path | None
+    check: bool
+    processes: int
+    json: bool
+
+
+def stress_command(asked: BenchStressStress, show: Callable[[Table], None]) -> int:
+    """Runs what is asked for; `show` prints a table for a person.
+
+    Returns:
+        The exit code: 1 where a row is wrong and says ok, a file is refused, or the page is old.
+
+    Raises:
+        UsageError: an unknown family, or options that do not go together.
+    """
+    from mechkin_cli.benchmark.stress.families.table import FAMILIES
+
+    names = list(FAMILIES)
+    if asked.family is not None:
+        if asked.family not in FAMILIES:
+            hint = nearest_hint(asked.family, names) or f"known are {', '.join(names)}"
+            raise UsageError(f"there is no family {asked.family[:LONGEST_NAME]}; {hint}")
+        names = [asked.family]
+    if asked.only is not None:
+        return _one(asked)
+    if asked.check:
+        return _checked(asked)
+    if asked.page is not None and asked.family is not None:
+        raise UsageError("--page tells of all families; leave --family out")
+    tallies = _run(asked, asked.rows, asked.seed, names)
+    if asked.page is not None:
+        _write(asked, tallies)
+    if asked.json:
+        families = {tally.family: tally.record() for tally in tallies}
+        put_json({"rows": asked.rows, "seed": asked.seed, "families": families})
+    else:
+        from mechkin_cli.benchmark.stress.tables import tables
+
+        for table in tables(tallies):
+            show(table)
+    wrong = any(tally.verdicts["false_ok"] or tally.verdicts["refused"] for tally in tallies)
+    return ExitCode.DIFFERENCES if wrong else ExitCode.OK
+
+
+def _run(asked: BenchStressStress, rows: int, seed: int, names: Sequence[str]) -> list[Tally]:
+    """All blocks, with progress on a terminal, and a word beforehand where it takes long."""
+    from mechkin_cli.benchmark.stress.run import stress
+
+    processes = asked.processes or os.cpu_count() or 1
+    told = asked.json
+
+    def step(done: int, count: int, left: float | None) -> None:
+        nonlocal told
+        more = "" if left is None else f", about {_span(left)} left"
+        tell(f"{done} of {count} blocks{more}")
+        if left is not None and not told:
+            told = True
+            if left > LONG:
+                say(f"{rows} rows: about {_span(left)} more with {processes} at once")
+
+    with working(f"{rows} rows", asked.json) as tell:
+        return stress(rows, seed, names, processes, step)
+
+
+def _span(seconds: float) -> str:
+    """In words of one or two digits."""
+    return f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.0f} min"
+
+
+def _one(asked: BenchStressStress) -> int:
+    """One mechanism as a file on stdout."""
+    from mechkin_cli.benchmark.stress.block import text_of
+
+    if asked.family is None or asked.only is None:
+        raise UsageError("--only K is a mechanism of one family; name it with --family")
+    put(text_of(asked.family, asked.seed, asked.only))
+    return ExitCode.OK
+
+
+def _write(asked: BenchStressStress, tallies: list[Tally]) -> None:
+    """The page, which takes its place whole."""
+    from mechkin_cli.benchmark.stress.families.table import FAMILIES
+    from mechkin_cli.benchmark.stress.page import SMALL_ROWS, page
+
+    assert asked.page is not None
+    small = _run(asked, SMALL_ROWS, asked.seed, list(FAMILIES))
+    text = page(tallies, small, asked.rows, asked.seed)
+    beside = asked.page.with_name(f".{asked.page.name}.{os.getpid()}")
+    try:
+        beside.write_text(text, encoding="utf-8")
+        beside.replace(asked.page)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            beside.unlink()
+        raise UsageError(f"{asked.page} cannot be written: {error.strerror}") from None
+
+
+def _checked(asked: BenchStressStress) -> int:
+    """Whether the page has today's form, and its small set's numbers."""
+    from mechkin_cli.benchmark.stress.families.table import FAMILIES
+    from mechkin_cli.benchmark.stress.page import SMALL_ROWS, is_current, of_page
+
+    if asked.page is None:
+        raise UsageError("--check compares a page; name it with --page")
+    try:
+        text = asked.page.read_text(encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"{asked.page} cannot be read: {error.strerror}") from None
+    known = of_page(text)
+    seed = known[1] if known else asked.seed
+    if is_current(text, _run(asked, SMALL_ROWS, seed, list(FAMILIES))):
+        return ExitCode.OK
+    rows = known[0] if known else asked.rows
+    say(
+        f"{asked.page} is not what would be written now; write it by: mechkin bench --stress "
+        f"--rows {rows} --seed {seed} --page {asked.page}"
+    )
+    return ExitCode.DIFFERENCES

@@ -7,25 +7,32 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mechkin_cli.cli.completion import message_forms
-from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.given_file import model_of, shown
 from mechkin_cli.cli.messages import (
+    ExitCode,
     Record,
+    model_of,
     put,
     put_json,
     refusal,
     say_diagnostics,
+    shown,
     tell_as,
 )
-from mechkin_cli.cli.options import MESSAGES_HELP, Files, Json, Quiet, Set
-from mechkin_cli.cli.parameters import parameters
+from mechkin_cli.cli.options import (
+    MESSAGES_HELP,
+    Files,
+    Json,
+    Quiet,
+    Set,
+    message_forms,
+    parameters,
+)
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
-from mechkin_cli.runs import SWEEP
+from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.interface import Model
-    from mechkin_cli.solver.graph import SolverGraph
+    from mechkin_cli.model import Model
+    from mechkin_cli.structure import SolverGraph
 
 
 def check(
@@ -76,8 +83,8 @@ def _one(path: Path, settings: dict[str, str], silent: bool) -> tuple[ExitCode, 
 def _input_faults(model: Model) -> list[Diagnostic]:
     """What the drawing of an overconstrained mechanism tells of its inputs; by the count of their
     equations its loops would be driven."""
-    from mechkin_cli.mechanism.response import response_problem
-    from mechkin_cli.solver.graph import is_redundant
+    from mechkin_cli.mechanism import response_problem
+    from mechkin_cli.structure import is_redundant
 
     faults = []
     for run in model.runs:
@@ -88,7 +95,7 @@ def _input_faults(model: Model) -> list[Diagnostic]:
             path = ("responses", run, "start")
             problem = response_problem(model.problem, model.problem.responses[run])
         if is_redundant(_graph(model, run)):
-            from mechkin_cli.analysis.mobility.drawn import drawn_faults
+            from mechkin_cli.mobility import drawn_faults
 
             place = model.built.read.document.place(path)
             faults += [fault._replace(place=place) for fault in drawn_faults(problem)]

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mechkin_cli.kernel.width import INSTRUCTIONS, width, widths
-from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS, accelerated
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS, POWER_KINDS
-from mechkin_cli.runs import SWEEP
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import WRENCH_KINDS
+from mechkin_cli.kernel.functions import INSTRUCTIONS, width, widths
+from mechkin_cli.mechanism import COEFFICIENT_KINDS, DERIVED_KINDS, POWER_KINDS, accelerated
+from mechkin_cli.plan import WRENCH_KINDS, Demand
+from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.interface import Analysis
-    from mechkin_cli.mechanism.model import Joint
-    from mechkin_cli.mechanism.quantities import Wanted
-    from mechkin_cli.solver.graph import Block, SolverGraph
+    from mechkin_cli.mechanism import Joint, Wanted
+    from mechkin_cli.model import Analysis
+    from mechkin_cli.structure import Block, SolverGraph
 
 
 def explanation(analysis: Analysis) -> str:
@@ -88,7 +85,7 @@ def _demand_lines(analysis: Analysis) -> list[str]:
         ),
     ]
     if forces and problem.load_laws:
-        from mechkin_cli.mechanism.load_laws import quantities_read
+        from mechkin_cli.mechanism import quantities_read
 
         read = ", ".join(quantities_read(problem))
         lines.append(f"loads that vary: evaluated with the forces, from {read}")

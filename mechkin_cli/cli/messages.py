@@ -4,14 +4,104 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from enum import IntEnum
 from pathlib import Path
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
-from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.given_file import shown
-from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
-from mechkin_cli.legible import legible, whole
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError, legible, whole
+
+if TYPE_CHECKING:
+    from mechkin_cli.model import Model
+
+
+# Exit codes of all commands; with several files the largest counts.
+
+
+class ExitCode(IntEnum):
+    """What the caller of a command learns."""
+
+    OK = 0
+    DIFFERENCES = 1
+    USAGE = 2
+    INVALID_FILE = 3
+    ROWS_MISSING = 4
+    INTERNAL = 70
+    INTERRUPTED = 130
+    """By Ctrl-C, or by a request to end (SIGTERM, SIGHUP)."""
+
+
+# The mechanism that a command line names: a file, or `-`, the text on stdin.
+
+STDIN = Path("-")
+"""Stands for the text on stdin; a file of this name is named with its folder's whole path."""
+
+STDIN_NAME = "stdin"
+"""What messages and the folder of its tables call the text on stdin."""
+
+
+def model_of(path: Path, settings: Mapping[str, str]) -> Model:
+    """The checked mechanism file; what a text on stdin names is sought in the working folder.
+
+    Raises:
+        UsageError: it cannot be read, or an unknown parameter.
+        InvalidFile: with every independent error and its place.
+    """
+    from mechkin_cli.model import load, loads
+
+    if not is_stdin(path):
+        return load(path, settings)
+    from mechkin_cli.reading import decoded
+
+    return loads(decoded(_piped(), STDIN_NAME), STDIN_NAME, settings, folder=Path())
+
+
+def is_stdin(path: Path) -> bool:
+    """Whether the word stands for stdin."""
+    return path == STDIN
+
+
+def shown(path: Path) -> str:
+    """What messages and records call the file."""
+    return STDIN_NAME if is_stdin(path) else str(path)
+
+
+def stem_of(path: Path) -> str:
+    """What the folder of its results is called."""
+    stem = STDIN_NAME if is_stdin(path) else path.stem
+    # a file called ...yaml has the stem .., which leads out of the folder
+    return stem if stem.strip(".") else path.name
+
+
+def refuse_stdin(path: Path, why: str) -> None:
+    """Refuses `-` where a command needs a file.
+
+    Raises:
+        UsageError: the word stands for stdin.
+    """
+    if is_stdin(path):
+        raise UsageError(f"{why}; save the text in a file and name it")
+
+
+def _piped() -> bytes:
+    """The bytes on stdin, no more than one above what a mechanism file may have."""
+    from mechkin_cli.reading import MOST_BYTES
+
+    if sys.stdin is None:
+        raise UsageError("stdin is closed, so - has nothing to read; name a file")
+    try:
+        descriptor = sys.stdin.fileno()
+        if os.isatty(descriptor):
+            say("reading the mechanism from the terminal; end it with Ctrl-D")
+        pieces, left = [], MOST_BYTES + 1
+        while left and (piece := os.read(descriptor, left)):
+            pieces.append(piece)
+            left -= len(piece)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise UsageError(f"stdin cannot be read: {reason}; name a file") from None
+    return b"".join(pieces)
+
 
 Record = dict[str, object]
 """Plain data for `--json`."""
@@ -68,8 +158,8 @@ def put_json(record: Record) -> None:
     Raises:
         UsageError: stdout takes no more.
     """
-    from mechkin_cli.tables.json_writer import json_text
-    from mechkin_cli.version import versions
+    from mechkin_cli.tables import json_text
+    from mechkin_cli.verdict import versions
 
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     whole_record = versions() | record
@@ -142,8 +232,6 @@ def say_diagnostics(diagnostics: Iterable[Diagnostic], file: str | None = None) 
     """Diagnostics on stderr; those without a place of their own are put at the file."""
     for diagnostic in diagnostics:
         if _form == "github":
-            from mechkin_cli.cli.annotations import annotation
-
             _say(annotation(diagnostic, file))
             continue
         text = str(diagnostic)
@@ -172,3 +260,45 @@ def _coloured(text: str, severity: str) -> str:
         return text
     word = f"{severity}:"
     return text.replace(word, f"{_COLOURS[severity]}{word}{_PLAIN}", 1)
+
+
+# Diagnostics as annotations of GitHub: workflow commands, one line each.
+#
+# The runner takes them from either stream of a step and shows them at the line of the file:
+# https://docs.github.com/actions/reference/workflow-commands-for-github-actions
+
+_LEVELS = {"error": "error", "warning": "warning", "note": "notice"}
+
+
+def annotation(diagnostic: Diagnostic, file: str | None = None) -> str:
+    """The workflow command of a diagnostic; one without a place is put at the top of `file`."""
+    place = diagnostic.place
+    fields = {"title": f"mechkin {diagnostic.code}"}
+    if place is not None and place.in_file:
+        at = {"file": _from_the_top(place.file), "line": str(place.line), "col": str(place.column)}
+        fields = at | fields
+    elif file is not None:
+        fields = {"file": _from_the_top(file)} | fields
+    shown = diagnostic._replace(place=None)
+    sentence = str(shown).removeprefix(f"{diagnostic.severity}: ")
+    if place is not None and not place.in_file:
+        sentence = f"{place}: {sentence}"
+    listed = ",".join(f"{name}={_property(value)}" for name, value in fields.items())
+    return f"::{_LEVELS[diagnostic.severity]} {listed}::{_data(legible(sentence))}"
+
+
+def _from_the_top(file: str) -> str:
+    """The file as the repository knows it: a step may run in a folder of it."""
+    top = os.environ.get("GITHUB_WORKSPACE")
+    if not top:
+        return file
+    path = os.path.relpath(os.path.abspath(file), os.path.abspath(top))
+    return file if path.startswith(os.pardir) else path.replace(os.sep, "/")
+
+
+def _data(text: str) -> str:
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")

@@ -7,20 +7,26 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mechkin_cli.cli.completion import mode_names, run_names, table_names
-from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.given_file import model_of, shown, stem_of
-from mechkin_cli.cli.messages import put, refusal, say_diagnostics
-from mechkin_cli.cli.options import File, Quiet, Set
-from mechkin_cli.cli.parameters import parameters
+from mechkin_cli.cli.messages import (
+    ExitCode,
+    model_of,
+    put,
+    refusal,
+    say_diagnostics,
+    shown,
+    stem_of,
+)
+from mechkin_cli.cli.options import File, Quiet, Set, mode_names, parameters, run_names, table_names
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
-from mechkin_cli.runs import SWEEP
+from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.interface import Analysis, Model
-    from mechkin_cli.plots.picture import Picture
+    from mechkin_cli.model import Analysis, Model
+    from mechkin_cli.plots import Picture
 
+
+if TYPE_CHECKING:
     Drawn = tuple[Analysis, str | None]
     """A run, and the table of it that is drawn; None: what is named."""
 
@@ -84,7 +90,7 @@ def plot(
     labels of columns, quantities or expressions. Vectors are drawn in a plane: a point's position
     as a coupler curve, a force as a polar diagram. Needs matplotlib: pip install 'mechkin[plot]'.
     """
-    from mechkin_cli.plots.figure import format_of, image
+    from mechkin_cli.plots import format_of, image
 
     ending = ENDING if out is None else format_of(out)
     names = [name for text in y or () for name in listed(text)]
@@ -155,7 +161,7 @@ def _tables(
     model: Model, names: list[str] | None, run: str | None, mode: str | None
 ) -> dict[str, Drawn]:
     """The tables that are drawn, by name, with their runs."""
-    from mechkin_cli.cli.runs import run_all
+    from mechkin_cli.cli.analyze import run_all
 
     return {
         layout.name: (analysis, layout.name)
@@ -166,7 +172,7 @@ def _tables(
 
 
 def _write(file: Path, out: Path | None, files: dict[str, bytes], quiet: bool) -> None:
-    from mechkin_cli.tables.files import write_files
+    from mechkin_cli.tables import write_files
 
     folder = Path("out") / stem_of(file) if out is None else out.parent
     written = write_files(folder, files)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import threading
 
+
 AFTER = 1.0
 """Seconds of work before anything is shown."""
 
@@ -157,6 +158,6 @@ def _plain(words: str) -> str:
     """The words in one line, without rich's markup."""
     from rich.markup import escape
 
-    from mechkin_cli.legible import legible
+    from mechkin_cli.diagnostics import legible
 
     return escape(legible(words, also=""))

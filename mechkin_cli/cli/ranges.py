@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mechkin_cli.cli.answer import Question, answer
-from mechkin_cli.cli.completion import input_names
 from mechkin_cli.cli.messages import Record, put, say
-from mechkin_cli.cli.options import File, Json, Quiet, Set
+from mechkin_cli.cli.options import File, Json, Quiet, Set, input_names
 
 if TYPE_CHECKING:
-    from mechkin_cli.analysis.ranges import Range, Ranges
-    from mechkin_cli.interface import Model
-    from mechkin_cli.tables.columns import Columns
+    from mechkin_cli.model import Model
+    from mechkin_cli.modes import Range, Ranges
+    from mechkin_cli.tables import Columns
+
 
 DECIMALS = 6
 """Decimals shown; JSON has all digits."""
@@ -116,12 +116,12 @@ def _table(found: Ranges) -> Columns:
     """Mode, both ends with what is there, circuit."""
     import numpy as np
 
-    from mechkin_cli.tables.columns import Column, Columns, Words
+    from mechkin_cli.tables import Columns, TableColumn, Words
 
     def words(texts: list[str]) -> Words:
         return Words(np.arange(len(texts), dtype=np.int32), tuple(texts))
 
-    def ends(upper: bool) -> list[Column]:
+    def ends(upper: bool) -> list[TableColumn]:
         limits = [item.upper if upper else item.lower for item in found.ranges]
         values = [
             _value(item, limit.value) for item, limit in zip(found.ranges, limits, strict=True)
@@ -132,15 +132,15 @@ def _table(found: Ranges) -> Columns:
             for item, limit in zip(found.ranges, limits, strict=True)
         ]
         return [
-            Column(label, found.unit, np.array(values), DECIMALS),
-            Column(end, "", words(kinds)),
+            TableColumn(label, found.unit, np.array(values), DECIMALS),
+            TableColumn(end, "", words(kinds)),
         ]
 
     columns = (
-        Column("mode", "", words([item.mode for item in found.ranges])),
+        TableColumn("mode", "", words([item.mode for item in found.ranges])),
         *ends(False),
         *ends(True),
-        Column("circuit", "", np.array([float(item.circuit) for item in found.ranges]), 0),
+        TableColumn("circuit", "", np.array([float(item.circuit) for item in found.ranges]), 0),
     )
     return Columns("ranges", f"ranges of {found.input}", columns)
 
@@ -153,7 +153,7 @@ def _extremes(found: Ranges) -> Columns:
     """Mode, output, its extreme value and the input there."""
     import numpy as np
 
-    from mechkin_cli.tables.columns import Column, Columns, Words
+    from mechkin_cli.tables import Columns, TableColumn, Words
 
     rows = [(item.mode, extreme) for item in found.ranges for extreme in item.extremes]
     number = np.arange(len(rows), dtype=np.int32)
@@ -161,9 +161,9 @@ def _extremes(found: Ranges) -> Columns:
         "extremes",
         "dead centres of the outputs",
         (
-            Column("mode", "", Words(number, tuple(mode for mode, _ in rows))),
-            Column("output", "", Words(number, tuple(e.output for _, e in rows))),
-            Column("value", "", np.array([e.value for _, e in rows]), DECIMALS),
-            Column(found.input, found.unit, np.array([e.input for _, e in rows]), DECIMALS),
+            TableColumn("mode", "", Words(number, tuple(mode for mode, _ in rows))),
+            TableColumn("output", "", Words(number, tuple(e.output for _, e in rows))),
+            TableColumn("value", "", np.array([e.value for _, e in rows]), DECIMALS),
+            TableColumn(found.input, found.unit, np.array([e.input for _, e in rows]), DECIMALS),
         ),
     )

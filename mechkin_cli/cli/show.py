@@ -3,18 +3,35 @@
 from __future__ import annotations
 
 import shutil
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
-from mechkin_cli.legible import legible
-from mechkin_cli.tables.columns import Column, Columns, Words
-from mechkin_cli.tables.decimal_text import column_texts
+import numpy as np
+
+from mechkin_cli.assembly import NEAR
+from mechkin_cli.diagnostics import legible
+from mechkin_cli.errors import WORDS
+from mechkin_cli.mechanism import find_legs
+from mechkin_cli.tables import (
+    ALL_COLUMNS,
+    AT_DEAD_CENTRE,
+    ZERO,
+    Columns,
+    TableColumn,
+    Words,
+    column_texts,
+    counted_cells,
+)
+from mechkin_cli.units import TIME
+from mechkin_cli.verdict import SWEEP, Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.interface import Analysis
-    from mechkin_cli.tables.summary import Summary
+    from mechkin_cli.model import Analysis
+    from mechkin_cli.tables import ColumnErrors, Summary
+
 
 MOST_ROWS = 60
 """Longer tables are shown with this many rows."""
@@ -36,7 +53,7 @@ def shown_tables(analysis: Analysis, folder: Path) -> Iterator[str]:
         if left_out:
             lines.append(f"({left_out} of {analysis.rows} rows left out here; all are in {folder})")
         if table.summary is not None:
-            from mechkin_cli.tables.summary import written_notes
+            from mechkin_cli.tables import written_notes
 
             notes = written_notes(table.summary, _one_line)
             lines += [line for note in notes for line in wrap(f"({note})", width)]
@@ -82,7 +99,7 @@ def _chosen_rows(rows: int) -> list[int]:
     return [*range(half), *range(rows - half, rows)]
 
 
-def _texts(column: Column, chosen: Sequence[int]) -> list[str]:
+def _texts(column: TableColumn, chosen: Sequence[int]) -> list[str]:
     """Label, unit and cells of a column."""
     if isinstance(column.values, Words):
         texts = column.values.texts(chosen)
@@ -107,3 +124,208 @@ def _groups(columns: list[list[str]], width: int) -> Iterator[list[list[str]]]:
             group = columns[:1]
         group.append(cells)
     yield group
+
+
+# The short summary that a run prints for a person.
+
+IDLE_SHOWN = 2
+"""Idle freedoms that are named one by one."""
+
+
+def summary(file: str, analysis: Analysis, *, errors: bool = False) -> list[str]:
+    """Lines: driven freedoms, loops, branch, rows, worst residual and power error; of a response
+    what is free, and how it ended; with `errors` how many digits are right."""
+    result = analysis.result
+    name = analysis.model.name
+    if analysis.run == SWEEP:
+        rows = [("driven", _driven(analysis))]
+    else:
+        name = f"{name}, response {analysis.run}"
+        rows = [("free", _free(analysis))]
+    rows.append(("loops", _loops(analysis)))
+    if result.mode:
+        rows.append(("branch", _branch(analysis)))
+    rows += [("rows", _rows(analysis)), ("worst", _worst(analysis))]
+    if analysis.run == SWEEP and result.is_certified:
+        rows.append(("proof", analysis.certificate.words))
+    if analysis.run != SWEEP:
+        rows.insert(-1, ("ended", _ended(analysis)))
+    if errors:
+        rows.append(("errors", errors_line(analysis)))
+    return [f"{name} ({file})", *(_line(*row) for row in rows)]
+
+
+def files_line(folder: Path, written: Sequence[Path]) -> str:
+    """Where the files are, and how many of each kind."""
+    kinds = Counter(file.suffix.removeprefix(".") for file in written)
+    counts = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
+    return _line("files", f"{folder} ({counts})")
+
+
+def _line(name: str, text: str) -> str:
+    return f"  {name:<9}{text}"
+
+
+def _free(analysis: Analysis) -> str:
+    """How many freedoms move under forces, where they start, what is driven and what acts."""
+    response = analysis.model.response(analysis.run)
+    free = response.independent
+    noun = "freedom" if len(free) == 1 else "freedoms"
+    parts = [f"{len(free)} {noun} from {', '.join(f'{joint}.{name}' for joint, name in free)}"]
+    if response.efforts:
+        parts.append(f"efforts on {', '.join(one.name for one in response.efforts)}")
+    if response.driven:
+        parts.append(f"driven: {', '.join(one.name for one in response.driven)}")
+    return "; ".join(parts)
+
+
+def _ended(analysis: Analysis) -> str:
+    """By which stop, or at the last moment asked for, or before it."""
+    from mechkin_cli.response import ResponseResult
+
+    result = analysis.result
+    times = result.inputs["time"]
+    unit = result.units.label(TIME)
+    solved = np.flatnonzero(result.solved)
+    if not solved.size:
+        return "before it began"
+    last = int(solved[-1])
+    at = f"at {times[last]:.9g} {unit}"
+    if result.events[last]:
+        return f"{at}: {result.events[last]}"
+    if last == result.rows - 1:
+        return f"{at}, the last moment"
+    assert isinstance(result, ResponseResult)
+    report = result.report
+    moment = times[last] if report is None else float(result.units.from_si(report.time, TIME))
+    return f"at {moment:.9g} {unit}: {Status(int(result.status[last + 1])).label}"
+
+
+def _branch(analysis: Analysis) -> str:
+    """The mode by its letter where that is known, and how it was found."""
+    result = analysis.result
+    if result.mode == NEAR:
+        return result.how
+    return f"mode {result.mode} ({result.how})" if result.how else result.mode
+
+
+def _driven(analysis: Analysis) -> str:
+    """How many freedoms are driven, by which inputs; a count by Kutzbach's formula that differs is
+    told too."""
+    mechanism = analysis.model.problem.mechanism
+    freedoms = sum(joint.type.freedoms for joint in mechanism.joints.values())
+    count = freedoms - mechanism.space * mechanism.loops
+    inputs = [driven.name for driven in analysis.model.problem.motion.inputs]
+    plural = "freedom" if len(inputs) == 1 else "freedoms"
+    text = f"{len(inputs)} {plural} by {', '.join(inputs)}" if inputs else "nothing"
+    words = [leg.words for leg in find_legs(mechanism)]
+    several = Counter(held.words for held in analysis.model.problem.held)
+    words += [text if n == 1 else f"{text} ({n} freedoms)" for text, n in several.items()]
+    idle = "".join(f"; {text}" for text in words[:IDLE_SHOWN])
+    more = len(words) - IDLE_SHOWN
+    idle += f"; and {more} more idle" if more > 0 else ""
+    return (text if count == len(inputs) else f"{text} (Kutzbach's count: {count})") + idle
+
+
+def _loops(analysis: Analysis) -> str:
+    graph = analysis.result.graph
+    if not graph.closings:
+        return "none (open chain)"
+    closed = ", ".join(
+        "-".join(c.leg.joints) if c.leg else f"{c.joint.name} ({c.joint.letter})"
+        for c in graph.closings
+    )
+    sizes = " then ".join(str(len(block.unknowns)) for block in graph.blocks)
+    return f"{analysis.model.problem.mechanism.loops}, closed at {closed}; {sizes} unknowns"
+
+
+def _rows(analysis: Analysis) -> str:
+    result = analysis.result
+    text = f"{np.count_nonzero(result.solved)} of {result.rows} solved"
+    codes, first, counts = np.unique(result.status, return_index=True, return_counts=True)
+    others = [
+        f"{counts[k]} {Status(int(codes[k])).label}"
+        for k in np.argsort(first)
+        if codes[k] != Status.ok
+    ]
+    return f"{text} ({', '.join(others)})" if others else text
+
+
+def _worst(analysis: Analysis) -> str:
+    result = analysis.result
+    parts = []
+    measured = {
+        "residual": result.residual,
+        "power error": result.power_error,
+        "condition": result.condition,
+    }
+    if analysis.run != SWEEP:
+        measured["energy error"] = np.asarray(result.quantity("row.energy_error").value)
+    for name, values in measured.items():
+        finite = values[np.isfinite(values)]
+        if finite.size:
+            parts.append(f"{name} {float(finite.max()):.1e}")
+    return ", ".join(parts) or "nothing was solved"
+
+
+# The line of a summary that says how many digits of all cells are right.
+
+COLUMNS_SHOWN = 3
+"""Columns that are named one by one."""
+
+_NO_GAP = {ZERO, WORDS}
+"""Columns of which everything is known that there is."""
+
+
+def errors_line(analysis: Analysis) -> str:
+    """`every cell right to 12 digits; worst: alpha4 at 202, 3e-13`, and what was not repeated."""
+    errors = analysis.errors
+    parts: list[str] = []
+    worst = errors.worst
+    if worst is None:
+        parts.append("no cell was repeated")
+    else:
+        said = f"every cell right to {errors.digits} digits"
+        if any(c.why and c.why not in _NO_GAP for c in errors.columns):
+            said = f"every cell repeated is right to {errors.digits} digits"
+        parts.append(f"{said}; worst: {_place(analysis, worst)}")
+    zero = [c for c in errors.columns if c.why == ZERO]
+    parts += [f"{ZERO}: {_named(zero)}"] if zero else []
+    parts += _left_out([c for c in errors.columns if c.why and c.why not in _NO_GAP])
+    words = [c for c in errors.columns if c.why == WORDS]
+    parts += [f"words, which have no error: {_named(words)}"] if words else []
+    bounds = sum(int(np.count_nonzero(c.is_bound)) for c in errors.columns)
+    parts += [f"{bounds} cells right to at least the digits told"] if bounds else []
+    for why in dict.fromkeys(c.lost_why for c in errors.columns if c.lost):
+        lost = sum(c.lost for c in errors.columns if c.lost_why == why)
+        parts.append(f"{counted_cells(lost)} not measured ({why})")
+    there = sum(int(np.count_nonzero(c.stands_there)) for c in errors.columns)
+    parts += [f"{counted_cells(there)} without a figure ({AT_DEAD_CENTRE})"] if there else []
+    return "; ".join(parts)
+
+
+def _place(analysis: Analysis, column: ColumnErrors) -> str:
+    """The worst cell of a column: its label, where, and the error in parts of the largest."""
+    row = column.worst
+    inputs = list(analysis.result.inputs.values())
+    at = f"{inputs[0][row]:.12g}" if inputs else f"row {row + 1}"
+    return f"{legible(column.label)} at {at}, {column.relative[row]:.0e}"
+
+
+def _left_out(columns: list[ColumnErrors]) -> list[str]:
+    """Which columns were not repeated, by the reasons why."""
+    reasons = dict.fromkeys(column.why for column in columns)
+    return [
+        f"not repeated: {_named([c for c in columns if c.why == why])} ({why})" for why in reasons
+    ]
+
+
+def _label(column: ColumnErrors) -> str:
+    return column.table if column.label == ALL_COLUMNS else column.label
+
+
+def _named(columns: list[ColumnErrors]) -> str:
+    """The labels of some columns, the first of them one by one."""
+    labels = list(dict.fromkeys(legible(_label(column)) for column in columns))
+    more = len(labels) - COLUMNS_SHOWN
+    return ", ".join(labels[:COLUMNS_SHOWN]) + (f" and {more} more" if more > 0 else "")

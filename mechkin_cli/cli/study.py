@@ -9,17 +9,32 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mechkin_cli.cli.completion import study_files, study_format_names
-from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.interrupts import then
-from mechkin_cli.cli.messages import Record, put, put_json, refusal, say, say_diagnostics, tell_as
-from mechkin_cli.cli.options import Json, Messages, Quiet, Set, folder
-from mechkin_cli.cli.parameters import parameters
+from mechkin_cli.cli.main import then
+from mechkin_cli.cli.messages import (
+    ExitCode,
+    Record,
+    put,
+    put_json,
+    refusal,
+    say,
+    say_diagnostics,
+    tell_as,
+)
+from mechkin_cli.cli.options import (
+    Json,
+    Messages,
+    Quiet,
+    Set,
+    folder,
+    parameters,
+    study_files,
+    study_format_names,
+)
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
-    from mechkin_cli.interface.studies import Study, Workers
-    from mechkin_cli.interface.study_results import StudyFiles
+    from mechkin_cli.studies import Study, StudyFiles, Workers
+
 
 SHOWN_VARIANTS = 6
 """Variants that `--dry-run` shows: half of them the first, half the last."""
@@ -82,9 +97,7 @@ def study(
     Writes variants.csv, with a line for each variant, into a folder. A study that was stopped is
     continued by the same command.
     """
-    from mechkin_cli.interface.studies import Study, Workers
-    from mechkin_cli.interface.study_source import open_study
-    from mechkin_cli.studies.pools import end_without_warnings
+    from mechkin_cli.studies import Study, Workers, end_without_warnings, open_study
 
     tell_as(messages)
     record: Record = {}
@@ -158,12 +171,12 @@ def _values_table(planned: Study, shown: dict[int, dict[str, float]]) -> str:
     import numpy as np
 
     from mechkin_cli.cli.show import shown_table
-    from mechkin_cli.tables.columns import Column, Columns
+    from mechkin_cli.tables import Columns, TableColumn
 
-    columns = [Column("variant", "", np.array(list(shown), dtype=np.float64), 0)]
+    columns = [TableColumn("variant", "", np.array(list(shown), dtype=np.float64), 0)]
     for heading in planned.plan.question.parameters:
         values = np.array([values[heading.label] for values in shown.values()])
-        columns.append(Column(heading.label, heading.unit, values, 6))
+        columns.append(TableColumn(heading.label, heading.unit, values, 6))
     return shown_table(Columns("variants", "some of the variants", tuple(columns)), len(shown))
 
 
@@ -240,7 +253,7 @@ def _print(found: StudyFiles, quiet: bool) -> None:
     import numpy as np
 
     from mechkin_cli.cli.show import shown_table
-    from mechkin_cli.tables.columns import Column, Columns, column_of_numbers, words_of
+    from mechkin_cli.tables import Columns, TableColumn, column_of_numbers, words_of
 
     seen = found.overview
     for path in found.files:
@@ -249,15 +262,15 @@ def _print(found: StudyFiles, quiet: bool) -> None:
         return
     spreads = seen.spreads
 
-    def numbers(label: str, decimals: int | None, values: list[float]) -> Column:
+    def numbers(label: str, decimals: int | None, values: list[float]) -> TableColumn:
         return column_of_numbers(label, "", np.array(values, dtype=np.float64), decimals)
 
     def place(number: int) -> float:
         return float("nan") if number < 0 else float(number)
 
     columns = (
-        Column("column", "", words_of([spread.label for spread in spreads])),
-        Column("unit", "", words_of([spread.unit for spread in spreads])),
+        TableColumn("column", "", words_of([spread.label for spread in spreads])),
+        TableColumn("unit", "", words_of([spread.unit for spread in spreads])),
         numbers("least", 6, [spread.least for spread in spreads]),
         numbers("in variant", 0, [place(spread.least_at) for spread in spreads]),
         numbers("mean", 6, [spread.mean for spread in spreads]),

@@ -9,28 +9,27 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mechkin_cli.cli.completion import mechanism_files
-from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.given_file import refuse_stdin
+from mechkin_cli.cli.analyze import run_all
 from mechkin_cli.cli.messages import (
+    ExitCode,
     Record,
     put,
     put_json,
     refusal,
+    refuse_stdin,
     say,
     say_diagnostics,
     tell_as,
 )
-from mechkin_cli.cli.options import Json, Messages, Quiet
+from mechkin_cli.cli.options import Json, Messages, Quiet, mechanism_files
 from mechkin_cli.cli.progress import working
-from mechkin_cli.cli.runs import run_all
 from mechkin_cli.diagnostics import InvalidFile, UsageError
+from mechkin_cli.tables import MARK, OVERVIEW_PAGE, OverviewRow, overview_page
 
 if TYPE_CHECKING:
-    from mechkin_cli.interface import Analysis, Model
-    from mechkin_cli.tables.errata import PrintedTable
-    from mechkin_cli.tables.files import OutputFolder
-    from mechkin_cli.tables.overview import OverviewRow
+    from mechkin_cli.model import Analysis, Model
+    from mechkin_cli.tables import OutputFolder, PrintedTable
+
 
 MECHANISMS = Path("mechanisms")
 
@@ -67,8 +66,6 @@ def tables(
     refuse_stdin(path, "tables are kept beside a file, and - is none")
     files = _mechanism_files(path)
     if against:
-        from mechkin_cli.cli.against import list_disagreements
-
         if check:
             raise UsageError("--against and --check are two questions; ask them one by one")
         list_disagreements(files, json, quiet)
@@ -88,8 +85,6 @@ def tables(
             records.append(record)
     found: Record = {"files": records}
     if len(rows) == len(files):
-        from mechkin_cli.cli.overview import keep_overview
-
         outcome, found["overview"] = keep_overview(path, rows, check, json, quiet)
         code = max(code, outcome)
     if json:
@@ -113,8 +108,8 @@ def _one(
     file: Path, check: bool, json: bool, quiet: bool, *, overview: bool
 ) -> tuple[ExitCode, Record, OverviewRow | None]:
     """Computes one file's tables, and compares or writes them; alone in their folder if it does."""
-    from mechkin_cli.interface import load
-    from mechkin_cli.tables.files import OutputFolder
+    from mechkin_cli.model import load
+    from mechkin_cli.tables import OutputFolder
 
     model = load(file)
     if check:
@@ -134,9 +129,7 @@ def _made(
     *,
     overview: bool,
 ) -> tuple[ExitCode, Record, OverviewRow | None]:
-    from mechkin_cli.cli.overview import overview_row
-    from mechkin_cli.tables.against_print import against_print
-    from mechkin_cli.tables.stale import stale_in
+    from mechkin_cli.tables import against_print, stale_in
 
     analyses = run_all(model)
     said = tuple(dict.fromkeys(found for one in analyses for found in one.diagnostics))
@@ -166,23 +159,27 @@ def _fresh_files(
     model: Model, analyses: Sequence[Analysis], printed: Sequence[PrintedTable]
 ) -> dict[str, bytes]:
     """All that stands beside a mechanism file, by name: tables, the picture, the errata page."""
-    from mechkin_cli.tables.csv_writer import COMMITTED_DIGITS, csv_bytes
-    from mechkin_cli.tables.disagreements import NAME, disagreements_csv
-    from mechkin_cli.tables.errata import PAGE, errata_page
-    from mechkin_cli.tables.markdown import markdown_bytes
+    from mechkin_cli.tables import (
+        COMMITTED_DIGITS,
+        NAME,
+        PAGE,
+        csv_bytes,
+        disagreements_csv,
+        errata_page,
+        markdown_bytes,
+    )
 
     fresh: dict[str, bytes] = {}
     for analysis in analyses:
         for table in (*analysis.tables, *analysis.coefficients, *analysis.balance_tables):
             fresh[f"{table.name}.csv"] = csv_bytes(table, COMMITTED_DIGITS)
             if table.summary is not None:
-                from mechkin_cli.tables.summary import summary_table
+                from mechkin_cli.tables import summary_table
 
                 below = summary_table(table.name, table.title, table.summary)
                 fresh[f"{below.name}.csv"] = csv_bytes(below, COMMITTED_DIGITS)
             fresh[f"{table.name}.md"] = markdown_bytes(table, analysis.result)
-    from mechkin_cli.view.drawing.picture import NAME as PICTURE
-    from mechkin_cli.view.drawing.picture import mechanism_picture
+    from mechkin_cli.view import PICTURE_NAME as PICTURE, mechanism_picture
 
     fresh[PICTURE] = mechanism_picture(analyses[0].result).encode()
     if printed:
@@ -195,8 +192,7 @@ def _fresh_files(
 def _compare(
     folder: Path, fresh: dict[str, bytes], json: bool, quiet: bool
 ) -> tuple[ExitCode, list[Record]]:
-    from mechkin_cli.tables.compare import compare_files, read_committed
-    from mechkin_cli.tables.comparison_report import report
+    from mechkin_cli.tables import compare_files, read_committed, report
 
     comparisons = compare_files(fresh, read_committed(folder, fresh))
     same = all(c.verdict == "equal" for c in comparisons)
@@ -207,3 +203,139 @@ def _compare(
         if not json:
             put(report(comparisons))
     return ExitCode.OK if same else ExitCode.DIFFERENCES, [asdict(c) for c in comparisons]
+
+
+# `mechkin tables --against`: printed cells that do not agree with what the files compute.
+
+
+def list_disagreements(files: Sequence[Path], json: bool, quiet: bool) -> None:
+    """Counts to stderr and every disagreeing cell to stdout, as CSV or as one JSON object.
+
+    Files without printed values are passed over. That cells disagree is an answer, no failure: the
+    exit code is 0 unless a file cannot be used.
+    """
+    code, records = ExitCode.OK, []
+    for file in files:
+        try:
+            printed = _printed(file)
+        except (InvalidFile, UsageError) as error:
+            outcome, record = refusal(file, error)
+            code = max(code, outcome)
+            records.append(record)
+            continue
+        if printed:
+            records.append(_told(file, printed, json, quiet))
+    if json:
+        put_json({"files": records})
+    if code:
+        raise typer.Exit(code)
+
+
+def _printed(file: Path) -> list[PrintedTable]:
+    from mechkin_cli.model import load
+    from mechkin_cli.tables import against_print
+
+    model = load(file)
+    if not any(table.published for table in model.tables):
+        return []
+    analyses = run_all(model)
+    said = tuple(dict.fromkeys(found for one in analyses for found in one.diagnostics))
+    say_diagnostics(said, str(file))
+    return [table for one in analyses for table in against_print(file, one.layouts, one.tables)]
+
+
+def _told(file: Path, printed: Sequence[PrintedTable], json: bool, quiet: bool) -> Record:
+    from mechkin_cli.tables import against_print_record, counts, disagreements_csv
+
+    if not quiet:
+        say(f"{file}: {counts(one.agreement for one in printed)}")
+    if not json:
+        put(disagreements_csv(printed).decode())
+    return {"file": str(file), "tables": against_print_record(printed)}
+
+
+# The overview page that `mechkin tables FOLDER` keeps: what it says of a file, and its check.
+
+
+def overview_row(
+    file: Path, analyses: Sequence[Analysis], printed: Sequence[PrintedTable]
+) -> OverviewRow:
+    """One file in a line."""
+    from mechkin_cli.tables import counts
+    from mechkin_cli.view import PICTURE_NAME as PICTURE
+
+    model = analyses[0].model
+    solved = sum(int(analysis.result.solved.sum()) for analysis in analyses)
+    rows = sum(analysis.rows for analysis in analyses)
+    return OverviewRow(
+        file.stem,
+        model.name,
+        " ".join(joint.letter for joint in model.problem.mechanism.joints.values()),
+        _mobility(model),
+        _modes(model),
+        str(solved) if solved == rows else f"{solved} of {rows}",
+        counts(one.agreement for one in printed) if printed else "",
+        model.source,
+        PICTURE,
+    )
+
+
+def _mobility(model: Model) -> str:
+    """The true mobility; Kutzbach's count and idle freedoms where they differ from it."""
+    found = model.mobility()
+    text = "unclear" if found.mobility is None else str(found.mobility)
+    beside = [] if found.count == found.mobility else [f"count {found.count}"]
+    if found.idle:
+        beside.append(f"{len(found.idle)} idle")
+    return f"{text} ({', '.join(beside)})" if beside else text
+
+
+def _modes(model: Model) -> str:
+    """Number of modes found, and whether it is proven to be all; of a file of responses alone those
+    at the start of its first."""
+    found = model.modes()
+    count = len(found.modes)
+    return f"{count} (all)" if found.complete else str(count)
+
+
+def keep_overview(
+    folder: Path, rows: Sequence[OverviewRow], check: bool, json: bool, quiet: bool
+) -> tuple[ExitCode, str]:
+    """Writes the page, or compares it; a README.md without the mark is left alone.
+
+    Returns the exit code and what became of the page: `written`, `equal`, `different`, `missing` or
+    `left`.
+    """
+    page, fresh = folder / OVERVIEW_PAGE, overview_page(rows).encode()
+    old = _content(page) if page.is_file() else None
+    if old is not None and not old.startswith(MARK.encode()):
+        if not quiet:
+            say(f"{page}: left alone, it does not begin with {MARK}")
+        return ExitCode.OK, "left"
+    if not check:
+        from mechkin_cli.tables import write_files
+
+        write_files(folder, {OVERVIEW_PAGE: fresh})
+        return ExitCode.OK, "written"
+    return _compared(page, fresh, old, json)
+
+
+def _content(page: Path) -> bytes:
+    from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
+
+    try:
+        return read_regular(page, MOST_TABLE_BYTES)
+    except OSError as error:
+        raise UsageError(f"cannot read {page}: {error.strerror}; make it readable") from None
+
+
+def _compared(page: Path, fresh: bytes, old: bytes | None, json: bool) -> tuple[ExitCode, str]:
+    from mechkin_cli.tables import compare_files, report
+
+    (found,) = compare_files({OVERVIEW_PAGE: fresh}, {} if old is None else {OVERVIEW_PAGE: old})
+    if found.verdict == "equal":
+        return ExitCode.OK, "equal"
+    say(f"{page}: the overview on disk is not what this version makes")
+    if not json:
+        put(report([found]))
+    return ExitCode.DIFFERENCES, found.verdict

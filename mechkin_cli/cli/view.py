@@ -7,17 +7,23 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mechkin_cli.cli.completion import mode_names, run_names
-from mechkin_cli.cli.exit_codes import ExitCode
-from mechkin_cli.cli.given_file import model_of, shown, stem_of
-from mechkin_cli.cli.messages import put, refusal, say, say_diagnostics, tell_as
-from mechkin_cli.cli.options import File, Messages, Quiet, Set
-from mechkin_cli.cli.parameters import parameters
+from mechkin_cli.cli.messages import (
+    ExitCode,
+    model_of,
+    put,
+    refusal,
+    say,
+    say_diagnostics,
+    shown,
+    stem_of,
+    tell_as,
+)
+from mechkin_cli.cli.options import File, Messages, Quiet, Set, mode_names, parameters, run_names
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
-    from mechkin_cli.interface import Analysis
+    from mechkin_cli.model import Analysis
 
 
 def view(
@@ -61,8 +67,7 @@ def view(
     One file of HTML that works offline: the mechanism in three dimensions along its sweep and its
     responses, in all assembly modes, with curves, tables, verdicts and notes.
     """
-    from mechkin_cli.interface.viewing import analyses_of, view_page, write_view
-    from mechkin_cli.view.html import NAME
+    from mechkin_cli.view import PAGE_NAME, analyses_of, view_page, write_view
 
     tell_as(messages)
     try:
@@ -72,7 +77,7 @@ def view(
             analyses = analyses_of(model, run, mode)
             tell(f"{shown(file)}: the page")
             page, notes = view_page(analyses, not no_modes)
-        target = write_view(out or Path("out", stem_of(file), NAME), page)
+        target = write_view(out or Path("out", stem_of(file), PAGE_NAME), page)
     except (InvalidFile, UsageError) as error:
         raise typer.Exit(refusal(file, error)[0]) from None
     said = [found for analysis in analyses for found in analysis.diagnostics]

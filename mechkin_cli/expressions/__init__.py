@@ -1,29 +1,86 @@
-"""Expressions: arithmetic with dimensions over parameters and quantities of a mechanism."""
+"""Arithmetic with dimensions over parameters and quantities: from text to values.
 
-from mechkin_cli.expressions.errors import ExpressionError, UnknownName
-from mechkin_cli.expressions.expression import Expression, parse
-from mechkin_cli.expressions.fields import constant, constant_in_file_units, literal, number_of
-from mechkin_cli.expressions.functions import FUNCTIONS
-from mechkin_cli.expressions.operand import Resolve
-from mechkin_cli.expressions.parameters import evaluate_parameters, lookup
-from mechkin_cli.expressions.quantity import Quantity, Rows, Scalar, Value, Vector
+Hides tokens, grammar, and how an expression is evaluated over rows, differentiated or expanded in
+jets. An expression is parsed once; evaluating it never raises for a number, only for a dimension or
+a name.
+"""
 
-__all__ = [
-    "FUNCTIONS",
-    "Expression",
-    "ExpressionError",
-    "Quantity",
-    "Resolve",
-    "Rows",
-    "Scalar",
-    "UnknownName",
-    "Value",
-    "Vector",
-    "constant",
-    "constant_in_file_units",
-    "evaluate_parameters",
-    "literal",
-    "lookup",
-    "number_of",
-    "parse",
-]
+from __future__ import annotations
+
+from mechkin_cli.lazy import lazy_names
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from mechkin_cli.expressions.differentiation import (
+        derivatives as derivatives,
+        differentiated as differentiated,
+    )
+    from mechkin_cli.expressions.expression import (
+        Definitions as Definitions,
+        Differentiate as Differentiate,
+        Expression as Expression,
+        exact_literal as exact_literal,
+        parse as parse,
+    )
+    from mechkin_cli.expressions.fields import (
+        Move as Move,
+        constant as constant,
+        constant_in_file_units as constant_in_file_units,
+        evaluate_parameters as evaluate_parameters,
+        in_order as in_order,
+        literal as literal,
+        lookup as lookup,
+        number_of as number_of,
+        scalar as scalar,
+    )
+    from mechkin_cli.expressions.grammar import parse_nodes as parse_nodes
+    from mechkin_cli.expressions.jets import Jet as Jet, constant_jet as constant_jet
+    from mechkin_cli.expressions.quantity import (
+        MAX_QUOTED as MAX_QUOTED,
+        ExpressionError as ExpressionError,
+        Name as Name,
+        Node as Node,
+        NumberNode as NumberNode,
+        OperationNode as OperationNode,
+        Quantity as Quantity,
+        Resolve as Resolve,
+        UnknownName as UnknownName,
+        Value as Value,
+        Vector as Vector,
+        numbers_read_by as numbers_read_by,
+    )
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "differentiation": ["derivatives", "differentiated"],
+        "expression": ["Definitions", "Differentiate", "Expression", "exact_literal", "parse"],
+        "fields": [
+            "Move",
+            "constant",
+            "constant_in_file_units",
+            "evaluate_parameters",
+            "in_order",
+            "literal",
+            "lookup",
+            "number_of",
+            "scalar",
+        ],
+        "grammar": ["parse_nodes"],
+        "jets": ["Jet", "constant_jet"],
+        "quantity": [
+            "ExpressionError",
+            "MAX_QUOTED",
+            "Name",
+            "Node",
+            "NumberNode",
+            "OperationNode",
+            "Quantity",
+            "Resolve",
+            "UnknownName",
+            "Value",
+            "Vector",
+            "numbers_read_by",
+        ],
+    },
+)

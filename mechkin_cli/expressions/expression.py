@@ -9,23 +9,41 @@ Example:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
-from dataclasses import replace
-from typing import NamedTuple
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.expressions import arithmetic, conditions
-from mechkin_cli.expressions.errors import ExpressionError, UnknownName
-from mechkin_cli.expressions.functions import FORMS, FUNCTIONS
-from mechkin_cli.expressions.infinite_rows import is_infinite, of_infinite, without_new
-from mechkin_cli.expressions.limits import MAX_EXPONENT, MAX_QUOTED
-from mechkin_cli.expressions.nodes import Name, Node, Number, Operation
-from mechkin_cli.expressions.operand import Operand, Resolve, Site
-from mechkin_cli.expressions.parser import parse_nodes
-from mechkin_cli.expressions.quantity import Quantity, Scalar, Value, Vector
-from mechkin_cli.expressions.tokens import VANISHES, WRITE_ZERO
-from mechkin_cli.tape.scalars import Recorded, as_recorded, is_finite, is_number, plain
+from mechkin_cli.exact import PI
+from mechkin_cli.expressions import operations as arithmetic, operations as conditions
+from mechkin_cli.expressions.functions import (
+    FORMS,
+    FUNCTIONS,
+    is_infinite,
+    of_infinite,
+    without_new,
+)
+from mechkin_cli.expressions.grammar import VANISHES, WRITE_ZERO, parse_nodes
+from mechkin_cli.expressions.quantity import (
+    MAX_EXPONENT,
+    MAX_QUOTED,
+    ExpressionError,
+    Name,
+    Node,
+    NumberNode,
+    Operand,
+    OperationNode,
+    Quantity,
+    Resolve,
+    Scalar,
+    Site,
+    UnknownName,
+    Value,
+    Vector,
+)
+from mechkin_cli.tape import DoubleDoubles, Recorded, as_recorded, is_finite, is_number, plain
 from mechkin_cli.units import UNITS, UnitError, UnitSystem, conversion
 
 _NAMED = "names are those of parameters and directions, and of quantities such as J.theta"
@@ -67,18 +85,18 @@ class Expression(NamedTuple):
         return frozenset(_asked_for(node) for node in self.nodes if isinstance(node, Name))
 
     @property
-    def number(self) -> Number | None:
+    def number(self) -> NumberNode | None:
         """The number literal, with or without unit, that the whole expression consists of."""
         only = self.nodes[0]
-        return only if len(self.nodes) == 1 and isinstance(only, Number) else None
+        return only if len(self.nodes) == 1 and isinstance(only, NumberNode) else None
 
     @property
     def in_doubles(self) -> Expression:
         """The same with its numbers as doubles, where they are recorded: to check it on rows."""
-        if not any(isinstance(n, Number) and isinstance(n.value, Recorded) for n in self.nodes):
+        if not any(isinstance(n, NumberNode) and isinstance(n.value, Recorded) for n in self.nodes):
             return self
         nodes = (
-            n._replace(value=as_recorded(n.value)) if isinstance(n, Number) else n
+            n._replace(value=as_recorded(n.value)) if isinstance(n, NumberNode) else n
             for n in self.nodes
         )
         return Expression(self.text, tuple(nodes))
@@ -107,7 +125,7 @@ class Expression(NamedTuple):
             ExpressionError: `10 N*m` where there is a parameter m.
         """
         for node in self.nodes:
-            if isinstance(node, Number):
+            if isinstance(node, NumberNode):
                 for word, offset in node.joined_units:
                     if known(word):
                         unit = f"1 {word}"
@@ -121,7 +139,7 @@ class Expression(NamedTuple):
         self,
         resolve: Resolve,
         units: UnitSystem = _DEFAULT_UNITS,
-        literal: Callable[[Number], Quantity] | None = None,
+        literal: Callable[[NumberNode], Quantity] | None = None,
         *,
         through_infinity: bool = False,
     ) -> Quantity:
@@ -144,7 +162,7 @@ class Expression(NamedTuple):
         some_infinite = through_infinity
         with np.errstate(all="ignore"):
             for node in self.nodes:
-                if isinstance(node, Operation):
+                if isinstance(node, OperationNode):
                     operands = stack[-node.arity :]
                     del stack[-node.arity :]
                     operand = _operate(node, operands, units)
@@ -153,7 +171,7 @@ class Expression(NamedTuple):
                     elif not through_infinity:
                         operand = of_infinite(node.symbol, operand, operands)
                     stack.append(operand)
-                elif isinstance(node, Number):
+                elif isinstance(node, NumberNode):
                     stack.append(Operand(literal(node), node.offset, node))
                 else:
                     found = _look_up(node, resolve)
@@ -178,7 +196,7 @@ def _asked_for(node: Name) -> str:
     return prefix if axis in _AXES and "." in prefix else node.text
 
 
-def _operate(node: Operation, operands: list[Operand], units: UnitSystem) -> Operand:
+def _operate(node: OperationNode, operands: list[Operand], units: UnitSystem) -> Operand:
     site = Site(node.symbol, node.offset, units)
     quantity = _OPERATIONS[node.symbol](site, *operands)
     if any(exponent**2 > MAX_EXPONENT**2 for exponent in quantity.dimension.exponents):
@@ -201,7 +219,7 @@ def _not_finite(site: Site, operands: list[Operand]) -> ExpressionError:
     )
 
 
-def _literal(number: Number) -> Quantity:
+def _literal(number: NumberNode) -> Quantity:
     if number.unit is None:
         return Quantity(number.value)
     try:
@@ -264,3 +282,105 @@ def _unknown(node: Name, error: KeyError) -> ExpressionError:
         hint = f"a unit stands right behind a number: 1 {node.text}, 10 N*m"
     name = node.text[:MAX_QUOTED]
     return ExpressionError(f"there is nothing named {name}", node.offset, hint or _NAMED)
+
+
+# Named expressions: where a name of one stands in a text, its nodes stand in the expression.
+#
+# So whoever reads an expression knows only quantities of the mechanism and parameters, whatever a
+# file calls them; what grows beyond `MAX_EXPANDED` is refused.
+
+Differentiate = Callable[[tuple[Node, ...], Name, int], tuple[Node, ...]]
+"""The derivative of nodes by the coordinate of a name; the place is that of the whole."""
+
+
+@dataclass(frozen=True)
+class Definitions:
+    """What is named, each with all names of others replaced, and how derivatives are taken where
+    there are some."""
+
+    named: Mapping[str, Expression] = field(default_factory=dict)
+    differentiate: Differentiate | None = field(default=None, compare=False)
+
+    def adding(self, name: str, expression: Expression) -> Definitions:
+        """These and one more, in which what is named is replaced."""
+        return replace(self, named={**self.named, name: expression})
+
+    def parse(self, text: str) -> Expression:
+        """The expression that a text says, in quantities of the mechanism.
+
+        Raises:
+            ExpressionError: as `parse`; or a derivative that is not known.
+        """
+        return self.expanded(parse(text))
+
+    def expanded(self, expression: Expression) -> Expression:
+        """The expression with what is named in the places of names.
+
+        Raises:
+            ExpressionError: it grows too large, or a derivative is not known.
+        """
+        if not any(self._is_replaced(node) for node in expression.nodes):
+            return expression
+        from mechkin_cli.expressions.differentiation import refuse_large
+
+        stack: list[list[Node]] = []
+        for node in expression.nodes:
+            if isinstance(node, Name):
+                stack.append(self._meant(node))
+            elif isinstance(node, OperationNode):
+                operands = stack[-node.arity :]
+                del stack[-node.arity :]
+                stack.append(self._operated(node, operands))
+            else:
+                stack.append([node])
+            refuse_large(sum(map(len, stack)), node.offset)
+        return Expression(expression.text, tuple(stack[-1]))
+
+    def _is_replaced(self, node: Node) -> bool:
+        if isinstance(node, OperationNode):
+            return node.symbol == "derivative" and self.differentiate is not None
+        return isinstance(node, Name) and node.text.partition(".")[0] in self.named
+
+    def _meant(self, name: Name) -> list[Node]:
+        whole = self.named.get(name.text)
+        if whole is not None:
+            return _at(name.offset, whole.nodes)
+        prefix, _, axis = name.text.rpartition(".")
+        vector = self.named.get(prefix)
+        if vector is None:
+            if name.text.partition(".")[0] in self.named:
+                text = f"{name.text[:MAX_QUOTED]} is no component of a quantity"
+                raise ExpressionError(text, name.offset, "components are .x, .y and .z")
+            return [name]
+        if axis not in _AXES:
+            text = f"there is no component .{axis[:MAX_QUOTED]}"
+            raise ExpressionError(text, name.offset, "components are .x, .y and .z")
+        return [*_at(name.offset, vector.nodes), OperationNode(f".{axis}", 1, name.offset)]
+
+    def _operated(self, node: OperationNode, operands: list[list[Node]]) -> list[Node]:
+        if node.symbol != "derivative" or self.differentiate is None:
+            return [*(part for operand in operands for part in operand), node]
+        (coordinate, *others) = operands[1]
+        if others or not isinstance(coordinate, Name):
+            hint = "write derivative(expression, A.theta)"
+            raise ExpressionError("a derivative is taken by an input", node.offset, hint)
+        return list(self.differentiate(tuple(operands[0]), coordinate, node.offset))
+
+
+def _at(offset: int, nodes: Sequence[Node]) -> list[Node]:
+    """The nodes with one place; those that have it are shared, as most are in a chain of names."""
+    return [node if node.offset == offset else node._replace(offset=offset) for node in nodes]
+
+
+# Numbers of an expression as its text says them, in double-double.
+
+
+def exact_literal(number: NumberNode) -> Quantity:
+    """The number as written, so that a function of it has all its digits, too."""
+    if number.unit is None and number.text == "pi":
+        return Quantity(DoubleDoubles.of_fraction(PI))  # type: ignore[arg-type]
+    exact = Fraction(number.text)
+    if number.unit is None:
+        return Quantity(DoubleDoubles.of_fraction(exact))  # type: ignore[arg-type]
+    value: Any = DoubleDoubles.of_fraction(exact * number.unit.factor)
+    return Quantity(value, number.unit.dimension)

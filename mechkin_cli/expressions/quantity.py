@@ -6,12 +6,17 @@ scalars in one frame, in a plane two. The same operations serve all.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mechkin_cli.units import DIMENSIONLESS, Dimension
+from mechkin_cli.diagnostics import MechkinError, nearest_hint
+from mechkin_cli.units import ANGLE, DIMENSIONLESS, CompoundUnit, Dimension, UnitSystem
 
 Rows = NDArray[np.float64]
 Scalar = float | Rows
@@ -51,3 +56,248 @@ class Quantity:
             return "a condition"
         phrase = self.dimension.phrase
         return f"a vector ({phrase})" if isinstance(self.value, Vector) else phrase
+
+
+# What can be wrong with an expression.
+
+
+class ExpressionError(MechkinError):
+    """An expression that cannot be read or evaluated.
+
+    `offset` counts characters from the start of the expression's text; `hint` says what to do;
+    `name` is the parameter whose text it is, where it is one's.
+    """
+
+    def __init__(
+        self, message: str, offset: int = 0, hint: str | None = None, name: str | None = None
+    ) -> None:
+        self.message = message
+        self.offset = offset
+        self.hint = hint
+        self.name = name
+        super().__init__(message)
+
+    def __str__(self) -> str:
+        return f"{self.message}; {self.hint}" if self.hint else self.message
+
+
+class UnknownName(KeyError):
+    """Raised by a resolver for a name that it does not have; `known` are the names that it has,
+    `reason` why it has none of this kind."""
+
+    def __init__(self, name: str, known: Iterable[str] = (), reason: str | None = None) -> None:
+        self.name = name
+        self.known = known
+        self.reason = reason
+        super().__init__(name)
+
+    @property
+    def hint(self) -> str | None:
+        """The reason, or else the nearest known names, or all of them when they are few."""
+        return self.reason or nearest_hint(self.name, self.known)
+
+
+# Limits on expressions: far above what a drawing needs, far below what could stall a reader.
+
+MAX_TEXT_LENGTH = 4000
+"""Characters; the longest columns of published tables have about a hundred."""
+
+MAX_NODES = 1000
+"""Numbers, names and operations of one expression."""
+
+MAX_EXPANDED = 20000
+"""The same with quantities and derivatives in the places of their names: some 1e-4 s a row of
+each."""
+
+MAX_DEPTH = 50
+"""Nested parentheses, calls, signs and powers; bounds the recursion of the parser."""
+
+MAX_EXPONENT = 16
+"""Size of a base dimension's exponent, and of a whole power of a value with a dimension."""
+
+MAX_ERRORS = 50
+"""Errors of a file's parameters; with more, the rest of them is not evaluated."""
+
+MAX_CHAIN = 8
+"""Names of a circle of parameters that a message shows."""
+
+MAX_QUOTED = 40
+"""Characters of the user's text repeated in a message."""
+
+
+# Nodes of a parsed expression, kept in postfix order: operands before their operation.
+#
+# Postfix order makes evaluation a loop over a stack, so long sums need no recursion.
+
+
+class NumberNode(NamedTuple):
+    """A number as written, with the unit behind it if there is one."""
+
+    value: float
+    unit: CompoundUnit | None
+    text: str
+    offset: int
+    joined_units: tuple[tuple[str, int], ...] = ()
+    """Unit words that follow `*` or `/`, with offsets: they could be meant as parameters."""
+
+
+class Name(NamedTuple):
+    """A name with dots; a last part `x`, `y` or `z` may be a component of what comes before it,
+    unless it is `whole`."""
+
+    text: str
+    offset: int
+    whole: bool = False
+
+
+class OperationNode(NamedTuple):
+    """An operation or function on the `arity` values before it; `symbol` is its table key."""
+
+    symbol: str
+    arity: int
+    offset: int
+
+
+Node = NumberNode | Name | OperationNode
+
+
+# What operations work on: operands with their origin, and the site that knows how to complain.
+
+Resolve = Callable[[str], Quantity]
+"""A quantity by its dotted name; raises `UnknownName` for a name that it does not have."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Operand:
+    """A value with the place of its text, and the number literal it comes from if it is one."""
+
+    quantity: Quantity
+    offset: int
+    number: NumberNode | None = None
+
+    @property
+    def value(self) -> Value:
+        """The value in SI."""
+        return self.quantity.value
+
+    @property
+    def dimension(self) -> Dimension:
+        """The dimension of the value."""
+        return self.quantity.dimension
+
+    @property
+    def phrase(self) -> str:
+        """What the operand is, in words."""
+        return self.quantity.phrase
+
+
+class Site(NamedTuple):
+    """An operation in its text: its name, where it stands, and the units of its hints."""
+
+    symbol: str
+    offset: int
+    units: UnitSystem
+
+    def error(
+        self, message: str, hint: str | None = None, at: Operand | None = None
+    ) -> ExpressionError:
+        """An error at an operand, or at the operation itself."""
+        return ExpressionError(message, at.offset if at else self.offset, hint)
+
+    def scalar(self, operand: Operand) -> Scalar:
+        """The value of an operand that must not be a vector.
+
+        Raises:
+            ExpressionError: it is a vector.
+        """
+        if isinstance(operand.value, Vector):
+            raise self.error(
+                f"{self.symbol} takes a number, not {operand.phrase}",
+                "take a component with .x, .y or .z, or norm(...)",
+                operand,
+            )
+        return operand.value
+
+    def periodic(self, operand: Operand) -> Scalar:
+        """The value of an operand of which whole turns do not matter.
+
+        Raises:
+            ExpressionError: it is a vector.
+        """
+        value = self.scalar(operand)
+        return value if operand.quantity.rest is None else operand.quantity.rest
+
+    def vector(self, operand: Operand) -> Vector:
+        """The value of an operand that must be a vector.
+
+        Raises:
+            ExpressionError: it is a scalar.
+        """
+        if not isinstance(operand.value, Vector):
+            raise self.error(
+                f"{self.symbol} takes a vector, not {operand.phrase}",
+                "write a vector as [x, y, z]",
+                operand,
+            )
+        return operand.value
+
+    def require(self, operand: Operand, dimension: Dimension) -> None:
+        """Check the dimension of an operand.
+
+        Raises:
+            ExpressionError: it has another one.
+        """
+        if not operand.dimension.compatible(dimension):
+            raise self.error(
+                f"{self.symbol} takes {dimension.phrase}, not {operand.phrase}",
+                self.unit_hint(operand, dimension),
+                operand,
+            )
+
+    def unit_hint(self, operand: Operand, dimension: Dimension) -> str:
+        """How to give an operand a wanted dimension."""
+        label = self.units.label(dimension)
+        number = operand.number
+        bare = number is not None and number.unit is None and number.text != "pi"
+        if number is not None and bare and label and len(number.text) <= MAX_QUOTED:
+            return f"write the number with a unit: {number.text} {label}"
+        if operand.dimension.dimensionless:
+            return _multiply_hint(dimension, label)
+        if (operand.dimension / ANGLE).compatible(dimension):
+            return f"it is per angle: write its unit as {label}"
+        if dimension.dimensionless:
+            return f"divide it by 1 {self.units.label(operand.dimension)}"
+        return f"give a value such as 1 {label}"
+
+
+def _multiply_hint(dimension: Dimension, label: str) -> str:
+    if dimension == ANGLE:
+        return "multiply it by 1 deg if it is in degrees, by 1 rad if it is in radians"
+    return f"multiply it by 1 {label}"
+
+
+# How a number that is written becomes one to compute with: as a double, or on a recording.
+#
+# While a file is recorded with all its numbers, each digit string becomes a recorded number that
+# knows the decimal it says; else nothing of this is felt.
+
+Reader = Callable[[str], Any]
+"""The number that digits (or the word `pi`) say."""
+
+_READER: ContextVar[Reader | None] = ContextVar("reader of written numbers", default=None)
+
+
+@contextmanager
+def numbers_read_by(reader: Reader) -> Iterator[None]:
+    """Numbers read in this context are what `reader` makes of their digits."""
+    token = _READER.set(reader)
+    try:
+        yield
+    finally:
+        _READER.reset(token)
+
+
+def read(value: float, digits: str) -> Any:
+    """The number that digits say, whose double is `value`."""
+    reader = _READER.get()
+    return value if reader is None else reader(digits)

@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from mechkin_cli.mechanism.idle_motions import Coordinate
-from mechkin_cli.mechanism.joint_table import is_angle
+from mechkin_cli.idle import Coordinate
 from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
+from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.vectors import Vector, cross, norm, subtract
 
 
@@ -30,7 +30,7 @@ class Line(NamedTuple):
         return norm(way if self.along is None else cross(way, self.along))
 
 
-class Held(NamedTuple):
+class LockedFreedom(NamedTuple):
     """An idle freedom of some links, and what holds it.
 
     `coordinate` is held, of one of the `joints` around the links; `told` is its joint where that is

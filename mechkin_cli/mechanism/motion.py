@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from mechkin_cli.tape.rows import differ
+from mechkin_cli.tape import differ
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
-    from mechkin_cli.mechanism.course import Course
-    from mechkin_cli.tape.tape import Tape
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from mechkin_cli.show import Floats
+    from mechkin_cli.tape import ExactRows, Tape
+    from mechkin_cli.units import Dimension
+
 
 ORDERS = ("", "_dot", "_ddot", "_dddot")
 """What the names of a coordinate's derivatives end in, from order 0 on."""
@@ -59,7 +64,7 @@ class Moments(NamedTuple):
     written: Floats
 
 
-class Motion(NamedTuple):
+class MotionInputs(NamedTuple):
     """All inputs; a mechanism without inputs has one row. `time` is there where the file has it,
     `course` where inputs move by laws or follow others; `ties` are all inputs as functions of each
     one that others follow (`building.course`). `tied` are pairs (input, leader) of inputs of which
@@ -94,3 +99,83 @@ class Assembly:
     mode: str | None = None
     turns: int = 1
     straight: bool = False
+
+
+# The course of the inputs: their laws and ties between the rows, as data.
+#
+# A course is a function of one parameter (the time, the one input that others follow, or the number
+# of the row where several are swept together), recorded as a tape. It is smooth on each *cell*
+# between two kinks; `places` are the rows and, between them, the ends of cells that the motion
+# passes.
+
+
+class CellKind(IntEnum):
+    """What moves on a cell: nothing or one input, so that it is straight, or several."""
+
+    STRAIGHT = 0
+    CURVED = 1
+
+
+class Parameter(NamedTuple):
+    """What the course is a function of: `time`, an input by its name, or `row`."""
+
+    name: str
+    dimension: Dimension | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Inputs as a function of a parameter in the file's units.
+
+    Attributes:
+        parameter: what the tape's first input is.
+        tape: from the parameter and the constants of a cell to the inputs in SI.
+        edges: (cells + 1,) values of the parameter, rising.
+        kinds: (cells,) of `CellKind`.
+        constants: (cells, tape inputs - 1).
+        ways: (cells, switches) which way each choice of the tape goes.
+        powers: (cells, 2) order in which the inputs leave the lower and the upper end: 1, or more
+            where all of them rest.
+        rows: (places,) number of the row, -1 between rows.
+        at: (places,) the parameter.
+        values: (inputs, places) in SI.
+        cells: (places - 1,) the cell between a place and the next; -1 where the motion jumps.
+    """
+
+    parameter: Parameter
+    tape: Tape
+    edges: Floats
+    kinds: NDArray[np.int8]
+    constants: Floats
+    ways: Floats
+    powers: NDArray[np.int64]
+    rows: NDArray[np.int64]
+    at: Floats
+    values: Floats
+    cells: NDArray[np.int64]
+
+
+# The motion of the inputs as the text says it: numbers over the rows, on a recording.
+
+
+class ExactMoments(NamedTuple):
+    """The moments of a response's rows in double-double (2, rows): in s, and in the file's unit."""
+
+    in_si: Floats
+    written: Floats
+
+
+class ExactMotion(NamedTuple):
+    """Inputs by name, each with value, rate, acceleration and jerk; `time` has its value alone.
+
+    Attributes:
+        rows: holds the numbers that differ from row to row.
+        in_si: in rad, m and s.
+        written: in the file's units.
+        tie_rates: of tied inputs by their leaders, in the order of `Motion.tied`, in SI.
+    """
+
+    rows: ExactRows
+    in_si: Mapping[str, Any]
+    written: Mapping[str, Any]
+    tie_rates: tuple[Any, ...] = ()

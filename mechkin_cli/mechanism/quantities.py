@@ -7,15 +7,29 @@ names; those that are computed from others after a run stand in `derived_quantit
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Literal, NamedTuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from mechkin_cli.expressions.quantity import Value, Vector
-from mechkin_cli.mechanism.held import Held
-from mechkin_cli.mechanism.joint_table import is_angle
-from mechkin_cli.mechanism.legs import find_legs
-from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism, is_written
+from mechkin_cli.diagnostics import nearest_hint
+from mechkin_cli.expressions import (
+    Expression,
+    ExpressionError,
+    Name,
+    Node,
+    NumberNode,
+    OperationNode,
+    Quantity,
+    Resolve,
+    Value,
+    Vector,
+    parse,
+    parse_nodes,
+)
+from mechkin_cli.mechanism.held import LockedFreedom
+from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism, find_legs, is_written
 from mechkin_cli.mechanism.motion import ORDERS
+from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.units import (
     ACCELERATION,
     ANGLE,
@@ -33,6 +47,11 @@ from mechkin_cli.units import (
     VELOCITY,
     Dimension,
 )
+
+if TYPE_CHECKING:
+    from mechkin_cli.expressions import Differentiate
+    from mechkin_cli.mechanism.problem import Problem
+
 
 Kind = Literal[
     "coordinate",
@@ -170,7 +189,7 @@ def catalogue(
     driven: Sequence[tuple[str, str]],
     *,
     timed: bool = False,
-    held: Sequence[Held] = (),
+    held: Sequence[LockedFreedom] = (),
 ) -> dict[str, Wanted]:
     """Every quantity by name; efforts act at what is `driven` (joint, coordinate), `timed` rows
     have a time, and what is `held` that which holds it."""
@@ -306,7 +325,7 @@ def _of_links(mechanism: Mechanism) -> Iterator[Wanted]:
         yield Wanted(name, "holding_moment", leg.body, MOMENT, False)
 
 
-def _of_held(held: Sequence[Held]) -> Iterator[Wanted]:
+def _of_held(held: Sequence[LockedFreedom]) -> Iterator[Wanted]:
     for one in held:
         if one.stop is not None:
             yield Wanted(one.holding, "force", one.stop.name, FORCE, True)
@@ -333,3 +352,165 @@ def response_quantities() -> dict[str, Wanted]:
         f"row.{kind}": Wanted(f"row.{kind}", kind, "row", dimension, False)
         for kind, dimension in _OF_RESPONSES.items()
     }
+
+
+# Derivatives of positions by an input, as quantities of the mechanism.
+#
+# An acceleration per acceleration of an input is the velocity per its rate, and so the derivative
+# of the position by the input (influence coefficients: J. Duffy, Analysis of Mechanisms and Robot
+# Manipulators, 1980): `p.position` by `A.theta` is `p.acceleration.per_acceleration`. A direction d
+# of a link moves by the cross product of the link's coefficient and d.
+
+_AXES = ("x", "y", "z")
+_POSITIONS = "it is taken of coordinates, positions of points, directions and parameters"
+
+
+def differentiation(problem: Problem) -> Differentiate:
+    """How derivatives by the inputs of a problem are taken."""
+
+    def differentiate(nodes: tuple[Node, ...], by: Name, offset: int) -> tuple[Node, ...]:
+        # loaded only where a derivative is written
+        from mechkin_cli.expressions import differentiated
+
+        influence = _Influence(problem, by)
+        return differentiated(nodes, influence.rate, influence.unit, offset)
+
+    return differentiate
+
+
+class _Influence:
+    """The derivatives of names by one input.
+
+    Raises:
+        ExpressionError: it is no input.
+    """
+
+    def __init__(self, problem: Problem, by: Name) -> None:
+        self.problem, self.input = problem, by.text
+        self.known: Mapping[str, Wanted] = problem.quantities()
+        self.inputs = [f"{joint}.{name}" for joint, name in problem.motion.driven]
+        if self.input not in self.inputs:
+            hint = nearest_hint(self.input, self.inputs) or "the motion has no inputs"
+            raise ExpressionError(f"{self.input[:40]} is no input of the motion", by.offset, hint)
+        self.unit = "rad" if is_angle(self.input.rpartition(".")[2]) else "m"
+
+    def rate(self, name: Name) -> tuple[Node, ...] | None:
+        """The derivative of a name; None of what does not move.
+
+        Raises:
+            ExpressionError: it is no position.
+        """
+        text, axis = name.text, ""
+        if text in self.problem.parameters:
+            return None
+        if text not in self.known and text.rpartition(".")[2] in _AXES:
+            text, _, axis = text.rpartition(".")
+        wanted = self.known.get(text)
+        if wanted is None:
+            return None  # what is not known is told when the expression is evaluated
+        component = (OperationNode(f".{axis}", 1, name.offset),) if axis else ()
+        if wanted.kind == "coordinate" and wanted.order == 0:
+            return self._of_coordinate(text, name)
+        if wanted.kind == "point" and wanted.order == 0:
+            if self.problem.mechanism.points[wanted.owner].link == GROUND_NAME:
+                return None
+            return (*self._per(f"{wanted.owner}.acceleration", name), *component)
+        if wanted.kind == "direction":
+            link = self.problem.mechanism.directions[text].link
+            if link == GROUND_NAME:
+                return None
+            turning = self._per(f"{link}.alpha", name)
+            # a rate of turning times a length is a velocity: its rad is left out
+            bare = (*parse_nodes("1 rad"), OperationNode("/", 2, name.offset))
+            cross = OperationNode("cross", 2, name.offset)
+            return (*turning, *bare, Name(text, name.offset), cross, *component)
+        hint = _POSITIONS
+        if wanted.kind == "joint_point":
+            hint = f"name the place in points: and write its position; {_POSITIONS}"
+        raise ExpressionError(f"{text} has no derivative by an input", name.offset, hint)
+
+    def _of_coordinate(self, text: str, name: Name) -> tuple[Node, ...] | None:
+        if text in self.inputs:
+            one = NumberNode(1.0, None, "1", name.offset)
+            return (one,) if text == self.input else None
+        return self._per(f"{text}_ddot", name)
+
+    def _per(self, acceleration: str, name: Name) -> tuple[Node, ...]:
+        """The coefficient of an acceleration."""
+        leading = self.problem.motion.leading
+        found = f"{acceleration}.per.{self.input}_ddot"
+        if found not in self.known and leading is not None and leading.name == self.input:
+            found = f"{acceleration}.per_acceleration"
+        if found not in self.known:
+            text = f"{name.text} has no derivative by {self.input}"
+            raise ExpressionError(text, name.offset, _POSITIONS)
+        return (Name(found, name.offset, whole=True),)
+
+
+# What a joint transmits along its axis and square to it, as bearings are chosen by.
+#
+# Each is an expression of the joint's reaction, evaluated like any other: on rows, on other
+# reactions in equilibrium where constraints are redundant, in double-double. What is square to the
+# axis is unique in a plane linkage, though neither reaction nor moment of its pins is.
+
+
+class _Load(NamedTuple):
+    """An expression of a joint's reaction, in which J stands for the joint."""
+
+    text: str
+    dimension: Dimension
+
+
+_LOADS: dict[Kind, _Load] = {
+    "radial_force": _Load("norm(cross(J.axis, J.force))", FORCE),
+    "axial_force": _Load("dot(J.axis, J.force)", FORCE),
+    "tilting_moment": _Load("norm(cross(J.axis, J.moment))", MOMENT),
+}
+
+_BEARING_LOADS_IN_PLANE: dict[Kind, _Load] = {"radial_force": _Load("norm(J.force)", FORCE)}
+"""Pins, slots and guides transmit nothing else: along its axis a guide takes no force."""
+
+_TOLD_IN_PLANE = "xy"
+
+BEARING_KINDS: frozenset[str] = frozenset(_LOADS)
+
+
+def bearing_catalogue(mechanism: Mechanism) -> dict[str, Wanted]:
+    """`J.radial_force`, `J.axial_force` and `J.tilting_moment` of every joint with an axis; in a
+    plane the first alone, of every joint with a point."""
+    return {wanted.name: wanted for wanted in _bearing_loads_of_joints(mechanism)}
+
+
+def bearing_load(wanted: Wanted, resolve: Resolve) -> Quantity:
+    """The load as its expression gives it, in SI."""
+    return _expression(wanted).evaluate(resolve)
+
+
+def read_for(names: Iterable[str], known: Mapping[str, Wanted]) -> list[str]:
+    """What has to be read for some quantities: reactions and axes in place of bearing loads.
+
+    Raises:
+        KeyError: an unknown quantity.
+    """
+    found: dict[str, None] = {}
+    for name in names:
+        wanted = known[name]
+        is_load = wanted.kind in BEARING_KINDS
+        parts = sorted(_expression(wanted).names) if is_load else [name]
+        found |= dict.fromkeys(parts)
+    return list(found)
+
+
+def _bearing_loads_of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
+    loads, told = (_BEARING_LOADS_IN_PLANE, _TOLD_IN_PLANE) if mechanism.plane else (_LOADS, "xyz")
+    for joint in mechanism.joints.values():
+        bears = joint.type.has_point and (mechanism.plane or joint.type.axis is not None)
+        for kind, load in loads.items() if bears and is_written(joint.name) else ():
+            name, dimension = f"{joint.name}.{kind}", load.dimension
+            yield Wanted(name, kind, joint.name, dimension, False, told=told)
+
+
+@cache
+def _expression(wanted: Wanted) -> Expression:
+    loads = _BEARING_LOADS_IN_PLANE if wanted.told == _TOLD_IN_PLANE else _LOADS
+    return parse(loads[wanted.kind].text.replace("J.", f"{wanted.owner}."))

@@ -14,24 +14,26 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from mechkin_cli.expressions import parse
-from mechkin_cli.mechanism.joint_table import dimension_of
-from mechkin_cli.mechanism.motion import ORDERS, DrivenInput, Moments, Motion
+from mechkin_cli.mechanism.motion import ORDERS, DrivenInput, Moments, MotionInputs
+from mechkin_cli.mechanism.pairs import dimension_of
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from mechkin_cli.diagnostics import Place
-    from mechkin_cli.mechanism.course import Course
-    from mechkin_cli.mechanism.held import Held
-    from mechkin_cli.mechanism.load_laws import LoadLaw
+    from mechkin_cli.expressions import Expression
+    from mechkin_cli.mechanism.held import LockedFreedom
     from mechkin_cli.mechanism.model import Amount, Mechanism
-    from mechkin_cli.mechanism.motion import Assembly
-    from mechkin_cli.mechanism.problem import Problem
+    from mechkin_cli.mechanism.motion import Assembly, Course
+    from mechkin_cli.mechanism.problem import LoadLaw, Problem
     from mechkin_cli.units import Dimension, UnitSystem
+
 
 Direction = Literal["up", "down", "any"]
 
 
-class Start(NamedTuple):
+class StartValue(NamedTuple):
     """A coordinate at the first moment: its value (rad, m) where it is one of the independent ones,
     and its rate (rad/s, m/s) where that is one of the rates given; None for what follows."""
 
@@ -61,7 +63,7 @@ class Effort(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Crossing:
+class CrossingEnd:
     """Ends a response where the value of `law` passes `at` (SI), rising (`up`), falling or either.
 
     `words` are what a row says of it: `O1.theta = 45 deg`.
@@ -76,7 +78,7 @@ class Crossing:
 
 
 @dataclass(frozen=True)
-class DeadCentre:
+class DeadCentreEnd:
     """Ends a response at the dead centre number `count` of a coordinate, where its rate changes its
     sign."""
 
@@ -88,7 +90,7 @@ class DeadCentre:
 
 
 @dataclass(frozen=True)
-class Turns:
+class TurnsEnd:
     """Ends a response where an angle lies `count` turns from its start, to either side."""
 
     words: str
@@ -98,11 +100,11 @@ class Turns:
     count: int
 
 
-Stop = Crossing | DeadCentre | Turns
+Stop = CrossingEnd | DeadCentreEnd | TurnsEnd
 
 
 @dataclass(frozen=True)
-class Response:
+class ResponseProblem:
     """One of the file's responses.
 
     Attributes:
@@ -126,7 +128,7 @@ class Response:
 
     name: str
     place: Place
-    start: tuple[Start, ...]
+    start: tuple[StartValue, ...]
     assembly: Assembly
     efforts: tuple[Effort, ...]
     driven: tuple[DrivenInput, ...]
@@ -137,7 +139,7 @@ class Response:
     fixed_step: float | None
     mechanism: Mechanism
     load_laws: tuple[LoadLaw, ...]
-    held: tuple[Held, ...] = ()
+    held: tuple[LockedFreedom, ...] = ()
 
     @property
     def rows(self) -> int:
@@ -167,17 +169,17 @@ class Response:
 
 
 def _watched(stop: Stop) -> LoadLaw:
-    if isinstance(stop, Crossing):
+    if isinstance(stop, CrossingEnd):
         return stop.law
-    from mechkin_cli.mechanism.load_laws import LoadLaw
+    from mechkin_cli.mechanism.problem import LoadLaw
 
     name = f"{stop.joint}.{stop.coordinate}"
-    if isinstance(stop, DeadCentre):
+    if isinstance(stop, DeadCentreEnd):
         name += ORDERS[1]
     return LoadLaw((name,), stop.place, parse(name))
 
 
-def first_motion(response: Response, units: UnitSystem) -> Motion:
+def first_motion(response: ResponseProblem, units: UnitSystem) -> MotionInputs:
     """The first moment as a motion of one row: the start's coordinates, then the driven ones.
 
     A start's coordinate without a rate of its own stands there with rate 0; accelerations are those
@@ -186,10 +188,10 @@ def first_motion(response: Response, units: UnitSystem) -> Motion:
     still = [_started(one, units) for one in response.start if one.value is not None]
     moving = [_at_first(item) for item in response.driven]
     moments = Moments(response.moments.values[:1], response.moments.written[:1])
-    return Motion((*still, *moving), 1, moments)
+    return MotionInputs((*still, *moving), 1, moments)
 
 
-def _started(one: Start, units: UnitSystem) -> DrivenInput:
+def _started(one: StartValue, units: UnitSystem) -> DrivenInput:
     orders = np.array([[one.value or 0.0], [one.rate or 0.0], [0.0], [0.0]])
     dimension = dimension_of(one.coordinate)
     written = []
@@ -213,7 +215,9 @@ def _at_first(item: DrivenInput) -> DrivenInput:
     )
 
 
-def response_problem(problem: Problem, response: Response, motion: Motion | None = None) -> Problem:
+def response_problem(
+    problem: Problem, response: ResponseProblem, motion: MotionInputs | None = None
+) -> Problem:
     """The problem at the first moment of a response, with its loads, laws and quantities.
 
     Its motion, or the `motion` that is given, has one row, in which the start's coordinates are
@@ -229,3 +233,68 @@ def response_problem(problem: Problem, response: Response, motion: Motion | None
         follow=None,
         response=response,
     )
+
+
+# Balances of the sweep over a cycle: what a file asks for, checked.
+
+
+class Cycle(NamedTuple):
+    """The rows from the first to the last, which repeats it, at equal distances of `name`: an
+    input, number `number`, that turns `turns` times, or `time` (number None)."""
+
+    name: str
+    number: int | None
+    turns: int
+    step: float
+    """From row to row, in rad or s."""
+    first: float
+    """At the first row, in rad or s."""
+
+
+@dataclass(frozen=True)
+class Balance:
+    """One balance; `name` is the stem of its files, `place` where the file says it."""
+
+    name: str
+    title: str
+    place: Place
+    cycle: Cycle
+
+
+@dataclass(frozen=True)
+class WorkBalance(Balance):
+    """Work of every effort and load."""
+
+
+@dataclass(frozen=True)
+class Harmonics(Balance):
+    """Fourier coefficients of some expressions, of `orders` times the turn of the input, or of the
+    whole of time."""
+
+    of: tuple[tuple[str, Expression], ...]
+    orders: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Flywheel(Balance):
+    """The flywheel for an unevenness at a mean rate (rad/s); None: the input's in the rows."""
+
+    unevenness: float
+    rate: float
+
+
+AnyBalance = WorkBalance | Harmonics | Flywheel
+
+
+def read_by(balances: Iterable[AnyBalance], problem: Problem) -> list[str]:
+    """Names of the quantities that balances read at once."""
+    found: list[str] = []
+    for balance in balances:
+        if isinstance(balance, Harmonics):
+            known = problem.quantities()
+            for _, expression in balance.of:
+                names = sorted(expression.names)
+                found += [n if n in known else n.rpartition(".")[0] for n in names]
+        else:
+            found += [f"{joint}.{coordinate}.effort" for joint, coordinate in problem.acting]
+    return [name for name in dict.fromkeys(found) if name in problem.quantities()]

@@ -1,9 +1,13 @@
 """Vectors of three floats as tuples, in a fixed order of operations so that bits are the same
-everywhere."""
+everywhere.
+"""
 
 from __future__ import annotations
 
-from mechkin_cli.tape.scalars import by_rounding, either, largest, nonzero, square_root
+from typing import NamedTuple
+
+from mechkin_cli import tolerances
+from mechkin_cli.tape import by_rounding, either, largest, nonzero, square_root
 from mechkin_cli.tolerances import UNIT_SQUARE
 
 Vector = tuple[float, float, float]
@@ -59,3 +63,96 @@ def _shortened(a: Vector) -> Vector:
     b = (a[0] / longest, a[1] / longest, a[2] / longest)
     length = square_root(dot(b, b))
     return (b[0] / length, b[1] / length, b[2] / length)
+
+
+# Right-handed orthonormal frames: three axes and an origin, in ground axes of the home drawing.
+
+
+class Frame(NamedTuple):
+    """Axes x, y, z and origin o."""
+
+    x: Vector
+    y: Vector
+    z: Vector
+    o: Vector
+
+    def components(self, vector: Vector) -> Vector:
+        """Components of a vector along the frame's axes."""
+        # three dot products, written out: plans take them by the hundred
+        (a, b, c), (d, e, f), (g, h, i), (x, y, z) = self.x, self.y, self.z, vector
+        return (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z)
+
+    def local(self, point: Vector) -> Vector:
+        """Coordinates of a point in the frame."""
+        return self.components(subtract(point, self.o))
+
+    def of(self, inner: Frame) -> Frame:
+        """A frame given in ground axes, expressed in this one."""
+        return Frame(
+            self.components(inner.x),
+            self.components(inner.y),
+            self.components(inner.z),
+            self.local(inner.o),
+        )
+
+    def flipped(self) -> Frame:
+        """The same frame turned half a turn about x: z reversed."""
+        return Frame(self.x, scale(-1.0, self.y), scale(-1.0, self.z), self.o)
+
+
+GROUND = Frame((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), ZERO)
+
+
+def upright(point: Vector) -> Frame:
+    """The frame along the ground's axes with its origin at a point."""
+    return Frame(GROUND.x, GROUND.y, GROUND.z, point)
+
+
+def perpendicular(z: Vector) -> Vector:
+    """A unit vector square to the unit vector z: from the ground axis that is farthest from z."""
+    axis = min(((abs(c), k) for k, c in enumerate(z)), key=_size)[1]
+    return unit(cross((GROUND.x, GROUND.y, GROUND.z)[axis], z))
+
+
+def _size(component: tuple[float, int]) -> float:
+    return component[0]
+
+
+def frame_about(z: Vector, x: Vector, o: Vector) -> Frame:
+    """The frame with axis z whose x is the projection of `x` square to z.
+
+    Raises:
+        ZeroDivisionError: x is parallel to z.
+    """
+    square = unit(subtract(x, scale(dot(x, z), z)))
+    return Frame(square, cross(z, square), z, o)
+
+
+def turned_shortest(a: Vector, b: Vector, vector: Vector) -> Vector:
+    """`vector` turned by the shortest rotation that carries the unit vector a onto b.
+
+    Rodrigues' formula with axis a x b; for opposite a and b the half turn about `perpendicular(a)`.
+    """
+    axis, cosine = cross(a, b), dot(a, b)
+    if cosine <= tolerances.OPPOSITE_COSINE:
+        p = perpendicular(a)
+        return subtract(scale(2.0 * dot(p, vector), p), vector)
+    # 1 / (1 + cosine), from |axis|^2 = (1 + cosine)(1 - cosine) where 1 + cosine cancels
+    inverse = (1.0 - cosine) / dot(axis, axis) if cosine < 0.0 else 1.0 / (1.0 + cosine)
+    along = scale(dot(axis, vector) * inverse, axis)
+    return add(add(scale(cosine, vector), cross(axis, vector)), along)
+
+
+def turned_tensor(tensor: tuple[float, ...], frame: Frame) -> tuple[float, ...]:
+    """A tensor in ground axes expressed in a frame's axes: xx, yy, zz, xy, xz, yz."""
+    xx, yy, zz, xy, xz, yz = tensor
+
+    def times(a: Vector) -> Vector:
+        return (
+            xx * a[0] + xy * a[1] + xz * a[2],
+            xy * a[0] + yy * a[1] + yz * a[2],
+            xz * a[0] + yz * a[1] + zz * a[2],
+        )
+
+    x, y, z = (frame.components(times(axis)) for axis in (frame.x, frame.y, frame.z))
+    return (x[0], y[1], z[2], y[0], z[0], z[1])

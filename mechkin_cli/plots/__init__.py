@@ -1,2 +1,22 @@
-"""Pictures of runs: curves over a column, curves in a plane. Loaded only where one is asked for;
-`figure` alone knows matplotlib."""
+"""Curves of a run, as plain data and drawn."""
+
+from __future__ import annotations
+
+from mechkin_cli.lazy import lazy_names
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from mechkin_cli.plots.curves import (
+        Picture as Picture,
+        picture as picture,
+        table_picture as table_picture,
+    )
+    from mechkin_cli.plots.figure import drawn as drawn, format_of as format_of, image as image
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "curves": ["Picture", "picture", "table_picture"],
+        "figure": ["drawn", "format_of", "image"],
+    },
+)

@@ -8,16 +8,20 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables.columns import Column, Words
-from mechkin_cli.tables.layout import row_texts
-from mechkin_cli.tables.run_parameter import run_parameter
+from mechkin_cli.tables import TableColumn, Words, row_texts, run_parameter
+from mechkin_cli.units import FORCE, LENGTH, MOMENT
+from mechkin_cli.verdict import Status
+from mechkin_cli.view import run_marks
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
-    from mechkin_cli.view.readable import Readable
+    from numpy.typing import NDArray
+
+    from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.tables import Columns, TableLayout
+    from mechkin_cli.view import Readable
 
 
-class Curve(NamedTuple):
+class PlotCurve(NamedTuple):
     """Values over the rows (rows,), of a vector (rows, components), nan where there is none."""
 
     label: str
@@ -35,7 +39,7 @@ class Curve(NamedTuple):
         return f"{self.label} [{self.unit}]" if self.unit else self.label
 
 
-def curve_of(analysis: Readable, name: str) -> Curve:
+def curve_of(analysis: Readable, name: str) -> PlotCurve:
     """A column of the run's tables by its label, or else a quantity or an expression.
 
     Raises:
@@ -50,10 +54,10 @@ def curve_of(analysis: Readable, name: str) -> Curve:
         raise _words(name)
     result = analysis.result
     found = result.problem.definitions.parse(name).evaluate(result.quantity, result.units)
-    return Curve(name, result.units.label(found.dimension), analysis[name])
+    return PlotCurve(name, result.units.label(found.dimension), analysis[name])
 
 
-def column_curve(column: Column) -> Curve:
+def column_curve(column: TableColumn) -> PlotCurve:
     """A column of a table.
 
     Raises:
@@ -61,21 +65,190 @@ def column_curve(column: Column) -> Curve:
     """
     if isinstance(column.values, Words):
         raise _words(column.label)
-    return Curve(column.label, column.unit, column.values)
+    return PlotCurve(column.label, column.unit, column.values)
 
 
-def numbers_of(columns: Sequence[Column]) -> list[Curve]:
+def numbers_of(columns: Sequence[TableColumn]) -> list[PlotCurve]:
     """The columns whose cells are numbers."""
     return [column_curve(column) for column in columns if not isinstance(column.values, Words)]
 
 
-def parameter_curve(analysis: Readable) -> Curve:
+def parameter_curve(analysis: Readable) -> PlotCurve:
     """What the run goes along; where nothing moves, the numbers of the rows."""
     along = run_parameter(analysis.result)
     if along is None:
-        return Curve("row", "", np.arange(1.0, analysis.rows + 1))
-    return Curve(along.name, along.unit, along.values)
+        return PlotCurve("row", "", np.arange(1.0, analysis.rows + 1))
+    return PlotCurve(along.name, along.unit, along.values)
 
 
 def _words(name: str) -> UsageError:
     return UsageError(f"{name} is words, which cannot be drawn; take a column of numbers")
+
+
+# A picture as plain data: which curves stand against what, and what is marked.
+#
+# Numbers stand over one column, a panel for each unit. Vectors are drawn in a plane with equal axes
+# instead: a position gives the curve of its point, a force its polar diagram about the origin. Two
+# columns of the same unit of length or force are drawn in such a plane, too.
+
+COMPONENTS = "xyz"
+
+
+class Panel(NamedTuple):
+    """Curves of one unit."""
+
+    unit: str
+    curves: tuple[PlotCurve, ...]
+
+
+class PlotMark(NamedTuple):
+    """A place of the run's parameter, and what happens there."""
+
+    place: float
+    words: str
+
+
+class Picture(NamedTuple):
+    """What is drawn.
+
+    Attributes:
+        title: above it.
+        x: against which the curves of all panels stand; in a plane one for each curve.
+        panels: from top to bottom; in a plane one.
+        is_plane: both axes are of one unit and drawn to one scale.
+        parameter: what the run goes along.
+        marks: dead centres, branch points and events, by that parameter.
+        solved: rows with a position (rows,).
+        doubtful: verdicts other than ok of rows that have one: words and rows (rows,).
+    """
+
+    title: str
+    x: tuple[PlotCurve, ...]
+    panels: tuple[Panel, ...]
+    is_plane: bool
+    parameter: PlotCurve
+    marks: tuple[PlotMark, ...]
+    solved: Bools
+    doubtful: tuple[tuple[str, Bools], ...]
+
+
+def picture(
+    analysis: Readable, title: str, y: Sequence[str | PlotCurve], x: str | PlotCurve | None = None
+) -> Picture:
+    """The picture of some columns, quantities or expressions, in the file's units.
+
+    Args:
+        analysis: of the run.
+        title: above the picture.
+        y: what is drawn; vectors alone, or numbers alone.
+        x: against what; None: the run's parameter.
+
+    Raises:
+        UsageError: nothing to draw, words, or what cannot stand in one picture.
+        ExpressionError: an unknown name, or dimensions that do not fit.
+    """
+    drawn = [one if isinstance(one, PlotCurve) else curve_of(analysis, one) for one in y]
+    if not drawn:
+        raise UsageError(f"{title} has nothing to draw; name what to draw, with --y A.effort")
+    along = parameter_curve(analysis)
+    against = curve_of(analysis, x) if isinstance(x, str) else x
+    if any(curve.is_vector for curve in drawn):
+        xs, ys = _in_plane(drawn, against)
+        return _picture(analysis, title, xs, (Panel(ys[0].unit, ys),), along, is_plane=True)
+    against = against or along
+    if against.is_vector:
+        raise UsageError(f"{against.label} is a vector; draw over a number, such as its .x")
+    units = dict.fromkeys(curve.unit for curve in drawn)
+    panels = tuple(Panel(u, tuple(c for c in drawn if c.unit == u)) for u in units)
+    label = analysis.result.units.label
+    is_plane = against.label != along.label and set(units) == {against.unit}
+    is_plane &= against.unit in {label(LENGTH), label(FORCE), label(MOMENT)}
+    xs = len(drawn) * (against,) if is_plane else (against,)
+    return _picture(analysis, title, xs, panels, along, is_plane=is_plane)
+
+
+def _picture(
+    analysis: Readable,
+    title: str,
+    x: tuple[PlotCurve, ...],
+    panels: tuple[Panel, ...],
+    along: PlotCurve,
+    *,
+    is_plane: bool,
+) -> Picture:
+    result = analysis.result
+    found = run_marks(analysis, along.label, along.values)
+    marks = tuple(PlotMark(float(str(mark["x"])), str(mark["text"])) for mark in found)
+    doubtful = tuple(
+        (status.label, result.status == status)
+        for status in Status
+        if status not in (Status.ok, Status.dead_centre)  # the latter is a mark
+        and status.has_solution
+        and bool((result.status == status).any())
+    )
+    return Picture(title, x, panels, is_plane, along, marks, result.solved, doubtful)
+
+
+def _in_plane(
+    drawn: Sequence[PlotCurve], against: PlotCurve | None
+) -> tuple[tuple[PlotCurve, ...], tuple[PlotCurve, ...]]:
+    """Vectors by the two components in which they spread most, all by the same."""
+    numbers = [curve.label for curve in drawn if not curve.is_vector]
+    if numbers or against is not None:
+        other = numbers[0] if numbers or against is None else against.label
+        vector = next(curve.label for curve in drawn if curve.is_vector)
+        raise UsageError(
+            f"{vector} is a vector, which is drawn in a plane of its own, without {other}; "
+            "for curves over a column write its components: .x, .y or .z"
+        )
+    units = {curve.unit for curve in drawn}
+    if len(units) > 1:
+        found = " and ".join(sorted(units))
+        raise UsageError(f"vectors in {found} do not go into one plane; draw them one by one")
+    first, second = _widest(np.concatenate([curve.values for curve in drawn]))
+    parts = [
+        tuple(
+            PlotCurve(f"{curve.label}.{COMPONENTS[k]}", curve.unit, curve.values[:, k])
+            for curve in drawn
+        )
+        for k in (first, second)
+    ]
+    return parts[0], parts[1]
+
+
+def _widest(values: NDArray[np.float64]) -> tuple[int, int]:
+    """The two components with the widest spread, in order; those without a number last. A vector
+    of a plane has two."""
+    spreads = [_spread(component) for component in values.T]
+    ranked = sorted(range(len(spreads)), key=lambda k: -spreads[k])
+    first, second = sorted(ranked[:2])
+    return first, second
+
+
+def _spread(values: Floats) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.ptp(known)) if known.size else -1.0
+
+
+# The picture of a table: as its `plot:` says, else all its numbers over the run's parameter.
+
+
+def table_picture(
+    analysis: Readable, layout: TableLayout, table: Columns, x: str | None = None
+) -> Picture:
+    """A table of a run; `x`, a label or an expression, goes before what its `plot:` says.
+
+    Raises:
+        UsageError: it has no numbers, or names a column of words.
+        ExpressionError: `x` is an unknown name.
+    """
+    plot, inputs = layout.plot, analysis.result.inputs
+    x = (plot.x if plot else None) if x is None else x
+    if plot is not None and plot.y:
+        by_label = {column.label: column for column in table.columns}
+        drawn = [column_curve(by_label[label]) for label in plot.y]
+    else:
+        given = {c.label for c in layout.columns if c.expression.text.strip() in inputs}
+        given.add(parameter_curve(analysis).label if x is None else x)
+        drawn = [curve for curve in numbers_of(table.columns) if curve.label not in given]
+    return picture(analysis, table.title or table.name, drawn, x)

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Figure
     from matplotlib.typing import ColorType
 
-    from mechkin_cli.arrays import Bools, Floats
-    from mechkin_cli.plots.curves import Curve
-    from mechkin_cli.plots.picture import Picture
+    from mechkin_cli.plots.curves import Picture, PlotCurve
+    from mechkin_cli.show import Bools, Floats
+
 
 _NO_DATES: dict[str, dict[str, None]] = {
     "svg": {"Date": None, "Creator": None},
@@ -153,7 +153,7 @@ def _in_plane(picture: Picture) -> Figure:
     return figure
 
 
-def _axis(curves: tuple[Curve, ...]) -> str:
+def _axis(curves: tuple[PlotCurve, ...]) -> str:
     """The name of an axis: of one curve its own, of several their common component."""
     names = list(dict.fromkeys(curve.label for curve in curves))
     if len(names) == 1:
@@ -163,7 +163,7 @@ def _axis(curves: tuple[Curve, ...]) -> str:
     return f"{name} [{curves[0].unit}]" if curves[0].unit else name
 
 
-def _vector_name(x: Curve, y: Curve) -> str:
+def _vector_name(x: PlotCurve, y: PlotCurve) -> str:
     """The vector whose components they are; of two columns the second."""
     stem = y.label.rpartition(".")[0]
     return stem if stem and x.label.rpartition(".")[0] == stem else y.label

@@ -1,5 +1,51 @@
-"""From the bytes of a YAML file to plain data in which every value still knows its line and column.
+"""From the bytes of a YAML file to plain data in which every value knows its line and column.
 
-text -> events -> nodes -> plain data: `text` decodes, `parser` walks the events, `document` answers
-where a value stands, `explain` turns errors of a validation into messages with a place.
+text -> events -> nodes -> plain data. Hides PyYAML; turns errors of syntax and validation into
+messages with a place.
 """
+
+from __future__ import annotations
+
+from mechkin_cli.lazy import lazy_names
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from mechkin_cli.reading.data import document_from_data as document_from_data
+    from mechkin_cli.reading.document import (
+        Document as Document,
+        KeyPath as KeyPath,
+        document_from_text as document_from_text,
+        read_document as read_document,
+    )
+    from mechkin_cli.reading.messages import (
+        explain as explain,
+        is_mechanism as is_mechanism,
+        is_study as is_study,
+    )
+    from mechkin_cli.reading.text import (
+        MOST_BYTES as MOST_BYTES,
+        MOST_DIAGNOSTICS as MOST_DIAGNOSTICS,
+        MOST_TABLE_BYTES as MOST_TABLE_BYTES,
+        NotRegular as NotRegular,
+        decoded as decoded,
+        read_regular as read_regular,
+    )
+    from mechkin_cli.reading.yaml import CORRECT_FIRST as CORRECT_FIRST, in_order as in_order
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "data": ["document_from_data"],
+        "document": ["Document", "KeyPath", "document_from_text", "read_document"],
+        "messages": ["explain", "is_mechanism", "is_study"],
+        "text": [
+            "MOST_BYTES",
+            "MOST_DIAGNOSTICS",
+            "MOST_TABLE_BYTES",
+            "NotRegular",
+            "decoded",
+            "read_regular",
+        ],
+        "yaml": ["CORRECT_FIRST", "in_order"],
+    },
+)

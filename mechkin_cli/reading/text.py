@@ -3,13 +3,85 @@
 from __future__ import annotations
 
 import codecs
+import errno
+import os
 import re
+import stat
 from pathlib import Path
+from typing import Final
 
-from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, Place, UsageError
-from mechkin_cli.nearest import nearest
-from mechkin_cli.reading.limits import MOST_BYTES
-from mechkin_cli.regular_file import NotRegular, read_regular
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, Place, UsageError, nearest
+
+# How large a mechanism file may be: limits that keep bad input from exhausting time or memory.
+#
+# The largest mechanism file written by hand has some thousand lines; each limit leaves a factor of
+# ten or more above that and still keeps the work of the slowest parser within seconds.
+
+MOST_BYTES: Final = 1 << 20
+"""Size of the file in bytes."""
+
+MOST_EVENTS: Final = 100_000
+"""YAML events (scalars, starts and ends of lists and mappings) in a file."""
+
+MOST_LEVELS: Final = 32
+"""Lists and mappings inside one another; format 1 itself needs eight."""
+
+MOST_PIECES: Final = 100
+"""Pieces of one expression that YAML has cut at its commas; no function takes so many values."""
+
+LONGEST_EXPRESSION: Final = 4000
+"""Characters of a line searched for the end of an expression that YAML has cut."""
+
+MOST_DIAGNOSTICS: Final = 50
+"""Messages shown for one file; the rest is counted in one more message."""
+
+
+# The bytes of a regular file: whatever stands at a path, reading it neither waits nor goes on for
+# ever.
+
+MOST_TABLE_BYTES: Final = 1 << 30
+"""Size of a table on disk that is compared; kept tables have some kilobytes."""
+
+_PIECE = 1 << 20
+_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0)
+
+
+class NotRegular(OSError):
+    """A folder, device, pipe or socket stands where a file is to be read; nothing was opened."""
+
+    def __init__(self, path: Path, mode: int) -> None:
+        self.is_folder = stat.S_ISDIR(mode)
+        what = "a folder" if self.is_folder else "not a regular file"
+        super().__init__(errno.EINVAL, f"it is {what}", str(path))
+
+
+def read_regular(path: Path, most: int) -> bytes:
+    """The content of a file, of which no more than `most` + 1 bytes are read.
+
+    Files of the system (`/proc`) that wait for news are read without waiting.
+
+    Raises:
+        NotRegular: it is no regular file.
+        OSError: it cannot be read.
+        ValueError: the path holds a NUL character.
+    """
+    _check(path, path.stat().st_mode)
+    descriptor = os.open(path, _FLAGS)
+    try:
+        _check(path, os.fstat(descriptor).st_mode)
+        pieces, left = [], most + 1
+        while left and (piece := os.read(descriptor, min(left, _PIECE))):
+            pieces.append(piece)
+            left -= len(piece)
+        return b"".join(pieces)
+    finally:
+        os.close(descriptor)
+
+
+def _check(path: Path, mode: int) -> None:
+    if not stat.S_ISREG(mode):
+        raise NotRegular(path, mode)
+
 
 _LINE_BREAK = re.compile(r"\r\n|\r|\n")
 _TAB_IN_INDENTATION = re.compile(r"^ *(\t)[ \t]*[^ \t\r\n#]", re.MULTILINE)

@@ -2,22 +2,23 @@
 
 from typing import Annotated, Any, Literal
 
-from mechkin_cli.schema.assembly import AssemblySection
-from mechkin_cli.schema.balances import Balance, refuse_clashes
-from mechkin_cli.schema.base import NOTHING, Section, refuse
-from mechkin_cli.schema.chain import ChainRow
-from mechkin_cli.schema.coefficients import Coefficients
-from mechkin_cli.schema.joints import Joint
-from mechkin_cli.schema.links import Link
+from mechkin_cli.schema.base import NOTHING, After, BeforeRule, Section, refuse
+from mechkin_cli.schema.links_joints import ChainRow, Joint, Link
 from mechkin_cli.schema.loads import Load
-from mechkin_cli.schema.motion import MotionSection
-from mechkin_cli.schema.points import DirectionOfLink, PointOfLink
+from mechkin_cli.schema.motion import AssemblySection, MotionSection
 from mechkin_cli.schema.responses import Response
-from mechkin_cli.schema.rules import After, Before
-from mechkin_cli.schema.runs import free_run_names
-from mechkin_cli.schema.scalars import AnyDimension, Coordinate, Name, Text
-from mechkin_cli.schema.tables import Table, differing_names
-from mechkin_cli.schema.units_section import METRIC, UnitsSection
+from mechkin_cli.schema.scalars import (
+    METRIC,
+    AnyDimension,
+    Coordinate,
+    DirectionOfLink,
+    Name,
+    PointOfLink,
+    Text,
+    UnitsSection,
+    free_run_names,
+)
+from mechkin_cli.schema.tables import Balance, Coefficients, Table, differing_names, refuse_clashes
 from mechkin_cli.schema.view import ViewSection
 
 
@@ -32,7 +33,7 @@ class AnyFile(Section):
 
     in_plane = False
 
-    format: Annotated[Literal[1], Before(_format_number)]
+    format: Annotated[Literal[1], BeforeRule(_format_number)]
     """Version of the file format."""
     name: Text | None = None
     """Name of the mechanism; left out, that of the file."""

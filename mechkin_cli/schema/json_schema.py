@@ -12,16 +12,329 @@ import json
 from types import NoneType, UnionType
 from typing import Annotated, Any, Final, Literal, Union, get_args, get_origin
 
-from mechkin_cli.schema.alternatives import Choice
-from mechkin_cli.schema.base import Section, fields_of
-from mechkin_cli.schema.decisions import decided
-from mechkin_cli.schema.descriptions import field_descriptions
-from mechkin_cli.schema.examples import BY_KEY, own_example
+from mechkin_cli.schema.base import (
+    Barred,
+    DimensionRule,
+    FormChoice,
+    Limits,
+    SchemaName,
+    Section,
+    ShortForm,
+    Shown,
+    field_descriptions,
+    fields_of,
+)
 from mechkin_cli.schema.file import AnyFile, MechanismFile
-from mechkin_cli.schema.names import RESERVED
 from mechkin_cli.schema.plane import PlaneFile
-from mechkin_cli.schema.rules import Barred, Dimension, Limits, Named, ShortForm, Shown
-from mechkin_cli.schema.runs import TAKEN_FOR_EDITORS
+from mechkin_cli.schema.scalars import TAKEN_FOR_EDITORS
+from mechkin_cli.schema.validation import RESERVED
+
+# Which of several forms an editor holds a value against: decided by one look, as the reader does.
+#
+# A list of alternatives (`oneOf`) leaves editors to guess which one was meant, and their messages
+# are those of the wrong one. So forms are told apart by `if`: by the kind of the value, by the word
+# that stands at a key (`type`, `law`), or by a key that only one form has. Where nothing decides
+# yet, as while a mapping is being typed, all forms are offered.
+
+Schema = dict[str, Any]
+
+
+def decided(forms: list[Schema], key: str | None, definitions: Schema) -> Schema:
+    """The schema that chooses among forms; `key` holds the word that tells them apart, if any."""
+    if key is not None:
+        return _by_word(forms, key, definitions)
+    groups: dict[frozenset[str], list[Schema]] = {}
+    for form in forms:
+        groups.setdefault(frozenset(_kinds(form, definitions)), []).append(form)
+    kinds = list(groups)
+    if sum(map(len, kinds)) == len(frozenset().union(*kinds)):
+        return _by_kind([_by_key(group, definitions) for group in groups.values()], kinds)
+    return _by_key(forms, definitions)
+
+
+def _by_kind(forms: list[Schema], kinds: list[frozenset[str]]) -> Schema:
+    """By the JSON type of the value; all types that none has go to the last form."""
+    (*others, last) = forms
+    schema = last
+    for form, kind in zip(reversed(others), reversed(kinds[:-1]), strict=True):
+        names = sorted(kind)
+        condition = {"type": names[0] if len(names) == 1 else names}
+        schema = {"if": condition, "then": form, "else": schema}
+    return schema
+
+
+def _by_word(forms: list[Schema], key: str, definitions: Schema) -> Schema:
+    groups: dict[str | None, list[Schema]] = {}
+    for form in forms:
+        for word in _words(form, key, definitions):
+            groups.setdefault(word, []).append(form)
+    words = [word for word in groups if word is not None]
+    without = groups.get(None)
+    rules = [
+        {
+            "if": {"required": [key], "properties": {key: {"const": word}}},
+            "then": _by_key(groups[word], definitions),
+        }
+        for word in words
+    ]
+    schema: Schema = {
+        "type": "object",
+        "properties": {key: _choice(key, words, forms, definitions)},
+    }
+    if without is None:
+        return schema | {"required": [key], "allOf": rules}
+    rules.append({"if": {"required": [key]}, "else": _by_key(without, definitions)})
+    return schema | {"allOf": rules}
+
+
+def _choice(key: str, words: list[str], forms: list[Schema], definitions: Schema) -> Schema:
+    """The key that decides, with what each of its words means."""
+    described: dict[str | None, str] = {}
+    for form in forms:
+        for word in _words(form, key, definitions):
+            described.setdefault(word, _resolved(form, definitions).get("description", ""))
+    said = "; ".join(str(described[word]).partition("\n")[0].rstrip(".") for word in words)
+    return {"type": "string", "enum": words, "description": f"{said}."}
+
+
+def _by_key(forms: list[Schema], definitions: Schema) -> Schema:
+    """By a key that one form needs and no other has."""
+    if len(forms) == 1:
+        return forms[0]
+    known = [_resolved(form, definitions) for form in forms]
+    schema: Schema = {"anyOf": forms}
+    for number in reversed(range(len(forms))):
+        others = {
+            name
+            for place, other in enumerate(known)
+            if place != number
+            for name in other.get("properties", {})
+        }
+        own = [name for name in known[number].get("required", []) if name not in others]
+        if own:
+            needed = [{"required": [name]} for name in own]
+            condition = needed[0] if len(needed) == 1 else {"anyOf": needed}
+            schema = {"if": condition, "then": forms[number], "else": schema}
+    return schema
+
+
+def _words(form: Schema, key: str, definitions: Schema) -> list[str | None]:
+    """The words of a form at a key; None where it does not need the key."""
+    found = _resolved(form, definitions)
+    if key not in found.get("required", []):
+        return [None]
+    word = found["properties"][key]
+    return [word["const"]] if "const" in word else list(word["enum"])
+
+
+def _kinds(form: Schema, definitions: Schema) -> list[str]:
+    found = _resolved(form, definitions)
+    if "if" in found or "type" not in found:
+        return []
+    kinds = found["type"]
+    return [kinds] if isinstance(kinds, str) else list(kinds)
+
+
+def _resolved(form: Schema, definitions: Schema) -> Schema:
+    """The schema that a reference leads to."""
+    while "$ref" in form:
+        form = definitions[form["$ref"].rpartition("/")[2]]
+    return form
+
+
+# An example of every key whose kind of value has none of its own, for editors.
+#
+# By the key, or by section and key where sections mean different things by one key. A test holds
+# every example against the schema of its key.
+
+_R: Final = {"type": "R", "links": ["ground", "crank"], "point": [0, 0, 0], "axis": [0, 0, 1]}
+_TURN: Final = {"from": 0, "to": 360, "step": 5, "rate": "10 rad/s"}
+
+BY_KEY: Final[dict[str, Any]] = {
+    "accept": ["unphysical-inertia"],
+    "actuators": ["leg1.s", "leg2.s"],
+    "across": [0, 0, 1],
+    "along": {"O3": ["B", "C"]},
+    "assembly": {"near": {"O4.theta": 37}},
+    "axes": {"x": [1, 0, 0], "y": [0, 1, 0]},
+    "axis": [0, 0, 1],
+    "axis2": [0, 1, 0],
+    "balances": [{"name": "work", "type": "work"}],
+    "between": ["P", "Q"],
+    "camera": [1, -2, 1],
+    "chain": [
+        {"joint": "A", "type": "R", "link": "one", "theta": 0, "s": 0, "alpha": 40, "a": 1},
+        {"joint": "B", "type": "R", "link": "ground", "theta": 0, "s": 0, "alpha": -40, "a": 1},
+    ],
+    "coefficients": [{"name": "system", "row": 1}],
+    "colours": {"crank": "#c0392b"},
+    "columns": ["O1.theta", {"label": "torque", "value": "O1.effort", "decimals": 2}],
+    "count": 73,
+    "counted": 24,
+    "data": ["m2"],
+    "decimals": 3,
+    "direction": [0, -1, 0],
+    "directions": {"d": {"link": "crank", "vector": [1, 0, 0]}},
+    "driven": {"A.theta": {"at": "30 deg"}},
+    "efforts": {"A.theta": "8 N*m - 0.4 N*m*s/rad*A.theta_dot"},
+    "follow": ["O1"],
+    "force": [0, 0, "-10 N"],
+    "groove": [1, 0, 0],
+    "hidden": ["frame"],
+    "inertia": {"xx": "2 kg*mm^2", "yy": 20, "zz": 20},
+    "inputs": {"O1.theta": _TURN},
+    "joints": {"O1": _R},
+    "label": "theta [of the crank]",
+    "links": ["ground", "crank"],
+    "loads": [{"type": "gravity", "g": "standard"}],
+    "mode": "A",
+    "motion": {"inputs": {"O1.theta": _TURN}},
+    "name": "RSSR with a long coupler",
+    "near": {"O4.theta": 37},
+    "normal": [0, 0, 1],
+    "of": ["ground.shaking_force"],
+    "orders": [0, 1, 2, 4],
+    "over": "O1.theta_dot",
+    "parameters": {"r": "40 mm", "k": "2 N/mm"},
+    "paths": ["coupler_point"],
+    "pin": [1, 0, 0],
+    "plot": {"x": "theta", "y": ["torque"]},
+    "points": {"P": {"link": "crank", "at": ["r", 0, 0]}},
+    "published": "published/table_3.csv",
+    "quantities": {"gap": "norm(P.position - Q.position)"},
+    "remarks": [{"text": "The source rounds to six digits."}],
+    "responses": {"fall": {"start": {"A.theta": 80}, "time": {"from": 0, "to": 3, "step": 0.1}}},
+    "rows_by": "theta",
+    "runs": ["sweep", "fall"],
+    "shapes": {"coupler": "plate"},
+    "slot": [0, 0, 1],
+    "source": "A textbook, page 12",
+    "start": {"A.theta": "80 deg", "A.theta_dot": "0 rad/s"},
+    "stop": [{"turns": "A.theta", "count": 3}],
+    "summary": ["max", "min", "rms"],
+    "tables": [{"name": "drive", "columns": ["O1.theta", "O1.effort"]}],
+    "text": "The source rounds to six digits.",
+    "time": {"from": 0, "to": "2 s", "step": 0.1},
+    "title": "Torque of the motor",
+    "torque": [0, 0, "5 N*m"],
+    "units": {"length": "mm", "angle": "deg", "mass": "kg", "force": "N"},
+    "values": [0, 15, "40 deg"],
+    "vector": [1, 0, 0],
+    "view": {"hidden": ["frame"]},
+    "x": [1, 0, 0],
+    "y": [0, 1, 0],
+    "zero": {"ground": [1, 0, 0], "crank": [0, 1, 0]},
+}
+
+BY_SECTION: Final[dict[tuple[str, str], Any]] = {
+    ("Kept", "as"): ["peak", "rms"],
+    ("Column", "value"): "norm(O1.force)",
+    ("Crossing", "value"): "O1.theta - O2.theta",
+    ("DeadCentre", "dead_centre"): "O4.theta",
+    ("FollowingInput", "with"): "2*O1.theta",
+    ("Kept", "of"): "O1.effort",
+    ("Kept", "at"): "90 deg",
+    ("Kept", "label"): "largest torque",
+    ("Normal", "mean"): "0.5 in",
+    ("Normal", "deviation"): "0.01 in",
+    ("RangeOfValues", "from"): "0.4 in",
+    ("RangeOfValues", "to"): "0.6 in",
+    ("RangeOfValues", "step"): "0.05 in",
+    ("StudyFile", "name"): "lengths of the coupler",
+    ("StudyFile", "table"): "variants.csv",
+    ("Uniform", "between"): ["0.4 in", "0.6 in"],
+    ("UnitsSection", "length"): "mm",
+    ("UnitsSection", "angle"): "deg",
+    ("UnitsSection", "mass"): "kg",
+    ("UnitsSection", "force"): "N",
+    ("UnitsSection", "time"): "s",
+    ("UnitsSection", "angular_rate"): "deg/s",
+    ("ViewSection", "speed"): "4 s",
+    ("Cycloidal", "duration"): "0.5 s",
+    ("Cycloidal", "from"): 0,
+    ("Cycloidal", "start"): "0.1 s",
+    ("Cycloidal", "to"): "40 mm",
+    ("Harmonic", "duration"): "0.5 s",
+    ("Harmonic", "from"): 0,
+    ("Harmonic", "start"): "0.1 s",
+    ("Harmonic", "to"): "40 mm",
+    ("SweptInput", "from"): 0,
+    ("SweptInput", "step"): 5,
+    ("SweptInput", "to"): 360,
+    ("TimeSection", "from"): 0,
+    ("TimeSection", "step"): "5 ms",
+    ("TimeSection", "to"): "2 s",
+    ("ListedTime", "values"): [0, 0.1, "0.5 s"],
+    ("MechanismFile", "links"): {
+        "crank": {"mass": "0.4 kg", "center_of_mass": ["r/2", 0, 0]},
+        "rod": {},
+    },
+    ("Plot", "x"): "theta",
+    ("Plot", "y"): ["torque"],
+    ("Polynomial", "coefficients"): [0, "10 deg/s", "2 deg/s^2"],
+    ("PinInSlotJoint", "point"): [0, "r"],
+    ("PlanePrismaticJoint", "point"): [0, "r"],
+    ("PlaneRevoluteJoint", "point"): [0, "r"],
+    ("PinInSlotJoint", "slot"): [0, 1],
+    ("PlaneDirectionOfLink", "vector"): [1, 0],
+    ("PlaneFile", "directions"): {"d": {"link": "crank", "vector": [1, 0]}},
+    ("PlaneFile", "joints"): {"O1": {"type": "R", "links": ["ground", "crank"], "point": [0, 0]}},
+    ("PlaneFile", "links"): {"crank": {"mass": "0.4 kg", "center_of_mass": ["r/2", 0]}, "rod": {}},
+    ("PlaneFile", "plane"): "xy",
+    ("PlaneFile", "points"): {"P": {"link": "crank", "at": ["r", 0]}},
+    ("PlaneForce", "force"): [0, "-10 N"],
+    ("PlaneForce", "point"): [0, "r"],
+    ("PlaneGravity", "direction"): [0, -1],
+    ("PlaneLink", "center_of_mass"): ["r/2", 0],
+    ("PlaneLink", "inertia"): "20 kg*mm^2",
+    ("PlanePointOfLink", "at"): ["r", 0],
+    ("PlanePrismaticJoint", "axis"): [1, 0],
+    ("PlaneRevoluteJoint", "zero"): {"ground": [1, 0], "crank": [0, 1]},
+    ("PlaneTorque", "torque"): "5 N*m",
+    ("PointOfLink", "at"): ["r", 0, 0],
+    ("PrintedRemark", "columns"): ["theta4"],
+    ("StudyFile", "keep"): [{"of": "O1.effort", "as": "peak"}],
+    ("StudyFile", "rows"): ["O4.theta"],
+    ("StudyFile", "sample"): {"count": 1024, "method": "sobol"},
+    ("StudyFile", "set"): {"P3": "0.4 in"},
+    ("StudyFile", "vary"): {"P1": [0.48, "0.5 in"], "P2": {"tolerance": "0.01 in"}},
+    ("Tolerance", "tolerance"): ["-0.1 mm", "0.2 mm"],
+    ("ShapeOfLink", "points"): ["O1", [0, 10, 0]],
+}
+
+
+INSTEAD_OF_ANY: Final[dict[str, Any]] = {
+    "joint": "O1",
+    "coordinate": "theta",
+    "free": "80 mm",
+    "radius": "8 mm",
+    "length": "60 mm",
+    "collar": "12 mm",
+    "width": "90 mm",
+    "flank": "15 deg",
+    "damping": "0.2 N*s/mm",
+    "stiffness": "4 N/mm",
+    "unevenness": 0.02,
+    "static": 0.15,
+    "sliding": 0.1,
+    "tolerance": "1e-9",
+    "fixed_step": "1 ms",
+    "lead": "5 mm",
+    "speed": "5 mm/s",
+    "jerk": "0 rad/s^3",
+    "coefficient": 0.12,
+    "mass": "0.4 kg",
+    "point": [0, "r", "10 mm"],
+    "center_of_mass": ["r/2", 0, "10 mm"],
+    "xx": "2 kg*mm^2",
+}
+"""For keys whose kind of value has an example that says little of this key, wherever they stand."""
+
+
+def own_example(section: str, key: str) -> Any:
+    """The example of a key whatever its kind of value has; None where it has none here."""
+    return BY_SECTION.get((section, key), INSTEAD_OF_ANY.get(key))
+
 
 IDENTITY: Final = "urn:mechkin:schema:mechanism:1"
 """The name of the schema of format 1, wherever its file lies."""
@@ -48,8 +361,6 @@ _JSON_TYPES = {str: "string", int: "integer"}
 _NOT_A_NUMBER = r"^[+-]?\.?([Nn][Aa][Nn]|[Ii][Nn][Ff]([Ii][Nn][Ii][Tt][Yy])?)$"
 
 _MEASURED = ": a number in the file's units"
-
-Schema = dict[str, Any]
 
 
 def json_schema() -> Schema:
@@ -206,21 +517,21 @@ def _value(annotation: Any, definitions: Schema) -> Schema:
 
 
 def _with_rules(inner: Any, rules: tuple[Any, ...], definitions: Schema) -> Schema:
-    choice = next((rule for rule in rules if isinstance(rule, Choice)), None)
+    choice = next((rule for rule in rules if isinstance(rule, FormChoice)), None)
     if choice is None:
         schema = _value(inner, definitions)
     else:
         forms = [_value(member, definitions) for member in get_args(inner)]
         schema = decided(forms, choice.key, definitions)
     for rule in rules:
-        if isinstance(rule, Named):
+        if isinstance(rule, SchemaName):
             definitions[rule.name] = schema
             schema = {"$ref": f"#/$defs/{rule.name}"}
         elif isinstance(rule, Limits):
             schema |= _limits(rule, schema)
         elif isinstance(rule, Shown):
             schema |= _shown(rule)
-        elif isinstance(rule, Dimension):
+        elif isinstance(rule, DimensionRule):
             schema |= _dimension(rule)
         elif isinstance(rule, Barred):
             schema |= {"not": {"pattern": rule.pattern}}
@@ -246,7 +557,7 @@ def _shown(rule: Shown) -> Schema:
     return shown | ({"examples": list(rule.examples)} if rule.examples else {})
 
 
-def _dimension(rule: Dimension) -> Schema:
+def _dimension(rule: DimensionRule) -> Schema:
     text = f"{rule.name}{_MEASURED}, a number with its unit, or an expression of parameters"
     not_finite = {"type": "string", "pattern": _NOT_A_NUMBER}
     shown = _shown(Shown(("number", "string"), text, rule.examples))

@@ -5,12 +5,7 @@ A value may be an expression of coordinates, their rates and `time`, or `{table:
 
 from typing import Annotated, Any, Literal
 
-from mechkin_cli.schema.alternatives import Choice, Tag, by_word
-from mechkin_cli.schema.base import Section, refuse
-from mechkin_cli.schema.joining import JoinedTable
-from mechkin_cli.schema.places import NamedOrGiven
-from mechkin_cli.schema.rules import Limits, Named
-from mechkin_cli.schema.runs import RunNames
+from mechkin_cli.schema.base import FormChoice, Limits, SchemaName, Section, Tag, by_word, refuse
 from mechkin_cli.schema.scalars import (
     AccelerationVector,
     Angle,
@@ -21,8 +16,11 @@ from mechkin_cli.schema.scalars import (
     DirectionVector,
     Force,
     ForceOrTorque,
+    JoinedTable,
     Length,
     Name,
+    NamedOrGiven,
+    RunNames,
     Stiffness,
     Text,
     Torque,
@@ -47,13 +45,13 @@ def expression_or_table(value: Any) -> str:
 
 ForceValue = Annotated[
     Annotated[Force, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
-    Choice(expression_or_table),
-    Named("ForceValue"),
+    FormChoice(expression_or_table),
+    SchemaName("ForceValue"),
 ]
 TorqueValue = Annotated[
     Annotated[Torque, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
-    Choice(expression_or_table),
-    Named("TorqueValue"),
+    FormChoice(expression_or_table),
+    SchemaName("TorqueValue"),
 ]
 Axes = Literal["ground", "link"]
 Between = Annotated[tuple[Name, ...], Limits(min_length=2, max_length=2)]
@@ -68,8 +66,8 @@ def standard_or_vector(value: Any) -> str:
 FreeFall = Annotated[
     Annotated[AccelerationVector, Tag("(vector)")]
     | Annotated[Literal["standard"], Tag("(standard)")],
-    Choice(standard_or_vector),
-    Named("FreeFall"),
+    FormChoice(standard_or_vector),
+    SchemaName("FreeFall"),
 ]
 
 
@@ -211,8 +209,8 @@ def _number_or_falling(value: Any) -> str:
 
 Coefficient = Annotated[
     Annotated[Dimensionless, Tag("(number)")] | Annotated[FallingCoefficient, Tag("(falling)")],
-    Choice(_number_or_falling),
-    Named("Coefficient"),
+    FormChoice(_number_or_falling),
+    SchemaName("Coefficient"),
 ]
 
 

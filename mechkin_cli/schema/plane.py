@@ -6,11 +6,25 @@ What a plane has no place for is refused at its key, with what to write instead.
 
 from typing import Annotated, Any, ClassVar, Final, Literal
 
-from mechkin_cli.schema.alternatives import Choice, Tag, by_word
-from mechkin_cli.schema.base import NOTHING, Section, refuse
+from mechkin_cli.schema.base import (
+    NOTHING,
+    BeforeRule,
+    FormChoice,
+    Limits,
+    SchemaName,
+    Section,
+    Tag,
+    by_word,
+    refuse,
+)
 from mechkin_cli.schema.file import AnyFile
-from mechkin_cli.schema.joints import DirectionOrPerLink, JointBase, PerLink, PlaceOrPerLink
-from mechkin_cli.schema.links import BodyWithMass
+from mechkin_cli.schema.links_joints import (
+    BodyWithMass,
+    DirectionOrPerLink,
+    JointBase,
+    PerLink,
+    PlaceOrPerLink,
+)
 from mechkin_cli.schema.loads import (
     Axes,
     DamperAtJoint,
@@ -26,9 +40,7 @@ from mechkin_cli.schema.loads import (
     standard_or_vector,
     tag_of_load,
 )
-from mechkin_cli.schema.places import NamedOr
-from mechkin_cli.schema.rules import Before, Limits, Named
-from mechkin_cli.schema.scalars import Acceleration, AnyDimension, Inertia, Length, Name
+from mechkin_cli.schema.scalars import Acceleration, AnyDimension, Inertia, Length, Name, NamedOr
 
 PLANE_JOINT_TYPES: Final = ("R", "P", "Ps", "W")
 _LEFT_OUT: Final = "leave it out: in a plane file "
@@ -63,13 +75,15 @@ def _about_normal(value: Any) -> Any:
 
 
 _TWO: Final = Limits(min_length=2, max_length=2)
-PlaneVector = Annotated[tuple[Length, ...], _TWO, Before(_two_numbers), Named("PlaneVector")]
-PlaneDirection = Annotated[
-    tuple[AnyDimension, ...], _TWO, Before(_two_numbers), Named("PlaneDirection")
+PlaneVector = Annotated[
+    tuple[Length, ...], _TWO, BeforeRule(_two_numbers), SchemaName("PlaneVector")
 ]
-PlaneNamedOrGiven = Annotated[NamedOr[PlaneVector], Named("PlaneNamedOrGiven")]
-PlanePoint = Annotated[PlaceOrPerLink[PlaneVector, PlaneNamedOrGiven], Named("PlanePoint")]
-PlaneDirections = Annotated[DirectionOrPerLink[PlaneDirection], Named("PlaneDirections")]
+PlaneDirection = Annotated[
+    tuple[AnyDimension, ...], _TWO, BeforeRule(_two_numbers), SchemaName("PlaneDirection")
+]
+PlaneNamedOrGiven = Annotated[NamedOr[PlaneVector], SchemaName("PlaneNamedOrGiven")]
+PlanePoint = Annotated[PlaceOrPerLink[PlaneVector, PlaneNamedOrGiven], SchemaName("PlanePoint")]
+PlaneDirections = Annotated[DirectionOrPerLink[PlaneDirection], SchemaName("PlaneDirections")]
 
 
 class PlaneLink(BodyWithMass):
@@ -78,7 +92,7 @@ class PlaneLink(BodyWithMass):
     center_of_mass: PlaneNamedOrGiven | None = None
     """Mass centre in the home drawing, [x, y] or the name of a point of the link; left out, the
     link has no mass."""
-    inertia: Annotated[Inertia, Before(_about_normal)] | None = None
+    inertia: Annotated[Inertia, BeforeRule(_about_normal)] | None = None
     """Moment of inertia about the mass centre, about the plane's normal; left out, zero."""
 
 
@@ -95,7 +109,7 @@ class PlaneRevoluteJoint(PlanePointJoint):
     advice: ClassVar[dict[str, str]] = {"axis": _NORMAL}
 
     type: Literal["R"]
-    zero: Annotated[PerLink[PlaneDirection], Named("PlaneZeroReference")] | None = None
+    zero: Annotated[PerLink[PlaneDirection], SchemaName("PlaneZeroReference")] | None = None
     """A direction for each link; the two lie in line at theta = 0. Left out, theta is zero as
     drawn."""
 
@@ -170,10 +184,12 @@ class PlaneGravity(InRuns):
 
     type: Literal["gravity"]
     g: Annotated[
-        Annotated[Annotated[tuple[Acceleration, ...], _TWO, Before(_two_numbers)], Tag("(vector)")]
+        Annotated[
+            Annotated[tuple[Acceleration, ...], _TWO, BeforeRule(_two_numbers)], Tag("(vector)")
+        ]
         | Annotated[Literal["standard"], Tag("(standard)")],
-        Choice(standard_or_vector),
-        Named("PlaneFreeFall"),
+        FormChoice(standard_or_vector),
+        SchemaName("PlaneFreeFall"),
     ]
     """Acceleration of free fall, [x, y]; or standard, 9.80665 m/s^2."""
     direction: PlaneDirection | None = None
@@ -194,7 +210,7 @@ class PlaneForce(InRuns):
     """The link it acts on."""
     point: PlaneNamedOrGiven
     """Where it acts: a point of the link in the home drawing, [x, y] or by its name."""
-    force: Annotated[tuple[ForceValue, ...], _TWO, Before(_two_numbers)]
+    force: Annotated[tuple[ForceValue, ...], _TWO, BeforeRule(_two_numbers)]
     """The force, [x, y]."""
     axes: Axes = "ground"
     """Whether the components are in ground axes or turn with the link (its axes in the drawing)."""
@@ -212,7 +228,7 @@ class PlaneTorque(InRuns):
     type: Literal["torque"]
     link: Name
     """The link it acts on."""
-    torque: Annotated[TorqueValue, Before(_one_torque)]
+    torque: Annotated[TorqueValue, BeforeRule(_one_torque)]
     """The torque, positive counter-clockwise."""
 
 
@@ -267,7 +283,7 @@ class PlaneFile(AnyFile):
 
     in_plane = True
 
-    plane: Annotated[Literal["xy"], Before(_plane_word)]
+    plane: Annotated[Literal["xy"], BeforeRule(_plane_word)]
     """Everything moves in the plane x, y: vectors are two numbers, inertias and torques one; left
     out, a mechanism in space."""
     links: dict[Name, PlaneLink] = NOTHING

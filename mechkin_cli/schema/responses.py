@@ -6,12 +6,19 @@ here.
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from mechkin_cli.schema.alternatives import Choice, Tag, by_word
-from mechkin_cli.schema.base import NOTHING, Section, refuse
-from mechkin_cli.schema.laws import LAWS, TaggedLaw, law_tag
+from mechkin_cli.schema.base import (
+    NOTHING,
+    FormChoice,
+    Limits,
+    SchemaName,
+    Section,
+    Shown,
+    Tag,
+    by_word,
+    refuse,
+)
 from mechkin_cli.schema.loads import TableValue, expression_or_table
-from mechkin_cli.schema.motion import FollowingInput, TimeSection
-from mechkin_cli.schema.rules import Limits, Named, Shown
+from mechkin_cli.schema.motion import LAWS, FollowingInput, TaggedLaw, TimeSection, law_tag
 from mechkin_cli.schema.scalars import (
     START_PATTERN,
     AngleOrLength,
@@ -32,12 +39,12 @@ StartName = Annotated[
         "a joint coordinate or its rate",
         ("O1.theta", "O1.theta_dot"),
     ),
-    Named("StartName"),
+    SchemaName("StartName"),
 ]
 Effort = Annotated[
     Annotated[ForceOrTorque, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
-    Choice(expression_or_table),
-    Named("Effort"),
+    FormChoice(expression_or_table),
+    SchemaName("Effort"),
 ]
 
 
@@ -75,8 +82,8 @@ def _spaced_or_listed(value: Any) -> str:
 
 ResponseTime = Annotated[
     Annotated[TimeSection, Tag("(spaced)")] | Annotated[ListedTime, Tag("(listed)")],
-    Choice(_spaced_or_listed),
-    Named("ResponseTime"),
+    FormChoice(_spaced_or_listed),
+    SchemaName("ResponseTime"),
 ]
 _OTHER_STOPS = {
     "contact": "a stop is a value: {value: O2.s, at: 0, direction: down}",
@@ -130,7 +137,7 @@ Stop = Annotated[
     Annotated[Crossing, Tag("(value)")]
     | Annotated[DeadCentre, Tag("(dead_centre)")]
     | Annotated[Turns, Tag("(turns)")],
-    Choice(_stop),
+    FormChoice(_stop),
 ]
 
 

@@ -6,10 +6,21 @@ are not evaluated here; the dimension is attached for readers and for editors on
 
 import re
 from numbers import Integral, Real
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, Literal, TypeVar
 
-from mechkin_cli.schema.base import refuse
-from mechkin_cli.schema.rules import Before, Dimension, Limits, Named, Shown
+from mechkin_cli.schema.base import (
+    After,
+    BeforeRule,
+    DimensionRule,
+    FormChoice,
+    Limits,
+    SchemaName,
+    Section,
+    Shown,
+    Tag,
+    refuse,
+)
+from mechkin_cli.verdict import SWEEP
 
 NAME_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*$"
 COORDINATE_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*\.([a-z][a-z0-9]*|position\.[xyz])$"
@@ -92,93 +103,259 @@ def _number_text(value: Any) -> str | None:
     return None
 
 
-Expression = Annotated[str, Before(expression_text)]
-WholeNumber = Annotated[int, Before(whole_number)]
+Expression = Annotated[str, BeforeRule(expression_text)]
+WholeNumber = Annotated[int, BeforeRule(whole_number)]
 Text = Annotated[
     str,
-    Before(plain_text),
+    BeforeRule(plain_text),
     Shown(("string", "number", "boolean"), "a text for people"),
-    Named("Text"),
+    SchemaName("Text"),
 ]
 
-Length = Annotated[Expression, Dimension("length", ("0.5 in", "-P1", 2.5)), Named("Length")]
-Mass = Annotated[Expression, Dimension("mass", ("2 lbm", 0.5)), Named("Mass")]
+Length = Annotated[
+    Expression, DimensionRule("length", ("0.5 in", "-P1", 2.5)), SchemaName("Length")
+]
+Mass = Annotated[Expression, DimensionRule("mass", ("2 lbm", 0.5)), SchemaName("Mass")]
 Inertia = Annotated[
-    Expression, Dimension("moment of inertia", (0.02, "3 kg*m^2")), Named("Inertia")
+    Expression, DimensionRule("moment of inertia", (0.02, "3 kg*m^2")), SchemaName("Inertia")
 ]
 Acceleration = Annotated[
-    Expression, Dimension("acceleration", ("-9.80665 m/s^2", 0)), Named("Acceleration")
+    Expression, DimensionRule("acceleration", ("-9.80665 m/s^2", 0)), SchemaName("Acceleration")
 ]
-Force = Annotated[Expression, Dimension("force", ("10 N", "-k*O2.s")), Named("Force")]
-Torque = Annotated[Expression, Dimension("moment", ("10 N*m", 10)), Named("Torque")]
+Force = Annotated[Expression, DimensionRule("force", ("10 N", "-k*O2.s")), SchemaName("Force")]
+Torque = Annotated[Expression, DimensionRule("moment", ("10 N*m", 10)), SchemaName("Torque")]
 ForceOrTorque = Annotated[
-    Expression, Dimension("force or moment", ("10 N*m", "-c*O4.theta_dot")), Named("ForceOrTorque")
+    Expression,
+    DimensionRule("force or moment", ("10 N*m", "-c*O4.theta_dot")),
+    SchemaName("ForceOrTorque"),
 ]
 Dimensionless = Annotated[
-    Expression, Dimension("dimensionless number", (1, "cos(alpha1)")), Named("Dimensionless")
+    Expression,
+    DimensionRule("dimensionless number", (1, "cos(alpha1)")),
+    SchemaName("Dimensionless"),
 ]
-Duration = Annotated[Expression, Dimension("time", (0, "0.5 s")), Named("Duration")]
-Angle = Annotated[Expression, Dimension("angle", ("12 deg", "alpha1", 90)), Named("Angle")]
+Duration = Annotated[Expression, DimensionRule("time", (0, "0.5 s")), SchemaName("Duration")]
+Angle = Annotated[Expression, DimensionRule("angle", ("12 deg", "alpha1", 90)), SchemaName("Angle")]
 AngleOrLength = Annotated[
     Expression,
-    Dimension("angle or length, as the coordinate", (150, "0.5 in")),
-    Named("AngleOrLength"),
+    DimensionRule("angle or length, as the coordinate", (150, "0.5 in")),
+    SchemaName("AngleOrLength"),
 ]
 CoordinateRate = Annotated[
     Expression,
-    Dimension("rate of the coordinate", ("0.1 rad/s", "2 in/s")),
-    Named("CoordinateRate"),
+    DimensionRule("rate of the coordinate", ("0.1 rad/s", "2 in/s")),
+    SchemaName("CoordinateRate"),
 ]
 CoordinateAcceleration = Annotated[
     Expression,
-    Dimension("second rate of the coordinate", ("0.2 rad/s^2", 0)),
-    Named("CoordinateAcceleration"),
+    DimensionRule("second rate of the coordinate", ("0.2 rad/s^2", 0)),
+    SchemaName("CoordinateAcceleration"),
 ]
 CoordinateJerk = Annotated[
     Expression,
-    Dimension("third rate of the coordinate", ("0.3 rad/s^3", 0)),
-    Named("CoordinateJerk"),
+    DimensionRule("third rate of the coordinate", ("0.3 rad/s^3", 0)),
+    SchemaName("CoordinateJerk"),
 ]
-Velocity = Annotated[Expression, Dimension("velocity", ("5 mm/s", 0.1)), Named("Velocity")]
+Velocity = Annotated[Expression, DimensionRule("velocity", ("5 mm/s", 0.1)), SchemaName("Velocity")]
 Stiffness = Annotated[
     Expression,
-    Dimension("force per length, or moment per angle (bare: per rad)", ("200 N/m", "5 N*m/rad")),
-    Named("Stiffness"),
+    DimensionRule(
+        "force per length, or moment per angle (bare: per rad)", ("200 N/m", "5 N*m/rad")
+    ),
+    SchemaName("Stiffness"),
 ]
 Damping = Annotated[
     Expression,
-    Dimension("force per speed, or moment per angular rate (bare: per rad/s)", ("10 N*s/m", 0.2)),
-    Named("Damping"),
+    DimensionRule(
+        "force per speed, or moment per angular rate (bare: per rad/s)", ("10 N*s/m", 0.2)
+    ),
+    SchemaName("Damping"),
 ]
 AnyDimension = Annotated[
-    Expression, Dimension("any dimension", ("12 deg", 0.5, "2*P1")), Named("AnyDimension")
+    Expression, DimensionRule("any dimension", ("12 deg", 0.5, "2*P1")), SchemaName("AnyDimension")
 ]
 
 Name = Annotated[
     str,
     Limits(pattern=NAME_PATTERN),
     Shown(("string",), "a name: letters, digits and _, not starting with a digit", ("crank",)),
-    Named("Name"),
+    SchemaName("Name"),
 ]
 Coordinate = Annotated[
     str,
     Limits(pattern=COORDINATE_PATTERN),
     Shown(("string",), "a joint coordinate: joint.coordinate", ("O1.theta", "O2.s")),
-    Named("Coordinate"),
+    SchemaName("Coordinate"),
 ]
 CsvPath = Annotated[
     str,
     Limits(pattern=CSV_PATH_PATTERN),
     Shown(("string",), "a CSV file, relative to the file that names it", ("force.csv",)),
-    Named("CsvPath"),
+    SchemaName("CsvPath"),
 ]
 
 LengthVector = Annotated[
-    tuple[Length, ...], Limits(min_length=3, max_length=3), Named("LengthVector")
+    tuple[Length, ...], Limits(min_length=3, max_length=3), SchemaName("LengthVector")
 ]
 DirectionVector = Annotated[
-    tuple[AnyDimension, ...], Limits(min_length=3, max_length=3), Named("DirectionVector")
+    tuple[AnyDimension, ...], Limits(min_length=3, max_length=3), SchemaName("DirectionVector")
 ]
 AccelerationVector = Annotated[
-    tuple[Acceleration, ...], Limits(min_length=3, max_length=3), Named("AccelerationVector")
+    tuple[Acceleration, ...], Limits(min_length=3, max_length=3), SchemaName("AccelerationVector")
 ]
+
+
+# A place in the home drawing: its coordinates, or the name of a point that is drawn there.
+
+_NAME: Final = re.compile(NAME_PATTERN)
+
+
+def name_or_vector(value: Any) -> str:
+    """The form of a place: a name, or else coordinates."""
+    is_name = isinstance(value, str) and _NAME.search(value.strip())
+    return "(name)" if is_name else "(vector)"
+
+
+_Vector = TypeVar("_Vector")
+NamedOr = Annotated[
+    Annotated[Name, Tag("(name)")] | Annotated[_Vector, Tag("(vector)")], FormChoice(name_or_vector)
+]
+"""The name of a point, or coordinates: of space or of a plane."""
+
+NamedOrGiven = Annotated[NamedOr[LengthVector], SchemaName("NamedOrGiven")]
+
+
+# `points:` and `directions:` - named places and directions that move with a link.
+
+
+class PointOfLink(Section):
+    """A point fixed in a link; columns read its position, velocity, acceleration and jerk."""
+
+    link: Name
+    """The link that carries the point; `ground` for a fixed one."""
+    at: NamedOrGiven
+    """The point in the home drawing, [x, y, z] in ground axes or the name of a point that is drawn
+    at the same place."""
+
+
+class DirectionOfLink(Section):
+    """A unit vector fixed in a link; columns use it by its name."""
+
+    link: Name
+    """The link that carries the direction; `ground` for a fixed one."""
+    vector: DirectionVector
+    """The direction in the home drawing, [x, y, z] in ground axes; its length does not matter."""
+
+
+# `units:` - the units of bare numbers in the file and of the tables.
+
+UnitText = Annotated[
+    str,
+    BeforeRule(plain_text),
+    Shown(("string",), "a unit, or units joined by * / ^", ("in", "deg", "lbm*in/s^2")),
+    SchemaName("UnitText"),
+]
+
+
+class UnitsSection(Section):
+    """The units of bare numbers and of the tables; what is left out is in m, deg, kg, N, s.
+
+    The unit of moments is force times length. Rates of lengths are per `time`; angular rates are in
+    rad/s unless `angular_rate` says otherwise. Torsional stiffness is per rad, torsional damping
+    per rad/s, whatever `angle` and `angular_rate` are.
+    """
+
+    length: UnitText = "m"
+    """Unit of lengths, for example m, mm, in."""
+    angle: UnitText = "deg"
+    """Unit of angles: deg or rad."""
+    mass: UnitText = "kg"
+    """Unit of masses, for example kg, lbm."""
+    force: UnitText = "N"
+    """Unit of forces, for example N, lbf, lbm*in/s^2; left out, N whatever the other units are."""
+    time: UnitText = "s"
+    """Unit of time, for example s, min."""
+    angular_rate: UnitText = "rad/s"
+    """Unit of angular rates, for example rad/s, rpm."""
+
+
+METRIC = UnitsSection()
+"""The units where a file names none."""
+
+
+# How the points of a table are joined.
+
+_ENDS = {"spline": ("not-a-knot", "natural", "clamped"), "monotone": ("clamped",), "linear": ()}
+"""The ends that each interpolation has."""
+
+
+class JoinedTable(Section):
+    """A table of two columns, joined by a curve."""
+
+    interpolation: Literal["spline", "monotone", "linear"] = "spline"
+    """How its points are joined: by a smooth spline; by a curve that rises and falls only where the
+    points do; by straight lines."""
+    ends: Literal["not-a-knot", "natural", "clamped"] | None = None
+    """Of a spline: as smooth as between the points (not-a-knot), without curvature (natural) or at
+    rest (clamped, which a monotone curve can be, too); left out, not-a-knot."""
+
+    def check(self) -> None:
+        """The ends are some that the interpolation has."""
+        if self.ends is not None and self.ends not in _ENDS[self.interpolation]:
+            text = f"a {self.interpolation} curve has no {self.ends} ends"
+            hint = "leave ends out, or write interpolation: spline"
+            raise refuse("table-ends", text, hint, "ends")
+
+
+# The runs of a file by name: the sweep of `motion:`, and each of `responses:`.
+
+DEVICE: Final = re.compile("con|prn|aux|nul|com[0-9]|lpt[0-9]", re.IGNORECASE)
+"""Names that are devices on Windows, whatever follows them behind a point."""
+
+# JSON Schema has no flag for ignoring case
+TAKEN_FOR_EDITORS: Final = (
+    "^([Ss][Ww][Ee][Ee][Pp]|[Cc][Oo][Nn]|[Pp][Rr][Nn]|[Aa][Uu][Xx]|[Nn][Uu][Ll]|[Cc][Oo][Mm][0-9]"
+    "|[Ll][Pp][Tt][0-9]|.{101,})$"
+)
+
+RunName = Annotated[
+    str,
+    Limits(pattern=NAME_PATTERN),
+    Shown(("string",), "a run: sweep, or the name of a response", ("sweep", "start_up")),
+    SchemaName("RunName"),
+]
+
+
+def _with_a_run(names: tuple[str, ...]) -> tuple[str, ...]:
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise refuse("named-twice", f"the run {name} is named twice", "name it once", index)
+    return names
+
+
+RunNames = Annotated[tuple[RunName, ...], Limits(min_length=1), After(_with_a_run)]
+
+
+def free_run_names(responses: dict[str, Any]) -> dict[str, Any]:
+    """The responses, if each can have its name: files are called after them."""
+    seen: dict[str, str] = {}
+    for name in responses:
+        twin = seen.setdefault(name.casefold(), name)
+        code = "reserved-name"
+        if name.casefold() == SWEEP:
+            text = "sweep is the run along the inputs of motion:"
+        elif DEVICE.fullmatch(name):
+            text = f"{name} is a device on Windows, no file"
+        elif len(name) > MOST_LETTERS:
+            text = f"a name of {len(name)} letters is too long for a file (limit {MOST_LETTERS})"
+        elif twin != name:
+            code = "name-clash"
+            text = f"files of {twin} and {name} would be the same where case does not count"
+        else:
+            continue
+        raise refuse(code, text, "rename it", name, "[key]")
+    return responses
+
+
+MOST_LETTERS: Final = 100
+"""Letters of a run's name, as of a table's."""

@@ -2,11 +2,21 @@
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from mechkin_cli.schema.alternatives import Choice, Tag
-from mechkin_cli.schema.base import NOTHING, Key, Section, refuse
-from mechkin_cli.schema.rules import After, Before, Limits, Named, ShortForm, Shown
-from mechkin_cli.schema.runs import RunName
-from mechkin_cli.schema.scalars import AnyDimension, CsvPath, Name, Text, WholeNumber
+from mechkin_cli.schema.base import (
+    NOTHING,
+    After,
+    BeforeRule,
+    FormChoice,
+    Key,
+    Limits,
+    SchemaName,
+    Section,
+    ShortForm,
+    Shown,
+    Tag,
+    refuse,
+)
+from mechkin_cli.schema.scalars import AnyDimension, CsvPath, Name, RunName, Text, WholeNumber
 
 _STEP_OR_COUNT: dict[str, Any] = {"oneOf": [{"required": ["step"]}, {"required": ["count"]}]}
 
@@ -14,7 +24,7 @@ MechanismPath = Annotated[
     str,
     Limits(min_length=1),
     Shown(("string",), "a mechanism file, relative to the study file", ("../rcsr.yaml",)),
-    Named("MechanismPath"),
+    SchemaName("MechanismPath"),
 ]
 
 ListOfValues = Annotated[tuple[AnyDimension, ...], Limits(min_length=1)]
@@ -68,7 +78,7 @@ class Tolerance(Section):
 
     tolerance: Annotated[
         tuple[AnyDimension, ...],
-        Before(_both_sides),
+        BeforeRule(_both_sides),
         Limits(min_length=1, max_length=2),
         ShortForm(("string", "number"), "plus and minus this"),
     ]
@@ -93,7 +103,7 @@ Variation = Annotated[
     | Annotated[Uniform, Tag("(uniform)")]
     | Annotated[Normal, Tag("(normal)")]
     | Annotated[Tolerance, Tag("(tolerance)")],
-    Choice(_form),
+    FormChoice(_form),
 ]
 
 DRAWN = (Uniform, Normal, Tolerance)
@@ -136,7 +146,7 @@ class Kept(Section):
     words: Annotated[
         tuple[KeptWord, ...],
         Key("as"),
-        Before(_one_or_more),
+        BeforeRule(_one_or_more),
         Limits(min_length=1),
         After(_each_once),
         ShortForm(("string",), "one of the words: peak"),
@@ -171,7 +181,7 @@ class StudyFile(Section):
     sample of what is drawn.
     """
 
-    study: Annotated[Literal[1], Before(_study_number)]
+    study: Annotated[Literal[1], BeforeRule(_study_number)]
     """Version of the form of studies."""
     mechanism: MechanismPath | None = None
     """The mechanism file; left out, the one that Python gives."""

@@ -2,14 +2,31 @@
 
 from typing import Annotated, Any, Literal, Protocol, TypeVar
 
-from mechkin_cli.schema.base import Section, refuse
-from mechkin_cli.schema.rules import After, Barred, Before, Limits, Named, ShortForm, Shown
-from mechkin_cli.schema.runs import DEVICE, RunName
+from mechkin_cli.schema.base import (
+    NOTHING,
+    After,
+    Barred,
+    BeforeRule,
+    Limits,
+    SchemaName,
+    Section,
+    ShortForm,
+    Shown,
+    Tag,
+    by_word,
+    refuse,
+)
 from mechkin_cli.schema.scalars import (
     CSV_PATH_PATTERN,
+    CYCLE_PATTERN,
+    DEVICE,
     TABLE_NAME_PATTERN,
     AnyDimension,
+    CoordinateRate,
     CsvPath,
+    Dimensionless,
+    Name,
+    RunName,
     Text,
     WholeNumber,
 )
@@ -18,7 +35,7 @@ TableName = Annotated[
     str,
     Limits(pattern=TABLE_NAME_PATTERN),
     Shown(("string",), "letters, digits, - and _; the name of the file written", ("table_03",)),
-    Named("TableName"),
+    SchemaName("TableName"),
 ]
 
 
@@ -47,7 +64,9 @@ def _in_full(value: Any) -> Any:
 
 
 ColumnOrText = Annotated[
-    Column, Before(_in_full), ShortForm(("string", "number"), "label and value in one: O1.theta")
+    Column,
+    BeforeRule(_in_full),
+    ShortForm(("string", "number"), "label and value in one: O1.theta"),
 ]
 
 
@@ -80,7 +99,7 @@ def _with_file(value: Any) -> Any:
 
 _PATH_ALONE = "a CSV file with the printed values, relative to the mechanism file"
 PathOrPublishedValues = Annotated[
-    PublishedValues, Before(_with_file), ShortForm(("string",), _PATH_ALONE, CSV_PATH_PATTERN)
+    PublishedValues, BeforeRule(_with_file), ShortForm(("string",), _PATH_ALONE, CSV_PATH_PATTERN)
 ]
 
 _TAKEN = {
@@ -179,14 +198,14 @@ class Table(Section):
                     raise refuse("unknown-label", text, f"labels are {', '.join(labels)}", *at)
 
 
-class _Named(Protocol):
+class _HasName(Protocol):
     """What is written under a name."""
 
     @property
     def name(self) -> str: ...
 
 
-AnyNamed = TypeVar("AnyNamed", bound=_Named)
+AnyNamed = TypeVar("AnyNamed", bound=_HasName)
 
 
 def differing_names(tables: tuple[AnyNamed, ...]) -> tuple[AnyNamed, ...]:
@@ -197,3 +216,113 @@ def differing_names(tables: tuple[AnyNamed, ...]) -> tuple[AnyNamed, ...]:
             text = f"two tables are called {tables[index].name}"
             raise refuse("table-clash", text, "rename one of them", index, "name")
     return tables
+
+
+# `coefficients:` - the dense system of all reactions at one row, as a table of coefficients.
+
+
+class Coefficients(Section):
+    """The equations of equilibrium of all links and the conditions of all pairs at one row.
+
+    NAME.csv has an equation per row and an unknown per column, NAME_unknowns.csv the unknowns with
+    their values.
+    """
+
+    name: Annotated[TableName, After(free_name), Barred(TAKEN_FOR_EDITORS)]
+    """Name of the files written, without ending."""
+    title: Text | None = None
+    """Heading in Markdown; left out, the name."""
+    row: Annotated[WholeNumber, Limits(ge=1)] = 1
+    """Row of the sweep, counted from 1."""
+    along: dict[Name, Annotated[tuple[Name, ...], Limits(min_length=2, max_length=2)]] = NOTHING
+    """Directions of two force components of a ball; the third is along their cross
+    product; left out, those along x, y and z."""
+    counted: Annotated[WholeNumber, Limits(ge=1)] | None = None
+    """Number of unknowns that the source counts, to stand beside those here; left out, none
+    does."""
+
+
+# `balances:` - what the sweep sums up to over a cycle, a small table each.
+
+CycleName = Annotated[
+    str,
+    Limits(pattern=CYCLE_PATTERN),
+    Shown(("string",), "an input that turns, or time", ("A.theta", "time")),
+    SchemaName("CycleName"),
+]
+BalanceName = Annotated[TableName, After(free_name), Barred(TAKEN_FOR_EDITORS)]
+
+
+class _Balance(Section):
+    """A balance over the rows from the first to the last, which repeats the first."""
+
+    name: BalanceName
+    """Name of the files written, without ending."""
+    title: Text | None = None
+    """Heading in Markdown; left out, the name."""
+    cycle: CycleName | None = None
+    """What goes round over the rows, once or several times: an input that turns, or `time`; left
+    out, time where the sweep has one, else the input that moves."""
+
+
+class WorkBalance(_Balance):
+    """The work of every effort and load over the cycle."""
+
+    type: Literal["work"]
+
+
+class HarmonicsBalance(_Balance):
+    """Fourier coefficients of quantities over the cycle."""
+
+    type: Literal["harmonics"]
+    of: Annotated[tuple[AnyDimension, ...], Limits(min_length=1, max_length=100)]
+    """Expressions of one dimension; a vector stands for its three components."""
+    orders: Annotated[tuple[Dimensionless, ...], Limits(min_length=1, max_length=1000)] = (
+        "0",
+        "1",
+        "2",
+        "3",
+        "4",
+    )
+    """Orders: cosines and sines of so many times the angle, or periods in the rows' time. Where the
+    rows turn k times, multiples of 1/k are orders, too. Left out, [0, 1, 2, 3, 4]."""
+
+
+class FlywheelBalance(_Balance):
+    """The flywheel that a machine needs that a constant effort drives."""
+
+    type: Literal["flywheel"]
+    unevenness: Dimensionless
+    """Coefficient of fluctuation: (largest - least angular rate) / their mean."""
+    rate: CoordinateRate | None = None
+    """That mean; left out, the rate of the input in the sweep."""
+
+
+_WORDS = {"work": "(work)", "harmonics": "(harmonics)", "flywheel": "(flywheel)"}
+
+
+def _tag(mapping: dict[str, Any]) -> str | None:
+    word = mapping.get("type")
+    return _WORDS.get(word) if isinstance(word, str) else None
+
+
+AnyBalance = WorkBalance | HarmonicsBalance | FlywheelBalance
+Balance = Annotated[
+    Annotated[WorkBalance, Tag("(work)")]
+    | Annotated[HarmonicsBalance, Tag("(harmonics)")]
+    | Annotated[FlywheelBalance, Tag("(flywheel)")],
+    by_word("type", _tag, ", ".join(_WORDS)),
+]
+
+
+def refuse_clashes(
+    balances: tuple[AnyBalance, ...], tables: tuple[Table | Coefficients, ...]
+) -> None:
+    """Balances and tables are written to files of their names; file systems may ignore case."""
+    # without tables the sweep writes one of its own name
+    taken = {table.name.casefold() for table in tables} or {"sweep"}
+    for index, balance in enumerate(balances):
+        if balance.name.casefold() in taken:
+            text = f"another table or balance is called {balance.name}"
+            raise refuse("table-clash", text, "rename one of them", "balances", index, "name")
+        taken.add(balance.name.casefold())

@@ -2,15 +2,24 @@
 
 from typing import Annotated, Any, Final, Literal
 
-from mechkin_cli.schema.base import NOTHING, Section, refuse
-from mechkin_cli.schema.places import NamedOrGiven
-from mechkin_cli.schema.rules import After, Before, Limits, Named, ShortForm, Shown
+from mechkin_cli.schema.base import (
+    NOTHING,
+    After,
+    BeforeRule,
+    Limits,
+    SchemaName,
+    Section,
+    ShortForm,
+    Shown,
+    refuse,
+)
 from mechkin_cli.schema.scalars import (
     COLOUR_PATTERN,
     DirectionVector,
     Duration,
     Length,
     Name,
+    NamedOrGiven,
 )
 
 Kind = Literal["rod", "plate", "star", "none"]
@@ -20,7 +29,7 @@ Colour = Annotated[
     str,
     Limits(pattern=COLOUR_PATTERN),
     Shown(("string",), "a colour as #rrggbb, in quotes", ("#c0392b",)),
-    Named("Colour"),
+    SchemaName("Colour"),
 ]
 
 
@@ -40,7 +49,7 @@ def _with_kind(value: Any) -> Any:
 
 
 KindOrShape = Annotated[
-    ShapeOfLink, Before(_with_kind), ShortForm(("string",), "the kind alone", f"^({KINDS})$")
+    ShapeOfLink, BeforeRule(_with_kind), ShortForm(("string",), "the kind alone", f"^({KINDS})$")
 ]
 
 

@@ -20,10 +20,9 @@ from types import TracebackType
 from typing import Any, BinaryIO, NamedTuple
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.regular_file import MOST_TABLE_BYTES, read_regular
-from mechkin_cli.studies.formats import FORMATS, Format
-from mechkin_cli.studies.records import Heading, Records
-from mechkin_cli.tables.claim import Claim
+from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
+from mechkin_cli.studies.formats import FORMATS, Format, Heading, Records
+from mechkin_cli.tables import Claim
 
 MANIFEST = "study.json"
 PIECES = "pieces"

@@ -11,12 +11,55 @@ import io
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import Any, BinaryIO, Protocol
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.studies.records import Heading, Records
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.show import Floats
+
+
+# What is kept of variants: columns of numbers and words, a line for each variant or row.
+
+Values: TypeAlias = "NDArray[np.float64] | NDArray[np.int64] | NDArray[np.object_]"
+"""Numbers (lines,), nan where there is none; whole numbers; or texts."""
+
+
+class Heading(NamedTuple):
+    """A column: its label, its unit ("" where it has none), and what it holds."""
+
+    label: str
+    unit: str = ""
+    kind: str = "number"
+    """`number`, `whole` or `text`."""
+
+
+Records = dict[str, Values]
+"""Columns by label."""
+
+
+def joined(pieces: Sequence[Records]) -> Records:
+    """Records one below the other."""
+    if len(pieces) == 1:
+        return pieces[0]
+    return {label: np.concatenate([piece[label] for piece in pieces]) for label in pieces[0]}
+
+
+def empty_values(kind: str, count: int) -> Values:
+    """A column without any value."""
+    if kind == "text":
+        return np.full(count, "", dtype=object)
+    return np.zeros(count, dtype=np.int64) if kind == "whole" else np.full(count, np.nan)
+
+
+def numbers(values: Values) -> Floats:
+    """A column of numbers or whole numbers as doubles."""
+    return np.asarray(values, dtype=np.float64)
+
 
 LINES_AT_ONCE = 65536
 """Lines that are held while a file is read."""
@@ -70,11 +113,10 @@ class Csv:
 
     def piece(self, headings: Sequence[Heading], records: Records) -> bytes:
         """As `Format.piece`."""
-        from mechkin_cli.tables.columns import Column, Columns, column_of_numbers, words_of
-        from mechkin_cli.tables.csv_writer import csv_bytes
+        from mechkin_cli.tables import Columns, TableColumn, column_of_numbers, csv_bytes, words_of
 
         columns = [
-            Column(h.label, h.unit, words_of(records[h.label].tolist()))
+            TableColumn(h.label, h.unit, words_of(records[h.label].tolist()))
             if h.kind == "text"
             else column_of_numbers(h.label, h.unit, np.asarray(records[h.label], dtype=np.float64))
             for h in headings

@@ -6,23 +6,167 @@ only inputs, `row.mode`, `row.status` and `row.proof` keep their cells.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.expressions import ExpressionError, Quantity, Vector
-from mechkin_cli.proof import Proof
-from mechkin_cli.status import Status, has_solution
 from mechkin_cli.tables.layout import ROW_EVENT, ROW_NUMBERS, ROW_PROOF, ColumnLayout, TableLayout
-from mechkin_cli.tables.source import FloatArray, Source
-from mechkin_cli.uniqueness import unique_cells
+from mechkin_cli.tolerances import UNIQUE_CELL
 from mechkin_cli.units import DIMENSIONLESS
+from mechkin_cli.verdict import Proof, Status, has_solution
 
 if TYPE_CHECKING:
+    from mechkin_cli.show import Floats
     from mechkin_cli.tables.summary import Summary
+    from mechkin_cli.units import UnitSystem
+
+
+# What tables ask of the results of an analysis: rows, inputs, verdicts and quantities by name.
+
+FloatArray = NDArray[np.float64]
+StatusArray = NDArray[np.int8]
+
+
+class TableSource(Protocol):
+    """Results of one analysis; every array has the shape (rows,)."""
+
+    @property
+    def rows(self) -> int:
+        """Number of rows asked for."""
+        ...
+
+    @property
+    def coordinates(self) -> Sequence[str]:
+        """Scalar joint coordinates in joint order, such as `O1.theta`."""
+        ...
+
+    @property
+    def inputs(self) -> Mapping[str, FloatArray]:
+        """Time where there is one, and values of the driven coordinates, in file units exactly as
+        written."""
+        ...
+
+    @property
+    def input_rates(self) -> Mapping[str, FloatArray]:
+        """Rates of the driven coordinates, in file units as written; nan in rows without a
+        solution."""
+        ...
+
+    @property
+    def mode(self) -> str:
+        """Name of the assembly mode that the rows follow."""
+        ...
+
+    @property
+    def letter(self) -> str:
+        """The same by its letter, which may have to be searched for."""
+        ...
+
+    @property
+    def events(self) -> Sequence[str]:
+        """What happened at each row of a response, "" where nothing did; () of a sweep."""
+        ...
+
+    @property
+    def status(self) -> StatusArray:
+        """Codes of `mechkin_cli.verdict.Status`."""
+        ...
+
+    @property
+    def is_certified(self) -> bool:
+        """Whether proofs of the rows have been asked for."""
+        ...
+
+    @property
+    def proven_way(self) -> tuple[bool, int]:
+        """Whether all rows are proven to lie on one branch, and how many tubes join them."""
+        ...
+
+    @property
+    def proven_dead_centres(self) -> Sequence[Mapping[str, object]]:
+        """What is proven of the dead centres beyond which rows are missing, as plain data."""
+        ...
+
+    @property
+    def proof(self) -> StatusArray:
+        """Codes of `mechkin_cli.verdict.Proof`, found now if they were not."""
+        ...
+
+    @property
+    def residual(self) -> FloatArray:
+        """Largest closure component of the row, dimensionless; nan where not computed."""
+        ...
+
+    @property
+    def condition(self) -> FloatArray:
+        """Condition of the row's closure, dimensionless; nan where not computed."""
+        ...
+
+    @property
+    def power_error(self) -> FloatArray:
+        """|sum of powers| / sum of |powers|, dimensionless; nan where not computed."""
+        ...
+
+    @property
+    def units(self) -> UnitSystem:
+        """Units of the mechanism file; tables are written in them."""
+        ...
+
+    @property
+    def alternatives(self) -> Sequence[TableSource]:
+        """The same rows with other reactions in equilibrium, where constraints are redundant."""
+        ...
+
+    @property
+    def disturbed(self) -> Sequence[TableSource]:
+        """The same rows with reactions that are off by their rounding, where constraints are
+        redundant."""
+        ...
+
+    def quantity(self, name: str) -> Quantity:
+        """A parameter, direction or result by its dotted name, in SI.
+
+        Raises:
+            UnknownName: nothing has this name.
+        """
+        ...
+
+
+# Uniqueness of cells: with redundant constraints some reactions are arbitrary, others are not.
+#
+# A cell is evaluated for the reactions of least norm and for two others that are in equilibrium
+# too; where it changes it is not unique and becomes nan. So sums of reactions that are unique stay,
+# though each part is not.
+
+
+def unique_cells(
+    values: Floats, others: Sequence[Floats], disturbed: Sequence[Floats] = ()
+) -> Floats:
+    """The values with nan where another admissible value differs; all of shape (rows,).
+
+    `disturbed` are the values for reactions that are off by their rounding: what they change is
+    the rounding of the cell, whatever the size of its column is.
+    """
+    if not others:
+        return values
+    # a row without any load is zero whatever the others, which are of no size there
+    loaded = values != 0.0
+    sizes = [np.abs(v[np.isfinite(v) & loaded]).max(initial=0.0) for v in (values, *others)]
+    limit = np.full(values.shape, UNIQUE_CELL * max(sizes))
+    settled = values.copy()
+    with np.errstate(invalid="ignore"):
+        for other in disturbed:
+            limit = np.fmax(limit, np.abs(other - values))
+        for other in others:
+            alike = np.abs(other - values) <= limit
+            # infinite at a dead centre, whatever the arbitrary part is
+            alike |= np.isinf(values) & (other == values)
+            settled[~alike] = np.nan
+    return settled
 
 
 INFINITE = "inf"
@@ -56,7 +200,7 @@ def words_of(texts: Sequence[str]) -> Words:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Column:
+class TableColumn:
     """One evaluated column: `values` in the unit that `unit` names, shape (rows,).
 
     `unbounded` (rows,) is infinite with its sign in rows at a dead centre towards which the column
@@ -85,7 +229,7 @@ class Column:
         is_infinite = (self.unbounded != 0.0).tolist()
         return [w if i else t for t, w, i in zip(texts, words, is_infinite, strict=True)]
 
-    def part(self, rows: NDArray[np.intp] | Sequence[int]) -> Column:
+    def part(self, rows: NDArray[np.intp] | Sequence[int]) -> TableColumn:
         """Some of the rows."""
         rows, values = np.asarray(rows, dtype=np.intp), self.values
         if isinstance(values, Words):
@@ -101,13 +245,13 @@ class Column:
 
 def column_of_numbers(
     label: str, unit: str, numbers: FloatArray, decimals: int | None = None
-) -> Column:
+) -> TableColumn:
     """A column of numbers (rows,), of which some may be infinite."""
     infinite = np.isinf(numbers)
     if not infinite.any():
-        return Column(label, unit, numbers, decimals)
+        return TableColumn(label, unit, numbers, decimals)
     unbounded = np.where(infinite, numbers, 0.0)
-    return Column(label, unit, np.where(infinite, np.nan, numbers), decimals, unbounded)
+    return TableColumn(label, unit, np.where(infinite, np.nan, numbers), decimals, unbounded)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,12 +261,12 @@ class Columns:
 
     name: str
     title: str
-    columns: tuple[Column, ...]
+    columns: tuple[TableColumn, ...]
     of_rows: bool = True
     summary: Summary | None = None
 
 
-def evaluate(table: TableLayout, source: Source) -> Columns:
+def evaluate(table: TableLayout, source: TableSource) -> Columns:
     """All columns of a table, in file units.
 
     Raises:
@@ -137,23 +281,23 @@ def evaluate(table: TableLayout, source: Source) -> Columns:
     return Columns(table.name, table.title, columns, summary=summary)
 
 
-def status_words(source: Source) -> Words:
+def status_words(source: TableSource) -> Words:
     """The status label of every row."""
     codes = source.status.astype(np.int32)
     return Words(codes, tuple(status.label for status in Status))
 
 
-def proof_words(source: Source) -> Words:
+def proof_words(source: TableSource) -> Words:
     """What is proven of every row of a sweep."""
     return Words(source.proof.astype(np.int32), tuple(proof.label for proof in Proof))
 
 
-def mode_words(source: Source) -> Words:
+def mode_words(source: TableSource) -> Words:
     """The letter of every row's assembly mode."""
     return Words(np.zeros(source.rows, dtype=np.int32), (source.letter,))
 
 
-def event_words(source: Source) -> Words:
+def event_words(source: TableSource) -> Words:
     """What happened at every row of a response; "" where nothing did."""
     known = tuple(dict.fromkeys(source.events))
     numbers = {text: number for number, text in enumerate(known)}
@@ -168,25 +312,25 @@ _WORDS = {
 }
 
 
-def row_words(name: str, source: Source) -> Words:
+def row_words(name: str, source: TableSource) -> Words:
     """A quantity of the rows that is a text, by its name."""
     return _WORDS[name](source)
 
 
-def solved_rows(source: Source) -> NDArray[np.bool_]:
+def solved_rows(source: TableSource) -> NDArray[np.bool_]:
     """Which rows have a solution, shape (rows,)."""
     return has_solution(source.status)
 
 
-def column_of(layout: ColumnLayout, source: Source) -> Column:
+def column_of(layout: ColumnLayout, source: TableSource) -> TableColumn:
     """One column in file units; cells that are not unique are nan. Raises as `evaluate`."""
     name = layout.expression.text.strip()
     if name in _WORDS:
-        return Column(layout.label, "", row_words(name, source))
+        return TableColumn(layout.label, "", row_words(name, source))
     given = source.inputs.get(name, source.input_rates.get(name))
     if given is not None:
         unit = source.units.label(source.quantity(name).dimension)
-        return Column(layout.label, unit, given, layout.decimals)
+        return TableColumn(layout.label, unit, given, layout.decimals)
     column = _evaluated(layout, source)
     others = [_evaluated(layout, other).values for other in source.alternatives]
     disturbed = [_evaluated(layout, other).values for other in source.disturbed]
@@ -194,7 +338,7 @@ def column_of(layout: ColumnLayout, source: Source) -> Column:
     return replace(column, values=values)
 
 
-def _evaluated(layout: ColumnLayout, source: Source) -> Column:
+def _evaluated(layout: ColumnLayout, source: TableSource) -> TableColumn:
     quantity = layout.expression.evaluate(lambda name: _resolve(name, source))
     value = quantity.value
     if isinstance(value, Vector):
@@ -212,7 +356,7 @@ def _evaluated(layout: ColumnLayout, source: Source) -> Column:
     return column_of_numbers(layout.label, unit, values, layout.decimals)
 
 
-def _resolve(name: str, source: Source) -> Quantity:
+def _resolve(name: str, source: TableSource) -> Quantity:
     if name in _WORDS:
         raise ExpressionError(
             f"{name} is a text and cannot be computed with", 0, "make it a column of its own"
@@ -231,3 +375,23 @@ def component_text(text: str, axis: str) -> str:
     text = text.strip()
     bare = text.replace(".", "").replace("_", "").isalnum()
     return f"{text}.{axis}" if bare else f"({text}).{axis}"
+
+
+# What a run goes along: time where it has one, else its first input that moves.
+
+
+class RunParameter(NamedTuple):
+    """Its name, its values (rows,) in the file's units, and their unit."""
+
+    name: str
+    values: FloatArray
+    unit: str
+
+
+def run_parameter(source: TableSource) -> RunParameter | None:
+    """The parameter of a run; None where nothing moves."""
+    for name, values in source.inputs.items():
+        if bool((values != values[0]).any()):
+            unit = source.units.label(source.quantity(name).dimension)
+            return RunParameter(name, values, unit)
+    return None

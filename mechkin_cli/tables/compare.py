@@ -8,16 +8,77 @@ zero crossing from a change that matters.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+import textwrap
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 from typing import Literal
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.regular_file import MOST_TABLE_BYTES, read_regular
-from mechkin_cli.tables.stale import stale_files
-from mechkin_cli.tables.table_text import TableText, read_table_text
+from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
+from mechkin_cli.tables.errata import HEAD, HEADER, NAME, PAGE
+from mechkin_cli.tables.print import TableText, read_table_text
+
+# Which files beside a mechanism were written by mechkin for a table that it has no more.
+#
+# Nothing else may ever be removed, so a file must show where it comes from: a table has two files
+# of one name, CSV and Markdown, with the same labels and as many rows, and perhaps its summary
+# beside them; the errata page and the list of disagreements have the words and the header that they
+# always have.
+
+
+def stale_files(fresh: Collection[str], committed: Mapping[str, bytes]) -> tuple[str, ...]:
+    """Names in `committed` that mechkin wrote and that are not among the `fresh` ones."""
+    others = {name: committed[name] for name in sorted(committed) if name not in fresh}
+    own = {name for name, content in others.items() if _is_page(name, content)}
+    for name in others:
+        twin = f"{name.removesuffix('.csv')}.md"
+        if name.endswith(".csv") and twin in others and _is_pair(others[name], others[twin]):
+            own |= {name, twin}
+    for name, content in others.items():
+        table = f"{name.removesuffix('.summary.csv')}.csv"
+        if name.endswith(".summary.csv") and (table in own or table in fresh):
+            own |= {name} if content.startswith(b"summary,") else set()
+    return tuple(name for name in others if name in own)
+
+
+def stale_in(folder: Path, fresh: Collection[str]) -> tuple[str, ...]:
+    """The same for the files that stand in a folder; links and what cannot be read are not
+    mechkin's."""
+    found = {}
+    for path in folder.iterdir() if folder.is_dir() else ():
+        if path.name in fresh or path.suffix not in (".csv", ".md") or path.is_symlink():
+            continue
+        with suppress(OSError):
+            found[path.name] = read_regular(path, MOST_TABLE_BYTES)
+    return stale_files(fresh, found)
+
+
+def _is_page(name: str, content: bytes) -> bool:
+    """Whether it is the errata page, or the list of disagreements."""
+    if name == NAME:
+        return content.startswith(HEADER.encode())
+    return name == PAGE and HEAD.encode() in content
+
+
+def _is_pair(csv: bytes, markdown: bytes) -> bool:
+    """Whether both are the same table: a title, labels with their units, and as many rows."""
+    try:
+        table = markdown.partition(b"\n\n| summary ")[0]
+        cells, page = read_table_text("a.csv", csv), read_table_text("a.md", table)
+    except ValueError:
+        return False
+    labels = tuple(label.partition(" [")[0] for label in page.labels)
+    return (
+        markdown.startswith(b"# ")
+        and bool(labels)
+        and labels == tuple(label.partition(" [")[0] for label in cells.labels)
+        and len(page.rows) == len(cells.rows)
+    )
+
 
 REMOVED = "`mechkin tables` removes it"
 LEFT = "it does not look like one of mechkin's, which leaves it: move it, or remove it yourself"
@@ -224,3 +285,86 @@ def _spacing_remark(fresh: bytes, committed: bytes) -> str:
     pairs = zip_longest(committed.split(b"\n"), fresh.split(b"\n"))
     line = next(number for number, (old, new) in enumerate(pairs, start=1) if old != new)
     return f"the cells agree; line {line} differs in spacing, quotes or line ending"
+
+
+# What a comparison of tables says to a person: lines of at most 80 columns.
+
+WIDTH = 80
+_LONGEST_CELL = 24
+_LONGEST_REMARK = 300
+
+
+def report(comparisons: Sequence[FileComparison]) -> str:
+    """Every file that differs with its first differing cells, then a count; ends with a newline."""
+    lines: list[str] = []
+    for comparison in comparisons:
+        if comparison.verdict != "equal":
+            lines += _file_lines(comparison)
+    lines += _wrapped(_summary(comparisons), "")
+    return "\n".join(lines) + "\n"
+
+
+def _file_lines(comparison: FileComparison) -> list[str]:
+    if comparison.verdict == "missing":
+        return _wrapped(f"{comparison.name}: missing, not committed yet", "")
+    if comparison.verdict == "extra":
+        text = f"{comparison.name}: extra, no table makes this file any more"
+        return _wrapped("; ".join((text, *comparison.remarks)), "")
+    lines = _wrapped(_headline(comparison), "")
+    for remark in comparison.remarks:
+        lines += _wrapped(_shortened(remark, _LONGEST_REMARK), "  ")
+    for cell in comparison.cells:
+        lines += _wrapped(_cell_line(cell), "  ")
+    rest = comparison.cell_count - len(comparison.cells)
+    return [*lines, f"  and {_counted(rest, 'more cell')}"] if rest else lines
+
+
+def _headline(comparison: FileComparison) -> str:
+    text = f"{comparison.name}: different"
+    if comparison.cell_count:
+        text += f", {_counted(comparison.cell_count, 'cell')}"
+    if comparison.largest_relative_change is not None:
+        text += f"; largest relative change {comparison.largest_relative_change:.2g}"
+    if comparison.largest_scaled_change is not None:
+        text += f" ({comparison.largest_scaled_change:.2g} of its column's largest value)"
+    return text
+
+
+def _cell_line(cell: CellChange) -> str:
+    committed, fresh = (_shortened(text, _LONGEST_CELL) for text in (cell.committed, cell.fresh))
+    label = _shortened(cell.column, _LONGEST_CELL)
+    return f"row {cell.row}, {label}: committed {committed or 'empty'}, fresh {fresh or 'empty'}"
+
+
+def _summary(comparisons: Sequence[FileComparison]) -> str:
+    counts = Counter(comparison.verdict for comparison in comparisons)
+    text = f"{_counted(len(comparisons), 'table file')}: {counts['equal']} equal"
+    for verdict in ("different", "missing", "extra"):
+        if counts[verdict]:
+            text += f", {counts[verdict]} {verdict}"
+    if counts["equal"] == len(comparisons):
+        return text
+    return f"{text}; where the change is meant, run `mechkin tables` and commit the files"
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def _shortened(text: str, longest: int) -> str:
+    """The text on one line of printable characters, cut in its middle where it is too long."""
+    text = "".join(letter if letter.isprintable() else "?" for letter in " ".join(text.split()))
+    if len(text) <= longest:
+        return text
+    kept = longest - 3
+    return f"{text[: kept - kept // 2]}...{text[len(text) - kept // 2 :]}"
+
+
+def _wrapped(text: str, indent: str) -> list[str]:
+    return textwrap.wrap(
+        text,
+        WIDTH,
+        initial_indent=indent,
+        subsequent_indent=f"{indent}    ",
+        break_on_hyphens=False,
+    )

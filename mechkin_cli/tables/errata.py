@@ -8,15 +8,27 @@ them.
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from pathlib import Path
+from typing import Any, NamedTuple
 
-from mechkin_cli.legible import whole
-from mechkin_cli.tables.agreement import PrintedCell, TableAgreement
-from mechkin_cli.tables.columns import Columns
-from mechkin_cli.tables.layout import ROW_NUMBER, PublishedValues
-from mechkin_cli.tables.neutral import link_target, markdown_line, markdown_text
+import numpy as np
+
+from mechkin_cli.diagnostics import UsageError, whole
+from mechkin_cli.tables.columns import Columns, TableColumn, words_of
+from mechkin_cli.tables.csv import COMMITTED_DIGITS, csv_bytes
+from mechkin_cli.tables.layout import (
+    ROW_NUMBER,
+    PrintedSource,
+    TableLayout,
+    link_target,
+    markdown_line,
+    markdown_text,
+)
+from mechkin_cli.tables.print import PrintedCell, TableAgreement, agreement, read_printed
 
 PAGE = "errata.md"
 _THOUSAND, _MILLION = Decimal(1000), Decimal(1_000_000)
@@ -37,7 +49,7 @@ class PrintedTable:
     """
 
     table: Columns
-    published: PublishedValues
+    published: PrintedSource
     agreement: TableAgreement
     link: str
 
@@ -201,3 +213,164 @@ def _markdown(labels: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
         for row in cells
     ]
     return "\n".join(f"| {' | '.join(row)} |" for row in [lines[0], rule, *lines[1:]])
+
+
+# The overview page of a folder of mechanisms: one line per file, in Markdown.
+
+OVERVIEW_PAGE = "README.md"
+MARK = "<!-- written by `mechkin tables` -->"
+"""First line of the page; a page without it is somebody else's."""
+
+
+class OverviewRow(NamedTuple):
+    """What the page says of one file; `stem` names the file, `picture` that of its drawing in the
+    folder of its tables, other cells are words."""
+
+    stem: str
+    name: str
+    joints: str
+    mobility: str
+    modes: str
+    rows: str
+    verdict: str
+    source: str
+    picture: str
+
+
+def overview_page(rows: Sequence[OverviewRow]) -> str:
+    """The whole page, with a newline at its end."""
+    labels = (
+        "picture",
+        "mechanism",
+        "joints",
+        "mobility",
+        "modes",
+        "rows",
+        "against print",
+        "source",
+    )
+    lines = [_line(labels), _line(["---"] * len(labels)), *(_line(_cells(row)) for row in rows)]
+    return "\n".join([MARK, "", "# Mechanisms", "", _HEAD, "", *lines]) + "\n"
+
+
+_HEAD = """\
+Each file has its tables in the folder of its name, and a page `errata.md` where they are compared
+with print. The picture shows its first position, seen from a corner: links in colours, joints by
+symbols of their types, the ways of its points. Joints stand in the order of the file. Mobility is
+the true one; Kutzbach's count and idle freedoms stand beside it where they make a difference. Modes
+are the ways of assembling it that were found at the first row. Rows are those solved, of all where
+they differ."""
+
+
+def _cells(row: OverviewRow) -> list[str]:
+    stem = link_target(row.stem)
+    link = f"[{_text(row.name)}]({stem}.yaml)"
+    verdict = f"[{row.verdict}]({stem}/errata.md)" if row.verdict else ""
+    return [
+        f"![{_text(row.name)}]({stem}/{link_target(row.picture)})",
+        link,
+        *map(_text, (row.joints, row.mobility, row.modes, row.rows)),
+        verdict,
+        _text(row.source),
+    ]
+
+
+def _line(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _text(text: str) -> str:
+    return markdown_text(whole(text))
+
+
+# The tables of a mechanism that name printed values, beside these values.
+
+
+def against_print(
+    file: Path, layouts: Sequence[TableLayout], tables: Sequence[Columns]
+) -> list[PrintedTable]:
+    """The tables of the mechanism file `file` that have printed values, compared with them.
+
+    Raises:
+        UsageError: printed values cannot be read, or do not belong to the table.
+        InvalidFile: a file of printed values is no table of numbers.
+    """
+    found = []
+    for layout, table in zip(layouts, tables, strict=True):
+        if layout.published is None:
+            continue
+        place = file.parent / layout.published.file
+        try:
+            compared = agreement(table, read_printed(place), layout.published.rows_by)
+        except ValueError as error:
+            raise UsageError(f"{place}: {error}") from error
+        link = posixpath.relpath(layout.published.file, file.stem)
+        found.append(PrintedTable(table, layout.published, compared, link))
+    return found
+
+
+# Every printed cell that does not agree with the computed one, as a table and as plain data.
+#
+# The errata page shows the worst few of a table; here each can be found: the table, the computed
+# row counted from 1, what found the row in the print, the column, both numbers, and printed less
+# computed in units of the last printed digit.
+
+NAME = "disagreements.csv"
+"""File beside the errata page; there is none where all cells agree."""
+
+HEADER = "table,row,found by,at,column,printed,computed,units\n"
+"""Its first line."""
+
+
+def disagreements_csv(tables: Sequence[PrintedTable]) -> bytes:
+    """The file, as UTF-8; empty where all cells agree."""
+    found = [(one, cell) for one in tables for cell in one.agreement.off]
+    if not found:
+        return b""
+    columns = (
+        _words("table", [one.table.name for one, _ in found]),
+        _numbers("row", [cell.row for _, cell in found]),
+        _words("found by", [one.agreement.rows_by for one, _ in found]),
+        _numbers("at", [float(cell.key) for _, cell in found]),
+        _words("column", [cell.label for _, cell in found]),
+        _numbers("printed", [float(cell.printed) for _, cell in found]),
+        _numbers("computed", [float(cell.computed) for _, cell in found]),
+        _numbers("units", [float(cell.units) for _, cell in found]),
+    )
+    return csv_bytes(Columns("disagreements", "", columns), COMMITTED_DIGITS)
+
+
+def against_print_record(tables: Sequence[PrintedTable]) -> list[dict[str, Any]]:
+    """Counts and disagreeing cells of each table, as JSON has them; numbers keep their digits."""
+    return [
+        {
+            "table": one.table.name,
+            "published": one.published.file,
+            "rows_by": one.agreement.rows_by,
+            "cells": len(one.agreement.cells),
+            "agree": one.agreement.agreeing,
+            "one_off": one.agreement.one_off,
+            "differ": one.agreement.differing,
+            "disagreements": [_cell_record(cell) for cell in one.agreement.off],
+        }
+        for one in tables
+    ]
+
+
+def _cell_record(cell: PrintedCell) -> dict[str, Any]:
+    return {
+        "row": cell.row,
+        "at": str(cell.key),
+        "column": cell.label,
+        "printed": str(cell.printed),
+        "computed": float(cell.computed),
+        "units": float(cell.units),
+    }
+
+
+def _words(label: str, texts: Sequence[str]) -> TableColumn:
+    return TableColumn(label, "", words_of(texts))
+
+
+def _numbers(label: str, values: Sequence[float]) -> TableColumn:
+    return TableColumn(label, "", np.array(values, dtype=np.float64))

@@ -5,14 +5,312 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import re
 import stat
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables.claim import Claim
-from mechkin_cli.tables.file_set import replace_files, settle_all
+
+# One writer at a time for a folder.
+#
+# The lock is the operating system's, on the folder itself (flock): no file stands for it, and it
+# ends with its process, whatever ends that. File systems without locks are written to without one.
+
+MOST_TRIES = 100
+"""A folder may be removed by another run between being made and being locked."""
+
+
+class Claim:
+    """A folder that this process alone writes to until `release`; `locked` says whether that is
+    sure."""
+
+    def __init__(self, folder: Path) -> None:
+        """Makes the folder, and those above it, as needed.
+
+        Raises:
+            UsageError: another run writes to it.
+            OSError: it cannot be made.
+        """
+        self.folder = folder
+        self.locked = False
+        self._made: list[Path] = []
+        self._descriptor: int | None = None
+        for _ in range(MOST_TRIES):
+            with contextlib.suppress(FileNotFoundError):
+                if self._try():
+                    held.add(self)
+                    return
+        raise OSError(errno.EBUSY, os.strerror(errno.EBUSY))
+
+    def release(self) -> None:
+        """Ends the claim; folders made for it that are still empty go again."""
+        for folder in reversed(self._made):
+            with contextlib.suppress(OSError):
+                folder.rmdir()
+        self._made = []
+        self._close()
+        held.discard(self)
+
+    def _try(self) -> bool:
+        """Whether the folder that was locked is still the one of that name."""
+        _make(self.folder, self._made)
+        try:
+            self._descriptor = os.open(self.folder, os.O_RDONLY | getattr(os, "O_DIRECTORY", 0))
+        except PermissionError:
+            return True  # it may be written to, but not read, nor locked
+        try:
+            self.locked = _lock(self._descriptor)
+            if self.locked and not _is_at(self._descriptor, self.folder):
+                self._close()
+                return False
+        except BlockingIOError:
+            self._made = []
+            self._close()
+            raise UsageError(
+                f"another run of mechkin is writing to {self.folder}; wait until it ends, or "
+                "choose another folder with --out"
+            ) from None
+        return True
+
+    def _close(self) -> None:
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+        self._descriptor, self.locked = None, False
+
+
+held: set[Claim] = set()
+"""The claims of this process."""
+
+
+def _lock(descriptor: int) -> bool:
+    """Whether the folder could be locked; False where locks do not exist.
+
+    Raises:
+        BlockingIOError: another process has locked it.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        return False
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise
+    except OSError:
+        return False
+    return True
+
+
+def _is_at(descriptor: int, folder: Path) -> bool:
+    return os.path.samestat(os.fstat(descriptor), folder.stat())
+
+
+def _make(folder: Path, made: list[Path]) -> None:
+    """Make the folder and those above it; `made` gets the new ones, outermost first."""
+    if folder.is_dir():
+        return
+    if folder.is_symlink():
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))
+    if folder.parent != folder:
+        _make(folder.parent, made)
+    with contextlib.suppress(FileExistsError):
+        folder.mkdir()
+        made.append(folder)
+        return
+    if not folder.is_dir():
+        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST))
+
+
+# Replacing several files at one moment: all of them are the old ones, or all are the new.
+#
+# A rename replaces one file at once, but not two. So an attempt at a set has a folder of its own,
+# `.mechkin-...`, with the new files in `new/`, second names of those that they replace in `old/`,
+# and a symbolic link `set` to one of the two. First `set` leads to `old/`, and file by file a link
+# through `set` is put in the place of what stands there: whoever reads still finds the old files.
+# Then one rename lets `set` lead to `new/`: that is the moment. At last the links are replaced by
+# the files themselves, and the attempt's folder goes.
+#
+# `settle` is this last part, in both directions: it also takes back what was interrupted before the
+# moment, and clears what a run left that was killed.
+
+replacing: set[Path] = set()
+"""The attempts of this process that are under way: an interrupt must let them be taken back."""
+
+Refuse = Callable[[Path], contextlib.AbstractContextManager[None]]
+"""Words for the errors of one target."""
+
+_ATTEMPT = re.compile(r"\.mechkin-[0-9a-f]{16}(\.tmp)?")
+_UP = f"..{os.sep}..{os.sep}"
+"""From `old/` to the folder in which the set stands."""
+
+
+def replace_files(
+    folder: Path, files: Mapping[str, bytes], refuse: Refuse, removed: Sequence[str] = ()
+) -> None:
+    """Put files (name -> content) into the folder, replacing those of the same names; those of the
+    names `removed` go at the same moment.
+
+    Whatever fails, a keyboard interrupt included, the old files stay.
+    """
+    names = [*files, *removed]
+    attempt = folder / f".mechkin-{os.urandom(8).hex()}"
+    try:
+        replacing.add(attempt)
+        _prepare(attempt, folder, files, names, refuse)
+        if len(names) == len(files) == 1:
+            (name,) = files
+            with refuse(folder / name):
+                (attempt / "new" / name).replace(folder / name)
+        elif _link(attempt / "set", "old"):
+            for name in names:
+                with refuse(folder / name):
+                    _put_link(f"{attempt.name}/set/{name}", folder / name, attempt)
+            with refuse(folder):
+                _put_link("new", attempt / "set", attempt)
+        else:
+            _replace_one_by_one(attempt, folder, names, refuse)
+    finally:
+        _without_interrupts(lambda: settle(attempt))
+        replacing.discard(attempt)
+
+
+def settle(attempt: Path) -> None:
+    """Let the side that `set` leads to stand in the folder, and remove the attempt; may be repeated
+    after an interrupt. What cannot be settled now stays as it is, readable, for the next time."""
+    with contextlib.suppress(OSError):
+        for name in _links(attempt):
+            with contextlib.suppress(OSError):
+                side = attempt / os.readlink(attempt / "set")
+                _put_file(side / name, attempt.parent / name, attempt)
+        if not _links(attempt):
+            from shutil import rmtree
+
+            rmtree(attempt, ignore_errors=True)
+
+
+def settle_all(folder: Path) -> None:
+    """Settles and clears what runs left that were killed; none may be under way."""
+    for name in os.listdir(folder):
+        if _ATTEMPT.fullmatch(name):
+            path = folder / name
+            if path.is_dir() and not path.is_symlink():
+                settle(path)
+            else:
+                with contextlib.suppress(OSError):
+                    path.unlink()
+
+
+def _prepare(
+    attempt: Path, folder: Path, files: Mapping[str, bytes], names: Sequence[str], refuse: Refuse
+) -> None:
+    """The attempt's folder with both sides."""
+    for name in names[:1]:
+        with refuse(folder / name):
+            attempt.mkdir()
+            (attempt / "new").mkdir()
+            (attempt / "old").mkdir()
+    for name, content in files.items():
+        with refuse(folder / name):
+            _write(attempt / "new" / name, content)
+    for name in names:
+        with refuse(folder / name):
+            _keep(folder / name, attempt / "old" / name)
+
+
+def _write(path: Path, content: bytes) -> None:
+    with path.open("xb") as stream:
+        stream.write(content)
+
+
+def _keep(target: Path, second: Path) -> None:
+    """Give what stands at the target a second name."""
+    if target.is_symlink():
+        text = os.readlink(target)
+        second.symlink_to(text if os.path.isabs(text) else _UP + text)
+    elif target.exists():
+        try:
+            os.link(target, second)
+        except OSError:  # a file system without hard links
+            from shutil import copy2
+
+            copy2(target, second)
+
+
+def _link(path: Path, text: str) -> bool:
+    """Whether the symbolic link could be made: some file systems have none."""
+    try:
+        path.symlink_to(text)
+    except OSError:
+        return False
+    return True
+
+
+def _put_link(text: str, target: Path, attempt: Path) -> None:
+    spare = attempt / "spare"
+    spare.symlink_to(text)
+    spare.replace(target)
+
+
+def _links(attempt: Path) -> list[str]:
+    """Names in the attempt's folder that are links through `set`."""
+    with os.scandir(attempt.parent) as entries:
+        links = [entry.name for entry in entries if entry.is_symlink()]
+    ends = {name: os.readlink(attempt.parent / name) for name in links}
+    return [name for name, end in ends.items() if end == f"{attempt.name}/set/{name}"]
+
+
+def _put_file(source: Path, target: Path, attempt: Path) -> None:
+    """Put the file at `source`, or nothing where there is none, in the place of the target."""
+    if not os.path.lexists(source):
+        target.unlink()
+        return
+    spare = attempt / "spare"
+    spare.unlink(missing_ok=True)
+    if source.is_symlink():
+        spare.symlink_to(os.readlink(source).removeprefix(_UP))
+    else:
+        try:
+            os.link(source, spare)
+        except OSError:  # a file system without hard links
+            spare = source
+    spare.replace(target)
+
+
+def _replace_one_by_one(attempt: Path, folder: Path, names: list[str], refuse: Refuse) -> None:
+    """Without symbolic links there is no one moment; but what fails is taken back."""
+    try:
+        for name in names:
+            with refuse(folder / name):
+                if (attempt / "new" / name).exists():
+                    (attempt / "new" / name).replace(folder / name)
+                else:
+                    (folder / name).unlink()
+    except BaseException:
+        done = [name for name in names if not (attempt / "new" / name).exists()]
+        _without_interrupts(lambda: _take_back(attempt, folder, done))
+        raise
+
+
+def _take_back(attempt: Path, folder: Path, names: list[str]) -> None:
+    for name in names:
+        with contextlib.suppress(OSError):
+            _put_file(attempt / "old" / name, folder / name, attempt)
+
+
+def _without_interrupts(work: Callable[[], None]) -> None:
+    """Does the work to its end; an interrupt meanwhile counts only after that."""
+    interrupts = 0
+    while True:
+        try:
+            work()
+            break
+        except KeyboardInterrupt:
+            interrupts += 1
+    if interrupts:
+        raise KeyboardInterrupt
+
 
 _CURES = {
     errno.ENOSPC: "the disk is full; free some space or choose another folder with --out",

@@ -1,6 +1,6 @@
-r"""LaTeX of a table for a paper: booktabs, units in the heads, decimals in line, verdicts as notes.
+"""LaTeX of a table for a paper: booktabs, units in the heads, decimals in line, verdicts as notes.
 
-It needs `\usepackage{booktabs}`, and where a table is longer than a page `longtable`. Every number
+It needs `\\usepackage{booktabs}`, and where a table is longer than a page `longtable`. Every number
 of a column has as many decimals, so that columns aligned at the right have their points in line;
 undeclared decimals are chosen as `mechkin_cli.tables.decimal_text` says. A cell that is empty is a
 dash.
@@ -12,14 +12,15 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
-from mechkin_cli.legible import legible
-from mechkin_cli.tables.columns import INFINITE, Column, Columns, Words
-from mechkin_cli.tables.decimal_text import column_texts
-from mechkin_cli.tables.footnotes import footnotes
+from mechkin_cli.diagnostics import legible
+from mechkin_cli.tables.columns import INFINITE, Columns, TableColumn, Words
+from mechkin_cli.tables.csv import column_texts
+from mechkin_cli.tables.markdown import footnotes
 
 if TYPE_CHECKING:
-    from mechkin_cli.tables.source import Source
+    from mechkin_cli.tables.columns import TableSource
     from mechkin_cli.tables.summary import Summary
+
 
 PAGE_ROWS: Final = 45
 """Rows that fit on a page of ten points; longer tables are broken over pages."""
@@ -85,7 +86,7 @@ def latex_number(text: str) -> str:
     return f"{'$-$' if sign else ''}{digits}{power}"
 
 
-def latex_bytes(columns: Columns, source: Source) -> bytes:
+def latex_bytes(columns: Columns, source: TableSource) -> bytes:
     """The whole file as UTF-8, with a newline at its end."""
     caption = latex_text(columns.title or columns.name)
     label = f"tab:{columns.name}"
@@ -172,7 +173,7 @@ def _notes(notes: Sequence[str]) -> list[str]:
     return [r"\begin{flushleft}\footnotesize", *lines, r"\end{flushleft}"]
 
 
-def _cells(column: Column) -> list[str]:
+def _cells(column: TableColumn) -> list[str]:
     if isinstance(column.values, Words):
         texts = [latex_text(word) for word in column.values.words]
         return [texts[code] for code in column.values.codes]

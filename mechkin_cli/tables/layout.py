@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
+from urllib.parse import quote
 
-from mechkin_cli.runs import SWEEP
+from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.expressions import Expression
+
 
 ROW_TEXTS = ("row.mode", "row.status")
 """Quantities of a row that are texts: each can only be a column of its own."""
@@ -35,7 +38,7 @@ class ColumnLayout(NamedTuple):
     decimals: int | None = None
 
 
-class PrintedRemark(NamedTuple):
+class Remark(NamedTuple):
     """Why printed values differ, in words; `labels` of the columns meant, () for all.
 
     A remark with `data` is about these numbers instead: they are not in the source's text, and the
@@ -47,7 +50,7 @@ class PrintedRemark(NamedTuple):
     data: tuple[str, ...] = ()
 
 
-class PublishedValues(NamedTuple):
+class PrintedSource(NamedTuple):
     """Where the printed values of a table stand: a path relative to the mechanism file.
 
     `rows_by` is the label by whose values printed rows are found, `ROW_NUMBER` where the n-th
@@ -55,7 +58,7 @@ class PublishedValues(NamedTuple):
     """
 
     file: str
-    remarks: tuple[PrintedRemark, ...] = ()
+    remarks: tuple[Remark, ...] = ()
     rows_by: str | None = None
 
 
@@ -74,7 +77,7 @@ class TableLayout(NamedTuple):
     name: str
     title: str
     columns: tuple[ColumnLayout, ...]
-    published: PublishedValues | None = None
+    published: PrintedSource | None = None
     run: str = SWEEP
     summary: tuple[str, ...] = ()
     plot: PlotLayout | None = None
@@ -104,12 +107,12 @@ class CoefficientsLayout(NamedTuple):
         return self.name, f"{self.name}_unknowns"
 
 
-class _Named(Protocol):
+class _NamedLayout(Protocol):
     @property
     def name(self) -> str: ...
 
 
-OneNamed = TypeVar("OneNamed", bound=_Named)
+OneNamed = TypeVar("OneNamed", bound=_NamedLayout)
 
 
 def chosen(every: tuple[OneNamed, ...], names: Collection[str] | None) -> tuple[OneNamed, ...]:
@@ -143,3 +146,50 @@ def effort_names(inputs: Collection[str]) -> list[str]:
         f"{joint}.effort" if joints.count(joint) == 1 else f"{name}.effort"
         for name, joint in zip(inputs, joints, strict=True)
     ]
+
+
+# Texts of a file as they stand in tables: words, whatever a spreadsheet or a page would make of
+# them.
+#
+# A spreadsheet computes a cell of a CSV file that begins with =, +, - or @; it takes one that
+# begins with an apostrophe for text. In Markdown what would be markup is escaped. Numbers never
+# come here.
+
+_FORMULA = re.compile(r"(^|[;\t\r\n])(?=[\s'\"]*[=+\-@＝＋－＠])|^(?=[\t\r\n])")
+_MARKUP = re.compile(r"[\\|`*\[\]~]|(?<![^\W_])_|_(?![^\W_])")
+_ENTITY = re.compile(r"&(?=#?\w+;)")
+_BLOCK = re.compile(r"^(?=[#>+=-])|^(\d{1,9})(?=[.)])")
+_TURNS_THE_LINE = re.compile("[\u202a-\u202e\u2066-\u2069]")
+"""Characters after which text runs the other way: a page shows other words than it holds."""
+
+
+def csv_text(text: str) -> str:
+    """The text, with an apostrophe where a spreadsheet would find a formula.
+
+    Example:
+        >>> csv_text("=1+1"), csv_text("a; -b"), csv_text("max(a, -b)")
+        ("'=1+1", "a;' -b", 'max(a, -b)')
+    """
+    return _FORMULA.sub(lambda found: f"{found[0]}'", text)
+
+
+def markdown_text(text: str) -> str:
+    r"""The text in one line and without markup.
+
+    Example:
+        >>> markdown_text("theta_1 [a](b) <b>|"), markdown_text("R&D &lt;")
+        ('theta_1 \\[a\\](b) &lt;b>\\|', 'R&D &amp;lt;')
+    """
+    line = _TURNS_THE_LINE.sub("", " ".join(text.split()))
+    line = _MARKUP.sub(lambda found: f"\\{found[0]}", line)
+    return _ENTITY.sub("&amp;", line).replace("<", "&lt;")
+
+
+def markdown_line(text: str) -> str:
+    """As `markdown_text`, for a text that begins a line or an item of a list."""
+    return _BLOCK.sub(lambda found: f"{found[0]}\\", markdown_text(text))
+
+
+def link_target(path: str) -> str:
+    """A relative path as it stands in a link."""
+    return quote(path, safe="/", errors="surrogateescape")

@@ -6,24 +6,91 @@ chosen as `mechkin_cli.tables.decimal_text` says.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from mechkin_cli.tables.columns import Column, Columns, Words, words_of
-from mechkin_cli.tables.decimal_text import column_texts, decimal_column
-from mechkin_cli.tables.footnotes import footnotes
-from mechkin_cli.tables.native_columns import threads_for, word_column
-from mechkin_cli.tables.neutral import markdown_text
-from mechkin_cli.tables.source import Source
+from mechkin_cli.tables.columns import (
+    Columns,
+    RunParameter,
+    TableColumn,
+    TableSource,
+    Words,
+    event_words,
+    proof_words,
+    run_parameter,
+    solved_rows,
+    status_words,
+    words_of,
+)
+from mechkin_cli.tables.csv import column_texts, decimal_column, threads_for, word_column
+from mechkin_cli.tables.layout import markdown_text
+from mechkin_cli.verdict import SWEEP, Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.tables.decimal_text import DecimalColumn
-    from mechkin_cli.tables.native_columns import WordColumn
+    from mechkin_cli.tables.csv import DecimalColumn, WordColumn
     from mechkin_cli.tables.summary import Summary
 
 
-def markdown_bytes(columns: Columns, source: Source, threads: int = 0) -> bytes:
+# Footnotes of a table: which rows are not ok or lack a cell, and why.
+
+LISTED_RANGES = 6
+
+
+def footnotes(
+    columns: Columns, source: TableSource, written: Callable[[str], str] = str
+) -> list[str]:
+    """One sentence per verdict other than ok, then one per column with unexplained empty cells.
+
+    `written` makes of a label what is to stand in the file.
+    """
+    if not columns.of_rows:
+        return []
+    notes = [
+        f"{_where(source.status == status, source)}: {status.label}: {status.sentence}"
+        for status in Status
+        if status is not Status.ok and bool((source.status == status).any())
+    ]
+    unclear = np.isin(source.status, (Status.rank_unclear, Status.dead_centre))
+    explained = ~solved_rows(source) | unclear
+    for column in columns.columns:
+        if isinstance(column.values, Words):
+            continue
+        empty = ~np.isfinite(column.values) & ~explained
+        if bool(empty.any()):
+            reason = "the value is not finite or not unique there."
+            notes.append(f"{_where(empty, source)}: no {written(column.label)}: {reason}")
+    return notes
+
+
+def _where(chosen: NDArray[np.bool_], source: TableSource) -> str:
+    """Rows in words, counted from 1: `Rows 3, 27-30 (O1.theta 202 to 208 deg)`."""
+    rows = np.flatnonzero(chosen)
+    starts = np.flatnonzero(np.diff(rows, prepend=-2) != 1)
+    ends = np.append(starts[1:], rows.size)
+    swept = run_parameter(source)
+    texts = [
+        _range_text(int(rows[start]) + 1, int(rows[end - 1]) + 1, swept)
+        for start, end in zip(starts[:LISTED_RANGES], ends[:LISTED_RANGES], strict=True)
+    ]
+    if starts.size > LISTED_RANGES:
+        texts.append(f"and {rows.size - ends[LISTED_RANGES - 1]} more")
+    return f"{'Row' if rows.size == 1 else 'Rows'} {', '.join(texts)}"
+
+
+def _range_text(first: int, last: int, swept: RunParameter | None) -> str:
+    rows = str(first) if first == last else f"{first}-{last}"
+    if swept is None:
+        return rows
+    name, values, unit = swept
+    start, end = float(values[first - 1]), float(values[last - 1])
+    place = f"{name} {start:.12g}" if first == last else f"{name} {start:.12g} to {end:.12g}"
+    return f"{rows} ({f'{place} {unit}'.rstrip()})"
+
+
+def markdown_bytes(columns: Columns, source: TableSource, threads: int = 0) -> bytes:
     """The whole file as UTF-8, with a newline at its end and no trailing spaces; threads 0: as many
     as the table is worth."""
     from mechkin_cli.kernel import _kernel
@@ -51,7 +118,7 @@ def _below(summary: Summary) -> str:
 
     columns = [["summary", *summary.lines]]
     for each in summary.columns:
-        header = _header(Column(each.label, each.unit, np.empty(0)))
+        header = _header(TableColumn(each.label, each.unit, np.empty(0)))
         columns.append([header, *summary.texts(each)])
     widths = [max(map(len, cells)) for cells in columns]
     pads = [str.ljust, *(str.rjust for _ in summary.columns)]
@@ -64,7 +131,7 @@ def _below(summary: Summary) -> str:
     return "".join(("\n", head, f"| {' | '.join(rule)} |\n", *lines, f"\n{said}" if said else ""))
 
 
-def _numbers(column: Column) -> DecimalColumn | WordColumn:
+def _numbers(column: TableColumn) -> DecimalColumn | WordColumn:
     """The cells as the kernel takes them: as texts where one is infinite."""
     assert not isinstance(column.values, Words)
     if column.unbounded is None:
@@ -74,7 +141,7 @@ def _numbers(column: Column) -> DecimalColumn | WordColumn:
     return word_column(words_of([text.rjust(width) for text in texts]))
 
 
-def _padded_header(column: Column) -> str:
+def _padded_header(column: TableColumn) -> str:
     """The header, of cells that the kernel takes as texts as wide as they are."""
     header = _header(column)
     if column.unbounded is None:
@@ -82,7 +149,7 @@ def _padded_header(column: Column) -> str:
     return header.rjust(max(map(len, _texts(column))))
 
 
-def _texts(column: Column) -> list[str]:
+def _texts(column: TableColumn) -> list[str]:
     assert not isinstance(column.values, Words)
     return column.texts(column_texts(column.values, column.decimals))
 
@@ -97,6 +164,41 @@ def _to_the_right(table: bytes, columns: Columns) -> bytes:
     return b"\n".join((head, b"|".join(marks), rest))
 
 
-def _header(column: Column) -> str:
+def _header(column: TableColumn) -> str:
     label = markdown_text(column.label)
     return f"{label} [{column.unit}]" if column.unit else label
+
+
+# The table `rows`: per row its inputs, assembly mode, verdict and measured errors.
+#
+# That of a response is called `NAME.rows`; it has what happened at its rows and the error of their
+# energy, too.
+
+
+def rows_table(source: TableSource, run: str = SWEEP) -> Columns:
+    """Columns row, the inputs, mode, status, residual, condition, power_error; of a sweep whose
+    proofs were asked for additionally proof, of a response event and energy_error.
+
+    Rows count from 1; inputs are in file units, errors and condition without dimension.
+    """
+    inputs = [
+        TableColumn(name, source.units.label(source.quantity(name).dimension), values)
+        for name, values in source.inputs.items()
+    ]
+    columns = [
+        TableColumn("row", "", np.arange(1, source.rows + 1, dtype=np.float64), 0),
+        *inputs,
+        TableColumn("mode", "", Words(np.zeros(source.rows, dtype=np.int32), (source.mode,))),
+        TableColumn("status", "", status_words(source)),
+        TableColumn("residual", "", source.residual),
+        TableColumn("condition", "", source.condition),
+        TableColumn("power_error", "", source.power_error),
+    ]
+    if run == SWEEP:
+        if source.is_certified:
+            columns.insert(-3, TableColumn("proof", "", proof_words(source)))
+        return Columns("rows", "Rows and their verdicts", tuple(columns))
+    columns.insert(-3, TableColumn("event", "", event_words(source)))
+    error = np.asarray(source.quantity("row.energy_error").value, dtype=np.float64)
+    columns.append(TableColumn("energy_error", "", error))
+    return Columns(f"{run}.rows", f"Rows of {run} and their verdicts", tuple(columns))

@@ -10,17 +10,148 @@ numbers of rows.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.reductions import REDUCTIONS, mean, root_mean_square
-from mechkin_cli.status import Status
-from mechkin_cli.tables.columns import Column, Columns, column_of_numbers, words_of
-from mechkin_cli.tables.decimal_text import column_texts
+from mechkin_cli.tables.columns import (
+    Columns,
+    FloatArray,
+    TableColumn,
+    TableSource,
+    column_of_numbers,
+    run_parameter,
+    words_of,
+)
+from mechkin_cli.tables.csv import column_texts
 from mechkin_cli.tables.layout import ROW_NUMBER, ColumnLayout
-from mechkin_cli.tables.run_parameter import run_parameter
-from mechkin_cli.tables.source import FloatArray, Source
+from mechkin_cli.verdict import Status
+
+if TYPE_CHECKING:
+    from mechkin_cli.show import Floats
+
+
+# One number for many rows; rows without a value do not count.
+#
+# A value may be infinite: what grows without bound towards a row at a dead centre. Extremes count
+# it, and are infinite at its place. Means do not: whether the integral up to there is finite (a
+# rate, which goes as one over the root of what is left of the way) or not (its square), one row
+# cannot tell, so the way ends at the last row beside it, as it does where there is no value.
+#
+# Sums are added row by row, in order: their bits do not depend on the machine.
+
+Reduction = Callable[["Floats"], "Floats"]
+"""From values (variants, rows), nan where there is none, to (variants,)."""
+
+
+def largest(values: Floats) -> Floats:
+    """The largest value."""
+    found: Floats = np.fmax.reduce(values, axis=1) + 0.0
+    return found
+
+
+def smallest(values: Floats) -> Floats:
+    """The smallest value."""
+    found: Floats = np.fmin.reduce(values, axis=1) + 0.0
+    return found
+
+
+def peak(values: Floats) -> Floats:
+    """The largest magnitude."""
+    return largest(np.abs(values))
+
+
+def span(values: Floats) -> Floats:
+    """The difference of the largest and the smallest value; none between infinite ones."""
+    with np.errstate(invalid="ignore"):
+        return largest(values) - smallest(values)
+
+
+def mean(values: Floats, at: Floats | None = None) -> Floats:
+    """The mean over the way, by the trapezoidal rule over the stretches between neighbouring rows
+    that both have a finite value, divided by their length; nan where no row has one.
+
+    A row without a neighbour has no way and does not count beside those that have. Where no
+    stretch has a length every row counts the same.
+
+    Args:
+        values: (variants, rows).
+        at: where the rows stand, (rows,) or (variants, rows); None: nowhere, as where nothing
+            moves.
+    """
+    total, count = _sum(values, None if at is None else _ways(values, at))
+    return total / count
+
+
+def root_mean_square(values: Floats, at: Floats | None = None) -> Floats:
+    """The root of the mean of the squares, as `mean`."""
+    # a power of two in front keeps squares from running over, and changes no bit
+    _, exponent = np.frexp(peak(np.where(np.isfinite(values), values, np.nan)))
+    scaled = np.ldexp(values, -exponent[:, None])
+    total, count = _sum(scaled * scaled, None if at is None else _ways(values, at))
+    return np.ldexp(np.sqrt(total / count), exponent)
+
+
+def row_weights(at: Floats) -> Floats:
+    """What rows at these places (rows,) count for in a mean over the way where all have a value:
+    half the way to each neighbour; all the same where nothing moves."""
+    weights = _halves(0.5 * np.abs(np.diff(at)))
+    return weights if weights.any() else np.ones(at.shape)
+
+
+def _ways(values: Floats, at: Floats) -> Floats:
+    """What rows count for, (rows,) or (variants, rows): half of each stretch at whose other end
+    there is a finite value, too."""
+    there = np.isfinite(values)
+    if at.ndim == 2 and bool((at == at[:1]).all()):
+        at = at[0]
+    if at.ndim == 1 and there.all():
+        return row_weights(at)
+    both = there[:, 1:] & there[:, :-1]
+    weights = _halves(np.where(both, 0.5 * np.abs(np.diff(at)), 0.0))
+    weights[~weights.any(axis=1)] = 1.0
+    return weights
+
+
+def _halves(stretches: Floats) -> Floats:
+    """The sum of the two stretches that meet in each row."""
+    weights = np.zeros((*stretches.shape[:-1], stretches.shape[-1] + 1))
+    weights[..., :-1] += stretches
+    weights[..., 1:] += stretches
+    return weights
+
+
+def _sum(values: Floats, weights: Floats | None) -> tuple[Floats, Floats]:
+    """Weighted sum and weight of the finite values; nan where there is none."""
+    there = np.isfinite(values)
+    if weights is None:
+        total = _in_order(np.where(there, values, 0.0))
+        count = np.count_nonzero(there, axis=1).astype(np.float64)
+    else:
+        total = _in_order(np.multiply(values, weights, out=np.zeros(values.shape), where=there))
+        count = _in_order(np.where(there, weights, 0.0))
+    return total, np.where(count == 0.0, np.nan, count)
+
+
+def _in_order(values: Floats) -> Floats:
+    """Sums over the rows, one after the other."""
+    found: Floats = np.cumsum(values, axis=1)[:, -1]
+    return found
+
+
+REDUCTIONS: dict[str, Reduction] = {
+    "max": largest,
+    "min": smallest,
+    "peak": peak,
+    "range": span,
+    "mean": mean,
+    "rms": root_mean_square,
+}
+"""By the names under which they are asked for."""
+
+OVER_THE_WAY: tuple[Reduction, ...] = (mean, root_mean_square)
+"""Those that take the places of the rows, too."""
+
 
 AT = "at"
 ROWS = "rows"
@@ -106,7 +237,7 @@ class Summary(NamedTuple):
 _WITH_PLACE = ("max", "min", "peak")
 
 
-def statistics(values: FloatArray, source: Source) -> Statistics:
+def statistics(values: FloatArray, source: TableSource) -> Statistics:
     """The numbers of a column (rows,), nan where a row has no cell."""
     along = run_parameter(source)
     places = np.arange(1.0, source.rows + 1) if along is None else along.values
@@ -133,8 +264,8 @@ def statistics(values: FloatArray, source: Source) -> Statistics:
 def summary_of(
     words: tuple[str, ...],
     layouts: Sequence[ColumnLayout],
-    columns: Sequence[Column],
-    source: Source,
+    columns: Sequence[TableColumn],
+    source: TableSource,
 ) -> Summary:
     """The rows below a table; time, inputs and words are left out."""
     along = run_parameter(source)
@@ -166,14 +297,16 @@ def summary_table(name: str, title: str, summary: Summary) -> Columns:
     words: list[str] = []
     for line in summary.lines:
         words.append(f"{words[-1]} {AT}" if line == AT else line)
-    columns = [Column("summary", "", words_of(words))]
+    columns = [TableColumn("summary", "", words_of(words))]
     for each in summary.columns:
         numbers = np.array(summary.numbers(each))
         columns.append(column_of_numbers(each.label, each.unit, numbers, each.decimals))
     return Columns(f"{name}.summary", f"Summary of {title or name}", tuple(columns), of_rows=False)
 
 
-def _notes(words: tuple[str, ...], columns: Sequence[SummaryColumn], source: Source) -> list[str]:
+def _notes(
+    words: tuple[str, ...], columns: Sequence[SummaryColumn], source: TableSource
+) -> list[str]:
     found = []
     missing = {c.label: source.rows - c.statistics.rows for c in columns}
     missing = {label: count for label, count in missing.items() if count}
@@ -192,7 +325,7 @@ def _notes(words: tuple[str, ...], columns: Sequence[SummaryColumn], source: Sou
 
 
 def _infinite(
-    words: tuple[str, ...], columns: Sequence[SummaryColumn], source: Source
+    words: tuple[str, ...], columns: Sequence[SummaryColumn], source: TableSource
 ) -> list[str]:
     """Which rows the means below leave out because they are infinite there."""
     means = " and ".join(word for word in ("mean", "rms") if word in words)

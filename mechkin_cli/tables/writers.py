@@ -9,13 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from mechkin_cli.runs import SWEEP
+from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Diagnostic
-    from mechkin_cli.tables.cell_errors import ColumnErrors
-    from mechkin_cli.tables.columns import Columns
-    from mechkin_cli.tables.source import Source
+    from mechkin_cli.tables.columns import Columns, TableSource
+    from mechkin_cli.tables.errors import ColumnErrors
 
 
 class Results(NamedTuple):
@@ -25,7 +24,7 @@ class Results(NamedTuple):
 
     name: str
     tables: tuple[Columns, ...]
-    source: Source
+    source: TableSource
     diagnostics: tuple[Diagnostic, ...] = ()
     threads: int = 0
     run: str = SWEEP
@@ -34,7 +33,7 @@ class Results(NamedTuple):
 
     def csv(self, table: Columns) -> bytes:
         """A table of the run as CSV."""
-        from mechkin_cli.tables.csv_writer import csv_bytes
+        from mechkin_cli.tables.csv import csv_bytes
 
         return csv_bytes(table, threads=self.threads, units=self.units)
 
@@ -61,15 +60,15 @@ def _markdown(runs: Sequence[Results]) -> Iterator[File]:
         for table in results.tables:
             yield f"{table.name}.md", markdown_bytes(table, results.source, results.threads)
         if results.errors is not None:
-            from mechkin_cli.tables.errors_table import worst_table
+            from mechkin_cli.tables.errors import worst_table
 
             worst = worst_table(results.errors, results.run)
             yield f"{worst.name}.md", markdown_bytes(worst, results.source, results.threads)
 
 
 def _json(runs: Sequence[Results]) -> Iterator[File]:
-    from mechkin_cli.tables.json_writer import json_bytes, runs_record
-    from mechkin_cli.version import versions
+    from mechkin_cli.tables.json import json_bytes, runs_record
+    from mechkin_cli.verdict import versions
 
     yield "analysis.json", json_bytes(versions() | runs_record(runs))
 
@@ -96,14 +95,14 @@ USUAL_FORMATS = ("csv", "md")
 def written_files(runs: Sequence[Results], formats: Iterable[str]) -> dict[str, bytes]:
     """All files of the formats by name, and `rows.csv`, of a response `NAME.rows.csv`; where errors
     were asked for, `errors.csv` and of a response `NAME.errors.csv`."""
-    from mechkin_cli.tables.rows_table import rows_table
+    from mechkin_cli.tables.markdown import rows_table
 
     files = dict(file for name in formats for file in WRITERS[name](runs))
     for results in runs:
         rows = rows_table(results.source, results.run)
         files[f"{rows.name}.csv"] = results.csv(rows)
         if results.errors is not None:
-            from mechkin_cli.tables.errors_table import cells_table
+            from mechkin_cli.tables.errors import cells_table
 
             cells = cells_table(results.errors, results.run)
             files[f"{cells.name}.csv"] = results.csv(cells)

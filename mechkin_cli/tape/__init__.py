@@ -1,7 +1,145 @@
-"""Tapes: the arithmetic between some numbers given and the numbers computed from them, as data.
+"""Computations recorded once and replayed in other numbers.
 
-A tape is recorded once by running ordinary code on `Traced` scalars and then replayed for other
-numbers. Its operations are abstract: an evaluator gives them their meaning in floats, lanes of
-floats, or any other arithmetic. Every decision that the code took on a value stands on the tape as
-a guard: where a guard fails, the code would have gone another way and the replay says nothing.
+A tape is recorded by running ordinary code on traced scalars. Replayed in floats, exact sums,
+double-doubles, decimals or intervals, it gives what the code would give there; where the code
+branched on a value the tape holds a guard, and a replay that fails a guard says so.
 """
+
+from __future__ import annotations
+
+from mechkin_cli.lazy import lazy_names
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from mechkin_cli.tape.bounds import bounded as bounded
+    from mechkin_cli.tape.decimals import (
+        NotEnclosed as NotEnclosed,
+        double_doubles as double_doubles,
+        enclosures as enclosures,
+    )
+    from mechkin_cli.tape.double_double import (
+        DoubleDoubles as DoubleDoubles,
+        difference as difference,
+        eliminate as eliminate,
+        exactly as exactly,
+        joined as joined,
+        stacked as stacked,
+    )
+    from mechkin_cli.tape.exact import (
+        ExactRecorder as ExactRecorder,
+        ExactRows as ExactRows,
+        ExactTape as ExactTape,
+        Picked as Picked,
+        ShiftingRecorder as ShiftingRecorder,
+    )
+    from mechkin_cli.tape.identities import Identities as Identities
+    from mechkin_cli.tape.recorder import (
+        Filling as Filling,
+        Instruction as Instruction,
+        Recorder as Recorder,
+        Traced as Traced,
+        TraceLost as TraceLost,
+        differ as differ,
+        is_traced as is_traced,
+        of_numbers as of_numbers,
+        register as register,
+        with_rates as with_rates,
+        within as within,
+    )
+    from mechkin_cli.tape.row_programs import (
+        JetNumber as JetNumber,
+        RowRecorder as RowRecorder,
+        orders_of as orders_of,
+    )
+    from mechkin_cli.tape.scalars import (
+        Recorded as Recorded,
+        Undecided as Undecided,
+        advice as advice,
+        as_recorded as as_recorded,
+        by_rounding as by_rounding,
+        cos as cos,
+        either as either,
+        is_finite as is_finite,
+        is_number as is_number,
+        is_settled as is_settled,
+        largest as largest,
+        next_power_of_two as next_power_of_two,
+        nonzero as nonzero,
+        of_one as of_one,
+        of_two as of_two,
+        plain as plain,
+        sin as sin,
+        smallest as smallest,
+        square_root as square_root,
+    )
+    from mechkin_cli.tape.tape import (
+        CONDITIONS as CONDITIONS,
+        Operation as Operation,
+        Tape as Tape,
+        Verdict as Verdict,
+        compiled as compiled,
+        replay as replay,
+        replay_precise as replay_precise,
+    )
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "bounds": ["bounded"],
+        "decimals": ["NotEnclosed", "double_doubles", "enclosures"],
+        "double_double": [
+            "DoubleDoubles",
+            "difference",
+            "eliminate",
+            "exactly",
+            "joined",
+            "stacked",
+        ],
+        "exact": ["ExactRecorder", "ExactRows", "ExactTape", "Picked", "ShiftingRecorder"],
+        "identities": ["Identities"],
+        "recorder": [
+            "Filling",
+            "Instruction",
+            "Recorder",
+            "TraceLost",
+            "Traced",
+            "differ",
+            "is_traced",
+            "of_numbers",
+            "register",
+            "with_rates",
+            "within",
+        ],
+        "row_programs": ["JetNumber", "RowRecorder", "orders_of"],
+        "scalars": [
+            "Recorded",
+            "Undecided",
+            "advice",
+            "as_recorded",
+            "by_rounding",
+            "cos",
+            "either",
+            "is_finite",
+            "is_number",
+            "is_settled",
+            "largest",
+            "next_power_of_two",
+            "nonzero",
+            "of_one",
+            "of_two",
+            "plain",
+            "sin",
+            "smallest",
+            "square_root",
+        ],
+        "tape": [
+            "CONDITIONS",
+            "Operation",
+            "Tape",
+            "Verdict",
+            "compiled",
+            "replay",
+            "replay_precise",
+        ],
+    },
+)

@@ -9,19 +9,175 @@ is zero by an identity that is not known here is not found to be.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
+from functools import lru_cache
 from math import isqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.exact import PI
-from mechkin_cli.tape import exact_sums as sums
-from mechkin_cli.tape.exact_sums import ONE, UNIT, ZERO, Monomial, Sum, Undecided
-from mechkin_cli.tape.operations import Operation
-from mechkin_cli.tape.traced import register
+from mechkin_cli.tape.recorder import register
+from mechkin_cli.tape.tape import Operation
 
 if TYPE_CHECKING:
-    from mechkin_cli.tape.exact_recorder import ExactRecorder, Step
+    from mechkin_cli.tape.exact import ExactRecorder, ExactStep
+
+
+# Sums of products of what exact numbers are made of, in a form in which equal ones meet.
+#
+# A term is a rational number times e(t), a root of unity, times exp(i a) for a real a, times powers
+# of generators. e(t) = exp(2 pi i t) stands for the sines of parts of a turn, exp(i a) for those of
+# other angles. Roots of unity are told in the basis of powers below (p - 1)/p of a turn in each
+# prime p (L. C. Washington, Introduction to Cyclotomic Fields, 1997, chapter 2), so that a sum of
+# them is zero only where it is empty. Between the other factors no relations are known but those of
+# their products: a sum that comes out empty is zero, one that does not may be.
+
+Powers = tuple[tuple[int, int], ...]
+"""Generators with their exponents, which are not zero, in order."""
+
+Angle = tuple[tuple[Powers, Fraction], ...]
+"""The parts of an angle in rad other than parts of a turn, each a product with its factor."""
+
+LARGEST_PRIME = 97
+"""Roots of unity of larger primes are left as they are: each would become a long sum."""
+
+MOST_TERMS = 1024
+"""Of a sum; longer ones are given up."""
+
+
+class Monomial(NamedTuple):
+    """e(turn) exp(i angle) times powers of generators; the turn is in [0, 1)."""
+
+    turn: Fraction
+    angle: Angle
+    powers: Powers
+
+
+Sum = Mapping[Monomial, Fraction]
+"""Factors of monomials, none of them zero."""
+
+NO_TURN = Fraction(0)
+UNIT = Monomial(NO_TURN, (), ())
+ZERO: Sum = {}
+ONE: Sum = {UNIT: Fraction(1)}
+
+
+class SumUndecided(ValueError):
+    """A sum grew too long, or a number is not made of what is known."""
+
+
+def rational_sum(value: Fraction | int) -> Sum:
+    """A rational number."""
+    return {UNIT: Fraction(value)} if value else ZERO
+
+
+def phase(turn: Fraction, angle: Angle) -> Sum:
+    """e(turn) exp(i angle)."""
+    return _collected((Monomial(t, angle, ()), sign) for t, sign in _told(turn % 1))
+
+
+def power(generator: int) -> Sum:
+    """A generator."""
+    return {Monomial(NO_TURN, (), ((generator, 1),)): Fraction(1)}
+
+
+def added(a: Sum, b: Sum) -> Sum:
+    """a + b."""
+    return _collected((*a.items(), *b.items()))
+
+
+def scaled(factor: Fraction, a: Sum) -> Sum:
+    """A rational number times a sum."""
+    return {monomial: factor * value for monomial, value in a.items()} if factor else ZERO
+
+
+def multiplied(a: Sum, b: Sum) -> Sum:
+    """a b; powers of generators just add."""
+    if len(a) * len(b) > MOST_TERMS * 4:
+        raise SumUndecided("a product has too many terms")
+    return _collected(_products(a, b))
+
+
+def merged(a: tuple[tuple[Powers, Fraction], ...], b: Angle) -> Angle:
+    """The sum of two angles."""
+    found = dict(a)
+    for key, value in b:
+        found[key] = found.get(key, NO_TURN) + value
+    return tuple(sorted((key, value) for key, value in found.items() if value))
+
+
+def opposite(angle: Angle) -> Angle:
+    """The angle reversed."""
+    return tuple((key, -value) for key, value in angle)
+
+
+def with_powers(a: Powers, b: Powers) -> Powers:
+    """The product of two products of generators."""
+    found = dict(a)
+    for generator, exponent in b:
+        found[generator] = found.get(generator, 0) + exponent
+    return tuple(sorted((key, value) for key, value in found.items() if value))
+
+
+def rational(a: Sum) -> Fraction | None:
+    """The rational number that a sum is; None where it is not told as one."""
+    if not a:
+        return Fraction(0)
+    return a[UNIT] if len(a) == 1 and UNIT in a else None
+
+
+def _products(a: Sum, b: Sum) -> Iterator[tuple[Monomial, Fraction]]:
+    for one, factor in a.items():
+        for other, second in b.items():
+            angle = merged(one.angle, other.angle)
+            powers = with_powers(one.powers, other.powers)
+            for turn, sign in _told((one.turn + other.turn) % 1):
+                yield Monomial(turn, angle, powers), sign * factor * second
+
+
+def _collected(terms: Iterable[tuple[Monomial, Fraction | int]]) -> Sum:
+    found: dict[Monomial, Fraction] = {}
+    for monomial, value in terms:
+        found[monomial] = found.get(monomial, NO_TURN) + value
+    found = {monomial: value for monomial, value in found.items() if value}
+    if len(found) > MOST_TERMS:
+        raise SumUndecided("a sum has too many terms")
+    return found
+
+
+@lru_cache(maxsize=4096)
+def _told(turn: Fraction) -> tuple[tuple[Fraction, int], ...]:
+    """A root of unity in the basis: its members with their signs."""
+    found = [(turn, 1)]
+    for prime in _primes(turn.denominator):
+        found = [part for t, sign in found for part in _without_last(t, sign, prime)]
+    return tuple(found)
+
+
+def _without_last(turn: Fraction, sign: int, prime: int) -> list[tuple[Fraction, int]]:
+    """The p roots of order p add up to zero: the last is the sum of the others, reversed."""
+    if _part(turn, prime) * prime < prime - 1:
+        return [(turn, sign)]
+    return [((turn - Fraction(j, prime)) % 1, -sign) for j in range(1, prime)]
+
+
+def _part(turn: Fraction, prime: int) -> Fraction:
+    """What a turn is in the powers of a prime, in [0, 1)."""
+    whole, rest = 1, turn.denominator
+    while rest % prime == 0:
+        whole, rest = whole * prime, rest // prime
+    if whole == 1:
+        return NO_TURN
+    return Fraction(turn.numerator * pow(rest, -1, whole) % whole, whole)
+
+
+def _primes(count: int) -> list[int]:
+    return [p for p in range(2, LARGEST_PRIME + 1) if count % p == 0 and _is_prime(p)]
+
+
+def _is_prime(count: int) -> bool:
+    return all(count % k for k in range(2, isqrt(count) + 1))
+
 
 _PI = 0
 """The generator of pi."""
@@ -70,7 +226,7 @@ class Identities:
         found = self._read[wanted]
         return found is not None and not found.above
 
-    def _found(self, step: Step) -> Quotient | None:
+    def _found(self, step: ExactStep) -> Quotient | None:
         """A number whose operands have been read; None where it became too long."""
         try:
             if step.operation is None:
@@ -79,7 +235,7 @@ class Identities:
             rule = _RULES.get(step.operation)
             if rule is not None and None not in operands:
                 return rule(self, *operands)
-        except Undecided:
+        except SumUndecided:
             pass
         return None
 
@@ -89,12 +245,12 @@ class Identities:
             return None
         part = value / PI
         if part and part.denominator.bit_length() <= _BITS_OF_A_PART:
-            return Quotient(sums.scaled(part, sums.power(_PI)))
-        return Quotient(sums.number(value))
+            return Quotient(scaled(part, power(_PI)))
+        return Quotient(rational_sum(value))
 
     def _times(self, a: Sum, b: Sum) -> Sum:
         """a b, with the squares of roots put in."""
-        return self._reduced(sums.multiplied(a, b))
+        return self._reduced(multiplied(a, b))
 
     def _reduced(self, a: Sum) -> Sum:
         found: Sum = {}
@@ -109,14 +265,14 @@ class Identities:
             term: Sum = {Monomial(monomial.turn, monomial.angle, tuple(kept)): factor}
             for square in squares:
                 term = self._times(term, square)
-            found = sums.added(found, term)
+            found = added(found, term)
         return found
 
     def total(self, a: Quotient, b: Quotient) -> Quotient:
         """a + b."""
         if a.below == b.below:
-            return self.shortened(sums.added(a.above, b.above), a.below)
-        above = sums.added(self._times(a.above, b.below), self._times(b.above, a.below))
+            return self.shortened(added(a.above, b.above), a.below)
+        above = added(self._times(a.above, b.below), self._times(b.above, a.below))
         return self.shortened(above, self._times(a.below, b.below))
 
     def difference(self, a: Quotient, b: Quotient) -> Quotient:
@@ -125,7 +281,7 @@ class Identities:
 
     def opposite(self, a: Quotient) -> Quotient:
         """-a."""
-        return Quotient(sums.scaled(Fraction(-1), a.above), a.below)
+        return Quotient(scaled(Fraction(-1), a.above), a.below)
 
     def product(self, a: Quotient, b: Quotient) -> Quotient:
         """a b."""
@@ -138,7 +294,7 @@ class Identities:
             Undecided: b is zero.
         """
         if not b.above:
-            raise Undecided("a quotient by zero")
+            raise SumUndecided("a quotient by zero")
         return self.shortened(self._times(a.above, b.below), self._times(a.below, b.above))
 
     def shortened(self, above: Sum, below: Sum) -> Quotient:
@@ -150,7 +306,7 @@ class Identities:
         if len(below) != 1:
             return Quotient(above, below)
         ((monomial, factor),) = below.items()
-        inverse = sums.scaled(1 / factor, sums.phase(-monomial.turn, ()))
+        inverse = scaled(1 / factor, phase(-monomial.turn, ()))
         left, powers = ONE, []
         for generator, exponent in monomial.powers:
             if generator in self._squares:
@@ -158,7 +314,7 @@ class Identities:
                 left = self._times(left, self._squares[generator])
             else:
                 powers.append((generator, -exponent))
-        rest: Sum = {Monomial(UNIT.turn, sums.opposite(monomial.angle), tuple(powers)): Fraction(1)}
+        rest: Sum = {Monomial(UNIT.turn, opposite(monomial.angle), tuple(powers)): Fraction(1)}
         above = self._times(self._times(above, inverse), rest)
         return Quotient(above) if left == ONE else self.shortened(above, left)
 
@@ -170,18 +326,18 @@ class Identities:
         """The square root of a number that is not negative."""
         if not a.above:
             return Quotient(ZERO)
-        value = sums.rational(a.above) if a.below == ONE else None
+        value = rational(a.above) if a.below == ONE else None
         if value is not None:
             return Quotient(self._root_of(value))
         # g = below root(above / below), of whichever sign: g^2 = above below
         key = (frozenset(a.above.items()), frozenset(a.below.items()))
         generator = self.generator(("root", key))
         self._squares[generator] = self._times(a.above, a.below)
-        return self.shortened(sums.power(generator), a.below)
+        return self.shortened(power(generator), a.below)
 
     def _root_of(self, value: Fraction) -> Sum:
         if value < 0:
-            raise Undecided("the root of a negative number")
+            raise SumUndecided("the root of a negative number")
         rest = value.numerator * value.denominator
         outside, found = Fraction(1, value.denominator), ONE
         for prime in range(2, _LARGEST_FACTOR + 1):
@@ -193,21 +349,21 @@ class Identities:
                 found = self._times(found, self._root_of_whole(prime))
         whole = isqrt(rest)
         if whole * whole == rest:
-            return sums.scaled(outside * whole, found)
-        return sums.scaled(outside, self._times(found, self._root_of_whole(rest)))
+            return scaled(outside * whole, found)
+        return scaled(outside, self._times(found, self._root_of_whole(rest)))
 
     def _root_of_whole(self, value: int) -> Sum:
         if value <= _LARGEST_GAUSS:
             return _gauss(value)
         generator = self.generator(("root", value))
-        self._squares[generator] = sums.number(value)
-        return sums.power(generator)
+        self._squares[generator] = rational_sum(value)
+        return power(generator)
 
     def magnitude(self, a: Quotient) -> Quotient:
         """|a|, of which no more is known than its square, but where it is rational."""
-        value = sums.rational(a.above) if a.below == ONE else None
+        value = rational(a.above) if a.below == ONE else None
         if value is not None:
-            return Quotient(sums.number(abs(value)))
+            return Quotient(rational_sum(abs(value)))
         return self.root(self.product(a, a))
 
     def circle(self, a: Quotient) -> tuple[Quotient, Quotient]:
@@ -217,12 +373,12 @@ class Identities:
             Undecided: the angle is no sum of rational multiples of real products.
         """
         if a.below != ONE:
-            raise Undecided("the sine of a quotient")
+            raise SumUndecided("the sine of a quotient")
         turn, angle = Fraction(0), []
         ways = (Quotient(ONE), Quotient(ONE))
         for monomial, factor in a.above.items():
             if monomial.turn or monomial.angle:
-                raise Undecided("the sine of sines")
+                raise SumUndecided("the sine of sines")
             known = self._circles.get(_single(monomial.powers))
             if monomial.powers == ((_PI, 1),):
                 turn += factor * _HALF
@@ -232,20 +388,20 @@ class Identities:
                     ways = (self.product(ways[0], one), self.product(ways[1], back))
             else:
                 angle.append((monomial.powers, factor))
-        parts = sums.merged(tuple(angle), ())
-        way = Quotient(sums.phase(turn, parts))
-        back = Quotient(sums.phase(-turn, sums.opposite(parts)))
+        parts = merged(tuple(angle), ())
+        way = Quotient(phase(turn, parts))
+        back = Quotient(phase(-turn, opposite(parts)))
         return self.product(ways[0], way), self.product(ways[1], back)
 
     def cosine(self, a: Quotient) -> Quotient:
         """cos a."""
         way, back = self.circle(a)
-        return self.product(Quotient(sums.number(_HALF)), self.total(way, back))
+        return self.product(Quotient(rational_sum(_HALF)), self.total(way, back))
 
     def sine(self, a: Quotient) -> Quotient:
         """sin a."""
         way, back = self.circle(a)
-        half_over_i = sums.scaled(_HALF, sums.phase(Fraction(-1, 4), ()))
+        half_over_i = scaled(_HALF, phase(Fraction(-1, 4), ()))
         return self.product(Quotient(half_over_i), self.total(way, self.opposite(back)))
 
     def tangent(self, a: Quotient) -> Quotient:
@@ -255,7 +411,7 @@ class Identities:
     def angle_of(self, y: Quotient, x: Quotient) -> Quotient:
         """The angle of a point, by its sine and cosine."""
         far = self.root(self.total(self.product(x, x), self.product(y, y)))
-        turned = self.product(Quotient(sums.phase(Fraction(1, 4), ())), y)
+        turned = self.product(Quotient(phase(Fraction(1, 4), ())), y)
         one, back = self.total(x, turned), self.total(x, self.opposite(turned))
         return self._arc("angle", (y, x), (self.ratio(one, far), self.ratio(back, far)))
 
@@ -280,7 +436,7 @@ class Identities:
         key = tuple(frozenset(part.items()) for quotient in of for part in quotient)
         generator = self.generator((name, key))
         self._circles[generator] = circle
-        return Quotient(sums.power(generator))
+        return Quotient(power(generator))
 
 
 def _gauss(prime: int) -> Sum:
@@ -290,16 +446,16 @@ def _gauss(prime: int) -> Sum:
         return ONE
     if prime == 2:
         eighth = Fraction(1, 8)
-        return sums.added(sums.phase(eighth, ()), sums.phase(-eighth, ()))
+        return added(phase(eighth, ()), phase(-eighth, ()))
     found: Sum = ZERO
     back = Fraction(-1, 4) if prime % 4 == 3 else Fraction(0)
     for k in range(prime):
         turn = Fraction(k * k, prime) + back
-        found = sums.added(found, sums.phase(turn, ()))
+        found = added(found, phase(turn, ()))
     return found
 
 
-def _single(powers: sums.Powers) -> int:
+def _single(powers: Powers) -> int:
     """The generator of a product of one; -1 of others."""
     return powers[0][0] if len(powers) == 1 and powers[0][1] == 1 else -1
 

@@ -7,18 +7,16 @@ instructions: the code may compute a frame ten times over.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import fields, is_dataclass, replace
+from functools import partial
+from typing import Any, NoReturn
 
 import numpy as np
 
-from mechkin_cli.tape.floats import meaning
-from mechkin_cli.tape.operations import ARITY, Operation
-from mechkin_cli.tape.tape import Tape
-
-if TYPE_CHECKING:
-    from mechkin_cli.tape.scalars import Undecided
-    from mechkin_cli.tape.traced import Traced
+from mechkin_cli.show import Floats
+from mechkin_cli.tape.scalars import Recorded, Undecided
+from mechkin_cli.tape.tape import ARITY, Operation, Tape, meaning
 
 Instruction = tuple[Operation, int, int, int]
 
@@ -63,7 +61,6 @@ class Recorder:
 
     def number(self, register: int) -> Traced:
         """The number in a register."""
-        from mechkin_cli.tape.traced import Traced
 
         return Traced(self, register)
 
@@ -130,3 +127,334 @@ def renumbered(instruction: Instruction, number: dict[int, int]) -> tuple[int, i
     count = ARITY[operation]
     a, b, c = ([number[r] for r in operands[:count]] + [0, 0])[:3]
     return a, b, c
+
+
+# A scalar that writes down what is computed with it.
+#
+# It is no float and does not become one: code that would lose the trace (float(), a format, a truth
+# value, an array of floats) raises `TraceLost`, so that nothing passes for a constant that is none.
+
+
+class TraceLost(TypeError):
+    """A number depends on a recorded one in a way that no tape holds; the message says which."""
+
+
+class RecordedComparison(Undecided):
+    """A comparison of which no code has taken note yet.
+
+    As a truth value it becomes a guard; `choose` keeps both ways on the tape.
+    """
+
+    __slots__ = ("left", "negated", "operation", "recorder", "right")
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(
+        self, recorder: Recorder, operation: Operation, left: int, right: int, negated: bool = False
+    ) -> None:
+        self.recorder, self.operation = recorder, operation
+        self.left, self.right, self.negated = left, right, negated
+
+    def __bool__(self) -> bool:
+        return self.recorder.guard(self.operation, self.left, self.right) is not self.negated
+
+    def advised(self) -> bool:
+        """The truth value, where no more than a warning hangs on it."""
+        found = self.recorder.guard(self.operation, self.left, self.right, advice=True)
+        return found is not self.negated
+
+    def by_rounding(self) -> Undecided:
+        """As `Undecided.by_rounding`."""
+        return self.recorder.by_rounding(self)
+
+    def choose(self, chosen: float | Traced, other: float | Traced) -> Traced:
+        """`chosen` where the condition holds, else `other`."""
+        for number in (chosen, other):
+            if _is_made_of_others(number):
+                made: Any = number
+                return made.chosen_by(self, chosen, other)  # type: ignore[no-any-return]
+        if self.negated:
+            chosen, other = other, chosen
+        holds = self.recorder.compute(self.operation, self.left, self.right)
+        return _computed(Operation.CHOOSE, self.recorder.number(holds), chosen, other)
+
+
+class Traced(Recorded):
+    """A register of a recorder."""
+
+    __slots__ = ("recorder", "register")
+    __hash__ = None  # type: ignore[assignment]
+    __array_ufunc__ = None
+
+    def __init__(self, recorder: Recorder, register: int) -> None:
+        self.recorder, self.register = recorder, register
+
+    @property
+    def is_settled(self) -> bool:
+        """As `Recorded.is_settled`."""
+        return self.recorder.is_settled
+
+    @property
+    def recorded(self) -> float:
+        """The value when it was recorded."""
+        return self.recorder.values[self.register]
+
+    def __add__(self, other: float | Traced) -> Traced:
+        return self._with(Operation.ADD, other)
+
+    def __radd__(self, other: float) -> Traced:
+        return self._after(Operation.ADD, other)
+
+    def __sub__(self, other: float | Traced) -> Traced:
+        return self._with(Operation.SUBTRACT, other)
+
+    def __rsub__(self, other: float) -> Traced:
+        return self._after(Operation.SUBTRACT, other)
+
+    def __mul__(self, other: float | Traced) -> Traced:
+        return self._with(Operation.MULTIPLY, other)
+
+    def __rmul__(self, other: float) -> Traced:
+        return self._after(Operation.MULTIPLY, other)
+
+    def __truediv__(self, other: float | Traced) -> Traced:
+        if isinstance(other, Traced):
+            other._refuse_zero()
+        elif not isinstance(other, Recorded) and other == 0.0:
+            raise ZeroDivisionError("float division by zero")
+        return self._with(Operation.DIVIDE, other)
+
+    def __rtruediv__(self, other: float) -> Traced:
+        self._refuse_zero()
+        return self._after(Operation.DIVIDE, other)
+
+    def __neg__(self) -> Traced:
+        return self._with(Operation.NEGATE)
+
+    def __abs__(self) -> Traced:
+        return self._with(Operation.MAGNITUDE)
+
+    def __lt__(self, other: float | Traced) -> RecordedComparison:
+        return self._compared(Operation.LESS, other)
+
+    def __le__(self, other: float | Traced) -> RecordedComparison:
+        return self._compared(Operation.NOT_MORE, other)
+
+    def __gt__(self, other: float | Traced) -> RecordedComparison:
+        return self._compared(Operation.LESS, other, turned=True)
+
+    def __ge__(self, other: float | Traced) -> RecordedComparison:
+        return self._compared(Operation.NOT_MORE, other, turned=True)
+
+    def __eq__(self, other: object) -> RecordedComparison:  # type: ignore[override]
+        return self._compared(Operation.EQUAL, other)
+
+    def __ne__(self, other: object) -> RecordedComparison:  # type: ignore[override]
+        return self._compared(Operation.EQUAL, other, negated=True)
+
+    def apply(self, operation: str, *others: float | Traced) -> Traced:
+        """The operation of a name on this number first, then on others."""
+        return self._with(Operation[operation], *others)
+
+    def apply_after(self, operation: str, first: float) -> Traced:
+        """The operation of a name on a float first, then on this number."""
+        return self._after(Operation[operation], first)
+
+    def _with(self, operation: Operation, *others: float | Traced) -> Traced:
+        if others and _is_made_of_others(others[0]):
+            made: Any = others[0]
+            return made.apply_after(operation.name, self)  # type: ignore[no-any-return]
+        return _computed(operation, self, *others)
+
+    def _after(self, operation: Operation, other: float) -> Traced:
+        return _computed(operation, other, self)
+
+    def _compared(
+        self, operation: Operation, other: object, *, turned: bool = False, negated: bool = False
+    ) -> RecordedComparison:
+        if _is_made_of_others(other):
+            return NotImplemented  # type: ignore[no-any-return]
+        recorder = _innermost(self, other)
+        left, right = register(recorder, self), register(recorder, other)
+        if turned:
+            left, right = right, left
+        return RecordedComparison(recorder, operation, left, right, negated)
+
+    def _refuse_zero(self) -> None:
+        """A division by zero ends the code with an error."""
+        if self == 0.0:
+            raise ZeroDivisionError("float division by zero")
+
+    def _lost(self, *_: object) -> NoReturn:
+        raise TraceLost("a number that depends on a varied parameter is used as a plain number")
+
+    __float__ = __int__ = __index__ = __bool__ = __complex__ = _lost
+    __round__ = __trunc__ = __floor__ = __ceil__ = _lost
+    __format__ = __str__ = _lost
+    __pow__ = __rpow__ = __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = _lost
+    __copy__ = __deepcopy__ = __reduce__ = _lost
+
+    def __repr__(self) -> str:
+        return f"Traced({self.recorded!r})"
+
+
+def _is_made_of_others(number: object) -> bool:
+    """Whether a recorded number is no register but consists of several, and knows what to do."""
+    return isinstance(number, Recorded) and not isinstance(number, Traced)
+
+
+def _innermost(*numbers: object) -> Recorder:
+    """The recorder of some numbers, of which those of other recordings are constants."""
+    recorders = [number.recorder for number in numbers if isinstance(number, Traced)]
+    return next((r for r in recorders if r.holds_others), recorders[0])
+
+
+def _computed(operation: Operation, *operands: float | Traced) -> Traced:
+    recorder = _innermost(*operands)
+    registers = [register(recorder, operand) for operand in operands]
+    return recorder.number(recorder.compute(operation, *registers))
+
+
+def register(recorder: Recorder, value: object) -> int:
+    """The register of a traced number or of a constant.
+
+    Raises:
+        TraceLost: something else, or a number of another recording that is no constant of this one.
+    """
+    if isinstance(value, Traced):
+        if value.recorder is recorder:
+            return value.register
+        if recorder.holds_others and not value.recorder.holds_others:
+            return recorder.constant(value)  # type: ignore[arg-type]
+        raise TraceLost("numbers of two recordings meet")
+    if isinstance(value, float | int):
+        # an `Exact` keeps what it knows
+        return recorder.constant(value if isinstance(value, float) else float(value))
+    raise TraceLost(f"a varied number meets {type(value).__name__}")
+
+
+# Rows of numbers of which some may be recorded: those stand in arrays of objects.
+
+_OBJECTS = np.dtype(object)
+
+
+def is_traced(values: Any) -> bool:
+    """Whether some of the numbers are recorded."""
+    return isinstance(values, Recorded) or getattr(values, "dtype", None) is _OBJECTS
+
+
+def of_numbers(values: Iterable[Any]) -> Floats:
+    """A row of numbers."""
+    return np.array(list(values))
+
+
+def with_rates(values: Floats, rates: Iterable[Any]) -> Floats:
+    """Values in a first row, constants in the rows below (1 + rates, values)."""
+    return np.stack([values, *(np.full(values.size, rate) for rate in rates)])
+
+
+def within(values: Floats, limit: float) -> bool:
+    """Whether no number is larger than a limit, or nan."""
+    if is_traced(values):
+        return all(bool(abs(value) <= limit) for value in values.flat)
+    return bool(np.abs(values).max() <= limit)
+
+
+def differ(values: Floats) -> bool:
+    """Whether the numbers are not all the same."""
+    if is_traced(values):
+        return any(bool(value != values[0]) for value in values.flat)
+    return bool((values != values[0]).any())
+
+
+# Recorded numbers inside nested data: mappings, tuples, data classes, arrays of objects.
+#
+# Data is filled in by the steps that build it: each distinct part with a recorded number in it
+# once, from parts that stand before. Parts without any stay the objects that they are.
+
+Build = Callable[[list[Any]], Any]
+
+
+class Filling:
+    """How some data follows from its recorded numbers.
+
+    Attributes:
+        numbers: the recorded numbers, each once.
+    """
+
+    def __init__(self, data: Any) -> None:
+        self.numbers: list[Traced] = []
+        self._registers: dict[int, int] = {}
+        self._parts: dict[int, int | None] = {}
+        self._kept: list[Any] = []
+        self._steps: list[tuple[Build, list[int]]] = []
+        self._whole = self._place(data)
+        self._data = data
+
+    def fill(self, numbers: Sequence[float]) -> Any:
+        """The data with other numbers in the places of the recorded ones."""
+        if self._whole is None:
+            return self._data
+        # a place: 3k for number k, 3k + 1 for a part that is kept, 3k + 2 for the result of a step
+        built: list[Any] = []
+        sources = (numbers, self._kept, built)
+        for build, places in self._steps:
+            built.append(build([sources[place % 3][place // 3] for place in places]))
+        return sources[self._whole % 3][self._whole // 3]
+
+    def _place(self, value: Any) -> int | None:
+        """The place of a value with recorded numbers; None where it has none."""
+        if isinstance(value, Traced):
+            if value.register not in self._registers:
+                self._registers[value.register] = len(self.numbers)
+                self.numbers.append(value)
+            return 3 * self._registers[value.register]
+        if id(value) not in self._parts:
+            self._parts[id(value)] = self._built(value)
+        return self._parts[id(value)]
+
+    def _built(self, value: Any) -> int | None:
+        taken_apart = _taken_apart(value)
+        if taken_apart is None:
+            return None
+        items, build = taken_apart
+        places = [self._place(item) for item in items]
+        if all(place is None for place in places):
+            return None
+        found = [
+            self._keep(item) if place is None else place
+            for item, place in zip(items, places, strict=True)
+        ]
+        self._steps.append((build, found))
+        return 3 * (len(self._steps) - 1) + 2
+
+    def _keep(self, item: Any) -> int:
+        self._kept.append(item)
+        return 3 * (len(self._kept) - 1) + 1
+
+
+def _taken_apart(value: Any) -> tuple[list[Any], Build] | None:
+    """The parts of a value, and how it is built of such parts; None for what has none."""
+    if isinstance(value, np.ndarray):
+        if value.dtype != object:
+            return None
+        return list(value.flat), partial(_array, value.shape)
+    if isinstance(value, tuple):
+        return list(value), getattr(type(value), "_make", tuple)
+    if isinstance(value, Mapping):
+        return list(value.values()), partial(_mapping, list(value))
+    if is_dataclass(value) and not isinstance(value, type):
+        names = [field.name for field in fields(value)]
+        return [getattr(value, name) for name in names], partial(_record, value, names)
+    return None
+
+
+def _array(shape: tuple[int, ...], items: list[Any]) -> Any:
+    return np.array(items, dtype=np.float64).reshape(shape)
+
+
+def _mapping(keys: list[Any], items: list[Any]) -> dict[Any, Any]:
+    return dict(zip(keys, items, strict=True))
+
+
+def _record(value: Any, names: list[str], items: list[Any]) -> Any:
+    return replace(value, **dict(zip(names, items, strict=True)))

@@ -2,19 +2,87 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.tape.operations import ARITY, Operation
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.kernel.functions import width
+from mechkin_cli.tape.scalars import next_power_of_two, sign
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.arrays import Floats
+    from mechkin_cli.show import Floats
+
+
+# The operations of a tape, by the numbers that stand in it (`kernel/src/tape.hpp`).
+
+
+class Operation(IntEnum):
+    """What an instruction computes of its operands a, b, c; for floats, the IEEE operation.
+
+    LARGER is b where b > a, else a; SMALLER is b where b < a, else a: of equal operands the first.
+    CHOOSE is b where a is not zero, else c. LESS, NOT_MORE and EQUAL are 1 where a < b, a <= b,
+    a = b, else 0. POWER_OF_TWO is 2^n next to a > 0: for a = m 2^e with 1/2 <= m < 1, n is e where
+    m > 0.7, else e - 1. WHOLE is the nearest whole number, ties to even, for |a| < 2^51.
+    SIGN is 1 where a > 0, -1 where a < 0, else a.
+    """
+
+    ADD = 0
+    SUBTRACT = 1
+    MULTIPLY = 2
+    DIVIDE = 3
+    NEGATE = 4
+    MAGNITUDE = 5
+    SQUARE_ROOT = 6
+    LARGER = 7
+    SMALLER = 8
+    CHOOSE = 9
+    LESS = 10
+    NOT_MORE = 11
+    EQUAL = 12
+    POWER_OF_TWO = 13
+    WHOLE = 14
+    SIN = 15
+    COS = 16
+    TAN = 17
+    ASIN = 18
+    ACOS = 19
+    ATAN = 20
+    ATAN2 = 21
+    EXP = 22
+    LOG = 23
+    POWER = 24
+    SIGN = 25
+
+
+CONDITIONS: tuple[Operation, ...] = (Operation.LESS, Operation.NOT_MORE, Operation.EQUAL)
+"""What a guard may ask."""
+
+_ONE = {
+    Operation.NEGATE,
+    Operation.MAGNITUDE,
+    Operation.SQUARE_ROOT,
+    Operation.POWER_OF_TWO,
+    Operation.WHOLE,
+    Operation.SIN,
+    Operation.COS,
+    Operation.TAN,
+    Operation.ASIN,
+    Operation.ACOS,
+    Operation.ATAN,
+    Operation.EXP,
+    Operation.LOG,
+    Operation.SIGN,
+}
+ARITY = dict.fromkeys(Operation, 2) | dict.fromkeys(_ONE, 1) | {Operation.CHOOSE: 3}
+"""How many operands an operation has."""
 
 
 class Verdict(IntEnum):
@@ -73,3 +141,138 @@ class Tape:
             self.outputs < first + self.constants.size
         )
         return fixed
+
+
+# The meaning of the operations for floats, one by one: what the kernel computes in lanes.
+
+_ROUNDER = float(3 * 2**51)
+"""1.5 * 2^52: adding it rounds to the nearest whole number."""
+
+_LARGEST_HALF = math.ldexp(0.7, 1024)
+"""The power of two next to a larger number is beyond the range of floats."""
+
+
+def _divide(a: float, b: float) -> float:
+    """a / b as IEEE has it; a guard against zero stands before every division."""
+    if b != 0.0:
+        return a / b
+    if a == 0.0 or math.isnan(a) or math.isnan(b):
+        return math.nan
+    return math.copysign(math.inf, math.copysign(1.0, a) * math.copysign(1.0, b))
+
+
+def _square_root(a: float) -> float:
+    return math.sqrt(a) if a >= 0.0 else math.nan
+
+
+def _whole(a: float) -> float:
+    return (a + _ROUNDER) - _ROUNDER
+
+
+def _power_of_two_or_nan(a: float) -> float:
+    if not 0.0 < a < math.inf:
+        return math.nan
+    return next_power_of_two(a) if a <= _LARGEST_HALF else math.inf
+
+
+MEANING: dict[Operation, Callable[..., float]] = {
+    Operation.ADD: lambda a, b: a + b,
+    Operation.SUBTRACT: lambda a, b: a - b,
+    Operation.MULTIPLY: lambda a, b: a * b,
+    Operation.DIVIDE: _divide,
+    Operation.NEGATE: lambda a: -a,
+    Operation.MAGNITUDE: abs,
+    Operation.SQUARE_ROOT: _square_root,
+    Operation.LARGER: lambda a, b: b if b > a else a,
+    Operation.SMALLER: lambda a, b: b if b < a else a,
+    Operation.CHOOSE: lambda a, b, c: b if a != 0.0 else c,
+    Operation.LESS: lambda a, b: float(a < b),
+    Operation.NOT_MORE: lambda a, b: float(a <= b),
+    Operation.EQUAL: lambda a, b: float(a == b),
+    Operation.POWER_OF_TWO: _power_of_two_or_nan,
+    Operation.WHOLE: _whole,
+    Operation.SIGN: sign,
+}
+"""The operations that are not elementary functions."""
+
+
+def meaning(operation: Operation) -> Callable[..., float]:
+    """The function of one, two or three floats."""
+    known = MEANING.get(operation)
+    if known is None:
+        from mechkin_cli.kernel import functions
+
+        known = MEANING[operation] = getattr(functions, operation.name.lower())
+    return known
+
+
+# The reference evaluator: a tape replayed on floats, operation by operation.
+
+
+class Replayed(NamedTuple):
+    """The outputs, and what the guards say of them."""
+
+    outputs: list[float]
+    verdict: Verdict
+
+
+def evaluate(tape: Tape, values: Sequence[float]) -> Replayed:
+    """Replays a tape for other inputs.
+
+    Args:
+        tape: the tape.
+        values: (inputs,) in the tape's order, in SI.
+    """
+    registers: list[float] = [*map(float, values), *tape.constants.tolist()]
+    for code, operands in zip(tape.operations.tolist(), tape.operands.tolist(), strict=True):
+        operation = Operation(code)
+        arguments = (registers[r] for r in operands[: ARITY[operation]])
+        registers.append(meaning(operation)(*arguments))
+    verdict = Verdict.SAME
+    every = zip(tape.guards.tolist(), tape.expected, tape.advice, strict=True)
+    for (code, a, b), expected, advice in every:
+        found = meaning(Operation(code))(registers[a], registers[b]) != 0.0
+        if found is not bool(expected):
+            verdict = max(verdict, Verdict.OTHER_ADVICE if advice else Verdict.OTHER_WAY)
+    return Replayed([registers[r] for r in tape.outputs.tolist()], verdict)
+
+
+# Tapes replayed by the kernel, over many sets of inputs at once.
+
+
+def compiled(tape: Tape) -> _kernel.Tape:
+    """The tape as the kernel takes it."""
+    return _kernel.Tape(
+        len(tape.inputs),
+        tape.constants,
+        tape.operations,
+        tape.operands,
+        tape.outputs,
+        tape.guards,
+        tape.expected.astype(np.uint8),
+        tape.advice.astype(np.uint8),
+    )
+
+
+def replay(tape: _kernel.Tape, values: Floats, lanes: int = 0) -> tuple[Floats, NDArray[np.uint8]]:
+    """The outputs (sets, outputs) of inputs (inputs, sets), and a `Verdict` (sets,) each.
+
+    `lanes` as everywhere: 0 for the widest, the bits do not depend on it.
+    """
+    return tape.replay(np.ascontiguousarray(values, dtype=np.float64), width(lanes))
+
+
+def replay_precise(
+    tape: _kernel.Tape, values: Floats, second: Floats | None = None, lanes: int = 0
+) -> tuple[Floats, NDArray[np.uint8]]:
+    """The outputs (sets, outputs, 2) in double-double, high and low, of inputs (inputs, 2, sets),
+    and a `Verdict` (sets,) each.
+
+    `second` (constants,) are the low parts of the tape's constants, None where these are exact;
+    `lanes` as everywhere.
+
+    Raises:
+        ValueError: shapes that do not fit the tape.
+    """
+    low = None if second is None else np.ascontiguousarray(second, dtype=np.float64)
+    return tape.replay_precise(np.ascontiguousarray(values, dtype=np.float64), low, width(lanes))

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 from importlib.resources import files
 
-from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.nearest import nearest_hint
+from mechkin_cli.diagnostics import UsageError, nearest_hint
 
 USUAL = "four-bar"
 """The template where none is named."""

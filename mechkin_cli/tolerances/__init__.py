@@ -29,14 +29,8 @@ from __future__ import annotations
 
 from mechkin_cli.tolerances.closing import *
 from mechkin_cli.tolerances.errors import *
-from mechkin_cli.tolerances.fitting import *
 from mechkin_cli.tolerances.following import *
-from mechkin_cli.tolerances.idle import *
 from mechkin_cli.tolerances.mobility import *
-from mechkin_cli.tolerances.proofs import *
 from mechkin_cli.tolerances.reading import *
-from mechkin_cli.tolerances.responses import *
 from mechkin_cli.tolerances.results import *
 from mechkin_cli.tolerances.searching import *
-from mechkin_cli.tolerances.sensitivities import *
-from mechkin_cli.tolerances.work import *

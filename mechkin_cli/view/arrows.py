@@ -13,23 +13,22 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.mechanism.joint_table import is_angle
-from mechkin_cli.tables.layout import effort_names
+from mechkin_cli.mechanism import is_angle
+from mechkin_cli.tables import effort_names
 from mechkin_cli.units import FORCE, MOMENT
-from mechkin_cli.view.encoding import packed
 from mechkin_cli.view.joints import drawn_joints
+from mechkin_cli.view.page import packed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from mechkin_cli.arrays import Floats
-    from mechkin_cli.mechanism.model import Attached, Mechanism
-    from mechkin_cli.mechanism.problem import Problem
-    from mechkin_cli.view.encoding import Plain
-    from mechkin_cli.view.lengths import Lengths
-    from mechkin_cli.view.readable import Readable
+    from mechkin_cli.mechanism import Attached, Mechanism, Problem
+    from mechkin_cli.show import Floats
+    from mechkin_cli.view.page import Lengths, Plain
+    from mechkin_cli.view.scene import Readable
+
 
 Kind = Literal["force", "moment"]
 AXES = "xyz"

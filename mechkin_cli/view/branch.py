@@ -3,37 +3,110 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.status import Status
-from mechkin_cli.tables.columns import Words
-from mechkin_cli.tables.rows_table import rows_table
+from mechkin_cli.mechanism import is_angle
+from mechkin_cli.session import input_text
+from mechkin_cli.tables import Columns, Words, csv_bytes, read_table_text, rows_table
+from mechkin_cli.units import ANGLE
+from mechkin_cli.verdict import Status
 from mechkin_cli.view.arrows import arrow_records
-from mechkin_cli.view.encoding import packed
-from mechkin_cli.view.marks import run_marks
-from mechkin_cli.view.poses import continuous, link_poses
-from mechkin_cli.view.thinning import thinned, turning_points
+from mechkin_cli.view.joints import continuous, link_poses
+from mechkin_cli.view.page import packed, thinned, turning_points
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.arrays import Floats
-    from mechkin_cli.tables.columns import Columns
-    from mechkin_cli.view.encoding import Plain
-    from mechkin_cli.view.lengths import Lengths
-    from mechkin_cli.view.readable import Readable, ShownBranch
-    from mechkin_cli.view.shares import Share
+    from mechkin_cli.diagnostics import Diagnostic, Number
+    from mechkin_cli.show import Floats
+    from mechkin_cli.view.page import Lengths, Plain, Share
+    from mechkin_cli.view.scene import Readable, ShownBranch
+
+
+# Places that are marked on the axis of a run: dead centres, branch points, and what ended or
+# stopped a response.
+
+KINDS = {
+    "dead-centre": "dead-centre",
+    "branch-point": "branch-point",
+    "branch-point-passed": "branch-point",
+}
+"""Kind of mark by the code of the message that tells of the place."""
+
+
+def run_marks(analysis: Readable, label: str, x: Floats) -> list[Plain]:
+    """The marks of a branch, in the order of its messages; `label` and `x` (rows,) are those of its
+    axis."""
+    found: list[Plain] = []
+    for diagnostic in analysis.diagnostics:
+        kind = KINDS.get(diagnostic.code)
+        if kind is not None:
+            for text, place in _places(analysis, diagnostic, label, x):
+                found.append({"x": place, "kind": kind, "text": text})
+    for row in np.flatnonzero(analysis.result.status == Status.dead_centre).tolist():
+        found.append({"x": float(x[row]), "kind": "dead-centre", "text": "row at a dead centre"})
+    for row, event in enumerate(analysis.result.events):
+        if event:
+            found.append({"x": float(x[row]), "kind": "event", "text": event})
+    return [mark for at, mark in enumerate(found) if mark not in found[:at]]
+
+
+def _places(
+    analysis: Readable, diagnostic: Diagnostic, label: str, x: Floats
+) -> Iterator[tuple[str, float]]:
+    """What a message measured, place by place, with where on the axis that is."""
+    for numbers in _by_place(diagnostic.numbers):
+        places = {number.name: number.value for number in numbers}
+        words = f"{diagnostic.code.replace('-', ' ')}: {', '.join(map(input_text, numbers))}"
+        if label in places:
+            yield words, places[label]
+        else:
+            for place in _crossed(analysis, places, x):
+                yield words, place
+
+
+def _by_place(numbers: tuple[Number, ...]) -> Iterator[tuple[Number, ...]]:
+    """Numbers in a row, where those of one place have different names."""
+    first = 0
+    for at, number in enumerate(numbers):
+        if any(number.name == other.name for other in numbers[first:at]):
+            yield numbers[first:at]
+            first = at
+    if numbers:
+        yield numbers[first:]
+
+
+def _crossed(analysis: Readable, places: dict[str, float], x: Floats) -> Iterator[float]:
+    """Where the first of some coordinates passes its place between two rows, read straight between
+    them; at the last row with a solution where it never does."""
+    name, value = next(iter(places.items()))
+    solved = np.flatnonzero(analysis.result.solved)
+    if not solved.size:
+        return
+    off = np.asarray(analysis[name], dtype=np.float64)[solved] - value
+    near = np.ones(max(off.size - 1, 0), dtype=bool)
+    if is_angle(name.rpartition(".")[2]):
+        turn = float(analysis.result.units.from_si(2.0 * np.pi, ANGLE))
+        off -= turn * np.round(off / turn)
+        near = np.abs(np.diff(off)) < 0.5 * turn
+    at = np.flatnonzero((off[:-1] * off[1:] <= 0.0) & near)
+    for k in at:
+        share = 0.0 if off[k] == off[k + 1] else off[k] / (off[k] - off[k + 1])
+        yield float(x[solved[k]] + share * (x[solved[k + 1]] - x[solved[k]]))
+    if not at.size:
+        yield float(x[solved[-1]])
+
 
 VERDICTS = ("residual", "condition", "power_error")
 """Columns of the rows' own table that are shown as curves."""
 
 
 @dataclass(frozen=True)
-class Axis:
+class CurveAxis:
     """What the rows of a run are plotted over: a quantity's name, its unit and values (rows,)."""
 
     label: str
@@ -41,15 +114,15 @@ class Axis:
     values: Floats
 
 
-def axis_of(analysis: Readable) -> Axis:
+def axis_of(analysis: Readable) -> CurveAxis:
     """Time where the rows have it, else the first input that moves, else the number of the row."""
     result = analysis.result
     leading = result.problem.motion.leading
     name = "time" if "time" in result.inputs else leading.name if leading else ""
     if name not in result.inputs:
-        return Axis("row", "", np.arange(1.0, analysis.rows + 1.0))
+        return CurveAxis("row", "", np.arange(1.0, analysis.rows + 1.0))
     unit = result.units.label(result.quantity(name).dimension)
-    return Axis(name, unit, np.asarray(result.inputs[name], dtype=np.float64))
+    return CurveAxis(name, unit, np.asarray(result.inputs[name], dtype=np.float64))
 
 
 class BranchScene:
@@ -72,7 +145,7 @@ class BranchScene:
         return self.shown.analysis
 
     @cached_property
-    def axis(self) -> Axis:
+    def axis(self) -> CurveAxis:
         """What its rows are plotted over."""
         return axis_of(self.analysis)
 
@@ -142,3 +215,25 @@ class BranchScene:
                 "table": table.name,
                 "values": values,
             }
+
+
+# Tables as the texts of their cells, the same as in CSV.
+
+
+def table_record(table: Columns, run: str, rows: NDArray[np.intp], codes: list[int]) -> Plain:
+    """A table for the page: of one that has the rows of its run some `rows` with the `codes` of
+    their verdicts, of others all."""
+    shown = _part(table, rows) if table.of_rows else table
+    cells = read_table_text("cells.csv", csv_bytes(shown)).rows
+    return {
+        "name": table.name,
+        "title": table.title,
+        "run": run,
+        "columns": [{"label": one.label, "unit": one.unit} for one in table.columns],
+        "rows": [list(row) for row in cells],
+        "status": codes if table.of_rows else [],
+    }
+
+
+def _part(table: Columns, rows: NDArray[np.intp]) -> Columns:
+    return replace(table, columns=tuple(column.part(rows) for column in table.columns))

@@ -3,17 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from mechkin_cli.mechanism.joint_type import FIRST, SECOND
-from mechkin_cli.mechanism.model import Joint, Mechanism, is_written
-from mechkin_cli.mechanism.vectors import scale
+import numpy as np
+
+from mechkin_cli.derived import displacement, quaternion, rotation_of, vector_of
+from mechkin_cli.mechanism import (
+    FIRST,
+    GROUND_NAME,
+    SECOND,
+    Joint,
+    Mechanism,
+    is_written,
+    reference_point,
+    scale,
+)
+from mechkin_cli.view.page import FLATNESS, POINTS_APART
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism.frames import Frame
-    from mechkin_cli.mechanism.vectors import Vector
-    from mechkin_cli.view.encoding import Plain
-    from mechkin_cli.view.lengths import Lengths
+    from mechkin_cli.building import Kind, ShapeSetting
+    from mechkin_cli.mechanism import Frame, Vector
+    from mechkin_cli.show import Floats
+    from mechkin_cli.sweep import Result
+    from mechkin_cli.view.page import Lengths, Plain
 
 
 def drawn_joints(mechanism: Mechanism) -> list[Joint]:
@@ -84,3 +96,164 @@ def _half(joint: Joint, side: int, lengths: Lengths) -> Plain:
         "x": list(frame.z if axis == frame.x else frame.x),
         "axis2": list(scale(-1.0, frame.y)) if has_pin else None,
     }
+
+
+# Shapes of links: a rod, a thin plate, rods from a middle (a star), or nothing.
+#
+# A link goes through its joints and its named points. Two of them, or more in a line, make a rod;
+# three or more in a plane a plate; others rods to their centroid. Ground is told by its joints.
+
+
+class Shape(NamedTuple):
+    """A link as it is drawn (m, in the drawing): the `points` it goes through (n, 3), of a plate
+    the `normal`, of a star the `centre`."""
+
+    kind: Kind
+    points: Floats
+    normal: Floats | None = None
+    centre: Floats | None = None
+
+
+def link_shape(
+    mechanism: Mechanism, link: str, size: float, setting: ShapeSetting | None = None
+) -> Shape:
+    """The shape of a link of a mechanism of some `size` (m); what `setting` says goes first."""
+    given = None if setting is None else setting.points
+    points = distinct(drawn_points(mechanism, link) if given is None else given, size)
+    kind = None if setting is None else setting.kind
+    if kind is None and link == GROUND_NAME and given is None:
+        kind = "none"
+    return shape_through(points, kind)
+
+
+def drawn_points(mechanism: Mechanism, link: str) -> list[Vector]:
+    """A link's joint points, then its named points; where these are one, its mass centre, too."""
+    found = [at.vector for _, at in mechanism.joint_points() if at.link == link]
+    found += [at.vector for at in mechanism.points.values() if at.link == link]
+    body = mechanism.links.get(link)
+    if len(set(found)) == 1 and body is not None and body.mass:
+        found.append(body.center_of_mass)
+    return found
+
+
+def distinct(points: Sequence[Vector], size: float) -> Floats:
+    """Points (n, 3) without those that are as good as one before them."""
+    found: list[Floats] = []
+    for point in points:
+        place = np.asarray(point, dtype=np.float64)
+        if all(np.linalg.norm(place - other) > POINTS_APART * size for other in found):
+            found.append(place)
+    return np.array(found).reshape(-1, 3)
+
+
+def shape_through(points: Floats, kind: Kind | None = None) -> Shape:
+    """A shape through points (n, 3) that differ; `kind` None: by how they lie.
+
+    A rod joins the two ends of points in a line, and others in turn; a plate needs three points
+    that are in no line, and is else a rod.
+    """
+    if kind == "none" or len(points) < 2:
+        return Shape("none", points)
+    centre = points.mean(axis=0)
+    _, extents, axes = np.linalg.svd(points - centre, full_matrices=True)
+    spread = np.append(extents, np.zeros(3 - len(extents)))
+    in_line = spread[1] <= FLATNESS * spread[0]
+    if kind is None:
+        flat = spread[2] <= FLATNESS * spread[0]
+        kind = "rod" if in_line else "plate" if flat else "star"
+    if in_line and kind in ("rod", "plate"):
+        along = (points - centre) @ axes[0]
+        return Shape("rod", points[[along.argmin(), along.argmax()]])
+    if kind == "plate":
+        return Shape("plate", points, normal=axes[2])
+    return Shape(kind, points, centre=centre if kind == "star" else None)
+
+
+# Poses of links in the rows of a run, read off its states.
+#
+# The columns of a link's rotation are the ground axes as drawn on it, its shift is that of one of
+# its joint points: x = R x0 + t with t = p - R p0.
+
+HOME = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+"""The pose of what is where it was drawn."""
+
+
+def link_poses(result: Result, links: Sequence[str]) -> Floats:
+    """Shift (m) and unit quaternion (scalar first) of links, shape (rows, links, 7).
+
+    Rows without a solution are nan; ground, and links of loops that were not followed, are at home.
+    Quaternions have q0 >= 0; `continuous` joins them.
+    """
+    poses = np.full((result.rows, len(links), 7), np.nan)
+    poses[result.solved] = HOME
+    own = result.problem.mechanism
+    moving = [name for name in links if name != GROUND_NAME and name in own.links]
+    wanted = [quantity for name in moving for quantity in displacement(name)]
+    if not (wanted and result.solved.any()):
+        return poses
+    columns = result.evaluated(wanted)
+    for name in moving:
+        at, rotation = links.index(name), rotation_of(columns, name)
+        drawn = reference_point(own, name).vector
+        place = vector_of(columns[f"{name} place"])
+        for axis in range(3):
+            carried = sum(rotation[k][axis] * drawn[k] for k in range(3))
+            poses[:, at, axis] = place[axis] - carried
+        poses[:, at, 3:] = np.stack(quaternion(rotation), axis=1)
+    poses[~result.solved] = np.nan
+    return poses
+
+
+def continuous(poses: Floats) -> Floats:
+    """The same poses (poses, links, 7), each quaternion with the sign that is nearer to the one
+    before it."""
+    turns = poses[:, :, 3:]
+    back = np.einsum("plk,plk->pl", turns[1:], turns[:-1]) < 0.0
+    signs = np.cumprod(np.where(back, -1.0, 1.0), axis=0)
+    found = poses.copy()
+    found[1:, :, 3:] *= signs[:, :, None]
+    return found
+
+
+def carried(poses: Floats, point: Vector) -> Floats:
+    """Where a point as drawn on a link is in its poses (..., 7), shape (..., 3): t + R x0 with
+    R x0 = x0 + 2 q0 (v x x0) + 2 v x (v x x0), v the vector part."""
+    start = np.asarray(point, dtype=np.float64)
+    v = poses[..., 4:]
+    across = np.cross(v, start)
+    moved: Floats = poses[..., :3] + start + 2.0 * (poses[..., 3:4] * across + np.cross(v, across))
+    return moved
+
+
+# Whether a mechanism moves in a plane square to a ground axis, and is drawn in it: then the page
+# looks along that axis first.
+
+
+def plane_of_motion(poses: Sequence[Floats], low: Floats, high: Floats) -> int | None:
+    """The ground axis (0, 1, 2) square to the plane in which all points of a box from `low` to
+    `high` (m) lie and all `poses` (poses, links, 7) of some branches move; None without one."""
+    extents = high - low
+    size = float(np.linalg.norm(extents))
+    flat = np.flatnonzero(extents <= FLATNESS * size)
+    if flat.size != 1 or not poses:
+        return None
+    axis = int(flat[0])
+    others = [k for k in range(3) if k != axis]
+    for found in poses:
+        leaves = np.abs(found[:, :, axis]) > FLATNESS * size
+        tilts = np.abs(found[:, :, [4 + k for k in others]]) > FLATNESS
+        if leaves.any() or tilts.any():
+            return None
+    return axis
+
+
+def upwards(gravity: Floats, axis: int | None) -> Floats:
+    """The unit vector that is up on the page: against gravity, in a plane its part in it; without
+    one z, or y where the page looks along z."""
+    up = 0.0 - np.asarray(gravity, dtype=np.float64)
+    if axis is not None:
+        up[axis] = 0.0
+    length = float(np.linalg.norm(up))
+    if length > FLATNESS * float(np.linalg.norm(gravity)):
+        return up / length + 0.0
+    return np.array([0.0, 1.0, 0.0] if axis == 2 else [0.0, 0.0, 1.0])

@@ -5,29 +5,35 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from mechkin_cli.mechanism.model import GROUND_NAME, diagonal, is_written
+from mechkin_cli.building import ViewSettings
+from mechkin_cli.mechanism import GROUND_NAME, diagonal, is_written
 from mechkin_cli.units import ANGLE, FORCE, LENGTH, MOMENT
-from mechkin_cli.view.assumed import assumed
-from mechkin_cli.view.branch import BranchScene
-from mechkin_cli.view.joints import drawn_joints, joint_records, sliding_coordinate
-from mechkin_cli.view.lengths import Lengths
-from mechkin_cli.view.plane import plane_of_motion, upwards
-from mechkin_cli.view.poses import carried
-from mechkin_cli.view.settings import ViewSettings
-from mechkin_cli.view.shapes import link_shape
-from mechkin_cli.view.shares import shares
-from mechkin_cli.view.table_cells import table_record
+from mechkin_cli.view.branch import BranchScene, table_record
+from mechkin_cli.view.joints import (
+    carried,
+    drawn_joints,
+    joint_records,
+    link_shape,
+    plane_of_motion,
+    sliding_coordinate,
+    upwards,
+)
+from mechkin_cli.view.page import Lengths, assumed, shares
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
+    from numpy.typing import NDArray
+
     from mechkin_cli.diagnostics import Diagnostic
-    from mechkin_cli.mechanism.problem import Problem
-    from mechkin_cli.view.encoding import Plain
-    from mechkin_cli.view.readable import ShownRun
+    from mechkin_cli.mechanism import Problem
+    from mechkin_cli.show import Floats
+    from mechkin_cli.sweep import Result
+    from mechkin_cli.tables import Columns
+    from mechkin_cli.view.page import Plain
+
 
 FORMAT = 1
 """Version of the data that pages read."""
@@ -246,3 +252,56 @@ def _note(diagnostic: Diagnostic) -> Plain:
         "text": bare,
         "place": None if place is None else str(place),
     }
+
+
+# What a page reads of the analysis of a run; `interface.Analysis` is one.
+
+
+class Readable(Protocol):
+    """An analysis."""
+
+    @property
+    def run(self) -> str:
+        """`sweep`, or the name of a response."""
+        ...
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        ...
+
+    @property
+    def result(self) -> Result:
+        """States and verdicts of all rows."""
+        ...
+
+    @property
+    def tables(self) -> tuple[Columns, ...]:
+        """The tables of the run, evaluated in the file's units."""
+        ...
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Everything that the run has to say."""
+        ...
+
+    def __getitem__(self, text: str) -> NDArray[Any]:
+        """A quantity in the file's units, (rows,), or (rows, 3) of a vector."""
+        ...
+
+
+class ShownBranch(NamedTuple):
+    """A run in one assembly mode; `forces`: whether arrows of forces may be read."""
+
+    name: str
+    analysis: Readable
+    forces: bool = True
+
+
+class ShownRun(NamedTuple):
+    """A run of the file with its branches, the file's own one first, and its other tables."""
+
+    name: str
+    title: str
+    branches: tuple[ShownBranch, ...]
+    tables: tuple[Columns, ...] = ()

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 import mechkin_cli as mk
-from mechkin_cli.solver.batch import run
-from mechkin_cli.solver.demand import OutputPlan
-from mechkin_cli.solver.graph import build_graph
-from mechkin_cli.solver.inputs import kernel_inputs
-from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.search import Found, assemblies
+from mechkin_cli.plan.layout import Layout
+from mechkin_cli.plan.outputs import OutputPlan
+from mechkin_cli.search.search import Assemblies, assemblies
+from mechkin_cli.session.inputs import kernel_inputs
+from mechkin_cli.session.kernel_run import run
+from mechkin_cli.structure.build import build_graph
 
 FREEDOMS = {"R": 1, "P": 1, "C": 2, "S": 3, "Sg": 4, "Sp": 5}
 MARKS = np.array([[0.3, 0.1, -0.2], [-0.4, 0.5, 0.1], [0.2, -0.3, 0.6]])
@@ -107,7 +107,7 @@ def random_loop(rng: random.Random) -> Loop:
     return Loop(letters, points, np.array([f[0] for f in frames]), np.array([f[1] for f in frames]))
 
 
-def search(text: str, closed_at: list[str] | None = None) -> tuple[Found, np.ndarray]:
+def search(text: str, closed_at: list[str] | None = None) -> tuple[Assemblies, np.ndarray]:
     """The random starts' assemblies alone, and their marks (assemblies, marks, 3)."""
     problem = mk.loads(text).problem
     graph = build_graph(problem.mechanism, problem.motion.driven, closed_at)

@@ -17,7 +17,7 @@ from properties.expected import expected
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.mechanism.coefficient_quantities import COEFFICIENT_KINDS
+from mechkin_cli.mechanism.derived import COEFFICIENT_KINDS
 from mechkin_cli.mechanism.response import response_problem
 
 SOME = [*(f"loop {seed}" for seed in range(0, 24, 4)), *(f"structure {s}" for s in range(2, 14, 3))]

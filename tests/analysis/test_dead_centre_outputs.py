@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 
 import mechkin_cli as mk
 from mechkin_cli.cli.app import app
-from mechkin_cli.plots.of_tables import table_picture
-from mechkin_cli.view.marks import run_marks
+from mechkin_cli.plots.curves import table_picture
+from mechkin_cli.view.branch import run_marks
 from tests.analysis.dead_centre_texts import spatial
 
 

@@ -16,9 +16,8 @@ from oracle import document, to_text
 from references import MECHANISMS, committed
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.dense.loads import borne_wrenches
-from mechkin_cli.analysis.dense.row_motion import row_motion
-from mechkin_cli.analysis.dense.system import dense_system, solved
+from mechkin_cli.derived.dense import borne_wrenches, row_motion
+from mechkin_cli.derived.newton_euler import dense_system, solved
 from mechkin_cli.diagnostics import InvalidFile
 
 LIMIT = 1e-11

@@ -7,8 +7,9 @@ import pytest
 from mpmath import mp, mpf
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.derived.adaptive_quadrature import Samples, integrals
-from mechkin_cli.analysis.derived.quadrature import (
+from mechkin_cli.derived.quadrature import (
+    QuadratureSamples,
+    integrals,
     interval_weights,
     largest_between,
     over_cycle,
@@ -123,7 +124,7 @@ def test_friction_that_turns_round_and_contacts_that_change_sides(count):
 
 def test_what_rows_alone_cannot_tell_is_said(monkeypatch):
     """The balance closes although work and dissipation are both wrong: it says how much."""
-    from mechkin_cli.analysis.sweep.other_moments import Between
+    from mechkin_cli.sweep.sweep import Between
 
     right = mk.loads(BLOCK.format(count=11)).analyze(NAMES)["row.dissipated"]
     monkeypatch.setattr(Between, "of", classmethod(lambda cls, result: None))
@@ -140,7 +141,7 @@ def test_an_integral_between_kinks_that_nothing_tells():
 
     def sample(at):
         values = np.stack([np.abs(at - 0.3), np.where(at > np.sqrt(2), np.exp(at), 0.0)])
-        return Samples(values, np.empty((0, at.size)))
+        return QuadratureSamples(values, np.empty((0, at.size)))
 
     found = integrals(low, high, sample, np.array([1e-13, 1e-13]))
     wanted = [0.5 * (0.09 + 0.04), 0.5 * (0.36 - 0.04), 0.5 * (1.7**2 - 0.36)]

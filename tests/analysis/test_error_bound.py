@@ -12,7 +12,7 @@ from references import MECHANISMS
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 INCH = mp.mpf("0.0254")
 

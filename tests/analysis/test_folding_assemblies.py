@@ -18,10 +18,10 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.solver.batch import run
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.home import home_state
-from mechkin_cli.solver.start_box import unknown_states
+from mechkin_cli.plan.codes import Demand
+from mechkin_cli.plan.layout import home_state
+from mechkin_cli.search.starts import unknown_states
+from mechkin_cli.session.kernel_run import run
 
 HEAD = "format: 1\nunits: {length: m, angle: deg, force: N}\n"
 Z = (0, 0, 1)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from mechanisms.runs import model
 
-from mechkin_cli.analysis.sweep.notes import open_turn_note
-from mechkin_cli.solver.clusters import pose_keys, same_poses
+from mechkin_cli.search.clusters import pose_keys, same_poses
+from mechkin_cli.sweep.messages import open_turn_note
 
 
 def test_a_turn_that_closes_is_not_mentioned() -> None:

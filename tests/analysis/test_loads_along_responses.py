@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.response.respond import respond
-from mechkin_cli.analysis.response.result import ResponseResult
+from mechkin_cli.response.result import ResponseResult
+from mechkin_cli.response.runs import respond
 
 INERTIA = 2.0 * 0.15**2 + 0.003
 """kg m^2, about the joint."""

@@ -9,7 +9,7 @@ from mechanisms.runs import MECHANISMS, edited, model
 from mpmath import mp, mpf
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.ranges import Range
+from mechkin_cli.modes.ranges import Range
 
 FOUR_BAR = """
 format: 1

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.expressions import ExpressionError
+from mechkin_cli.expressions.quantity import ExpressionError
 
 PENDULUM = """\
 format: 1

@@ -19,7 +19,7 @@ from typer.testing import CliRunner
 
 import mechkin_cli as mk
 from mechkin_cli.cli.app import app
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 TEXT = """

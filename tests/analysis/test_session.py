@@ -8,7 +8,7 @@ from mechanisms.runs import LECTURES, NAMES
 from references import MECHANISMS
 
 import mechkin_cli as mk
-from mechkin_cli.solver.session import Session
+from mechkin_cli.session.session import Session
 
 
 def fresh(stem: str) -> mk.Model:

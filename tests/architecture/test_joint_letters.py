@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 from architecture.package import FILES, NAMES, ROOT, tree
 
-from mechkin_cli.mechanism.elementary import ELEMENTARY
-from mechkin_cli.mechanism.joint_table import FREE, JOINT_TYPES
+from mechkin_cli.mechanism.pair_type import ELEMENTARY
+from mechkin_cli.mechanism.pairs import FREE, JOINT_TYPES
 
 LETTERS = {*JOINT_TYPES, *ELEMENTARY, FREE.letter}
 COORDINATES = {name for kind in JOINT_TYPES.values() for name in kind.coordinates}

@@ -93,4 +93,4 @@ def test_a_sweep_leaves_out_what_its_file_does_not_ask_for(
 
 
 def test_what_writes_tables_is_seen_by_this_test(written: Path) -> None:
-    assert "mechkin_cli.tables.csv_writer" in modules_of(COMMAND, str(written))
+    assert "mechkin_cli.tables.csv" in modules_of(COMMAND, str(written))

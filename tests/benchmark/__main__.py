@@ -23,7 +23,7 @@ from benchmark.yardstick_kernel import Yardstick, load
 
 from mechkin_cli.benchmark.machine import machine
 from mechkin_cli.benchmark.report import Table, plain_text
-from mechkin_cli.tables.json_writer import json_text
+from mechkin_cli.tables.json import json_text
 
 RCSR_FILE = HERE.parents[1] / "mechanisms" / "rcsr.yaml"
 

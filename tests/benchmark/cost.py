@@ -29,7 +29,7 @@ from random_families.no_wrong_row.case import drawn
 
 from mechkin_cli.benchmark.machine import machine
 from mechkin_cli.benchmark.report import Cell, Column, Table, plain_text
-from mechkin_cli.tables.json_writer import json_text
+from mechkin_cli.tables.json import json_text
 
 MECHANISMS = HERE.parents[1] / "mechanisms"
 GENERIC = {"RCSR": "rcsr", "RCSR-CSR": "rcsr_csr", "RCHCH": "rchch", "Stewart": "stewart"}

@@ -15,8 +15,8 @@ from benchmark.specimen import Specimen
 
 from mechkin_cli.benchmark.report import Cell, Column, Table
 from mechkin_cli.benchmark.timing import ROUNDS, in_turns
-from mechkin_cli.kernel.width import widths
-from mechkin_cli.solver.codes import Demand
+from mechkin_cli.kernel.functions import widths
+from mechkin_cli.plan.codes import Demand
 
 Step = tuple[str, tuple[str, ...], Demand]
 

@@ -22,10 +22,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from benchmark.kernel_case import KernelCase, PlannedRun, driven, repeated, sweep_rows
 from benchmark.specimens import rcsr_specimen, sevenr_specimen
 
-from mechkin_cli.kernel.width import widths
-from mechkin_cli.solver.batch import run
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.precise_run import run_precise
+from mechkin_cli.kernel.functions import widths
+from mechkin_cli.plan.codes import Demand
+from mechkin_cli.session.double_double import run_precise
+from mechkin_cli.session.kernel_run import run
 
 
 def seconds(work: Callable[[], Any]) -> float:

@@ -36,8 +36,8 @@ import mechkin_cli as mk
 from mechkin_cli.benchmark.machine import machine
 from mechkin_cli.benchmark.report import Cell, Column, Table, plain_text
 from mechkin_cli.benchmark.timing import Timing, in_turns
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.tables.json_writer import json_text
+from mechkin_cli.plan.codes import Demand
+from mechkin_cli.tables.json import json_text
 
 MECHANISMS = HERE.parents[1] / "mechanisms"
 ROWS = 100_000

@@ -15,12 +15,10 @@ from typing import Any
 import numpy as np
 
 import mechkin_cli as mk
-from mechkin_cli.fitting.local import refined
-from mechkin_cli.fitting.measures import Measured
-from mechkin_cli.interface.fit_models import FitModels
-from mechkin_cli.interface.fit_request import request
-from mechkin_cli.interface.fit_slopes import FitSlopes
-from mechkin_cli.interface.fit_values import FitValues
+from mechkin_cli.fit.measure import FitModels, FitValues
+from mechkin_cli.fit.request import request
+from mechkin_cli.fit.search import Measured, refined
+from mechkin_cli.fit.slopes import FitSlopes
 
 MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 LINE = [[x, 0] for x in range(-80, 81, 20)]

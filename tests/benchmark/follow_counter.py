@@ -11,7 +11,7 @@ from time import process_time
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.solver import follow
+from mechkin_cli.session import following as follow
 
 
 class Counting:

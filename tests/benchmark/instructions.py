@@ -39,9 +39,9 @@ from benchmark.targets import YARDSTICK_NAMES
 from benchmark.yardstick_kernel import LEVELS, Yardstick
 
 from mechkin_cli.benchmark.report import Cell, Column, Table, plain_text
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.follow import follow
-from mechkin_cli.tables.json_writer import json_text
+from mechkin_cli.plan.codes import Demand
+from mechkin_cli.session.following import follow
+from mechkin_cli.tables.json import json_text
 
 SPECIMENS = {"RCSR": rcsr_specimen, "7R": sevenr_specimen}
 MARK = "getppid"

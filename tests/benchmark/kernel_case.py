@@ -10,16 +10,16 @@ import numpy as np
 from benchmark.specimen import Specimen, values
 
 from mechkin_cli import tolerances
-from mechkin_cli.interface import loads
-from mechkin_cli.solver.batch import Batch, run
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import OutputPlan, demand_of
-from mechkin_cli.solver.follow import follow
-from mechkin_cli.solver.layout import Layout
+from mechkin_cli.model.model import loads
+from mechkin_cli.plan.codes import Demand
+from mechkin_cli.plan.layout import Layout
+from mechkin_cli.plan.outputs import OutputPlan, demand_of
+from mechkin_cli.session.following import follow
+from mechkin_cli.session.kernel_run import Batch, run
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
     from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.show import Floats
 
 BATCH = 2048
 """Rows of a timed call."""

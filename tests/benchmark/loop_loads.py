@@ -16,7 +16,7 @@ from benchmark.loop import Lines, LoopKinematics, lines_of, loop_kinematics
 from benchmark.matrices import Matrix, Vector, cross, dot, image, rotation
 
 from mechkin_cli.benchmark.sevenr import GRAVITY, JOINTS, Body, Loop
-from mechkin_cli.elimination import eliminate
+from mechkin_cli.tape.double_double import eliminate
 
 
 def loop_solution(loop: Loop, theta1: Any, guess: Any) -> dict[str, Any]:

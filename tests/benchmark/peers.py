@@ -13,7 +13,7 @@ from benchmark.dense_forces import equations, wrenches
 from mechkin_cli.benchmark.rcsr import ACCELERATION, COORDINATES, RATE, Dimensions
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
+    from mechkin_cli.show import Floats
 
 STEP = 1e-4
 """Step of the differences, rad: rounding (1e-16 / step^2) and truncation (step^2 times a derivative

@@ -14,7 +14,7 @@ from benchmark.closure import Drawing, Kinematics, drawing, kinematics
 from benchmark.dense_forces import equations, wrenches
 
 from mechkin_cli.benchmark.rcsr import COORDINATES, Dimensions
-from mechkin_cli.elimination import eliminate
+from mechkin_cli.tape.double_double import eliminate
 
 POSITIONS = COORDINATES
 VELOCITIES = tuple(f"{name}_dot" for name in COORDINATES)

@@ -36,17 +36,16 @@ from benchmark.specimens import rcsr_specimen
 from references import exact
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.response.respond import Prepared, prepare, read, rows_of
-from mechkin_cli.analysis.sweep.question import at_once
-from mechkin_cli.analysis.sweep.sweep import analyze
-from mechkin_cli.arrays import Floats
 from mechkin_cli.benchmark import sevenr
 from mechkin_cli.benchmark.machine import machine
 from mechkin_cli.benchmark.report import Cell, Column, Table, plain_text
 from mechkin_cli.benchmark.timing import in_turns
-from mechkin_cli.solver.free_motion import MotionRows, MotionStart, integrate
-from mechkin_cli.solver.session import Packing, Session
-from mechkin_cli.tables.json_writer import json_text
+from mechkin_cli.response.integration import MotionRows, MotionStart, integrate
+from mechkin_cli.response.runs import Prepared, prepare, read, rows_of
+from mechkin_cli.session.session import Packing, Session
+from mechkin_cli.show import Floats
+from mechkin_cli.sweep.sweep import analyze, at_once
+from mechkin_cli.tables.json import json_text
 
 MECHANISMS = HERE.parents[1] / "mechanisms"
 ROUNDS = 11

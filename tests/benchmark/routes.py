@@ -29,7 +29,7 @@ from mechkin_cli.benchmark.report import Cell, Column, Table
 from mechkin_cli.benchmark.timing import Timing, in_turns
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
+    from mechkin_cli.show import Floats
 
 BY_HAND_ROUNDS = 5
 """The peers in Python take a thousand times as long; they are timed in few rounds."""

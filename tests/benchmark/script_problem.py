@@ -17,8 +17,8 @@ import mechkin_cli as mk
 from mechkin_cli.benchmark.scenes import texts
 
 if TYPE_CHECKING:
-    from mechkin_cli.interface import Model
     from mechkin_cli.mechanism.vectors import Vector
+    from mechkin_cli.model.model import Model
 
 GROUND = -1
 ORDERS = ("", "_dot", "_ddot")

@@ -21,8 +21,9 @@ from benchmark.specimen import values
 
 from mechkin_cli.benchmark.rcsr import SPAN, dimensions
 from mechkin_cli.benchmark.report import Cell, Column, Table
-from mechkin_cli.interface import Analysis, loads
-from mechkin_cli.status import Status
+from mechkin_cli.model.analysis import Analysis
+from mechkin_cli.model.model import loads
+from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -133,10 +133,9 @@ def measured(case: Case, count: int, compared: Callable[[], None] | None) -> str
 
 def writing() -> str:
     """What the process that writes takes for a piece of ten columns."""
-    from mechkin_cli.interface.studies import MOST_IN_PIECE
     from mechkin_cli.studies.folder import Contents, StudyFolder
-    from mechkin_cli.studies.formats import Csv
-    from mechkin_cli.studies.records import Heading
+    from mechkin_cli.studies.formats import Csv, Heading
+    from mechkin_cli.studies.study import MOST_IN_PIECE
 
     generator = np.random.default_rng(1)
     values = {f"c{k}": generator.normal(size=MOST_IN_PIECE) for k in range(COLUMNS)}

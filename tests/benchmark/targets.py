@@ -24,7 +24,7 @@ from benchmark.yardstick_kernel import LEVELS, Yardstick
 from mechkin_cli.benchmark import sevenr
 from mechkin_cli.benchmark.report import Cell, Column, Table
 from mechkin_cli.benchmark.timing import Timing, in_turns
-from mechkin_cli.kernel.width import widths
+from mechkin_cli.kernel.functions import widths
 
 KERNEL_LIMIT = 1.6
 SWEEP_LIMIT = 2.5

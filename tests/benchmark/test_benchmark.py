@@ -26,8 +26,8 @@ from oracle import fold, mp, read
 from mechkin_cli.benchmark.rcsr import COORDINATES, dimensions
 from mechkin_cli.benchmark.report import Column, Table, cell_text, plain_text, width
 from mechkin_cli.benchmark.timing import SHORTEST, Timing, in_turns
-from mechkin_cli.elimination import eliminate
-from mechkin_cli.kernel.width import widths
+from mechkin_cli.kernel.functions import widths
+from mechkin_cli.tape.double_double import eliminate
 
 DOUBLE = Arithmetic("double", 2.0**-52, np.float64, np.cos, np.sin)
 EXACT_MOTION = dict(

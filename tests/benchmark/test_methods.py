@@ -28,7 +28,7 @@ from mechkin_cli.benchmark.tables import bench_table, csv_text, markdown
 from mechkin_cli.benchmark.truth import true_values
 from mechkin_cli.benchmark.wide import TEXT, exact_values
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.kernel.width import widths
+from mechkin_cli.kernel.functions import widths
 
 ONCE = Rounds(1, 1)
 HAND = ("dense", "scipy", "stepping", "Pinocchio")
@@ -178,7 +178,7 @@ def test_levels_find_what_they_say(measured: runs.Bench) -> None:
 
 @pytest.mark.parametrize("limit", [1e-2, 1e-6, 1e-14])
 def test_errors_do_not_depend_on_the_lanes(rcsr: Scene, limit: float) -> None:
-    from mechkin_cli.solver.session import Packing
+    from mechkin_cli.session.session import Packing
 
     tests = (limit, limit**0.5, limit)
     found = []

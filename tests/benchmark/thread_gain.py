@@ -20,7 +20,7 @@ from benchmark.kernel_case import KernelCase, PlannedRun, driven, repeated, swee
 from benchmark.specimens import rcsr_specimen, sevenr_specimen
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.solver.batch import run
+from mechkin_cli.session.kernel_run import run
 
 
 def timed(planned: PlannedRun, inputs: Any, guess: Any, threads: int, repeats: int = 1) -> float:

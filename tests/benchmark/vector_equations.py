@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from benchmark.matrices import Vector
 
-from mechkin_cli.elimination import eliminate
+from mechkin_cli.tape.double_double import eliminate
 
 
 def solve_columns(columns: list[Vector], right: Vector, dtype: Any) -> Vector:

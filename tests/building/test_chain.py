@@ -10,7 +10,7 @@ from building.denavit_hartenberg import Row, frames, rows_of
 from references import RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.interface import Analysis
+from mechkin_cli.model.analysis import Analysis
 
 MECHANISMS = RCSR.parent
 BENNETT = (MECHANISMS / "bennett.yaml").read_text()

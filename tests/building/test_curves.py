@@ -4,15 +4,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from scipy.interpolate import CubicSpline
 
-from mechkin_cli.building.curves import read_curve
 from mechkin_cli.building.fields import Fields
+from mechkin_cli.building.load_laws import read_curve
 from mechkin_cli.mechanism.curve import Curve, smooth_curve
 from mechkin_cli.reading.document import document_from_text, read_document
-from mechkin_cli.units import ANGLE, TIME, UnitSystem
+from mechkin_cli.units.dimension import ANGLE, TIME
+from mechkin_cli.units.units import UnitSystem
 
 FILE = "format: 1\nlaw: t.csv\n"
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.tables.csv_writer import csv_bytes
+from mechkin_cli.tables.csv import csv_bytes
 
 FILE = """\
 format: 1

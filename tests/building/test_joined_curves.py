@@ -14,7 +14,7 @@ from mpmath import mp
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 import mechkin_cli as mk
-from mechkin_cli.mechanism.joined_curve import Joining, joined_curve
+from mechkin_cli.mechanism.curve import Joining, joined_curve
 
 COUNT = 40 * int(os.environ.get("MECHKIN_RANDOM", "5"))
 LAW = """\

@@ -8,8 +8,8 @@ import pytest
 
 import mechkin_cli as mk
 from mechkin_cli.mechanism.motion import DrivenInput
-from mechkin_cli.tables.csv_writer import csv_bytes
-from mechkin_cli.tables.rows_table import rows_table
+from mechkin_cli.tables.csv import csv_bytes
+from mechkin_cli.tables.markdown import rows_table
 
 FILE = """\
 format: 1

@@ -5,7 +5,7 @@ import pytest
 from building.sound import SOUND
 
 import mechkin_cli as mk
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 FOUR_BAR = """\
 format: 1

@@ -9,14 +9,14 @@ import pytest
 import mechkin_cli as mk
 from mechkin_cli.mechanism.model import JointLoad, Varying
 from mechkin_cli.mechanism.response import (
-    Crossing,
-    DeadCentre,
-    Response,
-    Start,
-    Turns,
+    CrossingEnd,
+    DeadCentreEnd,
+    ResponseProblem,
+    StartValue,
+    TurnsEnd,
     response_problem,
 )
-from mechkin_cli.tape.evaluate import evaluate
+from mechkin_cli.tape.tape import evaluate
 
 LINKS = """\
 format: 1
@@ -40,7 +40,7 @@ def model(keys: str, more: str = "") -> mk.Model:
     return mk.loads(f"{LINKS}{more}responses:\n  go: {{{keys}}}\n", "go.yaml")
 
 
-def response(keys: str, more: str = "") -> Response:
+def response(keys: str, more: str = "") -> ResponseProblem:
     return model(keys, more).response("go")
 
 
@@ -58,9 +58,9 @@ def refusals(text: str) -> list[str]:
 def test_start_in_si_with_rates_that_are_zero_where_left_out() -> None:
     found = response(f"start: {{A.theta: swing, B.theta: -1 rad, B.s: 3, B.s_dot: 4 mm/s}}, {TIME}")
     assert found.start == (
-        Start("A", "theta", pytest.approx(math.radians(20.0)), 0.0),
-        Start("B", "theta", -1.0, 0.0),
-        Start("B", "s", pytest.approx(3e-3), pytest.approx(4e-3)),
+        StartValue("A", "theta", pytest.approx(math.radians(20.0)), 0.0),
+        StartValue("B", "theta", -1.0, 0.0),
+        StartValue("B", "s", pytest.approx(3e-3), pytest.approx(4e-3)),
     )
     assert found.independent == [("A", "theta"), ("B", "theta"), ("B", "s")]
 
@@ -178,17 +178,17 @@ def test_stops() -> None:
     stops = "[{value: B.s - 2*k/k*1 mm, at: 4, direction: up}, {value: tip.velocity.x}, "
     stops += "{dead_centre: A.theta, count: 2}, {dead_centre: B.s}, {turns: B.theta, count: 3}]"
     crossing, fast, dead, slide, turns = response(f"{START}, {TIME}, stop: {stops}").stops
-    assert isinstance(crossing, Crossing)
+    assert isinstance(crossing, CrossingEnd)
     assert (crossing.at, crossing.direction) == (pytest.approx(4e-3), "up")
     assert crossing.law.reads == ("B.s",)
     assert crossing.words == "B.s - 2*k/k*1 mm = 4 mm upwards"
-    assert isinstance(fast, Crossing)
+    assert isinstance(fast, CrossingEnd)
     assert (fast.at, fast.direction, fast.words) == (0.0, "any", "tip.velocity.x = 0 mm/s")
-    assert isinstance(dead, DeadCentre)
+    assert isinstance(dead, DeadCentreEnd)
     assert (dead.joint, dead.coordinate, dead.count) == ("A", "theta", 2)
     assert dead.words == "dead centre 2 of A.theta"
     assert slide.words == "dead centre of B.s"
-    assert isinstance(turns, Turns)
+    assert isinstance(turns, TurnsEnd)
     assert (turns.words, turns.count) == ("3 turns of B.theta", 3)
 
 

@@ -3,12 +3,11 @@
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 import mechkin_cli as mk
-from mechkin_cli.building.sequences import by_count, by_step
-from mechkin_cli.tables.csv_writer import csv_bytes
+from mechkin_cli.building.motion import by_count, by_step
+from mechkin_cli.tables.csv import csv_bytes
 
 CRANK = """\
 format: 1

@@ -14,7 +14,7 @@ from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.cli.analyze import analyze_files
-from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import ExitCode
 
 ALL = ["csv", "md", "json"]
 

@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 import pytest
 from references import RCSR
 
-from mechkin_cli.kernel.width import INSTRUCTIONS, check_width, force_width, width, widths
+from mechkin_cli.kernel.functions import INSTRUCTIONS, check_width, force_width, width, widths
 
 MECHANISMS = RCSR.parent
 FILES = ("rcsr", "bennett", "rcsr_csr", "stewart")

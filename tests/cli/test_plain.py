@@ -14,7 +14,7 @@ from references import RCSR
 
 from mechkin_cli.cli import analyze_command
 from mechkin_cli.cli.app import app
-from mechkin_cli.cli.plain import OPTIONS, plain_analysis
+from mechkin_cli.cli.run import OPTIONS, plain_analysis
 
 WORDS = [
     *OPTIONS,

@@ -14,7 +14,7 @@ from cli import files
 from cli.test_processes import MECHKIN
 
 import mechkin_cli as mk
-from mechkin_cli.regular_file import NotRegular, read_regular
+from mechkin_cli.reading.text import NotRegular, read_regular
 
 
 def fifo(path: Path) -> None:

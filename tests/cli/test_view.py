@@ -11,7 +11,7 @@ from cli.conftest import Mechkin
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import ExitCode
 
 BEYOND = MECHANISMS / "rcsr.yaml"
 

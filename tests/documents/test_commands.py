@@ -5,12 +5,11 @@ from functools import cache
 
 import pytest
 import typer
-from documents.commands.page import PAGE
-from documents.commands.page import page as made_anew
+from documents.commands.page import PAGE, page as made_anew
 from documents.reading import page
 
 from mechkin_cli.cli.app import app
-from mechkin_cli.cli.exit_codes import ExitCode
+from mechkin_cli.cli.messages import ExitCode
 
 COMMANDS = page("docs/commands.md")
 BY_HAND = COMMANDS.partition("## Every option")[0]

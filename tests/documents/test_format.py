@@ -5,8 +5,7 @@ from functools import cache
 from typing import Any
 
 import pytest
-from documents.format.page import PAGE
-from documents.format.page import page as made_anew
+from documents.format.page import PAGE, page as made_anew
 from documents.reading import ROOT, page
 
 FORMAT = page("docs/format.md")

@@ -5,9 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from mechkin_cli.expressions import FUNCTIONS, constant, parse
-from mechkin_cli.expressions.limits import MAX_DEPTH, MAX_NODES, MAX_TEXT_LENGTH
-from mechkin_cli.units import UnitSystem
+from mechkin_cli.expressions.expression import parse
+from mechkin_cli.expressions.fields import constant
+from mechkin_cli.expressions.functions import FUNCTIONS
+from mechkin_cli.expressions.quantity import MAX_DEPTH, MAX_NODES, MAX_TEXT_LENGTH
+from mechkin_cli.units.units import UnitSystem
 
 PAGE = (Path(__file__).parents[2] / "docs" / "functions.md").read_text(encoding="utf-8")
 ROWS = [line.split("|")[1:-1] for line in PAGE.splitlines() if re.match(r"\| `\w+\(", line)]

@@ -7,7 +7,7 @@ import pytest
 from documents.joints.pairs import PAIRS
 from documents.reading import ROOT, page
 
-from mechkin_cli.mechanism.joint_table import JOINT_TYPES, PLANE_JOINT_TYPES
+from mechkin_cli.mechanism.pairs import JOINT_TYPES, PLANE_JOINT_TYPES
 
 PICTURES = ROOT / "docs" / "joints"
 PAGES = page("docs/modelling.md") + page("docs/planar.md")

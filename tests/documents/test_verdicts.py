@@ -9,8 +9,8 @@ from references import RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.cli.analyze import analyze_files
-from mechkin_cli.proof import Proof
 from mechkin_cli.tolerances import CONDITION_NEAR_SINGULAR
+from mechkin_cli.verdict import Proof
 
 VERDICTS = page("docs/verdicts.md")
 

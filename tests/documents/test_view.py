@@ -9,8 +9,8 @@ from references import RCSR
 import mechkin_cli as mk
 from mechkin_cli.schema.base import fields_of
 from mechkin_cli.schema.view import ViewSection
-from mechkin_cli.view import limits
-from mechkin_cli.view.html import NAME
+from mechkin_cli.view import page as limits
+from mechkin_cli.view.page import PAGE_NAME
 
 PAGE = page("docs/view.md")
 
@@ -40,4 +40,4 @@ def test_limits_are_those_of_the_code(name: str) -> None:
 
 
 def test_the_file_is_called_so() -> None:
-    assert f"`out/rcsr/{NAME}`" in PAGE
+    assert f"`out/rcsr/{PAGE_NAME}`" in PAGE

@@ -6,7 +6,7 @@ import pytest
 from editors.language_server import Server
 from editors.test_faults import PIN, TOP
 
-from mechkin_cli.schema.joints import JOINT_TYPES
+from mechkin_cli.schema.links_joints import JOINT_TYPES
 
 INPUT = f"{TOP}{PIN}motion:\n  inputs:\n    A.theta:\n      "
 

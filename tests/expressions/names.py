@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from mechkin_cli.expressions import Quantity, Vector, lookup
-from mechkin_cli.units import (
+from mechkin_cli.expressions.fields import lookup
+from mechkin_cli.expressions.quantity import Quantity, Vector
+from mechkin_cli.units.dimension import (
     ANGLE,
     ANGULAR_RATE,
     DIMENSIONLESS,
@@ -14,8 +15,8 @@ from mechkin_cli.units import (
     MASS,
     MOMENT,
     VELOCITY,
-    UnitSystem,
 )
+from mechkin_cli.units.units import UnitSystem
 
 INCH_POUND = UnitSystem.from_mapping(
     {"length": "in", "angle": "deg", "mass": "lbm", "force": "lbm*in/s^2"}

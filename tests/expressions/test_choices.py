@@ -7,8 +7,10 @@ import pytest
 from expressions.names import resolve
 from mpmath import mp
 
-from mechkin_cli.expressions import ExpressionError, Quantity, Vector, lookup, parse
-from mechkin_cli.units import ANGLE, DIMENSIONLESS, FORCE, LENGTH, Dimension
+from mechkin_cli.expressions.expression import parse
+from mechkin_cli.expressions.fields import lookup
+from mechkin_cli.expressions.quantity import ExpressionError, Quantity, Vector
+from mechkin_cli.units.dimension import ANGLE, DIMENSIONLESS, FORCE, LENGTH, Dimension
 
 NAN = float("nan")
 ROWS = {

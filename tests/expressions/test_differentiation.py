@@ -10,12 +10,12 @@ import pytest
 from expressions.random_expressions import NAMES, number, value, written
 from mpmath import mp
 
-from mechkin_cli.expressions import FUNCTIONS, ExpressionError, Quantity, lookup, parse
-from mechkin_cli.expressions.definitions import Definitions
 from mechkin_cli.expressions.differentiation import STEPS, TERMS, WHOLE, differentiated
-from mechkin_cli.expressions.limits import MAX_EXPANDED
-from mechkin_cli.expressions.nodes import Name, Node
-from mechkin_cli.expressions.parser import parse_nodes
+from mechkin_cli.expressions.expression import Definitions, parse
+from mechkin_cli.expressions.fields import lookup
+from mechkin_cli.expressions.functions import FUNCTIONS
+from mechkin_cli.expressions.grammar import parse_nodes
+from mechkin_cli.expressions.quantity import MAX_EXPANDED, ExpressionError, Name, Node, Quantity
 
 COUNT = 40 * int(os.environ.get("MECHKIN_RANDOM", "5"))
 ROWS = {name: Quantity(np.array(rows)) for name, rows in NAMES.items()}

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 from expressions.names import INCH_POUND, resolve
 
-from mechkin_cli.expressions import ExpressionError, Quantity, parse
-from mechkin_cli.units import DIMENSIONLESS
+from mechkin_cli.expressions.expression import parse
+from mechkin_cli.expressions.quantity import ExpressionError, Quantity
+from mechkin_cli.units.dimension import DIMENSIONLESS
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,9 @@ import math
 import pytest
 from expressions.names import INCH_POUND, resolve
 
-from mechkin_cli.expressions import ExpressionError, constant, constant_in_file_units, literal
-from mechkin_cli.units import (
+from mechkin_cli.expressions.fields import constant, constant_in_file_units, literal
+from mechkin_cli.expressions.quantity import ExpressionError
+from mechkin_cli.units.dimension import (
     ANGLE,
     ANGULAR_RATE,
     DIMENSIONLESS,
@@ -16,8 +17,8 @@ from mechkin_cli.units import (
     MASS,
     MOMENT,
     Dimension,
-    UnitSystem,
 )
+from mechkin_cli.units.units import UnitSystem
 
 MILLIMETRE = UnitSystem.from_mapping({"length": "mm"})
 

@@ -6,8 +6,11 @@ import math
 
 import pytest
 
-from mechkin_cli.expressions import ExpressionError, evaluate_parameters, lookup, parse
-from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, MASS, UnitSystem
+from mechkin_cli.expressions.expression import parse
+from mechkin_cli.expressions.fields import evaluate_parameters, lookup
+from mechkin_cli.expressions.quantity import ExpressionError
+from mechkin_cli.units.dimension import ANGLE, DIMENSIONLESS, LENGTH, MASS
+from mechkin_cli.units.units import UnitSystem
 
 INCH = UnitSystem.from_mapping({"length": "in"})
 

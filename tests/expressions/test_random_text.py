@@ -5,12 +5,13 @@ from __future__ import annotations
 from datetime import timedelta
 
 from expressions.names import INCH_POUND, QUANTITIES, resolve
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
-from mechkin_cli.expressions import ExpressionError, constant, parse
-from mechkin_cli.expressions.limits import MAX_TEXT_LENGTH
-from mechkin_cli.units import LENGTH, CompoundUnit, UnitError, parse_unit
+from mechkin_cli.expressions.expression import parse
+from mechkin_cli.expressions.fields import constant
+from mechkin_cli.expressions.quantity import MAX_TEXT_LENGTH, ExpressionError
+from mechkin_cli.units.dimension import LENGTH
+from mechkin_cli.units.units import CompoundUnit, UnitError, parse_unit
 
 WORDS = [*QUANTITIES, "in", "N*m", "deg", "s", "sin", "sqrt", "det", "min", "wrap", "cross", "pi"]
 SIGNS = ["+", "-", "*", "/", "^", "**", "(", ")", "[", "]", ",", ".x", ".", " ", "1", "0", "2.5e3"]

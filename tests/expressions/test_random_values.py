@@ -11,14 +11,13 @@ import pytest
 from expressions.random_expressions import NAMES, number, value, written
 from mpmath import mp
 
-from mechkin_cli.expressions import ExpressionError, Quantity, lookup, parse
-from mechkin_cli.expressions.exact_literal import exact_literal
-from mechkin_cli.tape.double_doubles import DoubleDoubles, exactly
-from mechkin_cli.tape.evaluate import evaluate
-from mechkin_cli.tape.operations import Operation
-from mechkin_cli.tape.row_numbers import RowRecorder
-from mechkin_cli.tape.tape import Tape
-from mechkin_cli.tape.traced import register
+from mechkin_cli.expressions.expression import exact_literal, parse
+from mechkin_cli.expressions.fields import lookup
+from mechkin_cli.expressions.quantity import ExpressionError, Quantity
+from mechkin_cli.tape.double_double import DoubleDoubles, exactly
+from mechkin_cli.tape.recorder import register
+from mechkin_cli.tape.row_programs import RowRecorder
+from mechkin_cli.tape.tape import Operation, Tape, evaluate
 
 COUNT = 40 * int(os.environ.get("MECHKIN_RANDOM", "5"))
 ROWS = {name: Quantity(np.array(rows)) for name, rows in NAMES.items()}

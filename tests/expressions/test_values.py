@@ -9,8 +9,9 @@ import pytest
 from expressions.names import resolve
 from mpmath import mp
 
-from mechkin_cli.expressions import Rows, Vector, parse
-from mechkin_cli.units import (
+from mechkin_cli.expressions.expression import parse
+from mechkin_cli.expressions.quantity import Rows, Vector
+from mechkin_cli.units.dimension import (
     ACCELERATION,
     ANGLE,
     AREA,
@@ -187,7 +188,8 @@ def test_a_row_alone_has_the_bits_that_it_has_among_others(text: str) -> None:
 
 
 def _with_theta(values: Rows, expression: object) -> Rows:
-    from mechkin_cli.expressions import Quantity, lookup
+    from mechkin_cli.expressions.fields import lookup
+    from mechkin_cli.expressions.quantity import Quantity
 
     quantity = expression.evaluate(lookup({"O1.theta": Quantity(values, ANGLE)}))  # type: ignore[attr-defined]
     assert isinstance(quantity.value, np.ndarray)

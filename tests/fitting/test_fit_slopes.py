@@ -8,11 +8,10 @@ import pytest
 from studies.studies import MECHANISMS
 
 import mechkin_cli as mk
-from mechkin_cli.fitting.measures import Measured
-from mechkin_cli.interface.fit_models import FitModels
-from mechkin_cli.interface.fit_request import request
-from mechkin_cli.interface.fit_slopes import FitSlopes
-from mechkin_cli.interface.fit_values import FitValues
+from mechkin_cli.fit.measure import FitModels, FitValues
+from mechkin_cli.fit.request import request
+from mechkin_cli.fit.search import Measured
+from mechkin_cli.fit.slopes import FitSlopes
 
 FOUR_BAR = mk.load(MECHANISMS / "planar_four_bar.yaml")
 BOUNDS = {"a": (30, 50), "b": (100, 140), "c": (80, 110), "d": (110, 150)}

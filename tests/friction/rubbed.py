@@ -11,7 +11,7 @@ from oracle.friction import Rubbed, rub, rubbings, without_friction
 from properties.cases import case
 
 import mechkin_cli as mk
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 KEYS = {
     "R": ("radius", "length?", "collar?"),

@@ -14,7 +14,7 @@ from properties.cases import case
 from properties.test_actuators import chosen
 
 import mechkin_cli as mk
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 JOINTS = ("A", "B", "C", "D")
 WORDS = ("force", "moment", "friction_force", "friction_moment", "normal_load", "friction_power")

@@ -11,7 +11,7 @@ from oracle.friction import NoFixedPoint
 from properties.cases import case
 
 import mechkin_cli as mk
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 NAMES = [f"loop {seed}" for seed in range(6 * TIMES)]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 ROUNDING = 1e-13
 

@@ -9,7 +9,7 @@ import pytest
 from friction.test_several_freedoms import HEAD, G, blocks, errors
 
 import mechkin_cli as mk
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 ANGLE = radians(25)
 SLOPE = [cos(ANGLE), sin(ANGLE), 0.0]

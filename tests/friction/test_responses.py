@@ -9,7 +9,7 @@ import pytest
 from friction.slider_crank import TEXT
 
 import mechkin_cli as mk
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 G = 9.80665
 

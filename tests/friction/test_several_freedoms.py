@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 import mechkin_cli as mk
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 Floats = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from friction.slider_crank import TEXT
 from oracle import document, to_text
 
 import mechkin_cli as mk
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 FOUR_BAR = """
 format: 1

@@ -37,7 +37,7 @@ def main() -> None:
         from fuzz.seeds import LONGEST, seeds, words
         from fuzz.verdict import verdict
 
-        import mechkin_cli.interface  # noqa: F401 - otherwise loaded later, without counters
+        import mechkin_cli.model.model  # noqa: F401 - otherwise loaded later, without counters
     if options.only:
         for path in options.only:
             print(f"{path}: {verdict(path.read_bytes())}")

@@ -13,7 +13,7 @@ from references import MECHANISMS
 
 from mechkin_cli.expressions.functions import FUNCTIONS
 from mechkin_cli.schema.json_schema import json_schema_text
-from mechkin_cli.units import UNITS
+from mechkin_cli.units.units import UNITS
 
 GOOD = MECHANISMS.parent / "tests" / "reading" / "good"
 LONGEST = 20_000

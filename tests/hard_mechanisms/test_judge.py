@@ -15,8 +15,7 @@ from mechkin_cli.benchmark.stress.numbers.double_double import DEGREE
 from mechkin_cli.benchmark.stress.quantity import Truth
 from mechkin_cli.benchmark.stress.solve import solve
 from mechkin_cli.benchmark.stress.tally import Tally, of_record
-from mechkin_cli.proof import Proof
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Proof, Status
 
 ROW = 7
 

@@ -9,7 +9,7 @@ import pytest
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.tape.double_doubles import exactly
+from mechkin_cli.tape.double_double import exactly
 
 RUBBING = """
 format: 1

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.errors import wide
-from mechkin_cli.expressions import Quantity
-from mechkin_cli.tape.double_doubles import DoubleDoubles, exactly
+from mechkin_cli.errors import rows as wide
+from mechkin_cli.expressions.quantity import Quantity
+from mechkin_cli.tape.double_double import DoubleDoubles, exactly
 
 TEXT = """
 format: 1

@@ -15,8 +15,7 @@ import mpmath as mp
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.tape.native import replay_precise
-from mechkin_cli.tape.operations import Operation
+from mechkin_cli.tape.tape import Operation, replay_precise
 
 Pair = tuple[float, float]
 UNIT = mp.mpf(2) ** -106

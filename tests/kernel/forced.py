@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.tape.native import compiled
-from mechkin_cli.tape.recorder import Recorder
-from mechkin_cli.tape.traced import Traced, register
+from mechkin_cli.tape.recorder import Recorder, Traced, register
+from mechkin_cli.tape.tape import compiled
 
 AUTOMATIC, EXPLICIT, IMPLICIT = range(3)
 

@@ -18,10 +18,10 @@ from kernel.hostile import INDICES, NUMBERS, WRONG
 from kernel.hostile_runs import KEPT, HostileRuns
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.response.respond import prepare
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.solver.batch import RESIDUAL_TESTS
-from mechkin_cli.solver.cells import SWITCHES
+from mechkin_cli.response.runs import prepare
+from mechkin_cli.session.cells import SWITCHES
+from mechkin_cli.session.kernel_run import RESIDUAL_TESTS
 
 PENDULUM = """format: 1
 name: pendulum
@@ -52,7 +52,7 @@ class Free:
     """A motion that runs: its session's plan, how it begins, its drives and its stops."""
 
     def __init__(self, name: str) -> None:
-        from mechkin_cli.analysis.response.moments import watched_stop
+        from mechkin_cli.response.runs import watched_stop
 
         problem = mk.loads(PENDULUM).problem
         response = problem.responses[name]

@@ -23,10 +23,10 @@ from references import MECHANISMS
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.solver.cells import SWITCHES
-from mechkin_cli.solver.closing_turns import turn_count
-from mechkin_cli.solver.stepping import step_limits
-from mechkin_cli.tape.operations import CONDITIONS, Operation
+from mechkin_cli.session.cells import SWITCHES
+from mechkin_cli.session.following import step_limits
+from mechkin_cli.session.inputs import turn_count
+from mechkin_cli.tape.tape import CONDITIONS, Operation
 
 HUGE = 2**59
 """Rows of a table without columns: it takes no memory, its length in bytes overflows."""

@@ -59,8 +59,8 @@ ADDITIONS = {
         ("// Two spheres with a leg between them: no pair of the file format.\n", KERNEL),
         ("WeldInPlane>;", "PinInTrack, "),
     ),
-    "mechkin_cli/mechanism/joint_table.py": ((")\n\nJOINT_TYPES = {entry.letter", TABLE),),
-    "mechkin_cli/schema/joints.py": (
+    "mechkin_cli/mechanism/pairs.py": ((")\n\nJOINT_TYPES = {entry.letter", TABLE),),
+    "mechkin_cli/schema/links_joints.py": (
         ("class WeldJoint(JointBase):\n", SCHEMA),
         ('"W")\n_PER_LINK', '"Rg", '),
         ('    | Annotated[WeldJoint, Tag("(W)")]', '    | Annotated[PinTrackJoint, Tag("(Rg)")]\n'),

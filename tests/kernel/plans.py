@@ -13,9 +13,9 @@ import numpy as np
 from kernel.pairs import ELEMENTARY, PITCH, O, Z, exponential, mp, vector
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.mechanism.joint_table import JOINT_TYPES, PLANE_JOINT_TYPES
-from mechkin_cli.solver.codes import Demand, OutputCode
-from mechkin_cli.solver.records import Output, hand_over_outputs
+from mechkin_cli.mechanism.pairs import JOINT_TYPES, PLANE_JOINT_TYPES
+from mechkin_cli.plan.codes import Demand, OutputCode
+from mechkin_cli.plan.records import Output, hand_over_outputs
 
 _CLOSING = {entry["letter"]: entry for entry in _kernel.joint_table()}
 TABLE = {letter: _CLOSING[kind.closing] for letter, kind in JOINT_TYPES.items() if kind.closing}

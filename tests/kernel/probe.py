@@ -23,8 +23,8 @@ from kernel.plans import (
     run,
 )
 
-from mechkin_cli.mechanism.joint_table import JOINT_TYPES
-from mechkin_cli.solver.codes import RowFlag
+from mechkin_cli.mechanism.pairs import JOINT_TYPES
+from mechkin_cli.plan.codes import RowFlag
 
 SEEDS = list(JOINT_TYPES)
 MOVED = 6

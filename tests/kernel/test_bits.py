@@ -22,13 +22,13 @@ from references import RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel, functions
-from mechkin_cli.solver.batch import Batch, run
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import OutputPlan
-from mechkin_cli.solver.follow import follow
-from mechkin_cli.solver.graph import build_graph
-from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.search import assemblies
+from mechkin_cli.plan.codes import Demand
+from mechkin_cli.plan.layout import Layout
+from mechkin_cli.plan.outputs import OutputPlan
+from mechkin_cli.search.search import assemblies
+from mechkin_cli.session.following import follow
+from mechkin_cli.session.kernel_run import Batch, run
+from mechkin_cli.structure.build import build_graph
 
 MOTION = Demand.VELOCITY | Demand.ACCELERATION | Demand.JERK
 EVERYTHING = MOTION | Demand.FORCES | Demand.CONDITION | Demand.POWER
@@ -208,7 +208,7 @@ def test_floating_point_state_of_the_caller(closed_at: str, control: int) -> Non
 SCRIPT = """
 import sys
 import mechkin_cli as mk
-from mechkin_cli.tables.csv_writer import csv_bytes
+from mechkin_cli.tables.csv import csv_bytes
 analysis = mk.load(sys.argv[1]).analyze(closed_at=[sys.argv[2]])
 for table in analysis.tables:
     sys.stdout.buffer.write(csv_bytes(table))

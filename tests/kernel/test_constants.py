@@ -10,14 +10,14 @@ import pytest
 from references import RCSR, SWEPT
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.assembly.probe import Probe
-from mechkin_cli.analysis.assembly.start import choose_start
-from mechkin_cli.solver.batch import Batch, assembly_size, run
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import OutputPlan
-from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.plan import plan_records
-from mechkin_cli.solver.records import flatten, hand_over
+from mechkin_cli.assembly.home import Probe
+from mechkin_cli.assembly.start import choose_start
+from mechkin_cli.plan.codes import Demand
+from mechkin_cli.plan.layout import Layout
+from mechkin_cli.plan.outputs import OutputPlan
+from mechkin_cli.plan.plan import plan_records
+from mechkin_cli.plan.records import flatten, hand_over
+from mechkin_cli.session.kernel_run import Batch, assembly_size, run
 
 EVERYTHING = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES | Demand.CONDITION | Demand.POWER
 FILES = SWEPT

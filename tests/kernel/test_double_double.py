@@ -10,9 +10,8 @@ import pytest
 from kernel.double_double import DIGITS, TRUE, Arguments, compute, exact, pair, worst
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.kernel.width import widths
-from mechkin_cli.tape.native import replay_precise
-from mechkin_cli.tape.operations import Operation
+from mechkin_cli.kernel.functions import widths
+from mechkin_cli.tape.tape import Operation, replay_precise
 
 
 @pytest.mark.parametrize("operation", TRUE)

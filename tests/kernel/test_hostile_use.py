@@ -21,10 +21,10 @@ from references import RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.solver.codes import Demand, LoadCode, OutputCode
-from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.records import Output, hand_over_outputs
-from mechkin_cli.solver.stepping import step_limits
+from mechkin_cli.plan.codes import Demand, LoadCode, OutputCode
+from mechkin_cli.plan.layout import Layout
+from mechkin_cli.plan.records import Output, hand_over_outputs
+from mechkin_cli.session.following import step_limits
 
 TRIALS = 2000
 RUNS = 400

@@ -11,19 +11,18 @@ import pytest
 from kernel.pairs import COSINE, ELEMENTARY, PAIRS, PITCH, SLOTTED, Matrix, derivative, mp, vector
 from kernel.plans import PLANE_TABLE, TABLE, TREE_LETTERS
 
-from mechkin_cli.building.halves import Halves
-from mechkin_cli.building.joints import parts_of
+from mechkin_cli.building.joints import Halves, parts_of
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.mechanism import elementary
-from mechkin_cli.mechanism.frames import Frame
-from mechkin_cli.mechanism.joint_table import (
+from mechkin_cli.mechanism import pair_type as elementary
+from mechkin_cli.mechanism.model import Joint
+from mechkin_cli.mechanism.pair_type import FIRST, SECOND
+from mechkin_cli.mechanism.pairs import (
     CLOSING_CONDITIONS,
     JOINT_TYPES,
     PLANE_JOINT_TYPES,
     dimension_of,
 )
-from mechkin_cli.mechanism.joint_type import FIRST, SECOND
-from mechkin_cli.mechanism.model import Joint
+from mechkin_cli.mechanism.vectors import Frame
 
 LETTERS = list(JOINT_TYPES)
 

@@ -8,17 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from mpmath import mp, mpf
 
 import mechkin_cli as mk
-from mechkin_cli.kernel.width import width
-from mechkin_cli.mechanism.load_laws import law_value
-from mechkin_cli.solver.batch import Batch
-from mechkin_cli.solver.batch import run as run_kernel
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.varying_loads import kernel_columns
+from mechkin_cli.kernel.functions import width
+from mechkin_cli.mechanism.problem import law_value
+from mechkin_cli.plan.codes import Demand
+from mechkin_cli.plan.plan import kernel_columns
+from mechkin_cli.session.kernel_run import Batch, run as run_kernel
 
 CRANK, ROD, OFFSET = 40.0, 130.0, 15.0
 TEXT = f"""\
@@ -228,8 +226,8 @@ def test_a_single_position_has_the_loads_of_its_row() -> None:
 
 def test_kinks_are_where_a_law_chooses() -> None:
     """Magnitudes, larger and smaller of two and wraps are told; smooth laws have none."""
-    from mechkin_cli.solver.quantity_program import load_program
-    from mechkin_cli.tape.operations import Operation
+    from mechkin_cli.plan.programs import load_program
+    from mechkin_cli.tape.tape import Operation
 
     def kinks(term: str) -> list[str]:
         layout = model_of(torque(term)).session.layout

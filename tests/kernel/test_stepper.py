@@ -10,8 +10,8 @@ from prepared import Setup, prepared
 
 import mechkin_cli as mk
 from mechkin_cli.kernel._kernel import Node, Stepper
-from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.stepping import step_limits
+from mechkin_cli.plan.layout import Layout
+from mechkin_cli.session.following import step_limits
 
 MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 

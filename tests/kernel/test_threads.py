@@ -16,11 +16,11 @@ from references import MECHANISMS
 import mechkin_cli as mk
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.kernel import _kernel, width
-from mechkin_cli.solver.batch import Batch, run
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.demand import OutputPlan
-from mechkin_cli.solver.layout import Layout
+from mechkin_cli.kernel import _kernel, functions as width
+from mechkin_cli.plan.codes import Demand
+from mechkin_cli.plan.layout import Layout
+from mechkin_cli.plan.outputs import OutputPlan
+from mechkin_cli.session.kernel_run import Batch, run
 
 MOTION = Demand.VELOCITY | Demand.ACCELERATION | Demand.JERK
 EVERYTHING = MOTION | Demand.FORCES | Demand.CONDITION | Demand.POWER

@@ -17,9 +17,8 @@ from cli.files import beyond_dead_centre
 from references import MECHANISMS
 
 import mechkin_cli as mk
-from mechkin_cli.solver import follow as following
-from mechkin_cli.solver import session
-from mechkin_cli.solver.follow import Followed, follow
+from mechkin_cli.session import following, session
+from mechkin_cli.session.following import Followed, follow
 
 PROGRAM = """
 import sys

@@ -8,7 +8,7 @@ import pytest
 from mechanisms.runs import LECTURES, NAMES, closings, model, motions, run
 from references import MECHANISMS
 
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 NOTHING = 1e-14  # in the file's units: links that only slide turn by roundings, 1.3e-14 degrees
 CUTS = [(name, cut) for name in NAMES for cut in closings(name)]

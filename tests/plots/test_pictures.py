@@ -12,9 +12,8 @@ import yaml
 from references import RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.plots.curves import Curve
+from mechkin_cli.plots.curves import PlotCurve, picture
 from mechkin_cli.plots.figure import drawn, image
-from mechkin_cli.plots.picture import picture
 
 FOUR_BAR = """\
 format: 1
@@ -89,7 +88,7 @@ def test_named_expressions_are_drawn_by_their_names():
 
 def test_a_vector_of_a_plane_has_two_components(analysis):
     places = analysis["tip.position"][:, :2]
-    found = picture(analysis, "tip", [Curve("tip.position", "mm", places)])
+    found = picture(analysis, "tip", [PlotCurve("tip.position", "mm", places)])
     np.testing.assert_array_equal(found.x[0].values, places[:, 0])
     np.testing.assert_array_equal(found.panels[0].curves[0].values, places[:, 1])
 

@@ -9,9 +9,9 @@ from typing import Any
 from mpmath import MPContext
 
 import mechkin_cli as mk
-from mechkin_cli.interface.model import Model
-from mechkin_cli.tape.exact_recorder import ExactTape
-from mechkin_cli.tape.operations import ARITY, Operation
+from mechkin_cli.model.model import Model
+from mechkin_cli.tape.exact import ExactTape
+from mechkin_cli.tape.tape import ARITY, Operation
 
 mp = MPContext()
 mp.dps = 80

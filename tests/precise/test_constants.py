@@ -14,11 +14,11 @@ from oracle.reader import read
 from precise.tapes import MECHANISMS, STEMS, model, mp, true_outputs
 
 import mechkin_cli as mk
-from mechkin_cli.interface.model import Model
-from mechkin_cli.solver.plan import plan_records
-from mechkin_cli.solver.precise import Precise
-from mechkin_cli.solver.records import flatten
-from mechkin_cli.tape.decimal_replay import double_doubles, enclosures
+from mechkin_cli.model.model import Model
+from mechkin_cli.plan.plan import plan_records
+from mechkin_cli.plan.records import flatten
+from mechkin_cli.session.double_double import Precise
+from mechkin_cli.tape.decimals import double_doubles, enclosures
 
 TWO_PARTS = mp.mpf(2) ** -104
 

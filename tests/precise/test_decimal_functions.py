@@ -11,10 +11,10 @@ import pytest
 from precise.tapes import mp, true_outputs
 
 import mechkin_cli as mk
-from mechkin_cli.tape import decimal_functions as functions
-from mechkin_cli.tape.decimal_replay import DIGITS, NotEnclosed, double_doubles, replay
-from mechkin_cli.tape.exact_recorder import ExactRecorder
-from mechkin_cli.tape.operations import ARITY, CONDITIONS, Operation
+from mechkin_cli.tape import decimals as functions
+from mechkin_cli.tape.decimals import DIGITS, NotEnclosed, double_doubles, replay
+from mechkin_cli.tape.exact import ExactRecorder
+from mechkin_cli.tape.tape import ARITY, CONDITIONS, Operation
 
 RANGES: dict[str, tuple[float, float]] = {
     "sin": (-300.0, 300.0),

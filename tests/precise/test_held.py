@@ -9,10 +9,10 @@ from precise.tapes import mp
 from solver.test_idle_chains import SPHERE_PLANE_SLEEVE, TILTED
 
 import mechkin_cli as mk
-from mechkin_cli.interface.model import Model
-from mechkin_cli.solver.plan import plan_records
-from mechkin_cli.solver.records import flatten
-from mechkin_cli.tape.decimal_replay import double_doubles
+from mechkin_cli.model.model import Model
+from mechkin_cli.plan.plan import plan_records
+from mechkin_cli.plan.records import flatten
+from mechkin_cli.tape.decimals import double_doubles
 
 CONCENTRIC = """
 format: 1

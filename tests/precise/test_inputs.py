@@ -11,9 +11,9 @@ import pytest
 from precise.tapes import STEMS, model, mp
 
 import mechkin_cli as mk
-from mechkin_cli.solver.precise_inputs import PreciseInputs, enclosed_inputs, precise_inputs
-from mechkin_cli.solver.proofs import input_rounding
-from mechkin_cli.tape.exact_rows import ExactRows
+from mechkin_cli.proofs.boxes import input_rounding
+from mechkin_cli.session.double_double import PreciseInputs, enclosed_inputs, precise_inputs
+from mechkin_cli.tape.exact import ExactRows
 
 DEGREE = mp.pi / 180
 ORDERS = ("values", "rates", "accelerations", "jerks")

@@ -15,9 +15,8 @@ from oracle_checks.test_rcsr import COORDINATES
 from precise.raised.tables import TABLES, path_of, raise_row, rows_of
 from precise.test_references import BY_CONDITION, CLOSE, condition_of, numbers
 
-from mechkin_cli.analysis.errors import Repeated
-from mechkin_cli.analysis.errors.wide import wide_run
-from mechkin_cli.analysis.sweep import Result
+from mechkin_cli.errors.rows import Repeated, wide_run
+from mechkin_cli.sweep.result import Result
 
 WORDS = {"": "position", "v_": "velocity", "a_": "acceleration"}
 

@@ -16,12 +16,11 @@ from properties.cases import case
 from properties.expected import expected
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.errors import Repeated
-from mechkin_cli.analysis.errors.wide import KernelRows, wide_run
-from mechkin_cli.analysis.sweep import Result
-from mechkin_cli.expressions import parse
-from mechkin_cli.tables.true_columns import true_values
-from mechkin_cli.units import ANGLE
+from mechkin_cli.errors.cells import true_values
+from mechkin_cli.errors.rows import KernelRows, Repeated, wide_run
+from mechkin_cli.expressions.expression import parse
+from mechkin_cli.sweep.result import Result
+from mechkin_cli.units.dimension import ANGLE
 
 RANDOM = ["loop 0", "loop 4", "structure 1"]
 CLOSE = 1e-28

@@ -17,13 +17,13 @@ from properties.expected import expected
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.sweep import Result
-from mechkin_cli.kernel.width import widths
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
-from mechkin_cli.solver.codes import Demand, RowFlag
-from mechkin_cli.solver.demand import demand_of
-from mechkin_cli.solver.precise_run import PreciseBatch, run_precise
-from mechkin_cli.units import ANGLE
+from mechkin_cli.kernel.functions import widths
+from mechkin_cli.mechanism.derived import DERIVED_KINDS
+from mechkin_cli.plan.codes import Demand, RowFlag
+from mechkin_cli.plan.outputs import demand_of
+from mechkin_cli.session.double_double import PreciseBatch, run_precise
+from mechkin_cli.sweep.result import Result
+from mechkin_cli.units.dimension import ANGLE
 
 CLOSE = 1e-28
 MOTION = Demand.VELOCITY | Demand.ACCELERATION

@@ -11,12 +11,12 @@ import pytest
 from precise.tapes import model, mp, true_outputs
 
 import mechkin_cli as mk
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.plan import plan_records
-from mechkin_cli.solver.precise import Precise
-from mechkin_cli.solver.records import flatten
-from mechkin_cli.tape.decimal_replay import double_doubles
-from mechkin_cli.tape.traced import TraceLost
+from mechkin_cli.plan.codes import Demand
+from mechkin_cli.plan.plan import plan_records
+from mechkin_cli.plan.records import flatten
+from mechkin_cli.session.double_double import Precise
+from mechkin_cli.tape.decimals import double_doubles
+from mechkin_cli.tape.recorder import TraceLost
 
 LOADED = """
 format: 1

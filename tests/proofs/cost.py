@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.proof import certify
 from mechkin_cli.benchmark import sevenr, train
-from mechkin_cli.solver.enclosures import Given, Positions, enclose
-from mechkin_cli.solver.proofs import Enclosed, Nodes, prove_boxes
+from mechkin_cli.proofs.boxes import Enclosed, Nodes, prove_boxes
+from mechkin_cli.proofs.enclose import Given, Positions, enclose
+from mechkin_cli.proofs.rows import certify
 
 REPETITIONS = 30
 RCSR = Path(__file__).parents[2] / "mechanisms" / "rcsr.yaml"

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mechkin_cli.analysis.sweep import Result
-from mechkin_cli.solver.proofs import Boxes, Enclosed, Nodes, prove_boxes
+from mechkin_cli.proofs.boxes import Boxes, Enclosed, Nodes, prove_boxes
+from mechkin_cli.sweep.result import Result
 
 
 class Moved(NamedTuple):

@@ -9,16 +9,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanisms.runs import NAMES as RUNS
-from mechanisms.runs import closings, run
+from mechanisms.runs import NAMES as RUNS, closings, run
 from oracle import document, mp, read, solve, to_text
 from proofs.perturbed import moved
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.proof import Certificate as Found
-from mechkin_cli.analysis.proof import certify
-from mechkin_cli.interface.certificate import Certificate
+from mechkin_cli.proofs.certificate import Certificate
+from mechkin_cli.proofs.rows import SweepProofs as Found, certify
 
 DEGREE = mp.pi / 180
 COHERENT = {"length": "in", "angle": "deg", "mass": "lbm", "force": "lbm*in/s^2"}

@@ -13,6 +13,7 @@ from oracle import (
     document,
     fold,
     in_other_units,
+    moved as turned_about,
     mp,
     read,
     renamed,
@@ -20,19 +21,17 @@ from oracle import (
     rotation_matrix,
     to_text,
 )
-from oracle import moved as turned_about
 from proofs.test_boxes import COHERENT, DEGREE
 from random_families.dead_centres.case import linkage, plane_four_bar
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.proof.dead_centre import prove_dead_centre
-from mechkin_cli.analysis.proof.fold import are_one, prove_fold
-from mechkin_cli.interface.dead_centre import DeadCentre
-from mechkin_cli.solver.branch_limit import EndOfRows
-from mechkin_cli.solver.codes import PassageEnd
-from mechkin_cli.solver.follow import Ending
-from mechkin_cli.solver.proofs import Enclosed, Nodes, prove_boxes
+from mechkin_cli.plan.codes import PassageEnd
+from mechkin_cli.proofs.boxes import Enclosed, Nodes, prove_boxes
+from mechkin_cli.proofs.certificate import SweepDeadCentre
+from mechkin_cli.proofs.dead_centre import prove_dead_centre
+from mechkin_cli.proofs.fold import are_one, prove_fold
+from mechkin_cli.session.following import Ending, EndOfRows
 
 SWEEP = "from: 150, to: 202, step: 2"
 
@@ -41,7 +40,7 @@ def rcsr(rows: str = "from: 150, to: 210, step: 2") -> str:
     return RCSR.read_text(encoding="utf-8").replace(SWEEP, rows)
 
 
-def only(text: str) -> DeadCentre:
+def only(text: str) -> SweepDeadCentre:
     (found,) = mk.loads(text).certify().dead_centres
     return found
 
@@ -175,7 +174,7 @@ def test_written_otherwise(otherwise: str) -> None:
     assert max(low, there[0]) <= min(high, there[1]) + 1e-13
 
 
-def ends(text: str) -> list[DeadCentre]:
+def ends(text: str) -> list[SweepDeadCentre]:
     """The dead centres at which the branches of all assemblies end."""
     model = mk.loads(text)
     proofs = [model.certify(mode=mode.name) for mode in model.modes().modes]

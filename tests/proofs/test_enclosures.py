@@ -12,8 +12,8 @@ from proofs.test_boxes import DEGREE, ROWS, certificate, mechanism
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.proof import enclosures
-from mechkin_cli.interface.not_enclosed import not_enclosed
+from mechkin_cli.proofs import enclose as enclosures
+from mechkin_cli.proofs.certificate import not_enclosed
 
 DOUBLES = 1e-13
 """Of the largest of a quantity: what doubles leave, and what bounds in doubles are apart."""

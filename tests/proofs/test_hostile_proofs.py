@@ -9,8 +9,8 @@ import pytest
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.proof import certify
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.proofs.rows import certify
 
 
 @pytest.fixture

@@ -10,8 +10,8 @@ import numpy as np
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.proof.modes import prove_modes
-from mechkin_cli.proof import Proof
+from mechkin_cli.proofs.modes import prove_modes
+from mechkin_cli.verdict import Proof
 
 
 def test_modes_exist_and_differ() -> None:

@@ -10,7 +10,7 @@ from oracle import mp
 
 import mechkin_cli as mk
 from mechkin_cli.benchmark import train
-from mechkin_cli.interface.certificate import Certificate
+from mechkin_cli.proofs.certificate import Certificate
 
 LOOPS = 40
 MOTION = "{from: 0 deg, to: 50 deg, step: 1 deg}"

@@ -11,9 +11,8 @@ from oracle import document, in_other_units, moved, renamed, reordered, rotation
 from references import MECHANISMS
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.proof import Certificate as Found
-from mechkin_cli.analysis.proof import certify
-from mechkin_cli.analysis.sweep import Result
+from mechkin_cli.proofs.rows import SweepProofs as Found, certify
+from mechkin_cli.sweep.result import Result
 
 SWEPT = (
     "rcsr",

@@ -20,8 +20,8 @@ import numpy as np
 from oracle.document import Document, to_text
 
 import mechkin_cli as mk
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
-from mechkin_cli.units import ANGLE
+from mechkin_cli.mechanism.derived import DERIVED_KINDS
+from mechkin_cli.units.dimension import ANGLE
 
 EPS = 2.0**-52
 Values = dict[str, np.ndarray]

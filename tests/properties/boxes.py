@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.solver.enclosures import Given, Positions
+from mechkin_cli.proofs.enclose import Given, Positions
 
 
 def boxes_of(session: Any, given: Given, states: np.ndarray) -> Positions:

@@ -13,8 +13,8 @@ from properties.expected import expected
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
-from mechkin_cli.solver.enclosures import Enclosure, Given, enclose
+from mechkin_cli.mechanism.derived import DERIVED_KINDS
+from mechkin_cli.proofs.enclose import Enclosure, Given, enclose
 
 DIGITS = mp.mpf(10) ** -40
 """What the oracle may be off."""

@@ -12,7 +12,7 @@ from oracle.document import Document, to_text
 from properties.cases import case
 from properties.test_enclosures import enclosures
 
-from mechkin_cli.solver.enclosures import Enclosure
+from mechkin_cli.proofs.enclose import Enclosure
 
 SOME = ("loop 1", "loop 6", "structure 0")
 ALIKE = 1e4

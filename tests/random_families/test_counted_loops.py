@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.solver.graph import UnsolvableGraph
-from mechkin_cli.solver.session import Session
+from mechkin_cli.session.session import Session
+from mechkin_cli.structure.graph import UnsolvableGraph
 
 CASES = 12 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 NEAR = 1e-3

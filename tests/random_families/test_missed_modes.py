@@ -16,12 +16,11 @@ from references import MECHANISMS
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
-from mechkin_cli.solver import random_starts
-from mechkin_cli.solver.block_search import PlaceSearch, Request, search_round
-from mechkin_cli.solver.clusters import Clusters, same_poses
-from mechkin_cli.solver.random_starts import RandomStarts
-from mechkin_cli.solver.search import assemblies
-from mechkin_cli.solver.session import Session
+from mechkin_cli.search.clusters import Clusters, same_poses
+from mechkin_cli.search.search import BlockSearch, PlaceSearch, assemblies, search_round
+from mechkin_cli.session.session import Session
+from mechkin_cli.structure import random_starts
+from mechkin_cli.structure.random_starts import RandomStarts
 
 SEARCHES = 20 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 LOOKS, ROUND, REFERENCE = 16, 128, 1 << 15
@@ -42,7 +41,7 @@ class Searched:
         self.layout = session.layout
         self.inputs = session.inputs.values[:, 0]
         middle = np.zeros(session.layout.states)
-        self.request = Request(
+        self.request = BlockSearch(
             session.layout, session.plan, self.inputs, 1, middle, None, thorough=True
         )
         self.base = np.zeros((session.layout.states, 1))

@@ -18,8 +18,7 @@ import pytest
 from mpmath import mp, mpf
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.ranges.circuits import Circuit, joined, undecided
-from mechkin_cli.solver.circuit import End, Passage, Walker
+from mechkin_cli.modes.circuits import Circuit, End, Passage, Walker, joined, undecided
 
 COUNT = 60 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 DEAD_CENTRE = 1e-9

@@ -29,11 +29,10 @@ from random_families.unit_systems import (
 )
 
 import mechkin_cli as mk
-from mechkin_cli.building.columns import quantities_of
-from mechkin_cli.runs import SWEEP
-from mechkin_cli.schema.base import Section, fields_of
+from mechkin_cli.building.tables import quantities_of
+from mechkin_cli.schema.base import DimensionRule, Section, fields_of
 from mechkin_cli.schema.file import MechanismFile
-from mechkin_cli.schema.rules import Dimension
+from mechkin_cli.verdict import SWEEP
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 SI = {
@@ -211,7 +210,7 @@ def dimensional_fields() -> set[tuple[str, str]]:
         section = waiting.pop()
         for key, field in fields_of(section).items():
             for part in parts(field.annotation):
-                if isinstance(part, Dimension) and part.name != "dimensionless number":
+                if isinstance(part, DimensionRule) and part.name != "dimensionless number":
                     found.add((declaring(section, field.name), key))
                 elif isinstance(part, type) and issubclass(part, Section) and part not in seen:
                     seen.add(part)

@@ -14,10 +14,11 @@ from random_families.four_bars import cases
 from random_families.test_many_turns import grashof
 
 from mechkin_cli import loads
-from mechkin_cli.analysis.sweep.sweep import analyze
-from mechkin_cli.solver.session import Session
-from mechkin_cli.solver.whole_turns import without_turns
-from mechkin_cli.units.table import PI, UNITS
+from mechkin_cli.exact import PI
+from mechkin_cli.session.inputs import without_turns
+from mechkin_cli.session.session import Session
+from mechkin_cli.sweep.sweep import analyze
+from mechkin_cli.units.units import UNITS
 
 MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 DEGREE = mpmath.mpf(180) / mpmath.pi

@@ -11,7 +11,7 @@ from oracle.document import document, to_text
 from references import RCSR, exact
 
 import mechkin_cli as mk
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 DEGREE = mp.pi / 180
 NEAR = {"O2.theta": "theta2", "O2.s": "s2", "O4.theta": "theta4"}

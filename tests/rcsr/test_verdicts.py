@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 
 def test_every_row_is_solved(analysis):

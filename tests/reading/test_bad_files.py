@@ -3,8 +3,7 @@
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from reading.bad_files import BAD_FILES, SOUND, BadFile
 
 from mechkin_cli.building.source import open_text

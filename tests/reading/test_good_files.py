@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from mechkin_cli.building.source import open_file
-from mechkin_cli.schema.joints import JOINT_TYPES, HelicalJoint
+from mechkin_cli.schema.links_joints import JOINT_TYPES, HelicalJoint
 from mechkin_cli.schema.motion import HeldInput, SweptInput
 
 GOOD = Path(__file__).parent / "good"

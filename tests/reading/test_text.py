@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 from mechkin_cli.diagnostics import InvalidFile, UsageError
-from mechkin_cli.reading.limits import MOST_BYTES
-from mechkin_cli.reading.text import check_characters, read_text
+from mechkin_cli.reading.text import MOST_BYTES, check_characters, read_text
 
 
 def written(folder: Path, content: bytes) -> Path:

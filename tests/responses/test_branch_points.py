@@ -12,7 +12,7 @@ from responses.parallel_cranks import GRAVITY, CompoundPendulum, parallel_cranks
 from scipy.integrate import solve_ivp
 
 import mechkin_cli as mk
-from mechkin_cli.kernel.width import widths
+from mechkin_cli.kernel.functions import widths
 
 
 def miss(found: Any, pendulum: CompoundPendulum) -> float:

@@ -11,7 +11,7 @@ from references import RCSR
 from responses.motions import off, respond
 
 import mechkin_cli as mk
-from mechkin_cli.kernel.width import widths
+from mechkin_cli.kernel.functions import widths
 
 SAME = 1e-9
 NAMES = ("O1.theta", "O2.theta", "O2.s", "O4.theta")

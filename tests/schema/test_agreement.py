@@ -10,8 +10,7 @@ from building.bad_parts import BAD_PARTS
 from building.bad_responses import BAD_RESPONSES
 from building.bad_uses import BAD_USES
 from building.sound import SOUND
-from reading.bad_files import BAD_FILES
-from reading.bad_files import SOUND as SMALL
+from reading.bad_files import BAD_FILES, SOUND as SMALL
 from references import MECHANISMS
 from schema.test_json_schema import accepts
 

@@ -10,8 +10,14 @@ import pytest
 import yaml
 from reading.bad_files import BAD_FILES, BadFile
 
-from mechkin_cli.schema.examples import BY_KEY, BY_SECTION
-from mechkin_cli.schema.json_schema import SCHEMAS, has_example, json_schema, json_schema_text
+from mechkin_cli.schema.json_schema import (
+    BY_KEY,
+    BY_SECTION,
+    SCHEMAS,
+    has_example,
+    json_schema,
+    json_schema_text,
+)
 
 TESTS = Path(__file__).parent.parent
 # to editors, which are written in JavaScript, $ is the end; to Python also a line break before it

@@ -16,7 +16,7 @@ from oracle import read
 from sensitivities.exact.comparison import Compared, compare
 from sensitivities.exact.files import NAMES, file, some_rows, spatial, with_parameters
 
-from mechkin_cli.interface.sensitivities import Sensitivities
+from mechkin_cli.sensitivities.first_order import Sensitivities
 
 RIGHT = 1e-10
 """In parts of the column's largest."""

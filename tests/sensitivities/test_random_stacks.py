@@ -92,7 +92,7 @@ def test_samples_scatter_as_slopes_say(seed: int) -> None:
 
 def test_a_tenth_too_much_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """A scatter that is wrong by a fifth fails the test above."""
-    from mechkin_cli.interface.stack import Tolerances
+    from mechkin_cli.sensitivities.tolerance_stack import Tolerances
 
     own = Tolerances.scatter
     monkeypatch.setattr(Tolerances, "scatter", lambda t, quantity: 1.2 * own(t, quantity))

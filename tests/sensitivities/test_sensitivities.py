@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.units import LENGTH
+from mechkin_cli.units.dimension import LENGTH
 
 MECHANISMS = sorted(Path("mechanisms").glob("*.yaml"))
 RIGHT = 1e-10

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.solver.clusters import pose_keys, same_poses
-from mechkin_cli.solver.random_starts import RandomStarts
-from mechkin_cli.solver.start_box import Within, randomise, unknown_states
+from mechkin_cli.search.clusters import pose_keys, same_poses
+from mechkin_cli.search.starts import Within, randomise, unknown_states
+from mechkin_cli.structure.random_starts import RandomStarts
 
 FILES = ("rcsr", "rchch", "stewart", "rprhrrr", "five_link_suspension")
 

@@ -11,19 +11,18 @@ import pytest
 from prepared import Setup, prepared
 
 import mechkin_cli as mk
-from mechkin_cli.solver.batch import run
-from mechkin_cli.solver.closing_turns import (
+from mechkin_cli.plan.codes import OutputCode, TrackEnd
+from mechkin_cli.plan.layout import Layout, home_state
+from mechkin_cli.plan.records import Output, hand_over_outputs
+from mechkin_cli.session.following import Followed, follow
+from mechkin_cli.session.inputs import (
     ORIENTATION,
     TurnSlots,
     continuous_angle,
     continuous_signs,
     drawn_quaternion,
 )
-from mechkin_cli.solver.codes import OutputCode
-from mechkin_cli.solver.follow import Followed, TrackEnd, follow
-from mechkin_cli.solver.home import home_state
-from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.records import Output, hand_over_outputs
+from mechkin_cli.session.kernel_run import run
 
 MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 

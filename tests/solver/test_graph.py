@@ -26,7 +26,7 @@ from solver.networks import (
 )
 
 import mechkin_cli as mk
-from mechkin_cli.solver.graph import build_graph
+from mechkin_cli.structure.build import build_graph
 
 
 def blocks(network: Network) -> list[tuple[int, int]]:

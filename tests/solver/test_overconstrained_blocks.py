@@ -17,11 +17,10 @@ import pytest
 from references import SWEPT
 
 import mechkin_cli as mk
-from mechkin_cli.mechanism.frames import GROUND
-from mechkin_cli.solver.assembled_places import is_drawn_assembled
-from mechkin_cli.solver.graph.network import connections_of
-from mechkin_cli.solver.graph.rates import Rates, unit_of
-from mechkin_cli.solver.reduction import reduce
+from mechkin_cli.mechanism.vectors import GROUND
+from mechkin_cli.session.exchanged import is_drawn_assembled
+from mechkin_cli.structure.network import connections_of, reduce
+from mechkin_cli.structure.rank import Rates, unit_of
 
 KINDS = ("RRR", "RSR", "SSR", "CSR", "SCR", "SRR")
 UNKNOWNS = {"RRR": 2, "RSR": 2, "SSR": 1, "CSR": 3, "SCR": 3, "SRR": 2}

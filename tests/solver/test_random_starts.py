@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from mechkin_cli.solver import random_starts
-from mechkin_cli.solver.random_starts import RandomStarts
+from mechkin_cli.structure import random_starts
+from mechkin_cli.structure.random_starts import RandomStarts
 
 
 def split_mix(seed, count):

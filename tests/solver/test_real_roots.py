@@ -6,7 +6,7 @@ import random
 
 import numpy as np
 
-from mechkin_cli.solver.real_roots import Trigonometric, count_polynomial_roots, count_roots
+from mechkin_cli.search.loop_equation import Trigonometric, count_polynomial_roots, count_roots
 
 
 def companion(g: Trigonometric) -> np.ndarray:

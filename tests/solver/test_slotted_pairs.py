@@ -15,7 +15,7 @@ from solver.slotted_pairs import CASES
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.mechanism.derived_quantities import DERIVED_KINDS
+from mechkin_cli.mechanism.derived import DERIVED_KINDS
 
 LIMIT = 1e-13
 """Errors in parts of the largest value of a family; the closures have conditions up to 23."""

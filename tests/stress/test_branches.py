@@ -12,7 +12,7 @@ import pytest
 from oracle.document import document, to_text
 
 import mechkin_cli as mk
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 LOOPS = Path(__file__).parent / "loops"
 DEAD_CENTRES = {

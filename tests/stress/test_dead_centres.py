@@ -20,7 +20,7 @@ from oracle import fold, mp, newton_euler, read, solve
 from stress.cases import DEAD_CENTRES, DISTANCES, towards
 
 import mechkin_cli as mk
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 ENDS = tuple(DEAD_CENTRES)
 DEGREE = mp.pi / 180

@@ -2,7 +2,7 @@
 
 import os
 
-from mechkin_cli.studies.executing import Task
+from mechkin_cli.studies.workers import Task
 
 
 def poisoned(task: Task, victims: tuple[int, ...]) -> list[int]:

@@ -39,7 +39,7 @@ def test_a_local_cluster_finds_the_same() -> None:
 
 
 def test_nobody_answers(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mechkin_cli.studies.cluster.SECONDS", 1)
+    monkeypatch.setattr("mechkin_cli.studies.workers.SECONDS", 1)
     model = mk.load(MECHANISMS / "rcsr.yaml")
     with pytest.raises(UsageError, match=r"no scheduler answers at tcp://127.0.0.1:9: .*; start"):
         model.study(RCSR, scheduler="tcp://127.0.0.1:9")
@@ -84,7 +84,7 @@ def machines(folder: Path) -> Iterator[Machines]:
 
 def command(study: Path, out: Path, *more: str) -> list[str]:
     code = (
-        "import sys; from mechkin_cli.interface import studies; studies.MOST_IN_PIECE = 20; "
+        "import sys; from mechkin_cli.model.model import studies; studies.MOST_IN_PIECE = 20; "
         "from mechkin_cli.cli.main import main; sys.exit(main())"
     )
     words = ["study", str(study), "--out", str(out), "--quiet", *more]

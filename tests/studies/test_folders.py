@@ -16,7 +16,7 @@ from studies.studies import MECHANISMS, RCSR, study_text
 
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.interface import studies as running
+from mechkin_cli.studies import study as running
 
 KILLS = int(os.environ.get("MECHKIN_RANDOM", "1")) * 3
 
@@ -214,7 +214,7 @@ def test_a_full_disk_keeps_what_was_written(
 
 def command(study: Path, out: Path, *more: str) -> list[str]:
     code = (
-        "import sys; from mechkin_cli.interface import studies; studies.MOST_IN_PIECE = 4; "
+        "import sys; from mechkin_cli.model.model import studies; studies.MOST_IN_PIECE = 4; "
         "from mechkin_cli.cli.main import main; sys.exit(main())"
     )
     words = ["study", str(study), "--out", str(out), "--quiet", *more]
@@ -250,7 +250,7 @@ def test_killed_at_any_moment_it_goes_on(tmp_path: Path, processes: str) -> None
 
 
 def test_two_cannot_write_to_one_folder(model: mk.Model, tmp_path: Path) -> None:
-    from mechkin_cli.tables.claim import Claim
+    from mechkin_cli.tables.files import Claim
 
     claim = Claim(tmp_path / "out")
     try:

@@ -118,7 +118,7 @@ def test_a_folder_has_a_name(words: tuple[str, ...]) -> None:
 @pytest.mark.parametrize("address", ["", "here", "host:", "tcp://host", "tcp://a b:1", "a:1:2"])
 def test_what_is_no_address_is_told_at_once(address: str) -> None:
     pytest.importorskip("distributed")
-    from mechkin_cli.studies.cluster import cluster
+    from mechkin_cli.studies.workers import cluster
 
     begin = time.perf_counter()
     with pytest.raises(UsageError, match=r"expected an address such as tcp://host:8786"):

@@ -7,7 +7,7 @@ import pytest
 from studies.studies import MECHANISMS, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.status import Status
+from mechkin_cli.verdict import Status
 
 
 @pytest.fixture(scope="module")

@@ -5,11 +5,11 @@ import itertools
 import numpy as np
 import pytest
 
-from mechkin_cli.studies.draws import draws
-from mechkin_cli.studies.variation import Samples, Variation
+from mechkin_cli.studies.plan import Samples, StudyVariation
+from mechkin_cli.variants.samples import draws
 
 
-def lines(variation: Variation, begin: int, end: int) -> list[tuple[float, ...]]:
+def lines(variation: StudyVariation, begin: int, end: int) -> list[tuple[float, ...]]:
     found = variation.values(begin, end)
     return list(zip(*(found[name].tolist() for name in variation.names), strict=True))
 
@@ -23,7 +23,7 @@ def test_lists_tables_and_samples_are_crossed(seed: int) -> None:
     drawn = {f"d{k}": (lambda u: u) for k in range((seed + 1) % 3)}
     count = int(generator.integers(1, 7))
     samples = Samples(count, draws("random", count, len(drawn), seed), drawn) if drawn else None
-    variation = Variation(lists, False, table, samples)
+    variation = StudyVariation(lists, False, table, samples)
     points = draws("random", count, len(drawn), seed).stretch(0, count) if drawn else [()]
     expected = [
         (*listed, *row, *point)
@@ -39,5 +39,5 @@ def test_lists_tables_and_samples_are_crossed(seed: int) -> None:
 
 def test_lists_that_go_together() -> None:
     lists = {"a": np.array([1.0, 2.0, 3.0]), "b": np.array([4.0, 5.0, 6.0])}
-    variation = Variation(lists, True, {"c": np.array([7.0, 8.0])})
+    variation = StudyVariation(lists, True, {"c": np.array([7.0, 8.0])})
     assert lines(variation, 0, 6) == [(a, a + 3, c) for a in (1.0, 2.0, 3.0) for c in (7.0, 8.0)]

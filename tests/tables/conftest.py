@@ -6,10 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from mechkin_cli.expressions import Quantity, UnknownName, Vector, parse
-from mechkin_cli.status import Status
+from mechkin_cli.expressions.expression import parse
+from mechkin_cli.expressions.quantity import Quantity, UnknownName, Vector
 from mechkin_cli.tables.layout import ColumnLayout, TableLayout
-from mechkin_cli.units import ANGLE, FORCE, LENGTH, UnitSystem
+from mechkin_cli.units.dimension import ANGLE, FORCE, LENGTH
+from mechkin_cli.units.units import UnitSystem
+from mechkin_cli.verdict import Status
 
 INCH = 0.0254
 NAN = float("nan")

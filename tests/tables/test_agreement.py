@@ -5,13 +5,12 @@ from decimal import Decimal
 import numpy as np
 import pytest
 
-from mechkin_cli.tables.agreement import TableAgreement, agreement
-from mechkin_cli.tables.columns import Column, Columns
-from mechkin_cli.tables.printed import PrintedValues
+from mechkin_cli.tables.columns import Columns, TableColumn
+from mechkin_cli.tables.print import PrintedValues, TableAgreement, agreement
 
 
 def table(**columns: list[float]) -> Columns:
-    made = (Column(label, "", np.array(values, float)) for label, values in columns.items())
+    made = (TableColumn(label, "", np.array(values, float)) for label, values in columns.items())
     return Columns("t", "", tuple(made))
 
 

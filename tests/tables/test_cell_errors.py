@@ -5,16 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mechkin_cli.tables.cell_errors import (
+from mechkin_cli.tables.columns import Words
+from mechkin_cli.tables.errors import (
     ZERO,
+    cells_table,
     column_errors,
     least_digits,
     not_repeated,
     worst_column,
+    worst_table,
 )
-from mechkin_cli.tables.columns import Words
-from mechkin_cli.tables.errors_table import cells_table, worst_table
-from mechkin_cli.tape.double_doubles import DoubleDoubles
+from mechkin_cli.tape.double_double import DoubleDoubles
 
 
 def of(values: list[float], true: list[float], low: list[float] | None = None, label: str = "a"):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from mechkin_cli.expressions import ExpressionError
-from mechkin_cli.status import Status
+from mechkin_cli.expressions.quantity import ExpressionError
 from mechkin_cli.tables.columns import evaluate
+from mechkin_cli.verdict import Status
 
 NAN = float("nan")
 

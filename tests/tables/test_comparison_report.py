@@ -2,8 +2,7 @@
 
 import pytest
 
-from mechkin_cli.tables.compare import CellChange, FileComparison, compare_files
-from mechkin_cli.tables.comparison_report import report
+from mechkin_cli.tables.compare import CellChange, FileComparison, compare_files, report
 
 EXPECTED = """\
 rcsr/table_03.csv: different, 5 cells; largest relative change 0.2 (0.0031 of

@@ -6,19 +6,19 @@ import io
 import numpy as np
 import pytest
 
-from mechkin_cli.tables.columns import Column, Columns, Words, evaluate
-from mechkin_cli.tables.csv_writer import COMMITTED_DIGITS, csv_bytes
-from mechkin_cli.tables.rows_table import rows_table
+from mechkin_cli.tables.columns import Columns, TableColumn, Words, evaluate
+from mechkin_cli.tables.csv import COMMITTED_DIGITS, csv_bytes
+from mechkin_cli.tables.markdown import rows_table
 
 NAN = float("nan")
 
 
-def one_table(*columns: Column) -> Columns:
+def one_table(*columns: TableColumn) -> Columns:
     return Columns("t", "", columns)
 
 
-def numbers(label: str, values: list[float]) -> Column:
-    return Column(label, "", np.array(values, dtype=float))
+def numbers(label: str, values: list[float]) -> TableColumn:
+    return TableColumn(label, "", np.array(values, dtype=float))
 
 
 def test_shortest_numbers_empty_cells_and_no_signed_zero():
@@ -41,7 +41,7 @@ def test_committed_tables_have_twelve_digits():
 def test_labels_and_words_survive_a_csv_reader():
     labels = ["a,b", 'say "x"', "two\nlines", "ü"]
     words = Words(np.array([1, 0], dtype=np.int32), ("plain", 'with "q", comma'))
-    columns = [Column(labels[0], "", words), *(numbers(label, [1, 2]) for label in labels[1:])]
+    columns = [TableColumn(labels[0], "", words), *(numbers(label, [1, 2]) for label in labels[1:])]
     text = csv_bytes(one_table(*columns)).decode("utf-8")
     read = list(csv.reader(io.StringIO(text, newline=""), strict=True))
     assert read == [labels, ['with "q", comma', "1", "1", "1"], ["plain", "2", "2", "2"]]
@@ -53,8 +53,8 @@ def test_a_single_column_keeps_its_empty_rows():
 
 def test_arrays_of_any_memory_order_are_taken():
     block = np.array([[1.0, 10.0], [2.0, 20.0]])
-    column = Column("x", "", block[:, 1])
-    whole = Column("n", "", np.array([3, 4]))
+    column = TableColumn("x", "", block[:, 1])
+    whole = TableColumn("n", "", np.array([3, 4]))
     assert csv_bytes(one_table(column, whole)) == b"x,n\n10,3\n20,4\n"
 
 

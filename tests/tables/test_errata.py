@@ -4,21 +4,25 @@ from decimal import Decimal
 
 import numpy as np
 
-from mechkin_cli.tables.agreement import agreement
-from mechkin_cli.tables.columns import Column, Columns
-from mechkin_cli.tables.disagreements import against_print_record, disagreements_csv
-from mechkin_cli.tables.errata import PrintedTable, counts, errata_page
-from mechkin_cli.tables.layout import PrintedRemark, PublishedValues
-from mechkin_cli.tables.printed import PrintedValues
+from mechkin_cli.tables.columns import Columns, TableColumn
+from mechkin_cli.tables.errata import (
+    PrintedTable,
+    against_print_record,
+    counts,
+    disagreements_csv,
+    errata_page,
+)
+from mechkin_cli.tables.layout import PrintedSource, Remark
+from mechkin_cli.tables.print import PrintedValues, agreement
 
 
-def printed_table(name: str, values: list[float], texts: list[str], *remarks: PrintedRemark):
-    x = Column("x", "deg", np.arange(float(len(values))))
-    table = Columns(name, f"Table {name}", (x, Column("y", "in", np.array(values))))
+def printed_table(name: str, values: list[float], texts: list[str], *remarks: Remark):
+    x = TableColumn("x", "deg", np.arange(float(len(values))))
+    table = Columns(name, f"Table {name}", (x, TableColumn("y", "in", np.array(values))))
     rows = tuple((Decimal(k), Decimal(text)) for k, text in enumerate(texts))
     found = agreement(table, PrintedValues(("x", "y"), rows))
     path = f"m/published/{name}.csv"
-    return PrintedTable(table, PublishedValues(path, remarks), found, f"published/{name}.csv")
+    return PrintedTable(table, PrintedSource(path, remarks), found, f"published/{name}.csv")
 
 
 RIGHT = printed_table("one", [1.0, 2.004], ["1.00", "2.00"])
@@ -26,8 +30,8 @@ WRONG = printed_table(
     "two",
     [1, 2, 3, 4, 5, 6, 7, 8, 1234.5],
     ["1.0", "2.1", "3.2", "4.3", "5.4", "6.5", "7.6", "8.7", "0.0"],
-    PrintedRemark("a slip", ("y",)),
-    PrintedRemark("and another"),
+    Remark("a slip", ("y",)),
+    Remark("and another"),
 )
 
 PAGE = """\
@@ -87,7 +91,7 @@ def test_a_difference_without_a_reason_says_so():
 
 
 def test_data_that_the_source_does_not_give():
-    remark = PrintedRemark("a fit gives 5", data=("s1", "s4"))
+    remark = Remark("a fit gives 5", data=("s1", "s4"))
     page = errata_page("M", "", [printed_table("t", [1.0], ["2.0"], remark)])
     data = page.index("## Data that the source does not give, or gives otherwise")
     assert page.index("- s1, s4: a fit gives 5\n") > data

@@ -7,7 +7,7 @@ import pytest
 
 from mechkin_cli.diagnostics import Diagnostic, Place
 from mechkin_cli.tables.columns import evaluate
-from mechkin_cli.tables.json_writer import analysis_record, json_text
+from mechkin_cli.tables.json import analysis_record, json_text
 
 EXPECTED = {
     "name": "RCSR",

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from mechkin_cli.status import Status
 from mechkin_cli.tables.columns import evaluate
 from mechkin_cli.tables.markdown import markdown_bytes
+from mechkin_cli.verdict import Status
 
 EXPECTED = """\
 # SLIDE OF THE RCSR

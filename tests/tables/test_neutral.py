@@ -7,14 +7,13 @@ import io
 import re
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 import mechkin_cli as mk
-from mechkin_cli.tables.csv_writer import csv_bytes
+from mechkin_cli.tables.csv import csv_bytes
+from mechkin_cli.tables.layout import csv_text, link_target, markdown_line, markdown_text
 from mechkin_cli.tables.markdown import markdown_bytes
-from mechkin_cli.tables.neutral import csv_text, link_target, markdown_line, markdown_text
-from mechkin_cli.tables.table_text import read_table_text
+from mechkin_cli.tables.print import read_table_text
 
 FORMULAS = [
     "=1+1",

@@ -1,6 +1,6 @@
 """The overview page of a folder."""
 
-from mechkin_cli.tables.overview import MARK, OverviewRow, overview_page
+from mechkin_cli.tables.errata import MARK, OverviewRow, overview_page
 
 
 def test_one_line_per_file():

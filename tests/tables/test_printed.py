@@ -5,7 +5,7 @@ from decimal import Decimal
 import pytest
 
 from mechkin_cli.diagnostics import InvalidFile, UsageError
-from mechkin_cli.tables.printed import MOST_BYTES, read_printed
+from mechkin_cli.tables.print import MOST_BYTES, read_printed
 
 
 def read(tmp_path, content: str | bytes):

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mechkin_cli.tables.disagreements import HEADER
-from mechkin_cli.tables.errata import HEAD
-from mechkin_cli.tables.stale import stale_files
+from mechkin_cli.tables.compare import stale_files
+from mechkin_cli.tables.errata import HEAD, HEADER
 
 CSV = b"theta,s\n0,1\n45,2\n"
 PAGE = b"# Old table\n\n| theta [deg] | s [mm] |\n| --: | --: |\n| 0 | 1 |\n| 45 | 2 |\n"

@@ -7,14 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from mechkin_cli.expressions import Quantity
+from mechkin_cli.expressions.quantity import Quantity
 from mechkin_cli.tables.columns import evaluate
-from mechkin_cli.tables.csv_writer import csv_bytes
-from mechkin_cli.tables.json_writer import table_record
+from mechkin_cli.tables.csv import csv_bytes
+from mechkin_cli.tables.json import table_record
 from mechkin_cli.tables.layout import ROW_NUMBER
 from mechkin_cli.tables.markdown import markdown_bytes
 from mechkin_cli.tables.summary import statistics, summary_table, written_notes
-from mechkin_cli.units import LENGTH
+from mechkin_cli.units.dimension import LENGTH
 
 WORDS = ("max", "min", "peak", "mean", "rms", "range")
 INCH = 0.0254

@@ -8,9 +8,9 @@ from decimal import ROUND_HALF_EVEN, Context, Decimal
 import numpy as np
 import pytest
 
-from mechkin_cli.tables.columns import Column, Columns, Words
-from mechkin_cli.tables.csv_writer import csv_bytes
-from mechkin_cli.tables.json_writer import Cells, json_bytes, json_text, table_record
+from mechkin_cli.tables.columns import Columns, TableColumn, Words
+from mechkin_cli.tables.csv import csv_bytes
+from mechkin_cli.tables.json import JsonCells, json_bytes, json_text, table_record
 from mechkin_cli.tables.markdown import markdown_bytes
 
 CONTEXT = Context(prec=1500)
@@ -52,10 +52,10 @@ def random_table(seed, rows):
         unit = str(random.choice(["", "deg", "lbm*in/s^2", "µm"]))
         if random.integers(4) == 0:
             codes = random.integers(0, len(WORDS), rows).astype(np.int32)
-            columns.append(Column(f"{label}{number}", unit, Words(codes, WORDS)))
+            columns.append(TableColumn(f"{label}{number}", unit, Words(codes, WORDS)))
             continue
         decimals = None if random.integers(2) else int(random.integers(0, 26))
-        columns.append(Column(f"{label}{number}", unit, random_column(random, rows), decimals))
+        columns.append(TableColumn(f"{label}{number}", unit, random_column(random, rows), decimals))
     return Columns("t", "T", tuple(columns))
 
 
@@ -193,7 +193,7 @@ def test_json_cell_by_cell(seed, rows):
         )
         expected = json.dumps(cells, ensure_ascii=False)
         for threads in (1, 2, 5):
-            assert Cells(column.values, threads).json_bytes().decode() == expected
+            assert JsonCells(column.values, threads).json_bytes().decode() == expected
     assert len(json.loads(json_text(table_record(table)))["columns"]) == len(table.columns)
 
 

@@ -6,8 +6,8 @@ from mechkin_cli.cli import analyze
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.tables import writers
 from mechkin_cli.tables.columns import evaluate
-from mechkin_cli.tables.csv_writer import csv_bytes
-from mechkin_cli.tables.rows_table import rows_table
+from mechkin_cli.tables.csv import csv_bytes
+from mechkin_cli.tables.markdown import rows_table
 
 
 @pytest.fixture

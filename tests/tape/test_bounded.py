@@ -10,8 +10,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from mechkin_cli.tape.bounded import Bounded, bounded
-from mechkin_cli.tape.double_doubles import DoubleDoubles
+from mechkin_cli.tape.bounds import Bounded, bounded
+from mechkin_cli.tape.double_double import DoubleDoubles
 
 OPERATIONS = ["+", "-", "*", "/", "abs", "sqrt", "sin", "cos", "exp", "atan", "max", "min"]
 DIGITS = 700

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from mpmath import MPContext
 
-from mechkin_cli.tape.double_doubles import DoubleDoubles, difference, exactly
+from mechkin_cli.tape.double_double import DoubleDoubles, difference, exactly
 
 mp = MPContext()
 mp.dps = 60

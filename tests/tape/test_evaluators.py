@@ -7,17 +7,21 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from hypothesis import example, given, settings, strategies as st
 
-from mechkin_cli.kernel.width import widths
+from mechkin_cli.kernel.functions import widths
 from mechkin_cli.tape import scalars
-from mechkin_cli.tape.evaluate import evaluate
-from mechkin_cli.tape.native import compiled, replay
-from mechkin_cli.tape.operations import CONDITIONS, Operation
-from mechkin_cli.tape.recorder import ARITY, Recorder
-from mechkin_cli.tape.tape import Tape, Verdict
-from mechkin_cli.tape.traced import Traced
+from mechkin_cli.tape.recorder import Recorder, Traced
+from mechkin_cli.tape.tape import (
+    ARITY,
+    CONDITIONS,
+    Operation,
+    Tape,
+    Verdict,
+    compiled,
+    evaluate,
+    replay,
+)
 
 INPUTS = 3
 NUMBERS = st.floats(allow_nan=False) | st.floats(-10.0, 10.0)

@@ -10,7 +10,7 @@ import pytest
 from oracle import mp
 
 from mechkin_cli.exact import PI
-from mechkin_cli.tape.exact_recorder import ExactRecorder
+from mechkin_cli.tape.exact import ExactRecorder
 from mechkin_cli.tape.identities import Identities
 from mechkin_cli.tape.scalars import cos, of_one, of_two, sin, square_root
 

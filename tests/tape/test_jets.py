@@ -9,12 +9,13 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from mechkin_cli.expressions import Quantity, parse
+from mechkin_cli.expressions.expression import parse
 from mechkin_cli.expressions.fields import scalar
-from mechkin_cli.tape.native import compiled
-from mechkin_cli.tape.recorder import Recorder
-from mechkin_cli.tape.traced import Traced, register
-from mechkin_cli.units import DIMENSIONLESS, UnitSystem
+from mechkin_cli.expressions.quantity import Quantity
+from mechkin_cli.tape.recorder import Recorder, Traced, register
+from mechkin_cli.tape.tape import compiled
+from mechkin_cli.units.dimension import DIMENSIONLESS
+from mechkin_cli.units.units import UnitSystem
 
 CASES: list[tuple[str, Callable[[Any], Any]]] = [
     ("3*x*x - 2*x/(1 + x*x) + 1", lambda x: 3 * x * x - 2 * x / (1 + x * x) + 1),
@@ -82,7 +83,7 @@ def ways_at(text: str, x: float) -> np.ndarray:
 
 
 def wrap_ways(x: float) -> np.ndarray:
-    from mechkin_cli.solver.cells import Formula
+    from mechkin_cli.session.cells import Formula
     from mechkin_cli.tape.tape import Tape
 
     recorder = Recorder(["x"], [x])

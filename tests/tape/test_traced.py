@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 from mechkin_cli.tape import scalars
-from mechkin_cli.tape.operations import Operation
-from mechkin_cli.tape.recorder import Recorder
-from mechkin_cli.tape.traced import Traced, TraceLost
+from mechkin_cli.tape.recorder import Recorder, Traced, TraceLost
+from mechkin_cli.tape.tape import Operation
 
 X = 0.75
 

@@ -10,20 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from mechkin_cli.arrays import Floats
-from mechkin_cli.building.build import Built, build
+from mechkin_cli.building.builder import Built, build
 from mechkin_cli.building.recording import record
 from mechkin_cli.building.source import open_file
-from mechkin_cli.expressions import Quantity
+from mechkin_cli.expressions.quantity import Quantity
 from mechkin_cli.mechanism.problem import Problem
-from mechkin_cli.solver.graph import SolverGraph
-from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.plan import plan_records
-from mechkin_cli.solver.records import flatten
-from mechkin_cli.solver.same_structure import graph_of
-from mechkin_cli.tape.native import compiled
-from mechkin_cli.tape.tape import Tape
-from mechkin_cli.tape.traced import Traced, register
+from mechkin_cli.plan.layout import Layout
+from mechkin_cli.plan.plan import plan_records
+from mechkin_cli.plan.records import flatten
+from mechkin_cli.show import Floats
+from mechkin_cli.structure.changed import graph_of
+from mechkin_cli.structure.graph import SolverGraph
+from mechkin_cli.tape.recorder import Traced, register
+from mechkin_cli.tape.tape import Tape, compiled
 
 MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 WITH_PARAMETERS = [

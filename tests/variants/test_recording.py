@@ -15,17 +15,16 @@ from variants.recordings import (
     tape_of,
 )
 
-from mechkin_cli.building.build import Built, build
+from mechkin_cli.building.builder import Built, build
 from mechkin_cli.building.recording import record
 from mechkin_cli.building.source import open_text
 from mechkin_cli.diagnostics import InvalidFile
-from mechkin_cli.solver.graph import SolverGraph
-from mechkin_cli.solver.layout import Layout
-from mechkin_cli.solver.plan import plan_records
-from mechkin_cli.solver.records import flatten
-from mechkin_cli.tape.native import compiled, replay
-from mechkin_cli.tape.tape import Verdict
-from mechkin_cli.tape.traced import TraceLost
+from mechkin_cli.plan.layout import Layout
+from mechkin_cli.plan.plan import plan_records
+from mechkin_cli.plan.records import flatten
+from mechkin_cli.structure.graph import SolverGraph
+from mechkin_cli.tape.recorder import TraceLost
+from mechkin_cli.tape.tape import Verdict, compiled, replay
 
 COUNT = 25
 

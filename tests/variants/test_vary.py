@@ -8,8 +8,8 @@ from benchmark.variants import CASES, arrays, text_of
 from means import mean_over_the_way, rms_over_the_way
 
 import mechkin_cli as mk
-from mechkin_cli.interface import variant_runs
-from mechkin_cli.kernel.width import widths
+from mechkin_cli.kernel.functions import widths
+from mechkin_cli.variants import many as variant_runs
 
 COUNT = 12
 

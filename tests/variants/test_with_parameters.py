@@ -7,7 +7,7 @@ import pytest
 from variants.recordings import MECHANISMS, WITH_PARAMETERS, near, parameters_of
 
 import mechkin_cli as mk
-from mechkin_cli.interface.varied import VariedModel
+from mechkin_cli.variants.model import VariedModel
 
 
 def changed(model: mk.Model, seed: int) -> dict[str, float]:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 import mechkin_cli as mk
-from mechkin_cli.interface.viewing import analyses_of, view_scene
-from mechkin_cli.view.encoding import script_json
+from mechkin_cli.view.page import script_json
+from mechkin_cli.view.write import analyses_of, view_scene
 
 TYPES = {"f32": "<f4", "f64": "<f8", "i32": "<i4", "u8": "|u1"}
 

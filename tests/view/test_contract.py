@@ -13,10 +13,10 @@ from view.contract import DATA
 from view.seen import array, data
 
 import mechkin_cli as mk
-from mechkin_cli.interface.viewing import analyses_of
-from mechkin_cli.tables.csv_writer import csv_bytes
-from mechkin_cli.tables.rows_table import rows_table
-from mechkin_cli.view.encoding import script_json
+from mechkin_cli.tables.csv import csv_bytes
+from mechkin_cli.tables.markdown import rows_table
+from mechkin_cli.view.page import script_json
+from mechkin_cli.view.write import analyses_of
 
 FILES = sorted(MECHANISMS.glob("*.yaml"))
 LARGEST = 1_000_000

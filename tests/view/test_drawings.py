@@ -11,11 +11,18 @@ import pytest
 from references import MECHANISMS, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.mechanism.joint_table import JOINT_TYPES, PLANE_JOINT_TYPES
-from mechkin_cli.view.drawing.isometric import Isometric, isometric
-from mechkin_cli.view.drawing.picture import HEIGHT, WIDTH, mechanism_picture
-from mechkin_cli.view.drawing.strokes import Disc, Stroke
-from mechkin_cli.view.drawing.symbols import Half, symbol
+from mechkin_cli.mechanism.pairs import JOINT_TYPES, PLANE_JOINT_TYPES
+from mechkin_cli.view.drawing import (
+    HEIGHT,
+    WIDTH,
+    Disc,
+    Half,
+    Isometric,
+    Stroke,
+    isometric,
+    mechanism_picture,
+    symbol,
+)
 
 FOUR_BAR = """\
 format: 1

@@ -10,9 +10,8 @@ from view.files import FOUR_BAR
 from view.seen import data
 
 import mechkin_cli as mk
-from mechkin_cli.interface.viewing import analyses_of, view_scene
-from mechkin_cli.view.encoding import script_json
-from mechkin_cli.view.html import PLACE, filled
+from mechkin_cli.view.page import PLACE, filled, script_json
+from mechkin_cli.view.write import analyses_of, view_scene
 
 PAGE = f'<script type="application/json" id="mechkin-data">{PLACE}</script><p>end</p>'
 TEXTS = [

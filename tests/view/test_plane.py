@@ -11,7 +11,7 @@ from view.files import FOUR_BAR, SLIDER_CRANK
 from view.seen import data
 
 import mechkin_cli as mk
-from mechkin_cli.view.plane import upwards
+from mechkin_cli.view.joints import upwards
 
 
 def cycled(text: str) -> str:

@@ -11,11 +11,17 @@ from view.files import FOUR_BAR, SLIDER_CRANK
 from view.seen import array, branch, column, data, moved, number_of, posed_rows, poses
 
 import mechkin_cli as mk
-from mechkin_cli.interface.viewing import analyses_of, view_scene
-from mechkin_cli.view.encoding import script_json
-from mechkin_cli.view.limits import MOST_CELLS, MOST_MODES, MOST_POSES, MOST_ROWS
-from mechkin_cli.view.shares import shares
-from mechkin_cli.view.thinning import thinned, turning_points
+from mechkin_cli.view.page import (
+    MOST_CELLS,
+    MOST_MODES,
+    MOST_POSES,
+    MOST_ROWS,
+    script_json,
+    shares,
+    thinned,
+    turning_points,
+)
+from mechkin_cli.view.write import analyses_of, view_scene
 
 ROCKING = (
     FOUR_BAR.replace("[20, 0, 0]", "[60, 0, 0]")
@@ -157,7 +163,7 @@ def test_a_pose_is_kept_on_both_sides_of_what_happens() -> None:
 
 
 def test_more_modes_than_a_page_holds_are_named_in_a_note(monkeypatch) -> None:
-    monkeypatch.setattr("mechkin_cli.interface.viewing.MOST_MODES", 2)
+    monkeypatch.setattr("mechkin_cli.view.page.MOST_MODES", 2)
     model = mk.load(MECHANISMS / "phchc.yaml")
     scene, notes = view_scene(analyses_of(model, None, None))
     assert len(scene.runs[0].branches) == 3
@@ -171,7 +177,7 @@ def test_more_modes_than_a_page_holds_are_named_in_a_note(monkeypatch) -> None:
 
 def test_without_modes_none_are_looked_for(monkeypatch) -> None:
     monkeypatch.setattr(
-        "mechkin_cli.analysis.modes.find_modes", lambda *_, **__: pytest.fail("searched")
+        "mechkin_cli.modes.modes.find_modes", lambda *_, **__: pytest.fail("searched")
     )
     shown = data(mk.load(MECHANISMS / "rcsr.yaml"), modes=False)
     assert len(shown["runs"][0]["branches"]) == 1

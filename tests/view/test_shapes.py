@@ -8,7 +8,7 @@ from view.files import FOUR_BAR, SLIDER_CRANK
 from view.seen import data
 
 import mechkin_cli as mk
-from mechkin_cli.view.shapes import distinct, shape_through
+from mechkin_cli.view.joints import distinct, shape_through
 
 
 def shapes(shown: dict) -> dict[str, str]:

@@ -15,6 +15,7 @@ from mechkin_cli.benchmark.measurement import Method, Skipped
 if TYPE_CHECKING:
     from mechkin_cli.benchmark.scene import Scene
 
+
 Family = Callable[["Scene"], Iterator[Method]]
 
 FAMILIES = {

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.analysis.dense.row_motion import row_motion
-from mechkin_cli.analysis.dense.system import DenseSystem, dense_system
 from mechkin_cli.benchmark.measurement import Method
 from mechkin_cli.benchmark.methods import Unable
-from mechkin_cli.mechanism.legs import find_legs
+from mechkin_cli.derived import DenseSystem, dense_system, row_motion
+from mechkin_cli.mechanism import find_legs
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
     from mechkin_cli.benchmark.scene import Scene, Values
+    from mechkin_cli.show import Floats
+
 
 FAMILY = "dense"
 EFFORT = 4

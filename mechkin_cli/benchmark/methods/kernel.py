@@ -8,16 +8,13 @@ from functools import partial
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.analysis.sweep import analyze
-from mechkin_cli.arrays import Floats
 from mechkin_cli.benchmark.measurement import Method
 from mechkin_cli.benchmark.scene import ALONE, BATCH, LEVELS, Scene, Values
-from mechkin_cli.kernel.width import widths
-from mechkin_cli.solver.batch import RESIDUAL_TESTS, Batch
-from mechkin_cli.solver.codes import Demand
-from mechkin_cli.solver.follow import follow
-from mechkin_cli.solver.session import Packing
-from mechkin_cli.solver.stepping import step_limits
+from mechkin_cli.kernel.functions import widths
+from mechkin_cli.plan import Demand
+from mechkin_cli.session import RESIDUAL_TESTS, Batch, Packing, follow, step_limits
+from mechkin_cli.show import Floats
+from mechkin_cli.sweep import analyze
 
 FAMILY = "mechkin"
 UNIT = "kernel, guesses as followed"

@@ -18,8 +18,9 @@ from mechkin_cli.benchmark.methods import Unable
 from mechkin_cli.benchmark.row_by_row import RowByRow
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
     from mechkin_cli.benchmark.scene import Scene, Values
+    from mechkin_cli.show import Floats
+
 
 FAMILY = "stepping"
 EULER_STEPS = (1, 4)

@@ -25,6 +25,7 @@ from mechkin_cli.benchmark.row_by_row import RowByRow
 if TYPE_CHECKING:
     from mechkin_cli.benchmark.scene import Scene, Values
 
+
 FAMILY = "CasADi"
 COMPILER = "gcc"
 FLAGS = ("-O3", "-march=native", "-fPIC", "-shared")

@@ -27,9 +27,10 @@ from mechkin_cli.benchmark.methods import Unable
 from mechkin_cli.benchmark.row_by_row import RowByRow
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
     from mechkin_cli.benchmark.scene import Scene, Values
-    from mechkin_cli.mechanism.frames import Frame
+    from mechkin_cli.mechanism import Frame
+    from mechkin_cli.show import Floats
+
 
 FAMILY = "MuJoCo"
 STEPS = (4, 16, 64)

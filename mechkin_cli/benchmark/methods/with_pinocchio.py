@@ -25,10 +25,11 @@ from mechkin_cli.benchmark.measurement import Method
 from mechkin_cli.benchmark.row_by_row import RowByRow
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
     from mechkin_cli.benchmark.chain import Place
     from mechkin_cli.benchmark.scene import Scene, Values
-    from mechkin_cli.mechanism.frames import Frame
+    from mechkin_cli.mechanism import Frame
+    from mechkin_cli.show import Floats
+
 
 FAMILY = "Pinocchio"
 STEPS = (1, 2, 3, 4)

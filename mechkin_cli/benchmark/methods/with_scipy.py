@@ -13,8 +13,9 @@ from mechkin_cli.benchmark.measurement import Method
 from mechkin_cli.benchmark.row_by_row import Gap, RowByRow, Solve
 
 if TYPE_CHECKING:
-    from mechkin_cli.arrays import Floats
     from mechkin_cli.benchmark.scene import Scene, Values
+    from mechkin_cli.show import Floats
+
 
 FAMILY = "scipy"
 TOLERANCES = tuple(10.0**-k for k in (2, 5, 8, 14))

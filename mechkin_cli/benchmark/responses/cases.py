@@ -14,8 +14,8 @@ from mechkin_cli.benchmark import rcsr
 from mechkin_cli.benchmark.responses import pendulum
 from mechkin_cli.benchmark.responses.extrapolation import extrapolated
 from mechkin_cli.benchmark.responses.tree import GROUND, Ball, Carried, Tree
-from mechkin_cli.interface import Model, loads
-from mechkin_cli.mechanism.model import Mechanism
+from mechkin_cli.mechanism import Mechanism
+from mechkin_cli.model import Model, loads
 
 TOLERANCES = tuple(10.0**-k for k in (4, 6, 8, 10, 12))
 SMOOTH, STIFF = ("DOP853",), ("Radau", "BDF", "LSODA")

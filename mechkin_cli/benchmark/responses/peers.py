@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from mechkin_cli.benchmark.responses.cases import Case
     from mechkin_cli.benchmark.responses.tree import Tree
 
+
 STEPS = (16, 64, 256)
 """Of MuJoCo between two rows."""
 

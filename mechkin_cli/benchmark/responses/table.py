@@ -11,7 +11,7 @@ from mechkin_cli.benchmark.report import Cell, Column, Table
 from mechkin_cli.benchmark.responses.cases import RUN, TOLERANCES, Case, cases
 from mechkin_cli.benchmark.responses.peers import Way, peers
 from mechkin_cli.benchmark.timing import in_turns
-from mechkin_cli.interface import Model
+from mechkin_cli.model import Model
 
 MILLI = 1000.0
 

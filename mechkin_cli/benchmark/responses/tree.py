@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mechkin_cli.benchmark.truth import solved
-from mechkin_cli.mechanism.model import Link, Mechanism
+from mechkin_cli.mechanism import Mechanism, RigidLink
 
 GROUND = -1
 
@@ -197,7 +197,7 @@ class Tree:
         return np.concatenate(rows), np.concatenate(drift)
 
     def _body(self, name: str | None) -> _Body | None:
-        link: Link | None = None if name is None else self.mechanism.links[name]
+        link: RigidLink | None = None if name is None else self.mechanism.links[name]
         if link is None or not link.has_mass:
             return None
         xx, yy, zz, xy, xz, yz = link.inertia

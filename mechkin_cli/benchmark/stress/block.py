@@ -14,7 +14,7 @@ from mechkin_cli.benchmark.stress.judge import FAULTS, Found, Judged, Verdict, j
 from mechkin_cli.benchmark.stress.quantity import Truth
 from mechkin_cli.benchmark.stress.solve import solve
 from mechkin_cli.benchmark.stress.tally import CONTRADICTED, REFUSED, Fault, Tally
-from mechkin_cli.status import Status, has_solution
+from mechkin_cli.verdict import Status, has_solution
 
 CHUNK = 50_000
 """Rows of a mechanism that are judged at once: double-double rows and their rates take a kilobyte

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from mechkin_cli.benchmark.stress.judge import TURN, Found
 from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble, radians
 from mechkin_cli.benchmark.stress.quantity import Cell, Mask, Rows, Truth
-from mechkin_cli.interface import Analysis
-from mechkin_cli.proof import Proof
+from mechkin_cli.model import Analysis
+from mechkin_cli.verdict import Proof
 
 NOT_ASKED = -1
 CLOSED_FORM = 1e-28

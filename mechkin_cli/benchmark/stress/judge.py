@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mechkin_cli.benchmark.stress.numbers.double_double import PI, DoubleDouble, radians
 from mechkin_cli.benchmark.stress.numbers.series import Series
 from mechkin_cli.benchmark.stress.quantity import Mask, Quantity, Rows, Truth
-from mechkin_cli.status import Status, has_solution
+from mechkin_cli.verdict import Status, has_solution
 
 ROUNDING = 2.0**-53
 WRONG = 100.0

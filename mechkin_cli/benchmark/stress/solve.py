@@ -10,8 +10,8 @@ import numpy as np
 from mechkin_cli.benchmark.stress.certify import Proofs, prove, unasked
 from mechkin_cli.benchmark.stress.judge import Found
 from mechkin_cli.benchmark.stress.quantity import Cell
-from mechkin_cli.interface import Analysis, loads
-from mechkin_cli.status import Status
+from mechkin_cli.model import Analysis, loads
+from mechkin_cli.verdict import Status
 
 
 class Solved(NamedTuple):

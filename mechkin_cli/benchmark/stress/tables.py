@@ -9,7 +9,7 @@ from mechkin_cli.benchmark.stress.families.table import FAMILIES
 from mechkin_cli.benchmark.stress.histogram import Histogram
 from mechkin_cli.benchmark.stress.judge import Verdict
 from mechkin_cli.benchmark.stress.tally import CONTRADICTED, NO_POSITION, REFUSED, Tally
-from mechkin_cli.proof import Proof
+from mechkin_cli.verdict import Proof
 
 MOST = 0.999
 """The part of the rows that the tables call nearly all."""

@@ -13,7 +13,7 @@ from mechkin_cli.benchmark.stress.certify import Proofs
 from mechkin_cli.benchmark.stress.histogram import Histogram
 from mechkin_cli.benchmark.stress.judge import ROUNDING, TOLERANCE, Judged, Verdict
 from mechkin_cli.benchmark.stress.quantity import Mask, Rows
-from mechkin_cli.proof import Proof
+from mechkin_cli.verdict import Proof
 
 SHOWN = 5
 """Faults of each kind that a family keeps."""

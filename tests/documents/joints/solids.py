@@ -13,8 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mechkin_cli.view.drawing.isometric import Isometric
-from mechkin_cli.view.drawing.strokes import Place, number
+from mechkin_cli.view.drawing import Isometric, Place, number
 
 Point = tuple[float, float, float]
 Vectors = NDArray[np.float64]

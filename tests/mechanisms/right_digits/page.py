@@ -7,7 +7,7 @@ from pathlib import Path
 from references import MECHANISMS
 
 import mechkin_cli as mk
-from mechkin_cli.tables.cell_errors import ZERO, ColumnErrors, least_digits, worst_column
+from mechkin_cli.tables.errors import ZERO, ColumnErrors, least_digits, worst_column
 
 ROOT = Path(__file__).parents[3]
 PAGE = ROOT / "docs" / "errors.md"

@@ -17,8 +17,8 @@ from random_families.proofs.rows import ways
 from random_families.proofs.spatial import rssr
 
 import mechkin_cli as mk
-from mechkin_cli.analysis.proof import certify
-from mechkin_cli.interface.certificate import Certificate
+from mechkin_cli.proofs.certificate import Certificate
+from mechkin_cli.proofs.rows import certify
 
 DRAWS = (four_bar, slider_crank, rssr, five_bar)
 GAPS = range(1, 10)

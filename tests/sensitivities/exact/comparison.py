@@ -13,7 +13,7 @@ from sensitivities.exact.derivatives import Numbers, Row
 from sensitivities.exact.files import Data, conventional, spatial
 
 import mechkin_cli as mk
-from mechkin_cli.interface.sensitivities import Sensitivities
+from mechkin_cli.sensitivities.first_order import Sensitivities
 
 NEXT_TO_NOTHING = 1e-7
 """Derivatives that are smaller than this part of the quantity by the parameter's scale are compared

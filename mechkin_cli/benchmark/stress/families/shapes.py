@@ -7,13 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mechkin_cli.benchmark.stress.draws import (
-    direction,
-    point,
-    scaled,
-    transposed,
-    uniform,
-)
+from mechkin_cli.benchmark.stress.draws import direction, point, scaled, transposed, uniform
 from mechkin_cli.benchmark.stress.linkages.rccc import Rccc
 from mechkin_cli.benchmark.stress.linkages.rssr import Rssr
 from mechkin_cli.benchmark.stress.linkages.slider import Slider

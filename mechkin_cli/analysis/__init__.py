@@ -1,1 +1,0 @@
-"""What a user asks for: the assembly at the first row, the sweep, and their results."""

@@ -1,1 +1,0 @@
-"""The assembly that a run starts from: near given coordinates, a named mode, or the drawing."""

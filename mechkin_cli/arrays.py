@@ -1,9 +1,0 @@
-"""The types of arrays, so that each has one name; only type checkers read them."""
-
-from __future__ import annotations
-
-import numpy as np
-from numpy.typing import NDArray
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]

@@ -1,0 +1,63 @@
+"""Which assembly the first row has: as drawn, near what the file names, by mode, across a fold."""
+
+from __future__ import annotations
+
+from mechkin_cli.lazy import lazy_names
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from mechkin_cli.assembly.fold import (
+        PlacesBefore as PlacesBefore,
+        at_unit_rate as at_unit_rate,
+        left_for as left_for,
+        unit_rates as unit_rates,
+    )
+    from mechkin_cli.assembly.home import (
+        NamedModes as NamedModes,
+        Probe as Probe,
+        is_cyclic as is_cyclic,
+        is_home_assembled as is_home_assembled,
+        name_modes as name_modes,
+        nearest_to_home as nearest_to_home,
+        wrapped as wrapped,
+    )
+    from mechkin_cli.assembly.near import nothing_found as nothing_found
+    from mechkin_cli.assembly.start import (
+        HOME as HOME,
+        MAY_BE_RIGID as MAY_BE_RIGID,
+        NEAR as NEAR,
+        AssemblyStart as AssemblyStart,
+        choose_start as choose_start,
+        distances_of as distances_of,
+        is_unclear as is_unclear,
+        mode_letter as mode_letter,
+        state_at_first_row as state_at_first_row,
+    )
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "fold": ["PlacesBefore", "at_unit_rate", "left_for", "unit_rates"],
+        "home": [
+            "NamedModes",
+            "Probe",
+            "is_cyclic",
+            "is_home_assembled",
+            "name_modes",
+            "nearest_to_home",
+            "wrapped",
+        ],
+        "near": ["nothing_found"],
+        "start": [
+            "AssemblyStart",
+            "HOME",
+            "MAY_BE_RIGID",
+            "NEAR",
+            "choose_start",
+            "distances_of",
+            "is_unclear",
+            "mode_letter",
+            "state_at_first_row",
+        ],
+    },
+)

@@ -1,0 +1,221 @@
+"""A first row on a fold has two branches; which is meant is judged at the next row that is clear of
+it, unless `near` tells them apart at the first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.assembly.home import name_modes
+from mechkin_cli.assembly.start import (
+    distances_home,
+    distances_near,
+    distances_of,
+    in_order,
+    is_unclear,
+    unclear,
+)
+from mechkin_cli.plan import Demand, PassageEnd, TrackEnd
+from mechkin_cli.search import pose_keys, same_poses
+from mechkin_cli.tolerances import BEFORE_DEAD_CENTRE, OFF_FOLD
+
+if TYPE_CHECKING:
+    from mechkin_cli.assembly.start import AssemblyStart
+    from mechkin_cli.session import Batch, Session
+    from mechkin_cli.show import Floats
+
+
+# Places on the branches that meet in a fold, left for from a state there.
+#
+# Near the fold a state is x0 + v h for inputs u0 + a h^2/2, v of length one. So derivatives by the
+# input at a distance h that rounding has left are x' = v/(a h) and x'' = -v/(a^2 h^3), and
+# a = |x''|/|x'|^3 is known although neither of them is.
+
+
+class PlacesBefore(NamedTuple):
+    """Two places before a row at a dead centre, the second a hundredth as far from it: inputs
+    (inputs, 2) in kernel units and states (states, 2)."""
+
+    row: int
+    inputs: Floats
+    states: Floats
+
+
+def at_unit_rate(session: Session, values: Floats, states: Floats, number: int) -> Batch:
+    """The run with one input at unit rate, whose `first` and `second` (states, places) are the
+    derivatives of the states by that input.
+
+    Args:
+        session: the mechanism as it is driven.
+        values: (inputs, places) in kernel units, angles within a turn.
+        states: (states, places) closed there.
+        number: of the input.
+    """
+    return session.run(
+        values,
+        states,
+        demand=Demand.VELOCITY | Demand.ACCELERATION,
+        rates=unit_rates(values, number),
+        accelerations=np.zeros_like(values),
+        derivatives=True,
+        iterations=0,
+    )
+
+
+def unit_rates(values: Floats, number: int) -> Floats:
+    """Rates (inputs, places): 1 of one input, 0 of all others."""
+    rates = np.zeros_like(values)
+    rates[number] = 1.0
+    return rates
+
+
+def left_for(session: Session, row: int, state: Floats) -> list[PlacesBefore]:
+    """Places on the two branches that meet in a row at a state (states,), both on the side of the
+    fold where they are; none where this is no fold."""
+    state = np.ascontiguousarray(state[:, None])
+    reduced = np.ascontiguousarray(session.inputs.reduced[:, [row]])
+    inputs = range(reduced.shape[0])
+    found = [at_unit_rate(session, reduced, state, number) for number in inputs]
+    sizes = [float(np.abs(batch.first).max()) for batch in found if batch.first is not None]
+    number = int(np.argmax(np.nan_to_num(sizes, nan=-1.0)))
+    first, second = found[number].first, found[number].second
+    assert first is not None
+    assert second is not None
+    with np.errstate(all="ignore"):
+        way = first / sizes[number]
+        size = sizes[number]
+        bend = float(np.abs(second).max()) / (size * size * size)
+    if not (np.isfinite(way).all() and 0.0 < bend < np.inf):
+        return []
+    before = np.array(BEFORE_DEAD_CENTRE)
+    heights = np.sqrt(2.0 * before / bend)
+    places = []
+    for side in (1.0, -1.0):
+        values = np.repeat(session.inputs.values[:, [row]], 2, axis=1)
+        values[number] += side * before
+        both = [PlacesBefore(row, values, state + sign * way * heights) for sign in (1.0, -1.0)]
+        places.append([closed for one in both if (closed := _closed(session, one, heights))])
+    there = [side for side in places if side]
+    return there[0] if len(there) == 1 and len(there[0]) == 2 else []
+
+
+def _closed(session: Session, guessed: PlacesBefore, heights: Floats) -> PlacesBefore | None:
+    """The places closed near their guesses."""
+    batch = session.close(guessed.inputs, np.ascontiguousarray(guessed.states))
+    off = np.abs(batch.states - guessed.states).max(axis=0)
+    near = batch.good & (off <= OFF_FOLD * heights)
+    return guessed._replace(states=batch.states) if near.all() else None
+
+
+def judged_off_fold(session: Session, start: AssemblyStart) -> AssemblyStart:
+    """The same start, or where it is singular the assembly at the next row clear of that which the
+    file means among those that come back to it; of a row alone that on the branch which `near`
+    means."""
+    if start.state is None or start.row or not session.graph.blocks:
+        return start
+    condition = start.condition
+    if condition is None:
+        condition = _condition(session, session.inputs.reduced[:, 0], start.state)
+    if condition is None or condition <= tolerances.CONDITION_SIDE_UNCLEAR:
+        return start
+    row = _next_clear(session)
+    return _judged_at(session, start, row) if row else _judged_alone(session, start, start.state)
+
+
+def _judged_alone(session: Session, start: AssemblyStart, state: Floats) -> AssemblyStart:
+    ways = left_for(session, 0, state) if session.problem.assembly.near else []
+    if len(ways) < 2:
+        return start
+    off_fold = np.stack([way.states[:, 0] for way in ways], axis=1)
+    distances, _ = distances_of(session, ways[0].inputs[:, 0], off_fold)
+    if is_unclear(*sorted(distances)):
+        return start
+    way = ways[int(np.argmin(distances))]
+    path = np.concatenate([way.inputs, session.inputs.values[:, :1]], axis=1)
+    found = session.follow(path, way.states[:, 0], every_row=True)
+    if found.end != TrackEnd.FINISHED:
+        return start
+    state = np.ascontiguousarray(found.guess[:, -1])
+    condition = _condition(session, session.inputs.reduced[:, 0], state)
+    if condition is None or condition > tolerances.CONDITION_RANK_UNCLEAR:
+        return start  # on the fold itself, where the branches are one
+    how = f"{start.how}; next to a fold, where near tells its branches apart"
+    return replace(start, state=state, how=how)
+
+
+def _judged_at(session: Session, start: AssemblyStart, row: int) -> AssemblyStart:
+    assert start.state is not None
+    modes = name_modes(session, session.inputs.reduced[:, row], thorough=False)
+    if modes.number == 0:
+        return start
+    home = distances_home(session, modes.points)
+    near = session.problem.assembly.near
+    distances = distances_near(session.problem, modes.coordinates) if near else home
+    back = {
+        i: _followed_back(session, modes.found.states[:, i], row) for i in in_order(distances, home)
+    }
+    order = [i for i, state in back.items() if _is_same(session, state, start.state)]
+    if not order:
+        return start
+    notes = list(start.diagnostics)
+    chosen, how = order[0], f"the first row lies on a fold, row {row + 1} decides"
+    told = _told_apart(session, [back[i] for i in order])
+    if told is not None:
+        chosen, how = order[told], "next to a fold, where near tells its branches apart"
+    elif len(order) > 1 and is_unclear(distances[order[0]], distances[order[1]]):
+        pair = (distances[order[0]], distances[order[1]])
+        notes.append(unclear(f"two assemblies of row {row + 1}", pair))
+    state = np.ascontiguousarray(modes.found.states[:, chosen])
+    return replace(start, state=state, how=f"{start.how}; {how}", diagnostics=notes, row=row)
+
+
+def _next_clear(session: Session) -> int:
+    """The first row whose inputs are clear of the first one's as folds go, or the farthest one; 0
+    where none differs."""
+    values = session.inputs.values
+    distance = np.abs(values - values[:, :1]).max(axis=0, initial=0.0)
+    clear = np.flatnonzero(distance >= tolerances.BEFORE_DEAD_CENTRE[1])
+    return int(clear[0]) if clear.size else int(np.argmax(distance))
+
+
+def _condition(session: Session, inputs: Floats, state: Floats) -> float | None:
+    """The condition of an assembly; None where it is none."""
+    batch = session.run(inputs[:, None], state[:, None], demand=Demand.CONDITION)
+    return float(batch.condition[0]) if batch.good[0] and batch.condition is not None else None
+
+
+def _followed_back(session: Session, state: Floats, row: int) -> Floats | None:
+    """The first row's state on the branch of an assembly at another, or its end at a dead centre,
+    which rounding may put before that row; None where it ends elsewhere."""
+    back = session.follow_rows(state, row, -1)
+    if back.end == TrackEnd.FINISHED:
+        return back.guess[:, -1]
+    ending = back.ending
+    return ending.state if ending and ending.kind == PassageEnd.DEAD_CENTRE else None
+
+
+def _is_same(session: Session, state: Floats | None, first: Floats) -> bool:
+    """Whether a state at the first row is its assembly, or the other one on the same fold."""
+    if state is None:
+        return False
+    keys = [pose_keys(session.layout, s[:, None]) for s in (first, state)]
+    return bool(same_poses(keys[0], keys[1], tolerances.SAME_FOLD)[0, 0])
+
+
+def _told_apart(session: Session, states: list[Floats | None]) -> int | None:
+    """Which of several assemblies at the first row `near` clearly means; None where it names none,
+    or they are too near to each other for that."""
+    if len(states) < 2 or not session.problem.assembly.near:
+        return None
+    together = np.stack([state for state in states if state is not None], axis=1)
+    inputs = session.inputs.reduced[:, 0]
+    closed = session.close(np.repeat(inputs[:, None], together.shape[1], axis=1), together)
+    if not closed.good.all():
+        return None
+    distances, home = distances_of(session, inputs, closed.states)
+    first, second = in_order(distances, home)[:2]
+    return None if is_unclear(distances[first], distances[second]) else first

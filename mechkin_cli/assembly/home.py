@@ -1,0 +1,271 @@
+"""The home drawing as an assembly: whether it closes, and its branch up to given inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import ceil, pi, sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.mechanism import GROUND_NAME, Mechanism, coordinate_quantities, is_angle
+from mechkin_cli.plan import TrackEnd, home_inputs, home_state
+from mechkin_cli.search import Assemblies, with_assemblies
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.session import Followed, Session
+    from mechkin_cli.show import Bools, Floats
+
+
+def is_home_assembled(session: Session) -> bool:
+    """Whether the home drawing closes all loops as drawn."""
+    return session.once("home", lambda: _is_home_assembled(session))
+
+
+def _is_home_assembled(session: Session) -> bool:
+    inputs = home_inputs(session.layout)[:, None]
+    tests = (0.0, 0.0, tolerances.HOME_ASSEMBLED)
+    home = home_state(session.layout)[:, None]
+    batch = session.run(inputs, home, iterations=0, tests=tests)
+    return bool(batch.good[0])
+
+
+def from_home(session: Session, path: Floats) -> Floats:
+    """How far inputs (inputs, rows) are from those of the drawing."""
+    away: Floats = path - home_inputs(session.layout)[:, None]
+    return away
+
+
+def nearest_to_home(session: Session, path: Floats) -> int:
+    """The row whose inputs (inputs, rows) are nearest to the drawing's."""
+    return int(np.argmin(np.max(np.abs(from_home(session, path)), axis=0))) if path.size else 0
+
+
+def follow_from_home(session: Session, inputs: Floats) -> Followed:
+    """The branch of an assembled drawing, straight to `inputs` (inputs,)."""
+    path = np.stack([home_inputs(session.layout), inputs], axis=1)
+    return session.follow(path, home_state(session.layout))
+
+
+# What assemblies look like: joint coordinates, joint points and size.
+
+
+class Probe:
+    """Reads coordinates and joint points of assemblies."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        mechanism = session.problem.mechanism
+        self.coordinates = list(mechanism.coordinates)
+        self.points = [at for _, at in mechanism.joint_points() if at.link != GROUND_NAME]
+        self.fixed = [at.vector for _, at in mechanism.joint_points() if at.link == GROUND_NAME]
+        self.readout = session.readout(coordinate_quantities(mechanism), self.points)
+
+    @classmethod
+    def of(cls, session: Session) -> Probe:
+        """The session's probe, made once."""
+        return session.once("probe", lambda: cls(session))
+
+    def read(self, inputs: Floats, states: Floats) -> tuple[dict[str, Floats], Floats]:
+        """Coordinates by name (SI) and the joint points of the moving links (points, 3,
+        assemblies)."""
+        values = np.repeat(inputs[:, None], states.shape[1], axis=1)
+        batch = self.session.run(values, states, readout=self.readout)
+        assert batch.outputs is not None
+        out = batch.outputs
+        coordinates = {name: out[self.readout.slots[name].first] for name in self.coordinates}
+        points = np.array([out[slot : slot + 3] for slot in self.readout.points])
+        # welds have no point
+        return coordinates, points.reshape(len(self.points), 3, states.shape[1])
+
+    def size(self, inputs: Floats, state: Floats) -> float:
+        """Diagonal of the box of all joint points, in m; 1 if they coincide."""
+        _, points = self.read(inputs, state[:, None])
+        every = np.concatenate([points[:, :, 0], np.array(self.fixed).reshape(-1, 3)])
+        extent = every.max(axis=0) - every.min(axis=0)
+        x, y, z = (float(e) for e in extent)
+        return sqrt(x * x + y * y + z * z) or 1.0
+
+
+# The assembly modes at the first row with their letters.
+#
+# Letters follow the order of the wrapped coordinates, in joint order, then of the joints' places.
+# An assembled drawing's own branch is among the modes even where the random starts miss it.
+
+
+@dataclass(frozen=True)
+class NamedModes:
+    """Assemblies as `found`, their coordinates (SI), joint points and letters (by number, in the
+    order of the letters), where these are known."""
+
+    found: Assemblies
+    coordinates: dict[str, Floats]
+    points: Floats
+    letters: dict[int, str]
+
+    @property
+    def number(self) -> int:
+        """Number of assemblies."""
+        return self.found.number
+
+
+def name_modes(session: Session, inputs: Floats, *, thorough: bool = True) -> NamedModes:
+    """The modes at the first row, `inputs` (inputs,) in kernel units; not `thorough`: most of them,
+    and letters only if these are all for certain."""
+    key = ("modes", inputs.tobytes(), str(session.problem.assembly.near), thorough)
+    return session.once(key, lambda: _name_modes(session, inputs, thorough))
+
+
+def _name_modes(session: Session, inputs: Floats, thorough: bool) -> NamedModes:
+    found = session.search(inputs, thorough=thorough)
+    if is_home_assembled(session):
+        home = follow_from_home(session, inputs)
+        if home.end == TrackEnd.FINISHED:
+            found = with_assemblies(
+                session.layout, session.plan, inputs, found, home.state[:, None]
+            )
+    coordinates, points = Probe.of(session).read(inputs, found.states)
+    known = thorough or found.complete
+    names = letters(session.problem.mechanism, coordinates, points) if known else {}
+    return NamedModes(found, coordinates, points, names)
+
+
+def letters(mechanism: Mechanism, coordinates: dict[str, Floats], points: Floats) -> dict[int, str]:
+    """The name of each assembly, by its number, in the order of the names.
+
+    Assemblies that no coordinate tells apart, as of a body on legs, follow their joint points
+    (points, 3, assemblies).
+    """
+    order = sorted(
+        range(points.shape[2]),
+        key=lambda i: (_key(mechanism, coordinates, i), _places(mechanism, points[:, :, i])),
+    )
+    return {i: mode_name(rank) for rank, i in enumerate(order)}
+
+
+def _key(mechanism: Mechanism, coordinates: dict[str, Floats], number: int) -> tuple[int, ...]:
+    half_turn, size = round(pi / tolerances.MODE_ORDER), mechanism.box_diagonal()
+    key = []
+    for name, values in coordinates.items():
+        value = float(values[number])
+        angle = is_cyclic(mechanism, name)
+        if not is_angle(name.rpartition(".")[2]):
+            value /= size
+        part = round((wrapped(value) if angle else value) / tolerances.MODE_ORDER)
+        key.append(half_turn if angle and part == -half_turn else part)
+    return tuple(key)
+
+
+def _places(mechanism: Mechanism, points: Floats) -> tuple[int, ...]:
+    parts = points.reshape(-1) / (mechanism.box_diagonal() * tolerances.MODE_ORDER)
+    return tuple(round(float(part)) for part in parts)
+
+
+def mode_name(rank: int) -> str:
+    """A, B, ... Z, AA, AB, ..."""
+    name = ""
+    rank += 1
+    while rank:
+        rank, digit = divmod(rank - 1, 26)
+        name = chr(ord("A") + digit) + name
+    return name
+
+
+def is_cyclic(mechanism: Mechanism, name: str) -> bool:
+    """Whether a turn more of a coordinate is the same place: angles but for those of threads."""
+    name, _, coordinate = name.rpartition(".")
+    joint = mechanism.joints[name]
+    return joint.type.chain[joint.freedom_number(coordinate)].is_cyclic
+
+
+def wrapped(angle: float) -> float:
+    """The angle brought into (-pi, pi]."""
+    return angle - 2.0 * pi * ceil((angle - pi) / (2.0 * pi))
+
+
+# The ways from an assembled drawing to the rows: which row it is followed to.
+#
+# The drawing stands where all inputs are zero, and whole turns away from there. Rows in its own
+# turn come first, or in the turn next to it that has any; and of each kind the nearest row before
+# the nearest on the other side of the drawing: its branch may end in one direction and reach the
+# rows in the other.
+
+
+class WayFromHome(NamedTuple):
+    """What came of following the drawing to a row; `turned`: to whole turns of the inputs away."""
+
+    row: int
+    followed: Followed
+    turned: bool = False
+
+
+def ways_from_home(session: Session) -> list[WayFromHome]:
+    """The ways that were tried, at least one; only the last may come to its row."""
+    ways: list[WayFromHome] = []
+    for row, inputs, turned in _ways_from_home_places(session):
+        ways.append(WayFromHome(row, follow_from_home(session, inputs), turned))
+        if ways[-1].followed.end == TrackEnd.FINISHED:
+            break
+    return ways
+
+
+def _ways_from_home_places(session: Session) -> Iterator[tuple[int, Floats, bool]]:
+    """Rows to try, their inputs (inputs,), and whether these leave whole turns out."""
+    leading, tried = _leading(session), set()
+    for path, rows, turned in _paths(session, leading):
+        for row in _two_sides(from_home(session, path)[leading], rows):
+            inputs = np.ascontiguousarray(path[:, row])
+            if (row, inputs.tobytes()) not in tried:
+                tried.add((row, inputs.tobytes()))
+                yield row, inputs, turned
+
+
+def _paths(session: Session, leading: Bools) -> Iterator[tuple[Floats, NDArray[np.intp], bool]]:
+    """The inputs of all rows (inputs, rows) and which rows of them are meant: those in the first
+    turn that has any, all rows, and all without whole turns; one after the other is asked for."""
+    inputs = session.inputs
+    turns = np.max(np.abs(inputs.whole[leading]), axis=0, initial=0.0)
+    every = np.arange(turns.size)
+    # an assembly is the same whole turns of an input away; in the drawing's own turn what follows
+    # others goes all its way
+    if turns.size:
+        least = float(turns.min())
+        yield (inputs.reduced if least else inputs.values), np.flatnonzero(turns == least), False
+    yield inputs.reduced, every, False
+    yield without_turns(session, inputs.reduced), every, True
+
+
+def _leading(session: Session) -> Bools:
+    """Which inputs (inputs,) place a row in a turn: those that follow no other."""
+    inputs = session.problem.motion.inputs
+    leading = np.zeros(session.inputs.values.shape[0], dtype=bool)
+    leading[: len(inputs)] = [not item.follows for item in inputs]
+    return leading
+
+
+def _two_sides(path: Floats, rows: NDArray[np.intp]) -> list[int]:
+    """Of some rows (of inputs from the drawing's, rows) the nearest to the drawing, and of all rows
+    the nearest on its other side."""
+    if not path.size:
+        return [0]
+    distance = np.max(np.abs(path), axis=0)
+    first = int(rows[np.argmin(distance[rows])])
+    along = sum(one * one[first] for one in path)
+    other = np.flatnonzero(along < 0.0)
+    return [first, int(other[np.argmin(distance[other])])] if other.size else [first]
+
+
+def without_turns(session: Session, path: Floats) -> Floats:
+    """Inputs (inputs, rows) without the whole turns after which the mechanism stands as drawn; as
+    they are where a thread counts turns."""
+    joints = session.problem.mechanism.joints
+    if any(joint.type.is_threaded for joint in joints.values()):
+        return path
+    cyclic = np.array([is_cyclic(session.problem.mechanism, f"{j}.{c}") for j, c in session.driven])
+    turns = np.rint(path / (2.0 * np.pi))
+    turned: Floats = np.where(cyclic[:, None], path - turns * (2.0 * np.pi), path)
+    return turned if (turned != path).any() else path

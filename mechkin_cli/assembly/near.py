@@ -1,0 +1,234 @@
+"""The assembly nearest to given coordinates by Newton's method, where it is proven to be that.
+
+If all unknowns are named, Newton's method from them ends at an assembly x at a distance d. With
+the closing equations f, the Jacobian J there and a bound L of their second derivatives, two
+solutions x and y obey 0 = J^+ (f(y) - f(x)), hence |y - x| >= 2 sigma / L with the smallest
+singular value sigma of J (Kantorovich). Another assembly within a times d of what is named would
+lie within (1 + a) d of x; if that is less than 2 sigma / L there is none. Turns count in rad,
+slides in parts of the size.
+
+L: in a loop of n unknowns the position of one closing frame in the other has second derivatives of
+at most the loop's reach, directions of at most 1; by Cauchy the sum over pairs of unknowns is at
+most n times the root of the sum of both squares.
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.mechanism import GROUND_NAME, norm
+from mechkin_cli.plan import Demand, home_state
+from mechkin_cli.search import Within, single_assembly
+
+if TYPE_CHECKING:
+    from mechkin_cli.plan import Layout
+    from mechkin_cli.search import Assemblies
+    from mechkin_cli.session import Session
+    from mechkin_cli.show import Floats
+
+
+class NamedAssembly(NamedTuple):
+    """What `near` names: states (states,), the others as drawn; the states that are named unknowns;
+    whether these are all unknowns."""
+
+    state: Floats
+    unknowns: frozenset[int]
+    complete: bool
+
+
+class NearestAssembly(NamedTuple):
+    """The assembly (states,) that Newton's method finds, and the distance from it within which
+    there is no other, 0 where none is known; `condition` of its loops."""
+
+    state: Floats
+    unique: float
+    condition: float
+
+    def is_nearest(self, distance: float) -> bool:
+        """Whether no other assembly is nearer, or about as near, where this is at a distance."""
+        return (1.0 + tolerances.NEAR_RUNNER_UP) * distance < self.unique
+
+
+def named_by(session: Session) -> NamedAssembly:
+    """What the problem's `near` names."""
+    layout = session.layout
+    state, named = home_state(layout), set()
+    left = {freedom for block in session.graph.blocks for freedom in block.unknowns}
+    complete = True
+    for name, value in session.problem.assembly.near.items():
+        place = _unknown(session, name)
+        if place is None:
+            complete = False
+            continue
+        freedom, unit = place
+        number = layout.state(*freedom)
+        state[number] = value / unit
+        if freedom in left:
+            named.add(number)
+            left.discard(freedom)
+    return NamedAssembly(state, frozenset(named), complete and not left)
+
+
+def _unknown(session: Session, name: str) -> tuple[tuple[int, int], float] | None:
+    """The freedom (edge, freedom) of a coordinate in the tree and the SI value of its unit."""
+    joint_name, _, coordinate = name.rpartition(".")
+    joint = session.problem.mechanism.joints[joint_name]
+    edge = session.layout.edge_number.get(joint_name)
+    if edge is None:
+        return None
+    unit = joint.unit_of(coordinate, session.layout.length)
+    return (edge, joint.type.freedom_of[coordinate]), unit
+
+
+def newton_from(session: Session, inputs: Floats, named: NamedAssembly) -> NearestAssembly | None:
+    """The assembly that Newton's method reaches from what is named; None if it reaches none.
+
+    `inputs` (inputs,) in kernel units.
+    """
+    start = single_assembly(session.layout, session.plan, inputs, named.state)
+    batch = session.close(inputs[:, None], start[:, None], Demand.CONDITION)
+    if not batch.good[0] or batch.condition is None:
+        return None
+    found, condition = batch.states[:, 0], float(batch.condition[0])
+    if not condition < tolerances.SEARCH_CONDITION:
+        return None
+    unique = _unique(session, found, condition) if named.complete else 0.0
+    return NearestAssembly(found, unique, condition)
+
+
+def box_about(session: Session, named: NamedAssembly, radius: float) -> Within:
+    """The box of all states whose named unknowns lie within `radius` (rad, parts of the size)."""
+    layout = session.layout
+    size = layout.mechanism.box_diagonal() / layout.length
+    radii = np.full(named.state.size, inf)
+    for number, slide in _unknown_states(layout):
+        if number in named.unknowns:
+            radii[number] = radius * size if slide else radius
+    return Within(named.state, radii)
+
+
+def _unknown_states(layout: Layout) -> list[tuple[int, bool]]:
+    """State and whether it is a length, of every unknown."""
+    found = []
+    for block in layout.graph.blocks:
+        for edge, freedom in block.unknowns:
+            k, local = layout.carrier_of(edge, freedom)
+            carrier = layout.carriers[k]
+            found.append((carrier.state + local, carrier.part.type.slides[local]))
+    return found
+
+
+def _unique(session: Session, state: Floats, condition: float) -> float:
+    """Distance from an assembly (states,) within which there is no other; 0 where none is known."""
+    if any(closing.leg is not None for closing in session.graph.closings):
+        return 0.0
+    least = inf
+    for block in session.graph.blocks:
+        loops = [_reach(session.layout, c, state) for c in block.closings]
+        radius = _radius(len(block.unknowns), condition, [reach for reach, _ in loops])
+        # within that ball slides reach farther, and H with them
+        grown = [reach + slides * radius for reach, slides in loops]
+        least = min(least, _radius(len(block.unknowns), condition, grown))
+    return least
+
+
+def _radius(unknowns: int, condition: float, reaches: list[float]) -> float:
+    bend = unknowns * sum(sqrt(reach * reach + 1.0) for reach in reaches)
+    return 2.0 * (1.0 - tolerances.CONDITION_DIGITS) / (condition * bend)
+
+
+def _reach(layout: Layout, number: int, state: Floats) -> tuple[float, float]:
+    """The way round a loop through its joints' points and along its slides, in parts of the size,
+    and by how much it grows at most for a ball of radius 1: no point of the loop is farther from
+    any of its axes."""
+    closing = layout.graph.closings[number]
+    size = layout.mechanism.box_diagonal()
+    total = slides = 0.0
+    edges = {edge for edge, _ in closing.loop}
+    for carrier in layout.carriers:
+        if carrier.edge not in edges:
+            continue
+        if carrier.parent >= 0:
+            total += norm(layout.body_frame[carrier.parent].local(carrier.part.before.o))
+        pitch = abs(layout.graph.edges[carrier.edge].joint.pitch)
+        for local, slide in enumerate(carrier.part.type.slides):
+            value = abs(float(state[carrier.state + local]))
+            if slide:
+                total, slides = total + value * layout.length, slides + 1.0
+            elif pitch:
+                total, slides = total + (value + 1.0) * pitch, slides + pitch / size
+    joint = closing.joint
+    for link, frame in ((joint.first, joint.on_first), (joint.second, joint.on_second)):
+        if link != GROUND_NAME:
+            total += norm(layout.link_frame[link].local(frame.o))
+    return total / size, slides
+
+
+# What to say where a mechanism cannot be assembled: which loop does not close.
+
+LOOP_SHOWN = 12
+"""Joints of a loop that are named one by one."""
+
+
+def nothing_found(
+    session: Session, found: Assemblies, place: str = "at the first row"
+) -> Diagnostic:
+    """What to say where no start closed: which loop it is."""
+    loop, name = _failed_loop(session, found), session.problem.mechanism.name
+    hint = "check the dimensions, or start the sweep at another input"
+    if any(joint.type.is_threaded for joint in session.problem.mechanism.joints.values()):
+        turns = session.problem.assembly.turns
+        hint += f"; threads were searched {turns}.5 turns to either side: assembly: {{turns: N}}"
+    if session.is_redundant:
+        hint = "dimensions of an overconstrained loop must be exact (write expressions)"
+    return Diagnostic(
+        "not-assembled",
+        "error",
+        f"{name} cannot be assembled {place}{loop}",
+        measured=_missed(found),
+        limit=None if found.complete else f"{tolerances.RESIDUAL_ACCEPT:g}",
+        hint=hint,
+        numbers=(
+            Number("starts", found.tried),
+            Number("residual", found.closest, limit=tolerances.RESIDUAL_ACCEPT),
+        ),
+    )
+
+
+def _missed(found: Assemblies) -> str:
+    if found.free:
+        return (
+            f"{found.free} of {found.starts} random starts closed the loops, all where they still "
+            "move with the inputs held, or in a singular position"
+        )
+    if found.complete:
+        return "its equations have no real root"
+    return (
+        f"none of {found.tried} random starts closed, the best to {found.closest:.2g} of the size"
+    )
+
+
+def _failed_loop(session: Session, found: Assemblies) -> str:
+    """The joints of the loops that did not close, and whether others were closed before."""
+    if found.failed is None or found.free:
+        return ""
+    graph = session.graph
+    names: dict[str, None] = {}
+    closings = graph.blocks[found.failed].closings
+    for closing in (graph.closings[c] for c in closings):
+        joints = (closing.joint.name,) if closing.leg is None else closing.leg.joints
+        ways = {sign: [e for e, s in closing.loop if e >= 0 and s == sign] for sign in (1, -1)}
+        # outward to the closing joint's first link, and back
+        there, back = ([graph.edges[e].joint.name for e in sorted(ways[s])] for s in (-1, 1))
+        names.update(dict.fromkeys((*there, *joints, *reversed(back))))
+    shown = [name for name in names if name in session.problem.mechanism.joints]
+    more = f" and {len(shown) - LOOP_SHOWN} more" if len(shown) > LOOP_SHOWN else ""
+    loops = "the loop" if len(closings) == 1 else f"the {len(closings)} loops"
+    close = "does not close" if len(closings) == 1 else "do not close together"
+    before = f", in none of {found.places} assemblies before it" if found.places > 1 else ""
+    return f": {loops} through {', '.join(shown[:LOOP_SHOWN])}{more} {close}{before}"

@@ -1,0 +1,363 @@
+"""The assembly at the first row: near given coordinates, a named mode, the home drawing, or
+nearest to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from math import inf, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.assembly.home import (
+    NamedModes,
+    Probe,
+    is_cyclic,
+    is_home_assembled,
+    name_modes,
+    ways_from_home,
+    wrapped,
+)
+from mechkin_cli.assembly.near import (
+    NearestAssembly,
+    box_about,
+    named_by,
+    newton_from,
+    nothing_found,
+)
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number
+from mechkin_cli.mechanism import dimension_of, is_angle
+from mechkin_cli.plan import TrackEnd
+from mechkin_cli.search import Assemblies, is_in_reach, pose_keys, same_poses, with_assemblies
+from mechkin_cli.session import input_numbers, input_text
+from mechkin_cli.verdict import Status
+
+if TYPE_CHECKING:
+    from mechkin_cli.mechanism import Problem
+    from mechkin_cli.session import Continued, Followed, Session
+    from mechkin_cli.show import Floats
+
+
+# How far assemblies are from what `near` names and from the drawing, and what to say of it.
+
+
+def far_notes(session: Session, inputs: Floats, state: Floats) -> list[Diagnostic]:
+    """A warning where an assembly (states,) lies far from what `near` names."""
+    problem = session.problem
+    coordinates, _ = Probe.of(session).read(inputs, state[:, None])
+    places = {name: float(coordinates[name][0]) for name in problem.assembly.near}
+    far = []
+    for name, target in problem.assembly.near.items():
+        if abs(_miss(problem, name, places[name], target)) > tolerances.NEAR_FAR:
+            dimension = dimension_of(name.rpartition(".")[2])
+            value = float(problem.units.from_si(places[name], dimension))
+            far.append(Number(name, value, problem.units.label(dimension)))
+    if not far:
+        return []
+    return [
+        Diagnostic(
+            "nearest-far",
+            "warning",
+            "no assembly was found near what near names",
+            measured=f"the nearest has {', '.join(f'{n.name} = {n.value:.6g}' for n in far)}",
+            limit=f"{tolerances.NEAR_FAR:g} rad or sizes",
+            hint="see mechkin modes for the assemblies at the first row",
+            numbers=tuple(far),
+        )
+    ]
+
+
+def _miss(problem: Problem, name: str, value: float, target: float) -> float:
+    """How far a coordinate is off: angles the shorter way round, slides in sizes."""
+    miss = value - target
+    if is_cyclic(problem.mechanism, name):
+        return wrapped(miss)
+    if is_angle(name.rpartition(".")[2]):
+        return miss
+    return miss / problem.mechanism.box_diagonal()
+
+
+def distances_of(
+    session: Session, inputs: Floats, states: Floats
+) -> tuple[list[float], list[float]]:
+    """Of assemblies (states, number) from what `near` names, and from the drawing."""
+    coordinates, points = Probe.of(session).read(inputs, states)
+    return distances_near(session.problem, coordinates), distances_home(session, points)
+
+
+def in_order(distances: list[float], home: list[float]) -> list[int]:
+    """Numbers of assemblies, the nearest first; among those as near but for rounding, the nearest
+    to the drawing."""
+    least = min(distances, default=0.0)
+    tied = [i for i, d in enumerate(distances) if d <= least + tolerances.SAME_MODE]
+    rest = [i for i in range(len(distances)) if i not in tied]
+    rest.sort(key=lambda i: distances[i])
+    return [*sorted(tied, key=lambda i: home[i]), *rest]
+
+
+def is_unclear(best: float, second: float) -> bool:
+    """Whether a runner-up is about as near as the nearest."""
+    return second < max(tolerances.NEAR_RUNNER_UP * best, best + tolerances.SAME_MODE)
+
+
+def distances_near(problem: Problem, coordinates: Mapping[str, Floats]) -> list[float]:
+    """Of every assembly from what `near` names."""
+    distances = []
+    for i in range(len(next(iter(coordinates.values())))):
+        total = 0.0
+        for name, target in problem.assembly.near.items():
+            miss = _miss(problem, name, float(coordinates[name][i]), target)
+            total += miss * miss
+        distances.append(sqrt(total))
+    return distances
+
+
+def distances_home(session: Session, points: Floats) -> list[float]:
+    """Root mean square over the moving links' joint points, in parts of the size."""
+    home = np.array([at.vector for at in Probe.of(session).points])[:, :, None]
+    miss = (points - home) / session.problem.mechanism.box_diagonal()
+    total = np.zeros(points.shape[2])
+    for x, y, z in miss:
+        total = total + (x * x + y * y + z * z)
+    return [sqrt(float(squares) / len(home)) for squares in total]
+
+
+def unclear(both: str, distances: tuple[float, float]) -> Diagnostic:
+    """A warning that two assemblies are about as near."""
+    return Diagnostic(
+        "nearest-unclear",
+        "warning",
+        f"{both} are about equally near",
+        measured=f"distances {distances[0]:.4g} and {distances[1]:.4g}",
+        limit=f"ratio {tolerances.NEAR_RUNNER_UP}",
+        hint="give more coordinates under assembly: near",
+        numbers=tuple(Number("distance", distance) for distance in distances),
+    )
+
+
+NEAR = "near"
+"""Stands for the letter of an assembly that was found without all others."""
+
+HOME = "home"
+"""The same for an assembled drawing."""
+
+MAY_BE_RIGID = (
+    "an overconstrained loop moves only if its dimensions are exact (write expressions); else "
+    "this is a branch point or a special position"
+)
+
+
+@dataclass(frozen=True)
+class AssemblyStart:
+    """States at a row (the first, or the one nearest to an assembled home) and the mode's name,
+    where it is known (`near` and `home` stand for one that nobody asked for); `how` says how it was
+    found. Without states `status` says why there are none, and `stuck` whether the inputs did not
+    move from the drawing at all. `off` is the distance from what `near` names and `condition` that
+    of the assembly, as far as the choice has found them."""
+
+    state: Floats | None
+    mode: str
+    how: str
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    status: Status = Status.not_assembled
+    row: int = 0
+    stuck: bool = False
+    off: float = inf
+    condition: float | None = None
+
+
+def choose_start(session: Session) -> AssemblyStart:
+    """The assembly that the file means, found once; or the one that is continued."""
+    if session.continued is not None:
+        return _continued(session.continued)
+    key = ("start", str(session.problem.assembly))
+    return session.once(key, lambda: _judged(session, _choose_start(session)))
+
+
+def _judged(session: Session, start: AssemblyStart) -> AssemblyStart:
+    if start.mode not in (NEAR, HOME) and session.problem.assembly.mode is not None:
+        return start
+    from mechkin_cli.assembly.fold import judged_off_fold
+
+    return judged_off_fold(session, start)
+
+
+def _continued(continued: Continued) -> AssemblyStart:
+    """From the variant of the file's own parameters."""
+    if continued.state is not None:
+        return AssemblyStart(
+            continued.state, NEAR, "continued in the parameters", row=continued.row
+        )
+    diagnostic = Diagnostic(
+        "variant-lost",
+        "error",
+        "the assembly of the file's own parameters ends before it comes to these",
+        hint="take parameters nearer to the file's, or choose the assembly in the file itself",
+    )
+    return AssemblyStart(None, NEAR, "", [diagnostic], Status.branch_lost, continued.row)
+
+
+def _choose_start(session: Session) -> AssemblyStart:
+    # an assembly is the same whole turns of an input away
+    path, wanted = session.inputs.reduced, session.problem.assembly
+    if not wanted.near and wanted.mode is None and is_home_assembled(session):
+        return _from_home(session)
+    if wanted.near and wanted.mode is None:
+        start = _from_near(session, path[:, 0])
+        if start is not None:
+            return _told_if_far(session, path[:, 0], start)
+    modes = name_modes(session, path[:, 0], thorough=wanted.mode is not None)
+    if modes.number == 0:
+        return AssemblyStart(None, "", "", [nothing_found(session, modes.found)])
+    if wanted.mode is not None:
+        return _by_name(modes, wanted.mode)
+    home = distances_home(session, modes.points)
+    if not wanted.near:
+        return _nearest(modes, home, home, "nearest to home")
+    start = _nearest(modes, distances_near(session.problem, modes.coordinates), home, "near")
+    return _told_if_far(session, path[:, 0], start)
+
+
+def mode_letter(session: Session, start: AssemblyStart, *, thorough: bool = True) -> str:
+    """The letter of an assembly at the first row, by a search if it is not known yet; its own name
+    where no letter's branch has it, or where only a `thorough` search tells all modes."""
+    if start.mode not in (NEAR, HOME) or start.state is None:
+        return start.mode
+    first = session.inputs.reduced[:, 0]
+    state = state_at_first_row(session, start)
+    if state is None or not (thorough or is_in_reach(session.layout, state)):
+        return start.mode
+    modes = name_modes(session, first, thorough=thorough)
+    if not modes.letters:
+        return start.mode
+    keys = pose_keys(session.layout, modes.found.states)
+    same = same_poses(keys, pose_keys(session.layout, state[:, None]))[:, 0]
+    return modes.letters[int(np.argmax(same))] if same.any() else start.mode
+
+
+def state_at_first_row(session: Session, start: AssemblyStart) -> Floats | None:
+    """States of the first assembly's branch at the first row; an assembled drawing may be followed
+    from another."""
+    if start.state is None or start.row == 0:
+        return start.state
+    values = session.inputs.values
+    path = np.stack([values[:, start.row], values[:, 0]], axis=1)
+    followed = session.follow(path, start.state)
+    return followed.state if followed.end == TrackEnd.FINISHED else None
+
+
+def _from_near(session: Session, inputs: Floats) -> AssemblyStart | None:
+    """By Newton's method: at once if what it finds is proven to be the nearest, else after a search
+    about what is named; None where it finds none that narrows the search."""
+    named = named_by(session)
+    newton = newton_from(session, inputs, named) if named.unknowns else None
+    if newton is None:
+        return None
+    distance = distances_of(session, inputs, newton.state[:, None])[0][0]
+    if newton.is_nearest(distance):
+        how = (
+            f"{distance:.2g} rad or sizes off what near names, found by Newton's method; no other "
+            f"within {newton.unique:.2g}"
+        )
+        return AssemblyStart(newton.state, NEAR, how, off=distance, condition=newton.condition)
+    # what is named exactly is named to rounding
+    radius = tolerances.NEAR_RUNNER_UP * max(distance, tolerances.SAME_MODE)
+    if radius > tolerances.NEAR_BALL:
+        return None
+    found = session.search(inputs, box_about(session, named, radius), thorough=False)
+    return _nearest_about(session, inputs, newton, found, radius)
+
+
+def _told_if_far(session: Session, inputs: Floats, start: AssemblyStart) -> AssemblyStart:
+    if start.state is None or start.off <= tolerances.NEAR_FAR:
+        # no coordinate is off by more than all together
+        return start
+    notes = far_notes(session, inputs, start.state)
+    return replace(start, diagnostics=[*start.diagnostics, *notes])
+
+
+def _nearest_about(
+    session: Session, inputs: Floats, newton: NearestAssembly, found: Assemblies, radius: float
+) -> AssemblyStart | None:
+    """The nearest of all assemblies about as near as the one that Newton's method found."""
+    found = with_assemblies(session.layout, session.plan, inputs, found, newton.state[:, None])
+    distances, home = distances_of(session, inputs, found.states)
+    order = [i for i in in_order(distances, home) if distances[i] <= radius]
+    if not order:
+        return None
+    best = distances[order[0]]
+    how = (
+        f"{best:.2g} rad or sizes off what near names, nearest of {len(order)} that "
+        f"{found.starts} starts found within {radius:.2g}"
+    )
+    notes = []
+    if len(order) > 1 and is_unclear(best, distances[order[1]]):
+        notes.append(unclear("two assemblies", (best, distances[order[1]])))
+    condition = float(found.condition[order[0]])
+    return AssemblyStart(found.states[:, order[0]], NEAR, how, notes, off=best, condition=condition)
+
+
+def _from_home(session: Session) -> AssemblyStart:
+    """Followed from the drawing to the row whose inputs are nearest to it, or on its other side."""
+    ways = ways_from_home(session)
+    for way in ways:
+        if way.followed.end == TrackEnd.FINISHED:
+            words = "followed from the home drawing" + (", whole turns away" if way.turned else "")
+            return AssemblyStart(way.followed.state, HOME, words, row=way.row)
+    return _ends_before_rows(session, ways[0].followed)
+
+
+def _ends_before_rows(session: Session, followed: Followed) -> AssemblyStart:
+    """Why no row has the assembly of the drawing: how the way to the nearest one ended."""
+    places = input_numbers(session.problem, session.layout, followed.inputs)
+    rigid = f"; {MAY_BE_RIGID}" if session.is_redundant else ""
+    diagnostic = Diagnostic(
+        "home-branch-ends",
+        "error",
+        "the assembly drawn at home ends before it comes to a row",
+        measured=f"followed up to {', '.join(map(input_text, places))}",
+        hint=f"choose another assembly with assembly: {{near: ...}}{rigid}",
+        numbers=places,
+    )
+    from mechkin_cli.session import BranchFold, find_limit
+
+    limit = find_limit(session, followed)
+    folds = isinstance(limit, BranchFold)
+    status = Status.beyond_dead_centre if folds else Status.branch_lost
+    stuck = float(np.max(np.abs(followed.inputs), initial=0.0)) <= tolerances.PASSED
+    return AssemblyStart(None, HOME, "", [diagnostic], status, stuck=stuck)
+
+
+def _by_name(modes: NamedModes, name: str) -> AssemblyStart:
+    for i, letter in modes.letters.items():
+        if letter == name:
+            return AssemblyStart(modes.found.states[:, i], name, "by name")
+    diagnostic = Diagnostic(
+        "no-such-mode",
+        "error",
+        f"there is no mode {name[:LONGEST_NAME]} at the first row",
+        measured=f"modes {', '.join(modes.letters.values())}",
+        hint="take one of these",
+    )
+    return AssemblyStart(None, name, "", [diagnostic])
+
+
+def _nearest(
+    modes: NamedModes, distances: list[float], home: list[float], how: str
+) -> AssemblyStart:
+    order = in_order(distances, home)
+    best = order[0]
+    notes = []
+    if len(order) > 1:
+        second = order[1]
+        if is_unclear(distances[best], distances[second]):
+            both = "two assemblies"
+            if modes.letters:
+                both = f"modes {modes.letters[best]} and {modes.letters[second]}"
+            notes.append(unclear(both, (distances[best], distances[second])))
+    words = f"{how}, 1 of {modes.number} found"
+    state, condition = modes.found.states[:, best], float(modes.found.condition[best])
+    return AssemblyStart(state, modes.letters.get(best, NEAR), words, notes, condition=condition)

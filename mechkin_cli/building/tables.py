@@ -1,0 +1,295 @@
+"""Checks the columns of the tables once: names, dimensions, one number per row."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
+from mechkin_cli.diagnostics import Diagnostic, nearest_hint
+from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector
+from mechkin_cli.mechanism import Drives, Problem, Wanted, hint_in_plane, hint_of, without_effort
+from mechkin_cli.schema import MechanismFile, tables as written
+from mechkin_cli.tables import (
+    CoefficientsLayout,
+    ColumnLayout,
+    PlotLayout,
+    PrintedSource,
+    Remark,
+    TableLayout,
+    default_table,
+    row_texts,
+)
+from mechkin_cli.verdict import SWEEP
+
+if TYPE_CHECKING:
+    from mechkin_cli.schema import Coefficients
+
+
+# Runs that a file names: the sweep and its responses.
+
+
+def runs_of(file: MechanismFile) -> tuple[str, ...]:
+    """The runs of a file by name, the sweep first; a file of responses alone has no sweep."""
+    swept = file.motion is not None or not file.responses
+    return (*((SWEEP,) if swept else ()), *file.responses)
+
+
+def unknown_run(fields: Fields, path: Path, name: str, known: Collection[str]) -> None:
+    """Notes that the name at `path` is no run."""
+    if name == SWEEP:
+        text, hint = "there is no sweep: the file has no motion:", "name a response, or add motion:"
+    else:
+        text = f"there is no run {name}"
+        hint = nearest_hint(name, list(known)) or f"runs are {', '.join(known)}"
+    fields.error("unknown-run", path, text, hint)
+
+
+def build_tables(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[TableLayout, ...]:
+    """The tables' layouts, and one for each run that has none; what is wrong with a column is noted
+    in `fields`."""
+    runs = runs_of(file)
+    known = {run: quantities_of(problem, run) for run in runs}
+    drives = problem.mechanism.drives
+    tables = []
+    for i, section in enumerate(file.tables):
+        run = _run_of(fields, ("tables", i), section, runs)
+        if run is not None:
+            sample = ColumnSample(fields, known[run], run, drives if run == SWEEP else None)
+            tables.append(_table(fields, ("tables", i), section, run, sample))
+    read = {table.run for table in tables}
+    named = {section.run for section in file.tables}
+    for run in runs:
+        if run not in read and run not in named:
+            tables.append(_default(problem, run))
+            _refuse_taken(fields, file, run)
+    _warn_of_missing_print(fields, file)
+    return tuple(tables)
+
+
+def quantities_of(problem: Problem, run: str) -> Mapping[str, Wanted]:
+    """The quantities that the rows of a run have, by name."""
+    if run == SWEEP:
+        return problem.quantities()
+    from mechkin_cli.mechanism import response_problem
+
+    return response_problem(problem, problem.responses[run]).quantities()
+
+
+def _run_of(fields: Fields, path: Path, section: written.Table, runs: Sequence[str]) -> str | None:
+    """The run that a table reads; None where an error was noted."""
+    if section.run is None and runs[0] != SWEEP and len(runs) > 1:
+        text = f"{section.name} does not say which run it reads"
+        fields.error("unknown-run", path, text, f"add run: one of {', '.join(runs)}")
+        return None
+    run = section.run or runs[0]
+    if run in runs:
+        return run
+    unknown_run(fields, (*path, "run"), run, runs)
+    return None
+
+
+def _table(
+    fields: Fields, path: Path, section: written.Table, run: str, sample: ColumnSample
+) -> TableLayout:
+    columns = []
+    for k, column in enumerate(section.columns):
+        place: Path = (*path, "columns", k)
+        if fields.document.node((*place, "value")) is not None:
+            place = (*place, "value")
+        layout = _column(fields, place, column, sample)
+        if layout is not None:
+            columns.append(layout)
+    title = section.title or section.name
+    published = _published(section.published)
+    plot = None if section.plot is None else PlotLayout(section.plot.x, section.plot.y)
+    return TableLayout(section.name, title, tuple(columns), published, run, section.summary, plot)
+
+
+def _default(problem: Problem, run: str) -> TableLayout:
+    """The table of a run that has none."""
+    if run == SWEEP:
+        timed = problem.motion.time is not None
+        efforts = [".".join(pair) for pair in problem.acting]
+    else:
+        timed = True
+        efforts = [f"{joint}.{name}" for joint, name in problem.responses[run].efforts_of]
+    return default_table(problem.mechanism.coordinates, efforts, run=run, timed=timed)
+
+
+def _refuse_taken(fields: Fields, file: MechanismFile, run: str) -> None:
+    """A run without tables writes one of its own name."""
+    for i, section in enumerate(file.tables):
+        if section.name.casefold() == run.casefold():
+            text = f"the run {run} has no table and writes one called {run} itself"
+            hint = f"rename this one, or give the other: run: {run}"
+            fields.error("table-clash", ("tables", i, "name"), text, hint)
+
+
+def _published(section: written.PublishedValues | None) -> PrintedSource | None:
+    if section is None:
+        return None
+    remarks = tuple(Remark(r.text, r.columns or (), r.data or ()) for r in section.remarks)
+    return PrintedSource(section.file, remarks, section.rows_by)
+
+
+def _warn_of_missing_print(fields: Fields, file: MechanismFile) -> None:
+    """Files of printed values that are not there are warned of, all at once, since tables need none
+    until they are compared."""
+    folder = fields.document.folder
+    missing: list[tuple[Path, str]] = []
+    for i, table in enumerate(file.tables):
+        printed = table.published
+        if folder is None or printed is None or (folder / printed.file).is_file():
+            continue
+        path: Path = ("tables", i, "published")
+        at = path if fields.document.node((*path, "file")) is None else (*path, "file")
+        missing.append((at, str(folder / printed.file)))
+    if not missing:
+        return
+    (path, first), *others = missing
+    more = f", nor in {len(others)} other{'s' * (len(others) > 1)}" if others else ""
+    text = f"there are no printed values in {first}{more}"
+    hint = "the path leads from the folder of the mechanism file; put the file there"
+    place = fields.document.place(path)
+    fields.note(Diagnostic("published-missing", "warning", text, place, hint=hint))
+
+
+def _column(
+    fields: Fields, path: Path, column: written.Column, sample: ColumnSample
+) -> ColumnLayout | None:
+    try:
+        expression = fields.definitions.parse(column.value)
+        if column.value.strip() not in sample.texts:
+            found = expression.evaluate(sample, fields.units)
+            if isinstance(found.value, Vector):
+                raise ExpressionError(
+                    "a column holds one number per row, this is a vector",
+                    0,
+                    "write one component: .x, .y or .z",
+                )
+    except ExpressionError as error:
+        fields.expression_error(path, error)
+        return None
+    return ColumnLayout(column.label, expression, column.decimals)
+
+
+class ColumnSample:
+    """Resolves names to one-row stand-ins of the right dimension."""
+
+    def __init__(
+        self,
+        fields: Fields,
+        quantities: Mapping[str, Wanted],
+        run: str,
+        drives: Drives | None = None,
+    ) -> None:
+        self.run = run
+        self.texts = row_texts(run)
+        self.drives = drives
+        self.fields = fields
+        self.parameters = fields.parameters
+        self.quantities = quantities
+
+    def __call__(self, name: str) -> Quantity:
+        """The stand-in of a name.
+
+        Raises:
+            ExpressionError: nothing has this name, or what has it is a text.
+        """
+        if name in self.parameters:
+            return self.parameters[name]
+        if name in self.texts:
+            raise ExpressionError(f"{name} is a text, no number", 0, "make it a column of its own")
+        if self.fields.is_refused(name):
+            raise AlreadyRefused(name)
+        wanted = self.quantities.get(name)
+        if wanted is None:
+            known = [
+                *self.parameters,
+                *self.fields.definitions.named,
+                *self.quantities,
+                *self.texts,
+            ]
+            response = self.run != SWEEP
+            passive = without_effort(name, self.quantities, self.drives, response=response)
+            held = hint_in_plane(name) if self.fields.plane else None
+            raise UnknownName(name, known, passive or held or hint_of(name))
+        one = np.ones(1)
+        return Quantity(wanted.value([one] * 3), wanted.dimension)
+
+
+def used_quantities(tables: Sequence[TableLayout], quantities: Mapping[str, Wanted]) -> list[str]:
+    """Names of the quantities that some tables read."""
+    found: dict[str, None] = {}
+    for table in tables:
+        for column in table.columns:
+            for name in sorted(column.expression.names):
+                for candidate in (name, name.rpartition(".")[0]):
+                    if candidate in quantities:
+                        found[candidate] = None
+                        break
+    return list(found)
+
+
+# Checks `coefficients:` - rows, balls and directions that exist, names that no table has.
+
+
+def build_coefficients(
+    fields: Fields,
+    file: MechanismFile,
+    problem: Problem,
+    tables: Sequence[TableLayout],
+) -> tuple[CoefficientsLayout, ...]:
+    """The layouts; what is wrong is noted in `fields`."""
+    found: list[CoefficientsLayout] = []
+    for number, section in enumerate(file.coefficients):
+        path: Path = ("coefficients", number)
+        if section.row > problem.motion.rows:
+            text = f"the sweep has {problem.motion.rows} rows"
+            fields.error("unknown-row", (*path, "row"), text, f"write 1 to {problem.motion.rows}")
+        along = _along(fields, (*path, "along"), section, problem)
+        layout = CoefficientsLayout(
+            section.name, section.title or section.name, section.row, along, section.counted
+        )
+        taken = {one.name.casefold() for one in tables}
+        taken |= {name.casefold() for other in found for name in other.names}
+        for name in layout.names:
+            if name.casefold() in taken:
+                text = f"another table is written to {name}"
+                fields.error("table-clash", (*path, "name"), text, "rename one of them")
+        found.append(layout)
+    if found and SWEEP not in runs_of(file):
+        text = "coefficients: are told at a row of the sweep, and the file has responses alone"
+        fields.error("no-sweep", ("coefficients",), text, "add motion:, or leave them out")
+    if found and problem.mechanism.frictions:
+        text = "coefficients: cannot be told where joints rub: friction is no linear function"
+        fields.error("rubbing", ("coefficients",), text, "leave out coefficients: or the friction")
+    if found and problem.hold_idle:
+        text = "coefficients: cannot be told where idle freedoms are held against loads"
+        fields.error("held-idle", ("coefficients",), text, "leave out coefficients: or idle: hold")
+    return tuple(found)
+
+
+def _along(
+    fields: Fields, path: Path, section: Coefficients, problem: Problem
+) -> dict[str, tuple[str, str]]:
+    mechanism = problem.mechanism
+    found: dict[str, tuple[str, str]] = {}
+    for name, directions in section.along.items():
+        joint = mechanism.joints.get(name)
+        if joint is None or not joint.type.is_ball:
+            balls = [one.name for one in mechanism.joints.values() if one.type.is_ball]
+            hint = f"balls are {', '.join(balls)}" if balls else "the mechanism has none"
+            fields.error("no-ball", (*path, name), f"{name} is no ball of the mechanism", hint)
+            continue
+        unknown = [one for one in directions if one not in mechanism.directions]
+        for one in unknown:
+            hint = nearest_hint(one, mechanism.directions) or "name it in directions:"
+            place = (*path, name, directions.index(one))
+            fields.error("unknown-name", place, f"there is no direction {one}", hint)
+        if not unknown:
+            found[name] = (directions[0], directions[1])
+    return found

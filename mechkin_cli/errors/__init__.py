@@ -1,0 +1,29 @@
+"""True errors: the rows repeated in double-double, and how far the doubles were off."""
+
+from __future__ import annotations
+
+from mechkin_cli.lazy import lazy_names
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from mechkin_cli.errors.cells import true_values as true_values
+    from mechkin_cli.errors.errors import Errors as Errors
+    from mechkin_cli.errors.repeat import repetition as repetition
+    from mechkin_cli.errors.rows import (
+        WORDS as WORDS,
+        KernelRows as KernelRows,
+        NotRepeated as NotRepeated,
+        Repeated as Repeated,
+        reason_of as reason_of,
+        wide_run as wide_run,
+    )
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "cells": ["true_values"],
+        "errors": ["Errors"],
+        "repeat": ["repetition"],
+        "rows": ["KernelRows", "NotRepeated", "Repeated", "WORDS", "reason_of", "wide_run"],
+    },
+)

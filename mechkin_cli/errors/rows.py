@@ -1,0 +1,459 @@
+"""The rows of a run by the kernel's double-double unit, with the numbers of the file's text.
+
+The kernel starts from the converged doubles, closes the loops in double-double, and computes what
+is wanted there. Constants and inputs are those of the text (`solver.precise`), so what is found is
+true to about 1e-31 times the condition.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
+from math import pi
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from mechkin_cli.exact import PI
+from mechkin_cli.expressions import Quantity, UnknownName
+from mechkin_cli.mechanism import (
+    BEARING_KINDS,
+    COEFFICIENT_KINDS,
+    DERIVED_KINDS,
+    FINITE_KINDS,
+    LEDGER_KINDS,
+    TIME_OF_ROW,
+    bearing_load,
+    is_angle,
+)
+from mechkin_cli.plan import Demand, demand_of
+from mechkin_cli.session import KernelInputs
+from mechkin_cli.tape import DoubleDoubles, TraceLost, exactly
+from mechkin_cli.units import TIME, UnitSystem
+from mechkin_cli.verdict import Status
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.mechanism import Problem, Wanted
+    from mechkin_cli.session import Precise, PreciseInputs, Session
+    from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.sweep import Result
+
+
+# Double-double numbers as the kernel takes them: high and low parts beside each other.
+
+
+def as_number(parts: Floats) -> DoubleDoubles:
+    """(numbers, 2, rows) as double-doubles (numbers, rows)."""
+    return DoubleDoubles(parts[:, 0], parts[:, 1])
+
+
+def as_parts(numbers: Any) -> Floats:
+    """Double-doubles (numbers, rows) as (numbers, 2, rows)."""
+    given = exactly(numbers)
+    return np.stack([given.high, given.low], axis=1)
+
+
+# Why a quantity is not repeated in double-double, in a few words.
+
+VERDICT = "a verdict"
+WORDS = "words"
+INTEGRAL = "an integral over the rows"
+FRICTION = "friction"
+TABLE_LOADS = "a load that is read from a table"
+CROSSED = "the motion passes a branch point"
+OTHER_RATES = "the start gives rates of other coordinates"
+STOP = "the moment of a stop"
+NOT_RESOLVED = "beyond the moment at which the steps of the repetition run out"
+DRAWING = "measured from the drawing in doubles"
+DENSE = "a dense system"
+BALANCE = "a balance over all rows"
+SUMMARY = "a summary: off by no more than twice the worst cell of its column"
+AS_DRIVEN = "read as if the start's coordinates were driven"
+
+
+_NUMBERS_OF_ROWS = {"time", "kinetic_energy", "potential_energy", "work", "dissipated"}
+
+
+def reason_of(problem: Problem, quantity: Wanted) -> str:
+    """Why the quantity is not repeated; "" where it is."""
+    if quantity.owner == "row" and quantity.kind not in _NUMBERS_OF_ROWS:
+        return VERDICT
+    if quantity.kind in LEDGER_KINDS:
+        return INTEGRAL
+    if problem.response is not None and quantity.kind in COEFFICIENT_KINDS:
+        return AS_DRIVEN
+    forces = demand_of(problem.mechanism, [quantity]) & Demand.FORCES
+    if problem.mechanism.frictions and forces:
+        # whether a joint sticks or slips is decided by doubles
+        return FRICTION
+    if forces and any(law.curve is not None for law in problem.load_laws):
+        # the curve through the table is known in doubles
+        return TABLE_LOADS
+    if quantity.kind in FINITE_KINDS - {"finite_angle"}:
+        return DRAWING
+    return ""
+
+
+# The rows of a run once more, in double-double numbers.
+#
+# Nothing is decided again: which rows there are, their branch, the whole turns of angles and which
+# reactions are unique are those of the run. Its quantities are those of the same code, for derived
+# ones line by line (`tape.double_doubles`).
+
+Wide = dict[str, DoubleDoubles]
+"""Quantities by name: (1, rows), vectors (3, rows); SI."""
+
+
+class WideRun(Protocol):
+    """What gives the rows in double-double."""
+
+    @property
+    def inputs(self) -> KernelInputs:
+        """Of the rows, as `Session.inputs`; the arrays are double-double."""
+        ...
+
+    @property
+    def parameters(self) -> Mapping[str, Quantity]:
+        """The file's parameters, in SI."""
+        ...
+
+    @property
+    def written(self) -> Mapping[str, DoubleDoubles]:
+        """Time and inputs with their rates, by the names of their quantities, in the file's
+        units."""
+        ...
+
+    @property
+    def time(self) -> DoubleDoubles | None:
+        """Time of the rows in s (rows,); None of a run without time."""
+        ...
+
+    @property
+    def states(self) -> DoubleDoubles:
+        """The states of the plan (states, rows); nan in rows that did not close."""
+        ...
+
+    def run(
+        self,
+        wanted: Sequence[Wanted],
+        session: Session,
+        inputs: KernelInputs,
+        demand: Demand,
+    ) -> Wide:
+        """Quantities of the kernel on the rows of the run; nan in rows that did not close."""
+        ...
+
+
+class NotRepeated(Exception):
+    """A quantity is not repeated; the message says why."""
+
+
+class Repeated:
+    """A run in double-double.
+
+    Args:
+        result: the run.
+        wide: what gives its rows.
+    """
+
+    shifts: tuple[int, ...] = ()
+
+    def __init__(self, result: Result, wide: WideRun) -> None:
+        self.result = result
+        self.wide = wide
+        self.row_states = result.row_states
+        self._columns: Wide = {}
+        self._rests: Wide = {}
+
+    @property
+    def rough(self) -> Repeated | None:
+        """The same less finely repeated, where the repetition has errors of its own."""
+        return None
+
+    @property
+    def lost_why(self) -> str:
+        """Why rows are not repeated; "" where that is not known."""
+        return ""
+
+    @property
+    def session(self) -> Session:
+        """The mechanism in the kernel."""
+        return self.result.session
+
+    @property
+    def problem(self) -> Problem:
+        """Mechanism, motion and assembly."""
+        return self.session.problem
+
+    @property
+    def units(self) -> UnitSystem:
+        """The file's units."""
+        return self.problem.units
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return self.result.rows
+
+    @property
+    def written(self) -> Mapping[str, DoubleDoubles]:
+        """What the rows were given, in the file's units."""
+        return self.wide.written
+
+    def quantity(self, name: str) -> Quantity:
+        """A parameter, direction or result by name, in SI.
+
+        Raises:
+            UnknownName: nothing has this name.
+            NotRepeated: it is not repeated.
+        """
+        if name in self.problem.parameters:
+            return self.wide.parameters[name]
+        time: Any = self.wide.time
+        if name == TIME_OF_ROW.name and time is not None:
+            return Quantity(time, TIME)
+        wanted = self.problem.quantities().get(name)
+        if wanted is None:
+            raise UnknownName(name, (), None)
+        if wanted.kind in BEARING_KINDS:
+            return bearing_load(wanted, self.quantity)
+        if name not in self._columns:
+            self.read([wanted])
+        columns = self._columns[name]
+        if wanted.vector:
+            return Quantity(wanted.value(columns), wanted.dimension)
+        value: Any = columns[0]
+        rest: Any = self._rests.get(name)
+        return Quantity(value, wanted.dimension, rest)
+
+    def read(self, wanted: Iterable[Wanted]) -> None:
+        """Repeats quantities, as many as possible in one run.
+
+        Raises:
+            NotRepeated: one is not repeated.
+        """
+        known = self._columns.keys() | {TIME_OF_ROW.name}
+        new = [q for q in dict.fromkeys(wanted) if q.name not in known]
+        for quantity in new:
+            reason = reason_of(self.problem, quantity)
+            if reason:
+                raise NotRepeated(reason)
+        plain = [quantity for quantity in new if quantity.kind not in DERIVED_KINDS]
+        derived = [quantity for quantity in new if quantity.kind in DERIVED_KINDS]
+        if derived:
+            from mechkin_cli.derived import basis_of
+
+            basis = basis_of(self.problem.mechanism, derived)
+            plain += [q for q in basis if q.name not in self._columns and q not in plain]
+        if plain:
+            found = self.evaluated(plain)
+            self._rests |= self._turned(plain, found)
+            self._columns |= found
+        if derived:
+            self._columns |= self._derived(derived)
+
+    def _derived(self, wanted: list[Wanted]) -> Wide:
+        from mechkin_cli.derived import BasisQuantities, derived_columns
+
+        run: Any = BasisQuantities(self, self._columns, self.wide.inputs)  # type: ignore[arg-type]
+        try:
+            found: Any = derived_columns(run, wanted)
+        except TypeError as error:
+            raise NotRepeated(f"computed in doubles alone ({error})") from None
+        return dict(found)
+
+    def evaluated(
+        self,
+        wanted: Sequence[Wanted],
+        *,
+        session: Session | None = None,
+        inputs: KernelInputs | None = None,
+        demand: Demand = Demand.POSITION,
+        shift: int = 0,
+    ) -> Wide:
+        """Quantities on the rows, as `Result.evaluated`; of the balance of least norm alone."""
+        session = session or self.session
+        demand |= demand_of(session.problem.mechanism, wanted)
+        found = self.wide.run(wanted, session, self._exact(inputs), demand)
+        rows = self.row_states
+        unclear = np.isin(rows.status, (Status.rank_unclear, Status.dead_centre))
+        for quantity in wanted:
+            own = found[quantity.name]
+            own[:, ~rows.reached] = np.nan
+            if unclear.any() and demand_of(self.problem.mechanism, [quantity]):
+                own[:, unclear] = np.nan
+        return found
+
+    def _exact(self, inputs: KernelInputs | None) -> KernelInputs:
+        """The rows' inputs, with those rates of `inputs` that are not the rows' own: of whole
+        numbers, as those of a unit motion."""
+        own, exact = self.session.inputs, self.wide.inputs
+        if inputs is None or inputs is exact:
+            return exact
+        moving = ("rates", "accelerations", "jerks")
+        others = {name: getattr(inputs, name) for name in moving}
+        known = {id(getattr(one, name)) for one in (own, exact) for name in moving}
+        return exact._replace(**{k: v for k, v in others.items() if id(v) not in known})
+
+    def _turned(self, wanted: Sequence[Wanted], found: Wide) -> Wide:
+        """Gives angles the whole turns that they have in the run, in place; returns what they are
+        within a turn."""
+        rests: Wide = {}
+        for quantity in wanted:
+            if quantity.kind != "coordinate" or quantity.order or not is_angle(quantity.coordinate):
+                continue
+            said = np.asarray(self.result.quantity(quantity.name).value)
+            within = found[quantity.name][0]
+            turns = np.rint((said - within.high) / (2.0 * pi))
+            turns = np.where(np.isfinite(turns), turns, 0.0)
+            if turns.any():
+                turned = within + turns * DoubleDoubles.of_fraction(2 * PI)
+                rests[quantity.name] = within.copy()
+                found[quantity.name] = np.stack([turned])  # type: ignore[assignment]
+        return rests
+
+
+def wide_run(result: Result) -> KernelRows:
+    """What repeats the rows of a run.
+
+    Raises:
+        NotRepeated: a number depends on the file's text in a way that no tape holds.
+    """
+    try:
+        return KernelRows(result, result.session.precise)
+    except (TraceLost, LookupError) as lost:
+        raise NotRepeated(str(lost)) from None
+
+
+class KernelRows:
+    """The rows of a run in double-double, as `repeated.WideRun`.
+
+    Args:
+        result: the run.
+        precise: the numbers of its session as the text says them.
+        chosen: rows that are wanted (rows,); None: all.
+
+    Attributes:
+        residual: (rows,) the largest residual of closing a row so far, as a row's own; nan where
+            nothing was closed.
+    """
+
+    def __init__(self, result: Result, precise: Precise, chosen: Bools | None = None) -> None:
+        self.result = result
+        self.precise = precise
+        self.chosen = chosen
+        self.residual: Floats = np.full(result.rows, np.nan)
+        self._known: dict[int, tuple[Session, Floats]] = {}
+
+    @property
+    def given(self) -> PreciseInputs:
+        """Inputs and time over the rows, as the text says them."""
+        return self.precise.inputs(self.result.session)
+
+    @property
+    def known(self) -> Bools:
+        """Rows that are repeated (rows,)."""
+        reached = self.result.row_states.reached
+        return reached if self.chosen is None else reached & self.chosen
+
+    @cached_property
+    def inputs(self) -> KernelInputs:
+        """Of the rows, double-double."""
+        given = self.given
+        names = ("values", "rates", "accelerations", "jerks", "reduced")
+        numbers: dict[str, Any] = {name: as_number(getattr(given, name)) for name in names}
+        return KernelInputs(**numbers, whole=given.whole)
+
+    @cached_property
+    def parameters(self) -> Mapping[str, Quantity]:
+        """The file's parameters, in SI."""
+        known = self.result.problem.parameters
+        found: dict[str, Quantity] = {}
+        for name, (high, low) in self.precise.parameters.items():
+            value: Any = DoubleDoubles(high, low)
+            found[name] = Quantity(value, known[name].dimension)
+        return found
+
+    @cached_property
+    def written(self) -> Mapping[str, DoubleDoubles]:
+        """Time and inputs with their rates, in the file's units."""
+        return {name: DoubleDoubles(*parts) for name, parts in self.given.written.items()}
+
+    @property
+    def time(self) -> DoubleDoubles | None:
+        """Time of the rows in s (rows,); None of a run without time."""
+        time = self.given.time
+        return None if time is None else DoubleDoubles(*time)
+
+    @cached_property
+    def states(self) -> DoubleDoubles:
+        """The states of the plan (states, rows)."""
+        return self._run((), self.result.session, self.inputs, Demand.POSITION)[0]
+
+    def run(
+        self, wanted: Sequence[Wanted], session: Session, inputs: KernelInputs, demand: Demand
+    ) -> Wide:
+        """Quantities of the kernel on the rows of the run; nan in rows that did not close."""
+        try:
+            values = self._run(wanted, session, inputs, demand)[1]
+        except (TraceLost, LookupError, ValueError) as lost:
+            raise NotRepeated(str(lost)) from None
+        assert values is not None
+        slots = session.readout(wanted).slots
+        return {
+            quantity.name: values[slot.first : slot.first + slot.width].copy()
+            for quantity, slot in ((q, slots[q.name]) for q in wanted)
+        }
+
+    def _run(
+        self, wanted: Sequence[Wanted], session: Session, inputs: KernelInputs, demand: Demand
+    ) -> tuple[DoubleDoubles, DoubleDoubles | None]:
+        rows, given, forces = self.result.row_states, self.given, demand & Demand.FORCES
+        known = self.known
+        at = np.flatnonzero(known) if known.any() else np.zeros(1, dtype=np.intp)
+
+        def parts(numbers: Any) -> Floats:
+            return as_parts(numbers)[..., at]
+
+        batch = session.run_precise(
+            parts(inputs.reduced),
+            **self._start(at, session),
+            readout=session.readout(wanted) if wanted else None,
+            constants=self._constants(session),
+            output_constants=self.precise.outputs(session, wanted) if wanted else None,
+            demand=demand & ~Demand.CONDITION,
+            rates=parts(inputs.rates) if demand & Demand.VELOCITY else None,
+            accelerations=parts(inputs.accelerations) if demand & Demand.ACCELERATION else None,
+            jerks=parts(inputs.jerks) if demand & Demand.JERK else None,
+            ties=None if given.tie_rates is None or not forces else given.tie_rates[..., at],
+            turned=np.ascontiguousarray(rows.turns[:, at]),
+            whole=np.ascontiguousarray(given.whole[:, at]),
+            full=parts(inputs.values),
+            time=None if given.time is None else np.ascontiguousarray(given.time[:, at]),
+        )
+        # what the text does not close exactly is solved by least squares, as in doubles
+        closed = (batch.good | session.is_redundant) & known[at]
+        self.residual[at] = np.fmax(self.residual[at], batch.residual[0])
+        outputs = batch.outputs
+        values = None if outputs is None else _put_back(outputs, at, closed, known.size)
+        return _put_back(batch.states, at, closed, known.size), values
+
+    def _start(self, at: NDArray[np.intp], session: Session) -> dict[str, Any]:
+        """What `Session.run_precise` starts `session` from at the rows `at`."""
+        return {"guess": np.ascontiguousarray(self.result.row_states.states[:, at])}
+
+    def _constants(self, session: Session) -> Floats:
+        """The constants of a session's plan as the text says them (constants, 2); kept."""
+        if id(session) not in self._known:
+            self._known[id(session)] = (session, self.precise.constants(session))
+        return self._known[id(session)][1]
+
+
+def _put_back(found: Floats, at: NDArray[np.intp], closed: Bools, rows: int) -> DoubleDoubles:
+    """Numbers (numbers, 2, places) of the rows `at` among all; nan elsewhere and where a row did
+    not close."""
+    numbers = np.full((len(found), 2, rows), np.nan)
+    numbers[..., at[closed]] = found[..., closed]
+    return as_number(numbers)

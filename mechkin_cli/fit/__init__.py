@@ -1,0 +1,16 @@
+"""Dimensions that fit: parameters sought so that quantities follow what is asked."""
+
+from __future__ import annotations
+
+from mechkin_cli.lazy import lazy_names
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from mechkin_cli.fit.result import Fit as Fit, fit_of as fit_of
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "result": ["Fit", "fit_of"],
+    },
+)

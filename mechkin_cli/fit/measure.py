@@ -1,0 +1,275 @@
+"""What a population of variants is measured by: residuals of targets, magnitudes, margins."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.fit.request import Constraint, FitRequest, Target
+from mechkin_cli.fit.search import Measures
+from mechkin_cli.fit.slopes import nearest_places
+from mechkin_cli.tables import row_weights
+from mechkin_cli.tolerances import LAST_ROW
+from mechkin_cli.variants import way_of
+from mechkin_cli.verdict import SWEEP, Status
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from mechkin_cli.mechanism import DrivenInput
+    from mechkin_cli.model import Model
+    from mechkin_cli.show import Bools, Floats
+
+
+# The models that a fit runs: the file's own sweep, its curve in close rows, and single inputs.
+#
+# All begin with the file's first row, so that each continues the same assembly.
+
+CURVE_ROWS = 181
+"""Rows of a curve between which the nearest place is sought: 2 deg of a turn, so that ten of
+them tell the curve between to rounding."""
+
+LEFT_OUT = ("tables", "responses", "view")
+"""Sections that no fit reads."""
+
+
+class FitModels:
+    """A model under other motions.
+
+    Args:
+        model: whose dimensions are sought.
+
+    Raises:
+        UsageError: it has nothing that runs.
+    """
+
+    def __init__(self, model: Model) -> None:
+        if SWEEP in model.runs and not model.problem.motion.inputs:
+            raise UsageError(f"{model.name} has no sweep to fit; give it motion: with an input")
+        self.model = model
+        self._listed: dict[tuple[float, ...], Model] = {}
+
+    @cached_property
+    def moved(self) -> DrivenInput:
+        """The input that moves."""
+        motion = self.model.problem.motion
+        swept = [one for one in motion.inputs if np.ptp(one.written) > 0.0]
+        if motion.time is not None or len(swept) != 1:
+            raise UsageError(
+                "targets at inputs need a sweep in which one input moves by itself, without "
+                "motion: {time: ...}; write such a motion, or targets with least:"
+            )
+        return swept[0]
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The range of the moving input, in the file's units, from its first row on."""
+        written = self.moved.written
+        far = max(written, key=lambda value: abs(value - written[0]))
+        return float(written[0]), float(far)
+
+    @cached_property
+    def unit(self) -> str:
+        """The unit of the moving input."""
+        problem = self.model.problem
+        return problem.units.label(problem.quantities()[self.moved.name].dimension)
+
+    @cached_property
+    def curve(self) -> Model:
+        """The sweep's range in close rows."""
+        begin, end = self.ends
+        count = max(CURVE_ROWS, self.model.problem.motion.rows)
+        return self._with({"from": self._text(begin), "to": self._text(end), "count": str(count)})
+
+    @cached_property
+    def curve_inputs(self) -> Floats:
+        """The inputs of its rows (rows,)."""
+        written: Floats = np.asarray(
+            next(one for one in self.curve.problem.motion.inputs if np.ptp(one.written)).written
+        )
+        return written
+
+    def listed(self, inputs: Sequence[float]) -> Model:
+        """The file's first row, then rows at these inputs."""
+        key = tuple(inputs)
+        if key not in self._listed:
+            values = [self.ends[0], *key]
+            self._listed[key] = self._with({"values": [self._text(v) for v in values]})
+        return self._listed[key]
+
+    def _text(self, value: float) -> str:
+        return f"{value!r} {self.unit}".strip()
+
+    def _with(self, rows: dict[str, Any]) -> Model:
+        """The same mechanism under another motion of the moving input."""
+        from mechkin_cli.building import build, open_data
+        from mechkin_cli.model import Model
+        from mechkin_cli.variants import VariedModel, file_values
+
+        document = self.model.built.read.document
+        data: dict[str, Any] = {k: v for k, v in document.data.items() if k not in LEFT_OUT}
+        motion: dict[str, Any] = data["motion"]
+        inputs = {}
+        for driven in self.model.problem.motion.inputs:
+            written = motion["inputs"][driven.name]
+            if driven.name == self.moved.name:
+                kept = {"rate", "acceleration", "jerk"} & written.keys()
+                inputs[driven.name] = rows | {key: written[key] for key in kept}
+            elif "values" in written:
+                inputs[driven.name] = {"at": written["values"][0]}
+            else:
+                inputs[driven.name] = written
+        data["motion"] = motion | {"inputs": inputs}
+        source = open_data(data, document.file, folder=document.folder, tables=document.tables)
+        found = Model(build(source), self.model.stem)
+        if isinstance(self.model, VariedModel):
+            own = self.model.values
+            in_file = file_values(
+                np.array(list(own.values()))[:, None], self.model.problem, tuple(own)
+            )
+            return found.with_parameters({name: float(v[0]) for name, v in in_file.items()})
+        return found
+
+
+TIME = "time"
+SOLVED = np.array([status.has_solution for status in Status])
+
+
+class FitValues:
+    """A request to a model, for populations of its parameters in parts of their bounds."""
+
+    def __init__(self, models: FitModels, request: FitRequest) -> None:
+        self.models, self.request = models, request
+        self.lower = np.array([one.lower for one in request.parameters])
+        self.width = np.array([one.upper for one in request.parameters]) - self.lower
+        self.names = [one.name for one in request.parameters]
+        targets = request.targets
+        self.at_inputs = [one for one in targets if one.at is not None and one.run == SWEEP]
+        self.at_moments = [one for one in targets if one.at is not None and one.run != SWEEP]
+        self.anywhere = [one for one in targets if one.at is None and not one.least]
+        self.least = [one for one in targets if one.least]
+        swept = [SWEEP] if SWEEP in models.model.runs else []
+        asked = [one.run for one in targets] + [one.run for one in request.constraints]
+        self.runs = tuple(dict.fromkeys([*swept, *asked]))
+        self.weights = {run: rms_weights(models.model, run) for run in self.runs}
+        # rows in the order of the inputs, so that each is followed from its neighbour
+        begin, end = models.ends if self.at_inputs else (0.0, 0.0)
+        inputs = sorted({v for one in self.at_inputs for v in one.at or ()}, reverse=end < begin)
+        self.listed_inputs = tuple(inputs)
+        self._row = {value: number + 1 for number, value in enumerate(inputs)}
+
+    def texts(self, run: str) -> list[str]:
+        """What is read of the rows of a run."""
+        read = [(one.run, one.of) for one in (*self.least, *self.at_moments)]
+        read += [(one.run, one.of) for one in self.request.constraints]
+        return [of for asked, of in read if asked == run]
+
+    def values(self, unknowns: Floats) -> dict[str, Floats]:
+        """Parameters (S,) by name, in the file's units."""
+        found = self.lower[:, None] + unknowns * self.width[:, None]
+        return dict(zip(self.names, found, strict=True))
+
+    def rows_of(self, target: Target) -> list[int]:
+        """The rows among the listed inputs, or of a response, at which a target stands."""
+        if target.run == SWEEP:
+            return [self._row[value] for value in target.at or ()]
+        response = self.models.model.problem.responses[target.run]
+        moments = response.moments.written.tolist()
+        return [moments.index(value) for value in target.at or ()]
+
+    def on_time(self, run: str, times: Floats) -> Bools:
+        """Which rows of a response stand at their moments: that of a stop takes the place of the
+        next one, and those behind it are missing."""
+        moments = self.models.model.problem.responses[run].moments.written
+        with np.errstate(invalid="ignore"):
+            found: Bools = np.abs(times - moments) <= LAST_ROW * np.ptp(moments)
+        return found
+
+    def measure(self, unknowns: Floats) -> Measures:
+        """Of a population (unknowns, S)."""
+        values, count = self.values(unknowns), unknowns.shape[1]
+        residuals: list[Floats] = []
+        peaks: list[Floats] = []
+        margins: list[Floats] = []
+        missing = np.zeros(count)
+        rows: dict[str, dict[str, Floats]] = {}
+        for run in self.runs:
+            rows[run], lost = self._run(self.models.model, values, self.texts(run), run)
+            missing = missing + lost
+        for target in self.least:
+            scaled = rows[target.run][target.of] / target.within
+            if target.least == "peak":
+                peaks.append(scaled)
+            else:
+                weights = self.weights[target.run]
+                parts = scaled.reshape(count, len(weights), -1) * weights[:, None]
+                residuals.append(parts.reshape(count, -1))
+        for constraint in self.request.constraints:
+            margins += margins_of(constraint, rows[constraint.run][constraint.of])
+        for target in self.at_moments:
+            told = rows[target.run][target.of][:, self.rows_of(target)]
+            residuals.append(deviations(target, told))
+        if self.at_inputs:
+            listed = self.models.listed(self.listed_inputs)
+            found, lost = self._run(listed, values, [one.of for one in self.at_inputs])
+            missing = missing + lost
+            for target in self.at_inputs:
+                residuals.append(deviations(target, found[target.of][:, self.rows_of(target)]))
+        if self.anywhere:
+            found, lost = self._run(self.models.curve, values, [one.of for one in self.anywhere])
+            missing = missing + lost
+            for target in self.anywhere:
+                _, places = nearest_places(found[target.of], target.wanted)
+                residuals.append(deviations(target, places))
+        return Measures(_beside(residuals, count), tuple(peaks), _beside(margins, count), missing)
+
+    def _run(
+        self, model: Model, values: dict[str, Floats], texts: list[str], run: str = SWEEP
+    ) -> tuple[dict[str, Floats], Floats]:
+        """Expressions over the rows, and the part of rows or values that are missing (S,)."""
+        asked = list(dict.fromkeys(texts)) or [model.problem.motion.inputs[0].name]
+        if run == SWEEP:
+            variants = model.vary(values, asked)
+            lost = ~SOLVED[variants.codes]
+        else:
+            variants = model.vary(values, list(dict.fromkeys((*asked, TIME))), run=run)
+            lost = ~SOLVED[variants.codes] | ~self.on_time(run, variants[TIME])
+        found = {}
+        for text in asked:
+            value = variants[text]
+            empty = ~np.isfinite(value)
+            lost = lost | (empty.any(axis=2) if value.ndim == 3 else empty)
+            found[text] = np.where(empty, 0.0, value)
+        missing: Floats = lost.mean(axis=1)
+        return found, missing
+
+
+def deviations(target: Target, values: Floats) -> Floats:
+    """Residuals (S, points * width) of values (S, points) or (S, points, width)."""
+    values = values.reshape(len(values), len(target.wanted), target.width)
+    found: Floats = ((values - target.wanted) / target.within).reshape(len(values), -1)
+    return found
+
+
+def margins_of(constraint: Constraint, values: Floats) -> list[Floats]:
+    """Margins (S, rows) of each of its bounds, in parts of the bound."""
+    return [sign * (values - bound) / (abs(bound) or 1.0) for bound, sign in constraint.bounds]
+
+
+def rms_weights(model: Model, run: str) -> Floats:
+    """Roots of what each row counts for in a mean over the way (rows,)."""
+    if run != SWEEP:
+        weights = row_weights(model.problem.responses[run].moments.written)
+        return np.asarray(np.sqrt(weights / weights.sum()), dtype=np.float64)
+    way = way_of(model.problem)
+    at = np.zeros(model.problem.motion.rows) if way is None else way.values
+    weights = row_weights(np.asarray(at, dtype=np.float64))
+    found: Floats = np.sqrt(weights / weights.sum())
+    return found
+
+
+def _beside(parts: list[Floats], count: int) -> Floats:
+    return np.concatenate(parts, axis=1) if parts else np.zeros((count, 0))

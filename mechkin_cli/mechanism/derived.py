@@ -1,0 +1,308 @@
+"""The quantities that are derived from others after a run, by name.
+
+`J.q0` ... `J.q3`, `J.turn` of joints whose orientation has no coordinate; `L.screw_axis`,
+`L.finite_axis`, ... of links; `J.theta.mechanical_advantage` of every coordinate that is no input;
+`J.theta.transmission_angle` where one joint alone drives a link that is hinged to ground.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism, is_written
+from mechkin_cli.mechanism.motion import ORDERS
+from mechkin_cli.mechanism.pairs import JOINT_TYPES, dimension_of, is_angle
+from mechkin_cli.mechanism.quantities import BEARING_KINDS, Kind, Wanted, effort_quantity, in_plane
+from mechkin_cli.mechanism.vectors import ZERO
+from mechkin_cli.units import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    DIMENSIONLESS,
+    ENERGY,
+    LENGTH,
+    Dimension,
+)
+
+# The coefficients of what is linear in the inputs' accelerations, by name.
+#
+# Every acceleration, reaction and effort is a*alpha + b, with the acceleration alpha of an input
+# (dissertation, (3.54)-(3.61)): `Q.per_acceleration` is a, for the first input that moves, with no
+# other accelerated, and `Q.per.A.theta_ddot` for each of several inputs; `Q.without_acceleration`
+# is b, with no input accelerated. `A.theta.reduced_inertia` is the effort of an input per its own
+# acceleration, `A.theta.effort.per.A.theta_ddot`; with `A.theta.effort.per.B.theta_ddot` these are
+# the matrix of Lagrange's equations in the inputs.
+
+COEFFICIENT_KINDS: set[str] = {"per_acceleration", "without_acceleration"}
+
+_FORCES = {
+    "force",
+    "moment",
+    "moment_about_origin",
+    "effort",
+    "shaking_force",
+    "shaking_moment",
+    "inertia_force",
+    "inertia_moment",
+}
+_AT = " at "
+
+Input = tuple[str, str]
+"""Joint and coordinate."""
+
+
+def coefficient_catalogue(
+    known: Mapping[str, Wanted], inputs: Sequence[Input], leading: Input
+) -> dict[str, Wanted]:
+    """Every coefficient of the quantities that are `known`; `leading` is the input that is meant
+    where none is named."""
+    found = [*_of_inertias(inputs)]
+    for quantity in known.values():
+        if _is_linear(quantity, inputs):
+            found.append(_per(quantity, leading, f"{quantity.name}.per_acceleration"))
+            for joint, coordinate in inputs if len(inputs) > 1 else ():
+                name = f"{quantity.name}.per.{joint}.{coordinate}_ddot"
+                found.append(_per(quantity, (joint, coordinate), name))
+            found.append(_without(quantity))
+    return {wanted.name: wanted for wanted in found}
+
+
+def base_name(coefficient: Wanted) -> str:
+    """The quantity whose coefficient it is."""
+    return coefficient.coordinate.partition(_AT)[0]
+
+
+def accelerated(coefficient: Wanted) -> Input | None:
+    """The input by whose acceleration it is; None: no input is accelerated."""
+    joint, _, coordinate = coefficient.coordinate.partition(_AT)[2].rpartition(".")
+    return (joint, coordinate) if joint else None
+
+
+def base_quantity(known: Mapping[str, Wanted], name: str) -> Wanted:
+    """The quantity of a coefficient's base name; inputs have efforts, whatever else is known."""
+    if name in known:
+        return known[name]
+    joint, coordinate, _ = name.rsplit(".", 2)
+    return effort_quantity(joint, coordinate)
+
+
+def _of_inertias(inputs: Sequence[Input]) -> Iterator[Wanted]:
+    for joint, coordinate in inputs:
+        effort = effort_quantity(joint, coordinate)
+        yield _per(effort, (joint, coordinate), f"{joint}.{coordinate}.reduced_inertia")
+
+
+def _is_linear(quantity: Wanted, inputs: Sequence[Input]) -> bool:
+    if quantity.kind == "coordinate":
+        return quantity.order == 2 and (quantity.owner, quantity.coordinate) not in inputs
+    if quantity.kind == "point":
+        return quantity.order == 2
+    return quantity.kind == "alpha" or quantity.kind in _FORCES
+
+
+def _per(quantity: Wanted, by: Input, name: str) -> Wanted:
+    dimension = quantity.dimension / _acceleration(by[1])
+    return _coefficient(quantity, "per_acceleration", name, dimension, f"{_AT}{by[0]}.{by[1]}")
+
+
+def _without(quantity: Wanted) -> Wanted:
+    name = f"{quantity.name}.without_acceleration"
+    return _coefficient(quantity, "without_acceleration", name, quantity.dimension, "")
+
+
+def _coefficient(quantity: Wanted, kind: Kind, name: str, dimension: Dimension, by: str) -> Wanted:
+    # order 2 says that it is of a motion, and needs no forces
+    order = 0 if quantity.kind in _FORCES else 2
+    base = f"{quantity.name}{by}"
+    return quantity._replace(
+        name=name, kind=kind, dimension=dimension, coordinate=base, order=order
+    )
+
+
+def _acceleration(coordinate: str) -> Dimension:
+    return ANGULAR_ACCELERATION if is_angle(coordinate) else ACCELERATION
+
+
+QUATERNION = ("q0", "q1", "q2", "q3")
+"""Names of a joint's quaternion, scalar first."""
+
+ORIENTATION_KINDS = {"quaternion", "turn"}
+INSTANT_KINDS = {"screw_axis", "screw_point", "screw_pitch"}
+FINITE_KINDS = {"finite_axis", "finite_point", "finite_angle", "finite_slide"}
+TRANSMISSION_KINDS: tuple[Kind, ...] = ("transmission_angle", "dynamic_transmission_angle")
+POWER_KINDS = {"mechanical_advantage", *TRANSMISSION_KINDS}
+LEDGER: dict[str, tuple[Kind, Dimension]] = {
+    "work": ("ledger_work", ENERGY),
+    "dissipated": ("ledger_dissipated", ENERGY),
+    "energy_error": ("ledger_energy_error", DIMENSIONLESS),
+}
+LEDGER_KINDS = {kind for kind, _ in LEDGER.values()}
+DERIVED_KINDS = (
+    ORIENTATION_KINDS
+    | INSTANT_KINDS
+    | FINITE_KINDS
+    | POWER_KINDS
+    | COEFFICIENT_KINDS
+    | LEDGER_KINDS
+    | BEARING_KINDS
+)
+
+_ORIENTED = [kind.letter for kind in JOINT_TYPES.values() if kind.is_oriented]
+_GUIDES = [kind.letter for kind in JOINT_TYPES.values() if kind.is_guide]
+
+
+def _either(letters: Sequence[str]) -> str:
+    return f"{', '.join(letters[:-1])} or {letters[-1]}"
+
+
+_SCREWS: tuple[tuple[Kind, Dimension, bool, int], ...] = (
+    ("screw_axis", DIMENSIONLESS, True, 1),
+    ("screw_point", LENGTH, True, 1),
+    ("screw_pitch", LENGTH / ANGLE, False, 1),
+    ("finite_axis", DIMENSIONLESS, True, 0),
+    ("finite_point", LENGTH, True, 0),
+    ("finite_angle", ANGLE, False, 0),
+    ("finite_slide", LENGTH, False, 0),
+)
+_OF_RESPONSES = (
+    "is told of the rows of a response: name it in the table, run: NAME, or respond(NAME)"
+)
+_HINTS: dict[str, str] = {
+    **{word: f"row.{word} {_OF_RESPONSES}" for word in ("event", "work", "dissipated")},
+    "energy_error": f"row.energy_error {_OF_RESPONSES}",
+    **dict.fromkeys(
+        TRANSMISSION_KINDS,
+        f"a transmission angle has theta or s, unless an input, of an {_either(_GUIDES)} between "
+        f"ground and a link with exactly one other joint, of type {_either(_ORIENTED)}",
+    ),
+    "reduced_inertia": "inputs have a reduced inertia: A.theta.reduced_inertia; of two inputs "
+    "it is A.theta.effort.per.B.theta_ddot",
+    "per": "accelerations, reactions and efforts have coefficients of the acceleration of each of "
+    "several inputs, such as A.theta.effort.per.B.theta_ddot",
+    **dict.fromkeys(
+        sorted(COEFFICIENT_KINDS),
+        "accelerations, reactions and efforts have these coefficients, such as "
+        "A.theta_ddot.per_acceleration, where there is an input",
+    ),
+    "mechanical_advantage": (
+        "a mechanical advantage has every coordinate that is no input (J.theta, J.s, ...), where "
+        "there is an input"
+    ),
+    **dict.fromkeys(
+        [str(kind) for kind in sorted(BEARING_KINDS)],
+        "joints with an axis (R, P, H, C; the normal or groove of others) have bearing loads",
+    ),
+    "turn": f"joints of type {', '.join(_ORIENTED)} have an orientation",
+} | dict.fromkeys(QUATERNION, f"joints of type {', '.join(_ORIENTED)} have an orientation")
+
+
+_HELD = {
+    "z": "a plane file has x and y; what the plane holds is not computed",
+    "axis": "a pin turns about the plane's normal; P and Ps have an axis",
+    **dict.fromkeys(
+        ("screw_axis", "finite_axis"), "every link turns about the plane's normal: omega tells it"
+    ),
+    **dict.fromkeys(
+        ("screw_pitch", "finite_slide", "axial_force", "tilting_moment"),
+        "it is along the plane's normal, and not computed in a plane file",
+    ),
+}
+
+
+def derived_catalogue(
+    mechanism: Mechanism,
+    inputs: Sequence[tuple[str, str]],
+    leading: tuple[str, str] | None,
+) -> dict[str, Wanted]:
+    """Every derived quantity by name; `inputs` (joint, coordinate), `leading` the one of them that
+    mechanical advantages refer to."""
+    found = [*_of_orientations(mechanism), *_of_screws(mechanism)]
+    if leading is not None:
+        found += _of_advantages(mechanism, inputs, leading[1])
+    found += _of_transmissions(mechanism, inputs)
+    known = {wanted.name: wanted for wanted in found}
+    return in_plane(known) if mechanism.plane else known
+
+
+def ledger_catalogue() -> dict[str, Wanted]:
+    """What the rows of a sweep in time have beside others: the work of efforts and loads since the
+    first row, what dampers took, and what is missing of their balance with the energies."""
+    return {
+        f"row.{word}": Wanted(f"row.{word}", kind, GROUND_NAME, dimension, False)
+        for word, (kind, dimension) in LEDGER.items()
+    }
+
+
+def hint_of(name: str) -> str | None:
+    """Which owners have the derived quantity that an unknown name asks for; None for others.
+
+    >>> hint_of("A.turn")
+    'joints of type S, Sp, Sg have an orientation'
+    """
+    words = name.split(".")[1:]
+    if words and (words[-1] == "jerk" or words[-1].endswith(ORDERS[3])):
+        return "a jerk is known where a motion is prescribed; a response has none"
+    return next((_HINTS[word] for word in reversed(words) if word in _HINTS), None)
+
+
+def hint_in_plane(name: str) -> str | None:
+    """What a plane file has instead of a quantity of space; None for other names."""
+    return _HELD.get(name.rpartition(".")[2])
+
+
+def driving_joint(mechanism: Mechanism, joint: Joint) -> Joint | None:
+    """The joint that alone drives the link which `joint` guides on ground; None where the
+    structure is another."""
+    if not joint.type.is_guide or GROUND_NAME not in (joint.first, joint.second):
+        return None
+    link = output_link(joint)
+    others = [other for other in mechanism.joints_of[link] if other is not joint]
+    return others[0] if len(others) == 1 and others[0].type.is_oriented else None
+
+
+def output_link(joint: Joint) -> str:
+    """The moving link of a joint on ground."""
+    return joint.second if joint.first == GROUND_NAME else joint.first
+
+
+def reference_point(mechanism: Mechanism, link: str) -> Attached:
+    """A point of a link near its joints, as drawn; the ground origin if it has only welds."""
+    points = (at for _, at in mechanism.joint_points() if at.link == link)
+    return next(points, Attached(link, ZERO))
+
+
+def _of_orientations(mechanism: Mechanism) -> Iterator[Wanted]:
+    for joint in mechanism.joints.values():
+        if joint.type.is_oriented and is_written(joint.name):
+            for word in QUATERNION:
+                name = f"{joint.name}.{word}"
+                yield Wanted(name, "quaternion", joint.name, DIMENSIONLESS, False, word)
+            yield Wanted(f"{joint.name}.turn", "turn", joint.name, ANGLE, True)
+
+
+def _of_screws(mechanism: Mechanism) -> Iterator[Wanted]:
+    for link in mechanism.links:
+        if link != GROUND_NAME and is_written(link):
+            for kind, dimension, vector, order in _SCREWS:
+                yield Wanted(f"{link}.{kind}", kind, link, dimension, vector, order=order)
+
+
+def _of_advantages(
+    mechanism: Mechanism, inputs: Sequence[tuple[str, str]], leading: str
+) -> Iterator[Wanted]:
+    for joint in mechanism.joints.values():
+        for coordinate in joint.type.coordinates:
+            if (joint.name, coordinate) not in inputs:
+                name = f"{joint.name}.{coordinate}.mechanical_advantage"
+                dimension = dimension_of(leading) / dimension_of(coordinate)
+                kind: Kind = "mechanical_advantage"
+                yield Wanted(name, kind, joint.name, dimension, False, coordinate)
+
+
+def _of_transmissions(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
+    for joint in mechanism.joints.values():
+        if driving_joint(mechanism, joint) is not None:
+            for coordinate in joint.type.coordinates:
+                for kind in TRANSMISSION_KINDS if (joint.name, coordinate) not in inputs else ():
+                    name = f"{joint.name}.{coordinate}.{kind}"
+                    yield Wanted(name, kind, joint.name, ANGLE, False, coordinate)

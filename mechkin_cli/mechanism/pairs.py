@@ -1,0 +1,330 @@
+"""The joint table: everything that is known of a pair stands in its one entry.
+
+Its closing equations, with their derivatives, the wrenches they transmit and the side condition
+that tells an assembly from a false root of them, are composed in the kernel's entry of the letter
+`closing` (kernel/src/pairs.hpp).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+from mechkin_cli.mechanism import pair_type as friction
+from mechkin_cli.mechanism.pair_type import (
+    FIRST,
+    SECOND,
+    Condition,
+    Coordinate,
+    Drawing,
+    DrawnDirection,
+    FrictionLaw,
+    JointType,
+    PairStep,
+)
+from mechkin_cli.units import ANGLE, LENGTH, Dimension
+
+_X1, _Y1, _Z1 = DrawnDirection(FIRST, "x"), DrawnDirection(FIRST, "y"), DrawnDirection(FIRST)
+_X2, _Y2, _Z2 = DrawnDirection(SECOND, "x"), DrawnDirection(SECOND, "y"), DrawnDirection(SECOND)
+_BACK = DrawnDirection(SECOND, reverse=True)
+_OWN = DrawnDirection(FIRST, "own")
+
+
+def _angle(name: str, freedom: int, axis: DrawnDirection | None = _Z2) -> Coordinate:
+    return Coordinate(name, ANGLE, freedom, axis)
+
+
+def _length(
+    name: str, freedom: int, axis: DrawnDirection = _Z2, *, on_thread: bool = False
+) -> Coordinate:
+    return Coordinate(name, LENGTH, freedom, axis, on_thread)
+
+
+def _turns(freedom: int) -> tuple[Coordinate, Coordinate]:
+    return _angle("theta1", freedom, None), _angle("theta2", freedom + 1, None)
+
+
+_TWO_TURNS = (PairStep("R"), PairStep("R", _Z2))
+_AXIS = Drawing("axis", ("axis",))
+
+_TABLE = (
+    JointType(
+        "R",
+        (PairStep("R"),),
+        (_angle("theta", 0),),
+        _AXIS,
+        axis=_Z2,
+        closing="R",
+        softer=("S", "C"),
+        friction=FrictionLaw(
+            friction.journal,
+            turns="along",
+            needs=("radius",),
+            may=("length", "collar"),
+            missed=(("length", "tilting moment"), ("collar", "axial force")),
+        ),
+    ),
+    JointType(
+        "P",
+        (PairStep("P"),),
+        (_length("s", 0),),
+        _AXIS,
+        axis=_Z2,
+        closing="P",
+        softer=("C",),
+        friction=FrictionLaw(
+            friction.guide,
+            slides="along",
+            may=("length", "width", "across"),
+            missed=(("length", "tilting moment"), ("width", "moment about it")),
+        ),
+    ),
+    # a closing joint would lose the count of its turns
+    JointType(
+        "H",
+        (PairStep("H"),),
+        (_angle("theta", 0), _length("s", 0, on_thread=True)),
+        _AXIS,
+        axis=_Z2,
+        friction=FrictionLaw(
+            friction.thread, turns="along", slides="along", needs=("radius",), may=("flank",)
+        ),
+    ),
+    JointType(
+        "C",
+        (PairStep("C"),),
+        (_angle("theta", 0), _length("s", 1)),
+        _AXIS,
+        axis=_Z2,
+        closing="C",
+        friction=FrictionLaw(
+            friction.journal,
+            turns="along",
+            slides="along",
+            needs=("radius",),
+            may=("length",),
+            missed=(("length", "tilting moment"),),
+        ),
+    ),
+    JointType(
+        "S",
+        (PairStep("S"),),
+        (),
+        Drawing("ball"),
+        closing="S",
+        friction=FrictionLaw(friction.ball, turns="all", needs=("radius",)),
+    ),
+    JointType(
+        "Sp",
+        (PairStep("S"), PairStep("P", _X2), PairStep("P", _Y2)),
+        (),
+        Drawing("ball on", ("normal",)),
+        axis=_Z2,
+        point_on=FIRST,
+        closing="Sp",
+        friction=FrictionLaw(friction.plane, slides="square"),
+    ),
+    # where s grows, the second link runs back along its groove
+    JointType(
+        "Sg",
+        (PairStep("S"), PairStep("P", _BACK)),
+        (_length("s", 3, _BACK),),
+        Drawing("ball on", ("groove",)),
+        axis=_Z2,
+        point_on=FIRST,
+        closing="Sg",
+        friction=FrictionLaw(friction.groove, slides="along"),
+    ),
+    JointType(
+        "U",
+        _TWO_TURNS,
+        _turns(0),
+        Drawing("two axes", ("axis", "axis2")),
+        closing="U",
+        parameter="between axes",
+    ),
+    JointType(
+        "E",
+        (PairStep("P", _X1), PairStep("P", _Y1), PairStep("R")),
+        (_length("x", 0, _X1), _length("y", 1, _Y1), _angle("theta", 2)),
+        Drawing("plane", ("normal", "x")),
+        axis=_Z2,
+        closing="E",
+    ),
+    JointType("W", (PairStep("W"),), (), Drawing("weld"), point_on=None, closing="W"),
+    # a universal joint with square axes
+    JointType(
+        "Ss",
+        _TWO_TURNS,
+        _turns(0),
+        Drawing(
+            "square axes",
+            ("slot", "pin"),
+            "the slot's plane holds the pin: give the normal of that plane",
+        ),
+        closing="U",
+    ),
+    JointType(
+        "Sc",
+        (PairStep("P", _OWN), *_TWO_TURNS),
+        (_length("s", 0, _OWN), *_turns(1)),
+        Drawing("slotted", ("axis", "pin")),
+        axis=_OWN,
+        closing="Sc",
+        parameter="from axis to pin",
+    ),
+    JointType(
+        "Cp",
+        (*_TWO_TURNS, PairStep("P", _X2), PairStep("P", _Y2)),
+        (*_turns(0), _length("x", 2, _X2), _length("y", 3, _Y2)),
+        Drawing(
+            "square axes",
+            ("axis", "normal"),
+            "a cylinder touches a plane along a line only with its axis square to the normal",
+        ),
+        axis=_Z1,
+        point_on=FIRST,
+        closing="Cp",
+    ),
+    # the pose of the second link against the first: it holds nothing
+    JointType(
+        "F",
+        (
+            *(PairStep("P", axis) for axis in (_X1, _Y1, _Z1)),
+            PairStep("R"),
+            PairStep("R", _Y2, between=True),
+            PairStep("R", _X2),
+        ),
+        (
+            *(_length(name, freedom, _Z1) for freedom, name in enumerate(("x", "y", "z"))),
+            *(_angle(name, freedom, None) for freedom, name in enumerate(("rz", "ry", "rx"), 3)),
+        ),
+        Drawing("ball"),
+    ),
+)
+
+JOINT_TYPES = {entry.letter: entry for entry in _TABLE}
+"""The pairs that a file may have, by letter."""
+
+_IN_PLANE = (
+    replace(
+        JOINT_TYPES["R"],
+        axis=None,
+        closing="R2",
+        softer=(),
+        friction=FrictionLaw(friction.journal, turns="along", needs=("radius",)),
+    ),
+    replace(
+        JOINT_TYPES["P"],
+        closing="P2",
+        softer=(),
+        friction=FrictionLaw(
+            friction.guide, slides="along", may=("length",), missed=(("length", "tilting moment"),)
+        ),
+    ),
+    # as with Sg, the second link runs back along its slot where s grows
+    JointType(
+        "Ps",
+        (PairStep("R"), PairStep("P", DrawnDirection(SECOND, "x", reverse=True))),
+        (_angle("theta", 0), _length("s", 1, DrawnDirection(SECOND, "x", reverse=True))),
+        Drawing("plane", ("normal", "slot")),
+        axis=_X2,
+        point_on=FIRST,
+        closing="Ps2",
+        shape="Sg",
+        friction=FrictionLaw(friction.groove, slides="along"),
+    ),
+    replace(JOINT_TYPES["W"], closing="W2"),
+)
+
+PLANE_JOINT_TYPES = {entry.letter: replace(entry, space=3) for entry in _IN_PLANE}
+"""The pairs that a plane file may have, by letter: what their links do in the plane z = 0, turns
+about z and slides square to it, and closing equations of that plane alone."""
+
+FREE = JointType(
+    "free",
+    (PairStep("P", _X1), PairStep("P", _Y1), PairStep("P", _Z1), PairStep("S")),
+    (_length("x", 0, _X1), _length("y", 1, _Y1), _length("z", 2, _Z1)),
+    Drawing("ball"),
+)
+"""The pair without constraints by which the solver hangs a body that only legs hold."""
+
+
+_POINT = Condition("lengths", "xyz")
+_ACROSS = Condition("lengths", "xy")
+_PARALLEL = Condition("parallel")
+_ORIENTATION = Condition("orientation")
+_ANGLE = Condition("angle")
+
+CLOSING_CONDITIONS = {
+    "R": (_POINT, _PARALLEL),
+    "P": (_ACROSS, _ORIENTATION),
+    "C": (_ACROSS, _PARALLEL),
+    "S": (_POINT,),
+    "Sp": (Condition("lengths", "z", SECOND),),
+    "Sg": (Condition("lengths", "xy", SECOND),),
+    "U": (_POINT, _ANGLE),
+    "E": (Condition("lengths", "z"), _PARALLEL),
+    "W": (_POINT, _ORIENTATION),
+}
+"""By the letter of a closing pair the elementary conditions of its equations, in their order
+(kernel/src/pairs.hpp), where nothing but a joint's frames stands in them."""
+
+
+_ALONG = {"x": _X1, "y": _Y1, "z": _Z1}
+_SEATS = {1: "Sp", 2: "Sg", 3: "S"}
+_PLANE_SEATS = {1: "Ps", 2: "R"}
+
+
+def guide_letter(axes: str) -> str:
+    """Stands for the slide along some of the axes x, y and z that guides a point which is an
+    input."""
+    return f"along {axes}"
+
+
+def seat_letter(axes: str, plane: bool = False) -> str:
+    """Stands for how that slide carries the point: on a plane, in a groove or in a socket; in a
+    plane as a pin in a slot or in a hole."""
+    return f"seat {(_PLANE_SEATS if plane else _SEATS)[len(axes)]}"
+
+
+@cache
+def joint_type(letter: str, plane: bool = False) -> JointType:
+    """The entry of a letter; in a plane, that of its links in the plane."""
+    types = PLANE_JOINT_TYPES if plane else JOINT_TYPES
+    kind, _, rest = letter.partition(" ")
+    if kind == "along":
+        return _guide(rest)
+    if kind == "seat":
+        return replace(types[rest], letter=letter, named=())
+    return FREE if letter == FREE.letter else types[letter]
+
+
+def _guide(axes: str) -> JointType:
+    return JointType(
+        guide_letter(axes),
+        tuple(PairStep("P", _ALONG[axis]) for axis in axes),
+        tuple(_length(axis, freedom, _ALONG[axis]) for freedom, axis in enumerate(axes)),
+        Drawing("weld"),
+        point_on=None,
+    )
+
+
+def dimension_of(coordinate: str) -> Dimension:
+    """What coordinates of this name measure, in every pair that has it; a length where none has.
+
+    >>> dimension_of("theta1") == ANGLE
+    True
+    """
+    return ANGLE if coordinate in _angles() else LENGTH
+
+
+def is_angle(coordinate: str) -> bool:
+    """Whether coordinates of this name are angles."""
+    return coordinate in _angles()
+
+
+@cache
+def _angles() -> frozenset[str]:
+    entries = (*_TABLE, *_IN_PLANE)
+    return frozenset(c.name for entry in entries for c in entry.named if c.is_angle)

@@ -1,0 +1,401 @@
+"""How many freedoms a part of a mechanism has from a place: to first order, and in truth.
+
+The assembled places next to a place form components of some dimensions that meet there. The motions
+of first order are as many as the largest where the place is regular; else directions come from the
+bifurcation equations, and two moves in one heading lead to a place of one component, where moves
+along every motion of first order are closed again: the rank of the chords is the dimension.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.mobility.configurations import Closed, Sphere, closed, damped_steps
+from mechkin_cli.mobility.opened import Rank, rank_of
+
+if TYPE_CHECKING:
+    from mechkin_cli.mobility.configurations import LoopPart
+    from mechkin_cli.show import Floats
+    from mechkin_cli.structure import RandomStarts
+
+
+# Directions in which a mechanism may leave a place: the bifurcation equations.
+#
+# A curve of assembled places with the tangent N a at its start (N the motions of first order) obeys
+# W^T D2F[N a, N a] = 0 for all stresses W, as many quadratic forms in a as there are stresses. They
+# are solved for directions from random ones; forms say nothing along their common null space, the
+# radical, and are solved beside it.
+
+
+def quadratic_forms(part: LoopPart, state: Floats, motions: Floats, stresses: Floats) -> Floats:
+    """Independent forms (forms, k, k) on `motions` (columns, k) at a place with `stresses`
+    (rows, r): derivatives of the Jacobian by central differences."""
+    step, count = tolerances.MOBILITY_DIFFERENCE, motions.shape[1]
+    ways = step * np.concatenate([motions.T, -motions.T])
+    _, jacobians = part.closing(part.moved(np.repeat(state[None], 2 * count, axis=0), ways))
+    second = (jacobians[:count] - jacobians[count:]) / (2.0 * step) @ motions
+    forms = np.einsum("rs,irj->sij", stresses, second)
+    forms = 0.5 * (forms + np.swapaxes(forms, 1, 2))
+    _, values, right = np.linalg.svd(forms.reshape(len(forms), -1), full_matrices=False)
+    rank = int(np.count_nonzero(values > tolerances.MOBILITY_FORM))
+    return np.asarray(right[:rank].reshape(rank, count, count))
+
+
+def directions(forms: Floats, alone: Floats, random: RandomStarts) -> Floats:
+    """Unit directions (directions, k) in which all forms (forms, k, k) vanish, either way: beside
+    their radical, far from each other where there are many, and in it.
+
+    Motions `alone` (k, count), which move single links only, are no part of them but in some: they
+    would hide the others.
+    """
+    count = forms.shape[1]
+    _, values, right = np.linalg.svd(forms.reshape(-1, count), full_matrices=True)
+    rank = int(np.count_nonzero(values > tolerances.MOBILITY_FORM))
+    beside, radical = right[:rank], right[rank:]
+    shared = _less(radical, alone)
+    solved = apart(_zeros(beside @ forms @ beside.T, random), tolerances.MOBILITY_HEADINGS)
+    found = [solved @ beside]
+    if len(shared):
+        found.append((found[0] + _units(random, len(solved), len(shared)) @ shared) * np.sqrt(0.5))
+        found.append(_units(random, tolerances.MOBILITY_FREE_HEADINGS, len(shared)) @ shared)
+    if len(shared) < len(radical):
+        found.append(_units(random, tolerances.MOBILITY_LONE_HEADINGS, len(radical)) @ radical)
+    every = np.concatenate(found)
+    return np.concatenate([every, -every])
+
+
+def _less(rows: Floats, columns: Floats) -> Floats:
+    """Orthonormal rows of what the span of some rows has square to some columns."""
+    if not columns.shape[1] or not len(rows):
+        return rows
+    taken = np.linalg.qr(columns)[0]
+    _, values, right = np.linalg.svd(rows - (rows @ taken) @ taken.T, full_matrices=False)
+    return np.asarray(right[values > 0.5])
+
+
+def _zeros(forms: Floats, random: RandomStarts) -> Floats:
+    """Unit vectors (found, k) at which all forms vanish, by Gauss and Newton from random ones."""
+    count = forms.shape[1]
+    if count == 0:
+        return np.zeros((0, 0))
+    at = _units(random, tolerances.MOBILITY_DIRECTIONS, count)
+    for _ in range(tolerances.MOBILITY_ITERATIONS):
+        misses = _values(forms, at)
+        if np.abs(misses).max() < tolerances.MOBILITY_TIGHT:
+            break
+        slopes = 2.0 * np.einsum("fij,dj->dfi", forms, at)
+        along = np.zeros((len(at), 1))  # no step along the vector, whose length is one
+        at = at + damped_steps(
+            np.concatenate([slopes, at[:, None]], axis=1), np.concatenate([misses, along], axis=1)
+        )
+        at /= np.sqrt(np.sum(at * at, axis=1))[:, None]
+    solved = np.abs(_values(forms, at)).max(axis=1) < tolerances.MOBILITY_CLOSED
+    return np.asarray(at[solved])
+
+
+def _values(forms: Floats, at: Floats) -> Floats:
+    """Values (directions, forms) of the forms."""
+    return np.asarray(np.einsum("di,fij,dj->df", at, forms, at))
+
+
+def _units(random: RandomStarts, number: int, size: int) -> Floats:
+    """Random unit vectors (number, size)."""
+    found = random.between(1.0, number * size).reshape(number, size)
+    return np.asarray(found / np.sqrt(np.sum(found * found, axis=1))[:, None])
+
+
+def apart(vectors: Floats, most: int) -> Floats:
+    """Some of many unit vectors (number, size), each as far from those before as any is."""
+    return np.asarray(vectors[apart_numbers(vectors, most)])
+
+
+def apart_numbers(vectors: Floats, most: int) -> list[int]:
+    """Their numbers."""
+    if not len(vectors):
+        return []
+    chosen, nearest = [0], vectors @ vectors[0]
+    while len(chosen) < most:
+        further = int(np.argmin(nearest))
+        if nearest[further] > 1.0 - tolerances.MOBILITY_SAME_DIRECTION:
+            break
+        chosen.append(further)
+        nearest = np.maximum(nearest, vectors @ vectors[further])
+    return chosen
+
+
+# The dimension of the assembled places about one of them, by moves that are closed again.
+#
+# Moves along an orthonormal frame of the motions of first order go where they are meant to as far
+# as they lie in the component, else they fall back: the rank of the chords is its dimension. Two
+# lengths must agree, and moves in the span of the chords must go where they are meant to.
+
+
+@dataclass(frozen=True)
+class AssemblyComponent:
+    """A component of the assembled places: its dimension, a general place `state` (states,), and
+    steps (columns, dimension) along it, known to `doubt`; `places` are more of its kind."""
+
+    dimension: int
+    state: Floats
+    tangents: Floats
+    doubt: float
+    places: tuple[Floats, ...] = ()
+
+
+class Move(NamedTuple):
+    """A move by its largest step (rad, parts of the size), and how far loops that are closed after
+    it may be open."""
+
+    step: float
+    limit: float
+
+
+class Unclear(Exception):
+    """Chords or ranks do not agree."""
+
+
+def component_at(
+    part: LoopPart, state: Floats, random: RandomStarts, move: Move
+) -> AssemblyComponent:
+    """The component at a place, or at one next to it where the rank is larger."""
+    place = state
+    for _ in range(tolerances.MOBILITY_TRIES):
+        _, jacobians = part.closing(place[None])
+        rank = rank_of(jacobians[0], tolerances.MOBILITY_RANK_REACHED)
+        motions = rank.motions
+        count = motions.shape[1]
+        if count == 0 or rank.stresses.shape[1] == 0:
+            return AssemblyComponent(count, place, motions, tolerances.RANK_ZERO)
+        units = (motions @ _frame(random, count)).T
+        ways = move.step * scaled(units)
+        ways = np.concatenate([part_of * ways for part_of in tolerances.MOBILITY_CHORDS])
+        ends = closed(part, part.moved(np.repeat(place[None], len(ways), axis=0), ways))
+        if not ends.good(move.limit).all():
+            raise Unclear("moves do not close again")
+        ranks = [
+            rank_of(jacobian, tolerances.MOBILITY_RANK_REACHED).motions.shape[1]
+            for jacobian in ends.jacobians
+        ]
+        if min(ranks) == count:
+            dimension, tangents = _chords(part, place, ends, ways, move)
+            if not dimension:
+                raise Unclear(f"{move.step:g} away nothing can move")
+            if not _is_smooth(part, place, tangents, move, _frame(random, dimension)):
+                raise Unclear("several motions meet wherever it goes")
+            if dimension == count:
+                return AssemblyComponent(count, place, motions, tolerances.RANK_ZERO)
+            return AssemblyComponent(dimension, place, tangents, tolerances.MOBILITY_CHORD_DOUBT)
+        place = ends.states[int(np.argmin(ranks))]
+    raise Unclear("the rank changes from place to place")
+
+
+def _chords(
+    part: LoopPart, place: Floats, ends: Closed, ways: Floats, move: Move
+) -> tuple[int, Floats]:
+    """Dimension and steps (columns, dimension) of the component at a place, from the `ends` of
+    moves along `ways` (number, columns), which are all motions of first order at two lengths."""
+    chords = part.steps(ends.states, np.repeat(place[None], len(ways), axis=0))
+    chords /= lengths(ways)[:, None]
+    seen = []
+    for some in np.split(chords, len(tolerances.MOBILITY_CHORDS)):
+        _, values, right = np.linalg.svd(some, full_matrices=False)
+        low, high = tolerances.MOBILITY_CHORD_RANK
+        if np.any((values > low) & (values < high)):
+            raise Unclear(f"chords have singular values between {low:g} and {high:g}")
+        seen.append((int(np.count_nonzero(values >= high)), right))
+    (dimension, _), (again, right) = seen
+    if dimension != again:
+        raise Unclear(f"chords of two lengths have the ranks {dimension} and {again}")
+    return dimension, right[:dimension].T
+
+
+def _is_smooth(part: LoopPart, place: Floats, tangents: Floats, move: Move, frame: Floats) -> bool:
+    """Whether moves along the `tangents` (columns, dimension), mixed by a `frame`, go where they
+    are meant to: they would not where several components meet, whose chords count together."""
+    ways = move.step * tolerances.MOBILITY_CHORDS[0] * scaled((tangents @ frame).T)
+    both = np.repeat(place[None], len(ways), axis=0)
+    ends = closed(part, part.moved(both, ways))
+    strayed = lengths(part.steps(ends.states, both) - ways)
+    return bool(
+        np.all(ends.good(move.limit) & (strayed < tolerances.MOBILITY_STRAYED * lengths(ways)))
+    )
+
+
+def lengths(ways: Floats) -> Floats:
+    """Lengths (number,) of steps (number, columns)."""
+    return np.asarray(np.sqrt(np.sum(ways * ways, axis=1)))
+
+
+def scaled(ways: Floats) -> Floats:
+    """Steps (number, columns) whose largest is one."""
+    return np.asarray(ways / np.abs(ways).max(axis=1, initial=0.0, keepdims=True))
+
+
+def _frame(random: RandomStarts, size: int) -> Floats:
+    """A random orthonormal frame (size, size)."""
+    return np.asarray(np.linalg.qr(random.between(1.0, size * size).reshape(size, size))[0])
+
+
+@dataclass(frozen=True)
+class LocalFreedom:
+    """Freedoms of a part from a place.
+
+    `first` is the rank there; `components` are those found to meet there, one for each dimension,
+    the largest first; `doubt` says in words why the answer is not clear, else it is empty.
+    """
+
+    first: Rank
+    components: tuple[AssemblyComponent, ...]
+    doubt: str = ""
+
+    @property
+    def dimensions(self) -> tuple[int, ...]:
+        """Dimensions of the components, the largest first."""
+        return tuple(component.dimension for component in self.components)
+
+
+MOVES = tuple(Move(*each) for each in tolerances.MOBILITY_MOVES)
+FAR_MOVE = Move(*tolerances.MOBILITY_FAR_MOVE)
+
+
+class _Nearly(Unclear):
+    """Loops stay all but closed: the `least` that they are open by is small."""
+
+    def __init__(self, least: float, move: Move) -> None:
+        open_by = f"{least:.2g} of the size (limit {move.limit:g})"
+        super().__init__(f"{move.step:g} away the loops are open by {open_by}")
+        self.least = least
+
+
+def freedom_of(
+    part: LoopPart, state: Floats, random: RandomStarts, *, regular: bool = False
+) -> LocalFreedom:
+    """The freedoms of a part from an assembled place `state` (states,); if only `regular` places
+    are wanted, others are a doubt."""
+    _, jacobians = part.closing(state[None])
+    first = rank_of(jacobians[0], tolerances.RANK_ZERO)
+    if not first.clear:
+        return LocalFreedom(first, (), first.doubt)
+    if first.motions.shape[1] == 0:
+        return LocalFreedom(first, (AssemblyComponent(0, state, first.motions, 0.0),))
+    component = _regular(part, state, first, random)
+    if component is not None:
+        return LocalFreedom(first, (component,))
+    if regular:
+        return LocalFreedom(first, (), "a special position")
+    if not first.stresses.shape[1]:
+        # regular by its rank, but its moves do not show it: sizes too far apart for the numbers
+        return LocalFreedom(first, (), "no move along its motions closes the loops as they should")
+    return _singular(part, state, first, random)
+
+
+def _regular(
+    part: LoopPart, state: Floats, first: Rank, random: RandomStarts
+) -> AssemblyComponent | None:
+    """The component if it has as many dimensions as there are motions of first order, so that there
+    is but one; None else."""
+    motions = first.motions
+    heading = scaled(_local_dimension_units(random, 1, motions.shape[1]) @ motions.T)
+    both = np.repeat(state[None], 2, axis=0)
+    for move in MOVES:
+        wanted = move.step * np.concatenate([heading, -heading])
+        there = closed(part, part.moved(both, wanted))
+        strayed = lengths(part.steps(there.states, both) - wanted)
+        kept = there.good(move.limit) & (strayed < tolerances.MOBILITY_STRAYED * lengths(wanted))
+        for place in there.states[kept]:
+            try:
+                found = component_at(part, place, random, move)
+            except Unclear:
+                continue
+            return found if found.dimension == motions.shape[1] else None
+    return None
+
+
+class _PlaceSearch(NamedTuple):
+    """Places to be found from the place `state` (states,) of a part along `headings` (number,
+    columns), whose largest steps are one; `most` of them are looked at."""
+
+    part: LoopPart
+    state: Floats
+    headings: Floats
+    most: int
+    random: RandomStarts
+
+
+def _singular(part: LoopPart, state: Floats, first: Rank, random: RandomStarts) -> LocalFreedom:
+    """The components that meet where the first order has more motions than any of them."""
+    count = first.motions.shape[1]
+    forms = quadratic_forms(part, state, first.motions, first.stresses)
+    alone = part.alone(state, first.motions)
+    headings = scaled(directions(forms, alone, random) @ first.motions.T)
+    least, largest = tolerances.MOBILITY_PLACES
+    most = min(max(tolerances.MOBILITY_WORK // count, least), largest)
+    search = _PlaceSearch(part, state, headings, most, random)
+    try:
+        try:
+            found = _components(search, MOVES[0])
+        except _Nearly as near:
+            found = _components(search, FAR_MOVE, tolerances.MOBILITY_GROWTH * near.least)
+        except Unclear:
+            found = _components(search, MOVES[1])
+    except Unclear as unclear:
+        return LocalFreedom(first, (), str(unclear))
+    if len(found) > 1 and found[0].dimension == count:
+        found = found[1:]  # with as many as to first order the place would be regular
+    return LocalFreedom(first, found or (AssemblyComponent(0, state, first.motions[:, :0], 0.0),))
+
+
+def _components(
+    search: _PlaceSearch, move: Move, nearly: float = tolerances.MOBILITY_OPEN
+) -> tuple[AssemblyComponent, ...]:
+    """Components that two moves lead to, one of each dimension, the largest first.
+
+    Raises:
+        Unclear: none has a clear dimension, or no loops are closed, but some open by less than
+            `nearly`.
+    """
+    if not len(search.headings):
+        return ()
+    ways = move.step * search.headings
+    starts = search.part.moved(np.repeat(search.state[None], len(ways), axis=0), ways)
+    there = closed(search.part, starts, Sphere(search.state, lengths(ways)))
+    least = float(there.misses.min())
+    if move.limit <= least < nearly:
+        raise _Nearly(least, move)
+    known: dict[int, list[AssemblyComponent]] = {}
+    doubt = Unclear("a second move does not close") if least < move.limit else None
+    for place in _onward(search, there, move):
+        try:
+            found = component_at(search.part, place, search.random, move)
+        except Unclear as unclear:
+            doubt = unclear
+            continue
+        known.setdefault(found.dimension, []).append(found)
+    if doubt and not known:
+        raise doubt
+    return tuple(
+        replace(known[k][0], places=tuple(component.state for component in known[k]))
+        for k in sorted(known, reverse=True)
+    )
+
+
+def _onward(search: _PlaceSearch, there: Closed, move: Move) -> Floats:
+    """Places (number, states) to which another move in the same heading leads, from some of those
+    that closed, which are far from each other."""
+    part = search.part
+    places = there.states[there.good(move.limit)]
+    ways = part.steps(places, np.repeat(search.state[None], len(places), axis=0))
+    some = apart_numbers(ways / lengths(ways)[:, None], search.most)
+    places, ways = places[some], ways[some]
+    on = closed(part, part.moved(places, ways))
+    far = lengths(part.steps(on.states, places)) > 0.5 * lengths(ways)
+    return np.asarray(on.states[on.good(move.limit) & far])
+
+
+def _local_dimension_units(random: RandomStarts, number: int, size: int) -> Floats:
+    found = random.between(1.0, number * size).reshape(number, size)
+    return np.asarray(found / np.sqrt(np.sum(found * found, axis=1))[:, None])

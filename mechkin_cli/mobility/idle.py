@@ -1,0 +1,212 @@
+"""Idle freedoms: motions of one link, or of a few as one body, that leave all others at rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.idle import PLACES, LinkMotion, RigidGroup, held_groups
+from mechkin_cli.mechanism import Joint, LockedFreedom, Problem, Vector
+from mechkin_cli.mobility.configurations import Body, Configuration, home
+from mechkin_cli.mobility.dimension import freedom_of
+from mechkin_cli.mobility.motions import Motions
+from mechkin_cli.structure import RandomStarts
+
+if TYPE_CHECKING:
+    from mechkin_cli.show import Floats
+
+
+class IdleFreedom(NamedTuple):
+    """The links that move together, and how, in words."""
+
+    links: tuple[str, ...]
+    sentence: str
+
+
+def idle_freedoms(
+    configuration: Configuration, driven: Sequence[tuple[str, str]]
+) -> tuple[IdleFreedom, ...]:
+    """Freedoms that move no input and nothing but a link between two or more joints."""
+    found: list[IdleFreedom] = []
+    body = configuration.body
+    known = np.zeros((body.count, 0))
+    for names, border, motions in group_motions(configuration, driven):
+        new = motions @ _split(motions - known @ (known.T @ motions))[0]
+        if not new.shape[1]:
+            continue
+        known = np.linalg.qr(np.concatenate([known, new], axis=1))[0]
+        for twist in _told(configuration.twists[names[0]] @ new).T:
+            verb, how = _words(border, twist)
+            verb = f"{verb} together" if len(names) > 1 else f"{verb}s"
+            found.append(IdleFreedom(names, f"{' and '.join(names)} {verb} freely {how}"))
+    return tuple(found)
+
+
+def group_motions(
+    configuration: Configuration, driven: Sequence[tuple[str, str]]
+) -> Iterator[tuple[tuple[str, ...], tuple[Joint, ...], Floats]]:
+    """Groups of links, few first, with the joints to others and their motions (freedoms, count) as
+    one body that move no input and leave all others at rest."""
+    body = configuration.body
+    columns = [body.column(*each) for each in driven]
+    for links, border in _groups(configuration):
+        motions = _common_motions(configuration, links, border)
+        names = tuple(name for name in body.links if name in links)
+        yield names, tuple(border), motions @ _split(motions[columns])[1]
+
+
+def _split(matrix: Floats) -> tuple[Floats, Floats]:
+    """Orthonormal bases of what a matrix, with entries of the order of one, does not map to zero,
+    and of what it does."""
+    if not matrix.size:
+        count = matrix.shape[1]
+        return np.zeros((count, 0)), np.eye(count)
+    _, values, right = np.linalg.svd(matrix)
+    rank = int(np.count_nonzero(values > tolerances.SAME_COMMON_MOTION))
+    return right[:rank].T, right[rank:].T
+
+
+def _told(twists: Floats) -> Floats:
+    """Unit twists (6, count) that span the same: turns, then slides."""
+    turning, sliding = _split(twists[:3] / np.linalg.norm(twists, axis=0).max())
+    turns, slides = twists @ turning, twists @ sliding
+    along = np.linalg.qr(slides[3:])[0]
+    turns[3:] -= along @ (along.T @ turns[3:])  # no turn advances where a slide does
+    basis: Floats = np.concatenate([turns, slides], axis=1)
+    basis /= np.linalg.norm(basis, axis=0)
+    return basis
+
+
+def _groups(configuration: Configuration) -> Iterator[tuple[set[str], list[Joint]]]:
+    """Groups of links between two others or more, with the joints to these; small groups first."""
+    joints = configuration.body.mechanism.joints.values()
+    links = configuration.body.links
+    for count in range(1, min(tolerances.MOST_IDLE_LINKS, len(links) - 1) + 1):
+        for chosen in combinations(links, count):
+            group = set(chosen)
+            border = [j for j in joints if (j.first in group) != (j.second in group)]
+            inner = [j for j in joints if j.first in group and j.second in group]
+            others = {end for j in border for end in (j.first, j.second)} - group
+            if len(others) >= 2 and len(inner) >= count - 1:
+                yield group, border
+
+
+def _common_motions(configuration: Configuration, links: set[str], border: list[Joint]) -> Floats:
+    """Motions (freedoms, count) of the links as one body that leave the others at rest: nothing but
+    the joints around them moves."""
+    body, twists = configuration.body, configuration.twists
+    moving = [column for joint in border for column in body.columns[joint.name]]
+    one = twists[min(links)]
+    rest = [twists[n] if n not in links else twists[n] - one for n in body.links]
+    matrix = np.concatenate([configuration.jacobian, *rest])[:, moving]
+    _, values, right = np.linalg.svd(matrix, full_matrices=len(matrix) < len(moving))
+    least = tolerances.RANK_ZERO * values.max(initial=0.0)  # welds alone have none
+    found = np.zeros((body.count, len(moving) - int(np.count_nonzero(values > least))))
+    found[moving] = right[len(moving) - found.shape[1] :].T
+    return found
+
+
+def _words(border: Sequence[Joint], twist: Floats) -> tuple[str, str]:
+    """Verb, and about or along what."""
+    spin, slide = twist[:3], twist[3:]
+    names = ", ".join(joint.name for joint in border)
+    if np.max(np.abs(spin)) < tolerances.MOBILITY_NO_TWIST:
+        return "slide", f"along the axis of {names}"
+    if abs(float(spin @ slide)) > tolerances.MOBILITY_NO_TWIST:
+        return "move", f"along the thread of {names}"
+    if all(joint.type.is_oriented for joint in border):
+        return "spin", "about " + "-".join(joint.name for joint in border)
+    return "turn", f"about the common axis of {names}"
+
+
+# Idle freedoms that links have only where their mechanism takes them.
+#
+# A slide may stand square to the normal of a plane because the other joints turn both about that
+# normal alone: its link then slides between them, at every position of the mechanism, though not if
+# the joints were moved at will. Such motions are looked for where the drawing has more of them than
+# its joints alone have anywhere, at general configurations of the mechanism.
+
+
+def held_along(problem: Problem, known: tuple[LockedFreedom, ...]) -> tuple[LockedFreedom, ...]:
+    """What holds the idle freedoms of a mechanism on its way; `known` if there are no more, or if
+    the drawing is not assembled or a special position."""
+    body = Body(problem.mechanism)
+    places = _places(body)
+    if not places:
+        return known
+    driven = problem.motion.driven
+    groups = []
+    at = [list(group_motions(place, driven)) for place in places]
+    for (links, joints, first), *others in zip(*at, strict=True):
+        motions = [_motions(places[0], links, joints, first)]
+        motions += [
+            _motions(place, links, joints, ways)
+            for place, (_, _, ways) in zip(places[1:], others, strict=True)
+        ]
+        group = RigidGroup(links, joints, motions)
+        groups += [group] if group.count else []
+    x, y, z = (float(c) for c in body.centre)
+    held = held_groups(problem.mechanism, driven, groups, body.size, (x, y, z))
+    same = {(one.links, one.coordinate) for one in held} == {
+        (one.links, one.coordinate) for one in known
+    }
+    if same:
+        return known
+    return tuple(one._replace(everywhere=False) for one in held)
+
+
+def _places(body: Body) -> list[Configuration]:
+    """General configurations next to the drawing."""
+    start, random = home(body), RandomStarts()
+    if not start.assembled:
+        return []
+    freedoms = [(p, freedom_of(p, start.state, random)) for p in body.parts]
+    if any(
+        found.doubt or found.dimensions != (found.first.motions.shape[1],) for _, found in freedoms
+    ):
+        return []  # at a branch point one way may leave idle what another needs
+    motions = Motions(body, start, freedoms)
+    found = [motions.general]
+    while len(found) < PLACES:
+        ways = motions.tangents
+        heading = ways @ random.between(1.0, ways.shape[1])
+        heading *= tolerances.IDLE_MOVE / max(1.0, float(np.abs(heading).max(initial=0.0)))
+        moved = motions.general.moved(heading).closed()
+        if not moved.assembled:
+            return []
+        found.append(moved)
+    return found
+
+
+def _motions(
+    place: Configuration, links: tuple[str, ...], joints: tuple[Joint, ...], motions: Floats
+) -> list[LinkMotion]:
+    """Motions (freedoms, count) with the links' twists on their own drawings."""
+    body = place.body
+    found = []
+    for motion in motions.T:
+        rates = {
+            (joint.name, freedom): float(motion[column])
+            for joint in joints
+            for freedom, column in enumerate(body.columns[joint.name])
+        }
+        twists = {}
+        for link in links:
+            twist, pose = place.twists[link] @ motion, place.poses[link]
+            spin = twist[:3]
+            twists[link] = (
+                _vector(pose.turn.T @ spin),
+                _vector(pose.turn.T @ (twist[3:] + np.cross(spin, pose.place))),
+            )
+        found.append(LinkMotion(rates, twists))
+    return found
+
+
+def _vector(entries: Floats) -> Vector:
+    """Rounded, so that no plan holds digits that change with the linear algebra of a machine."""
+    x, y, z = (round(float(entry), tolerances.IDLE_DECIMALS) for entry in entries)
+    return (x, y, z)

@@ -1,0 +1,326 @@
+"""Mobility: Kutzbach's count against the finite freedom, and what makes them differ.
+
+With n links (ground too), j joints and freedoms f, the count is 6 (n - 1 - j) + sum f: all freedoms
+less six for every loop; in a plane less three, 3 (n - 1) - 2 j where all joints have one freedom.
+The freedom of first order is sum f less the rank of the loops' screws at
+the first configuration; the finite freedom is the dimension of the assembled configurations next to
+it (`local_dimension`). The difference of sum f less the rank at a general configuration and the
+count is the number of redundant constraints.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism import Mechanism, Problem
+from mechkin_cli.mobility.configurations import Body, assembled, home
+from mechkin_cli.mobility.dimension import LocalFreedom, freedom_of
+from mechkin_cli.mobility.first_row import first_row
+from mechkin_cli.mobility.idle import IdleFreedom, idle_freedoms
+from mechkin_cli.mobility.motions import Motions
+from mechkin_cli.mobility.redundancy import Redundancy, redundancies
+from mechkin_cli.show import Listed, Listing
+from mechkin_cli.structure import RandomStarts, listed
+
+if TYPE_CHECKING:
+    from mechkin_cli.session import Session
+    from mechkin_cli.show import Floats
+
+
+# Mobility in words.
+
+
+def verdict(found: Mobility) -> str:
+    """What count and truth say together, in one sentence."""
+    if found.mobility is None:
+        return f"mobility unclear; the count says {found.count}"
+    return f"{_moves(found)}; {_compared(found)}"
+
+
+def count_of_freedoms(number: int) -> str:
+    """A number of freedoms in words.
+
+    >>> freedoms(1), freedoms(2)
+    ('one freedom', '2 freedoms')
+    """
+    return "one freedom" if number == 1 else f"{number} freedoms"
+
+
+def meeting(dimensions: tuple[int, ...]) -> str:
+    """Dimensions of components that meet, the least first."""
+    return " and ".join(str(number) for number in sorted(dimensions))
+
+
+def _moves(found: Mobility) -> str:
+    if not found.mobility:
+        text = "nothing can move"
+        return f"{text} but to first order" if found.first_order else text
+    if len(found.dimensions) > 1:
+        text = f"motions of {meeting(found.dimensions)} freedoms meet"
+    else:
+        text = count_of_freedoms(found.mobility)
+    if found.first_order != found.mobility:
+        text += f" ({found.first_order} to first order)"
+    return text + (f", {len(found.idle)} of them idle" if found.idle else "")
+
+
+def _compared(found: Mobility) -> str:
+    redundant = sum(item.number for item in found.redundant)
+    if not redundant:
+        same = found.mobility == found.count
+        return "as Kutzbach's count says" if same else f"Kutzbach's count is {found.count}"
+    if not found.mobility:
+        return f"Kutzbach's count is {found.count}"
+    constraints = "one constraint is" if redundant == 1 else f"{redundant} constraints are"
+    return (
+        f"Kutzbach's count is {found.count}: {constraints} redundant, so it moves only while the "
+        "dimensions are exact"
+    )
+
+
+# What the declared inputs do to the freedoms: locked, dependent, or too few.
+
+
+def input_notes(problem: Problem, motions: Motions, idle: int) -> list[Diagnostic]:
+    """Inputs that are locked, depend on each other, or leave freedoms undriven."""
+    driven = problem.motion.driven
+    if not driven:
+        return []
+    rates = motions.tangents[[motions.body.column(*each) for each in driven]]
+    doubt = max(motions.doubt, tolerances.RANK_ZERO)
+    notes = []
+    names = [f"{name}.{coordinate}" for name, coordinate in driven]
+    still = np.abs(rates).max(axis=1, initial=0.0) < doubt
+    locked = [name for name, is_still in zip(names, still, strict=True) if is_still]
+    for name in locked:
+        message = f"the input {name} is locked: no motion changes it"
+        notes.append(Diagnostic("input-locked", "error", message, hint="drive another coordinate"))
+    _, values, right = np.linalg.svd(rates)
+    rank = int(np.count_nonzero(values > doubt))
+    if rank < len(driven) - len(locked):
+        notes.append(
+            Diagnostic(
+                "inputs-dependent",
+                "error",
+                f"the inputs {', '.join(names)} are not independent",
+                measured=f"{len(driven)} inputs drive {count_of_freedoms(rank)}",
+                hint="drive fewer coordinates",
+            )
+        )
+    left = motions.tangents @ right[rank:].T
+    return [*notes, *undriven_notes(motions.mobility, idle, rank, moving(motions, left, doubt))]
+
+
+def moving(motions: Motions, ways: Floats, doubt: float) -> tuple[str, ...]:
+    """Coordinates that some motions (freedoms, count) change."""
+    rates = np.abs(ways).max(axis=1, initial=0.0)
+    return tuple(
+        f"{joint.name}.{name}"
+        for joint in motions.body.mechanism.joints.values()
+        for name in joint.type.freedom_of
+        if rates[motions.body.column(joint.name, name)] > doubt
+    )
+
+
+def undriven_notes(
+    freedoms: int, idle: int, driven: int, candidates: tuple[str, ...] = ()
+) -> list[Diagnostic]:
+    """Freedoms that neither spin idly nor are driven; `candidates` are coordinates that they
+    move."""
+    left = freedoms - driven - idle
+    if left <= 0:
+        return []
+    message = f"{count_of_freedoms(left)} {'is' if left == 1 else 'are'} not driven"
+    if candidates:
+        message += f"; candidates: {listed(candidates)}"
+    measured = f"{count_of_freedoms(freedoms)}, {idle} idle, {driven} driven"
+    hint = "add inputs under motion"
+    return [Diagnostic("undriven-freedom", "warning", message, measured=measured, hint=hint)]
+
+
+@dataclass(frozen=True, repr=False)
+class Mobility(Listed):
+    """What can move.
+
+    `count` is Kutzbach's; `mobility` the finite freedom, None where it cannot be told (no assembly,
+    or unclear); `dimensions` are those of all components of motion that meet at the first
+    configuration, the largest first, which is `mobility`. `first_order` is the freedom of small
+    moves there, larger than `mobility` where part of it goes no finite way. `loops` counts
+    independent loops, `inputs` the driven coordinates; `fixed` are the coordinates that never move.
+    """
+
+    name: str
+    count: int
+    loops: int
+    inputs: tuple[str, ...]
+    mobility: int | None
+    first_order: int | None
+    dimensions: tuple[int, ...]
+    configurations: int
+    idle: tuple[IdleFreedom, ...]
+    redundant: tuple[Redundancy, ...]
+    fixed: tuple[str, ...]
+    diagnostics: tuple[Diagnostic, ...]
+
+    @property
+    def listing(self) -> Listing:
+        """The verdict, and what is idle, redundant or fixed."""
+        notes = [f"{self.count} by Kutzbach's count, {self.loops} loops"]
+        notes += [f"idle: {item.sentence}" for item in self.idle]
+        notes += [f"redundant: {item.sentence}" for item in self.redundant]
+        notes += [f"fixed: {', '.join(self.fixed)} never move"] if self.fixed else []
+        return Listing(f"Mobility of {self.name}: {self.verdict}", notes=tuple(notes))
+
+    @property
+    def useful(self) -> int | None:
+        """Freedoms beside the idle ones."""
+        return None if self.mobility is None else self.mobility - len(self.idle)
+
+    @property
+    def verdict(self) -> str:
+        """What count and truth say together, in one sentence."""
+        return verdict(self)
+
+
+def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
+    """The mobility of a mechanism; its inputs count as free. `session` of the problem, where it can
+    be solved as it is driven, gives the first row's assembly."""
+    mechanism = problem.mechanism
+    body = Body(mechanism)
+    start = (session and first_row(session, body)) or assembled(body)
+    if start is None:
+        return _unknown(problem, [_not_assembled(body)])
+    random = RandomStarts()
+    freedoms = [(part, freedom_of(part, start.state, random)) for part in body.parts]
+    first_order = body.free.size + sum(found.first.motions.shape[1] for _, found in freedoms)
+    doubts = [found for _, found in freedoms if found.doubt]
+    if doubts:
+        clear = all(found.first.clear for found in doubts)
+        note = _unclear(doubts) if clear else _rank_unclear(doubts)
+        return _unknown(problem, [note], first_order if clear else None)
+    motion = Motions(body, start, freedoms)
+    driven = problem.motion.driven
+    idle = _idle(motion, driven)
+    return Mobility(
+        name=mechanism.name,
+        count=kutzbach(mechanism),
+        loops=loops(mechanism),
+        inputs=tuple(item.name for item in problem.motion.inputs),
+        mobility=motion.mobility,
+        first_order=first_order,
+        dimensions=motion.dimensions,
+        configurations=1 + motion.places,
+        idle=idle,
+        redundant=redundancies(motion.general, motion.stresses, {name for name, _ in driven}),
+        fixed=motion.fixed,
+        diagnostics=tuple(input_notes(problem, motion, len(idle))),
+    )
+
+
+def _idle(motion: Motions, driven: Sequence[tuple[str, str]]) -> tuple[IdleFreedom, ...]:
+    """Freedoms that are idle wherever the mechanism goes."""
+    found = idle_freedoms(motion.general, driven) if motion.mobility else ()
+    for other in motion.others if found else ():
+        there = Counter(item.links for item in idle_freedoms(other, driven))
+        here: Counter[tuple[str, ...]] = Counter()
+        kept = []
+        for item in found:
+            here[item.links] += 1
+            if here[item.links] <= there[item.links]:
+                kept.append(item)
+        found = tuple(kept)
+    return found
+
+
+def kutzbach(mechanism: Mechanism) -> int:
+    """6 (n - 1 - j) + sum f, in a plane 3 (n - 1 - j) + sum f."""
+    freedom = sum(joint.type.freedoms for joint in mechanism.joints.values())
+    return freedom - mechanism.space * loops(mechanism)
+
+
+def loops(mechanism: Mechanism) -> int:
+    """Number of independent loops."""
+    return mechanism.loops
+
+
+def _unknown(
+    problem: Problem, diagnostics: list[Diagnostic], first_order: int | None = None
+) -> Mobility:
+    mechanism = problem.mechanism
+    return Mobility(
+        name=mechanism.name,
+        count=kutzbach(mechanism),
+        loops=loops(mechanism),
+        inputs=tuple(item.name for item in problem.motion.inputs),
+        mobility=None,
+        first_order=first_order,
+        dimensions=(),
+        configurations=0,
+        idle=(),
+        redundant=(),
+        fixed=(),
+        diagnostics=tuple(diagnostics),
+    )
+
+
+def _not_assembled(body: Body) -> Diagnostic:
+    return Diagnostic(
+        "not-assembled",
+        "error",
+        f"{body.mechanism.name} could not be assembled, so only the count is known",
+        measured=f"from the drawing the loops close to {home(body).closed().miss:.2g} of the size",
+        limit=f"{tolerances.MOBILITY_CLOSED:g}",
+        hint="check the dimensions; those of an overconstrained loop must be exact "
+        "(write expressions)",
+    )
+
+
+def _rank_unclear(unclear: list[LocalFreedom]) -> Diagnostic:
+    return Diagnostic(
+        "rank-unclear",
+        "error",
+        "the rank of the constraints cannot be told",
+        measured=f"a gap of {min(item.first.gap for item in unclear):.3g} between singular values",
+        limit=f"{tolerances.RANK_GAP:g}",
+        hint="write exact dimensions (expressions), or another position of the inputs",
+    )
+
+
+def _unclear(unclear: list[LocalFreedom]) -> Diagnostic:
+    return Diagnostic(
+        "mobility-unclear",
+        "error",
+        "how many freedoms go a finite way cannot be told",
+        measured=unclear[0].doubt,
+        hint="write exact dimensions (expressions), or draw it in another position",
+    )
+
+
+# What is known of the inputs from the drawing alone, without a search: for `check`.
+
+
+def drawn_faults(problem: Problem) -> list[Diagnostic]:
+    """Inputs that are locked, dependent or too few, as warnings.
+
+    Nothing is said where the drawing is not assembled or a special position.
+    """
+    body = Body(problem.mechanism)
+    start, random = home(body), RandomStarts()
+    if not start.assembled:
+        return []
+    freedoms = [(p, freedom_of(p, start.state, random, regular=True)) for p in body.parts]
+    if any(found.doubt for _, found in freedoms):
+        return []
+    motions = Motions(body, start, freedoms)
+    driven = problem.motion.driven
+    idle = len(idle_freedoms(motions.general, driven)) if motions.mobility else 0
+    if not driven:
+        return undriven_notes(motions.mobility, idle, 0)
+    return [note._replace(severity="warning") for note in input_notes(problem, motions, idle)]

@@ -1,0 +1,390 @@
+"""A mechanism opened to a tree of elementary displacements, and the poses of its bodies.
+
+Every joint is carried, part by part. One that would close a loop carries a copy of its second link
+(a cut), so that a configuration is a point in the space of all joint coordinates and closes where
+every copy lies on its link. No joint has closing equations here, and nothing is driven.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.mechanism import GROUND_NAME, Attached, Joint, Mechanism, RigidLink, screws_at
+from mechkin_cli.structure import SolverGraph, TreeEdge
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.plan import Layout
+    from mechkin_cli.session import Session
+    from mechkin_cli.show import Floats
+
+
+class Pose(NamedTuple):
+    """Where a body stands: its drawing's point p is at turn p + place (lengths in sizes, about the
+    centre)."""
+
+    turn: Floats
+    place: Floats
+
+
+class Cut(NamedTuple):
+    """A joint that closes a loop: the copy that it carries, and the link on which that lies."""
+
+    joint: str
+    copy: str
+    link: str
+
+
+class Opened(NamedTuple):
+    """The tree: `mechanism` and `graph` of elementary joints, each one edge; `elements` are the
+    edges of every joint of the mechanism in the order of its parts."""
+
+    mechanism: Mechanism
+    graph: SolverGraph
+    elements: Mapping[str, tuple[int, ...]]
+    cuts: tuple[Cut, ...]
+
+
+def opened(mechanism: Mechanism) -> Opened:
+    """The mechanism as a tree, breadth first from ground."""
+    edges: list[TreeEdge] = []
+    elements: dict[str, tuple[int, ...]] = {}
+    reached, front = {GROUND_NAME}, [GROUND_NAME]
+    while front:
+        link = front.pop(0)
+        for name, joint in mechanism.joints.items():
+            far = {joint.first: joint.second, joint.second: joint.first}.get(link)
+            if name in elements or far is None or far in reached:
+                continue
+            elements[name] = _carry(edges, _parts_of(joint, joint.second), link)
+            reached.add(far)
+            front.append(far)
+    cuts = []
+    for name, joint in mechanism.joints.items():
+        if name not in elements:
+            cut = Cut(name, f"{name} | cut", joint.second)
+            elements[name] = _carry(edges, _parts_of(joint, cut.copy), joint.first)
+            cuts.append(cut)
+    links = {edge.child: RigidLink(edge.child) for edge in edges}
+    joints = {edge.joint.name: edge.joint for edge in edges}
+    tree = Mechanism(mechanism.name, links, joints)
+    return Opened(tree, SolverGraph(tuple(edges), (), (), (), ()), elements, tuple(cuts))
+
+
+def _parts_of(joint: Joint, second: str) -> list[Joint]:
+    """The parts of a joint, from its first link to `second`, as joints of their own."""
+    between = [f"{joint.name} | {k}" for k in range(1, len(joint.parts))]
+    bodies = [joint.first, *between, second]
+    return [
+        Joint(
+            f"{joint.name} | part {k + 1}",
+            part.letter,
+            bodies[k],
+            bodies[k + 1],
+            part.before,
+            part.after,
+            (part,),
+            joint.lead,
+        )
+        for k, part in enumerate(joint.parts)
+    ]
+
+
+def _carry(edges: list[TreeEdge], parts: list[Joint], link: str) -> tuple[int, ...]:
+    """Adds the parts outward from `link`, at either end; their edges from first to last."""
+    forward = link == parts[0].first
+    for part in parts if forward else parts[::-1]:
+        ends = (part.first, part.second) if forward else (part.second, part.first)
+        edges.append(TreeEdge(part, *ends))
+    numbers = tuple(range(len(edges) - len(parts), len(edges)))
+    return numbers if forward else numbers[::-1]
+
+
+class Poses:
+    """The kernel's poses of bodies, about `centre` (m) in parts of `size` (m)."""
+
+    def __init__(
+        self, session: Session, bodies: Iterable[str], centre: Floats, size: float
+    ) -> None:
+        self.session, self.bodies = session, tuple(bodies)
+        self.centre, self.size = centre, size
+        marks = [centre, *(centre + size * axis for axis in np.eye(3))]
+        points = [Attached(body, tuple(mark.tolist())) for body in self.bodies for mark in marks]
+        self.readout = session.readout((), points)
+        slots = np.array(self.readout.points, dtype=np.intp)
+        self._slots = (slots[:, None] + np.arange(3)).ravel()
+
+    def at(self, inputs: Floats, states: Floats) -> tuple[Floats, Floats]:
+        """Turns (rows, bodies, 3, 3) and places (rows, bodies, 3) of ground and the bodies, in this
+        order, at inputs (inputs, rows) and states (states, rows)."""
+        batch = self.session.run(inputs, states, readout=self.readout)
+        assert batch.outputs is not None
+        rows = states.shape[1]
+        marks = batch.outputs[self._slots].reshape(len(self.bodies), 4, 3, rows)
+        marks = (marks.transpose(3, 0, 1, 2) - self.centre) / self.size
+        turns = np.empty((rows, len(self.bodies) + 1, 3, 3))
+        places = np.zeros((rows, len(self.bodies) + 1, 3))
+        turns[:, 0] = np.eye(3)
+        places[:, 1:] = marks[:, :, 0]
+        turns[:, 1:] = np.swapaxes(marks[:, :, 1:] - marks[:, :, :1], -1, -2)
+        return turns, places
+
+    def named(self, turns: Floats, places: Floats) -> dict[str, Pose]:
+        """The poses of one row by the names of the bodies."""
+        names = (GROUND_NAME, *self.bodies)
+        return {name: Pose(turns[k], places[k]) for k, name in enumerate(names)}
+
+
+# Finite rotations and displacements as vectors, for questions of rank (messages, never cells).
+#
+# Arrays may have any leading dimensions.
+
+
+def displacement(turn: Floats, place: Floats, to_turn: Floats, to_place: Floats) -> Floats:
+    """The displacement (..., 6) that carries the pose `to_turn` (..., 3, 3), `to_place` (..., 3)
+    onto `turn`, `place`: rotation vector, shift of the origin."""
+    by = turn @ np.swapaxes(to_turn, -1, -2)
+    shift = place - (by @ to_place[..., None])[..., 0]
+    return np.concatenate([rotation_vector(by), shift], axis=-1)
+
+
+def rotation_vector(turn: Floats) -> Floats:
+    """Axis times angle (..., 3) of a rotation (..., 3, 3); at half a turn any axis."""
+    skew = 0.5 * np.stack(
+        [
+            turn[..., 2, 1] - turn[..., 1, 2],
+            turn[..., 0, 2] - turn[..., 2, 0],
+            turn[..., 1, 0] - turn[..., 0, 1],
+        ],
+        axis=-1,
+    )
+    sine = np.sqrt(np.sum(skew * skew, axis=-1))
+    cosine = 0.5 * (np.trace(turn, axis1=-2, axis2=-1) - 1.0)
+    angle = np.arctan2(sine, cosine)
+    still = sine == 0.0
+    found = skew * (angle / np.where(still, 1.0, sine))[..., None]
+    found[..., 0] += np.where(still, angle, 0.0)
+    return np.asarray(found, dtype=np.float64)
+
+
+def quaternion_of(turn: Floats) -> Floats:
+    """Unit quaternion of a rotation, scalar first; exact where the angle is half a turn, too."""
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = turn.tolist()
+    products = np.array(  # 4 q q^T
+        [
+            [1.0 + xx + yy + zz, zy - yz, xz - zx, yx - xy],
+            [zy - yz, 1.0 + xx - yy - zz, xy + yx, xz + zx],
+            [xz - zx, xy + yx, 1.0 - xx + yy - zz, yz + zy],
+            [yx - xy, xz + zx, yz + zy, 1.0 - xx - yy + zz],
+        ]
+    )
+    row = products[int(np.argmax(np.diag(products)))]
+    return np.asarray(row / np.sqrt(row @ row), dtype=np.float64)
+
+
+def turned(quaternion: Floats, vector: Floats) -> Floats:
+    """Quaternions (..., 4) turned further by rotation vectors (..., 3) about axes that stand
+    still."""
+    angle = np.sqrt(np.sum(vector * vector, axis=-1, keepdims=True))
+    half = 0.5 * vector * np.sinc(angle / (2.0 * np.pi))
+    found = product(np.concatenate([np.cos(0.5 * angle), half], axis=-1), quaternion)
+    return np.asarray(found / np.sqrt(np.sum(found * found, axis=-1, keepdims=True)))
+
+
+def turn_between(quaternion: Floats, other: Floats) -> Floats:
+    """The rotation vectors (..., 3) that turn `other` (..., 4) on to `quaternion`."""
+    back = other * np.array([1.0, -1.0, -1.0, -1.0])
+    by = product(quaternion, back)
+    by = np.where(by[..., :1] < 0.0, -by, by)
+    sine = np.sqrt(np.sum(by[..., 1:] ** 2, axis=-1, keepdims=True))
+    angle = 2.0 * np.arctan2(sine, by[..., :1])
+    return np.asarray(by[..., 1:] * np.where(sine > 0.0, angle / np.where(sine > 0.0, sine, 1), 2))
+
+
+def product(one: Floats, two: Floats) -> Floats:
+    """Products of quaternions (..., 4), scalar first."""
+    a, v = one[..., :1], one[..., 1:]
+    b, w = two[..., :1], two[..., 1:]
+    scalar = a * b - np.sum(v * w, axis=-1, keepdims=True)
+    return np.concatenate([scalar, a * w + b * v + cross(v, w)], axis=-1)
+
+
+def cross(one: Floats, two: Floats) -> Floats:
+    """Cross products (..., 3), with less ado than NumPy's."""
+    return np.asarray(
+        one[..., [1, 2, 0]] * two[..., [2, 0, 1]] - one[..., [2, 0, 1]] * two[..., [1, 2, 0]]
+    )
+
+
+# The loops of the opened mechanism at many states at once: how far they are open, and their
+# screws.
+#
+# A state of the kernel holds the coordinates of all joints; a step (freedoms,) changes it, balls by
+# rotation vectors about the axes of the body before them. Twists are (angular, linear at the
+# centre), lengths in parts of the size. Arrays are (rows, ...).
+
+
+class LoopClosure(NamedTuple):
+    """Displacements of the copies against their links, `misses` (rows, 6 cuts), and how unit rates
+    of the freedoms change them, `jacobian` (rows, 6 cuts, freedoms)."""
+
+    misses: Floats
+    jacobian: Floats
+
+
+class Loops:
+    """The closing of the cuts of an opened mechanism."""
+
+    def __init__(self, opened: Opened, layout: Layout, poses: Poses) -> None:
+        self.opened, self.layout, self.poses = opened, layout, poses
+        number = {name: k for k, name in enumerate((GROUND_NAME, *poses.bodies))}
+        self.number = number
+        spins, slides, edges = [], [], []
+        for k, edge in enumerate(opened.graph.edges):
+            carrier = layout.carriers[k]
+            origin = (np.array(carrier.part.before.o) - poses.centre) / poses.size
+            frame = carrier.part.before._replace(o=tuple(origin.tolist()))
+            for spin, slide in screws_at(carrier.part.letter, frame, edge.joint.pitch / poses.size):
+                spins.append(spin)
+                slides.append(slide)
+                edges.append(k)
+        self.count = len(edges)
+        self._spins = np.array(spins, dtype=np.float64).reshape(-1, 3, 1)
+        self._slides = np.array(slides, dtype=np.float64).reshape(-1, 3, 1)
+        self._edges = np.array(edges, dtype=np.intp)
+        parents = [number[edge.parent] for edge in opened.graph.edges]
+        self._parents = np.array([parents[k] for k in edges], dtype=np.intp)
+        self._copies = np.array([number[cut.copy] for cut in opened.cuts], dtype=np.intp)
+        self._links = np.array([number[cut.link] for cut in opened.cuts], dtype=np.intp)
+
+    @cached_property
+    def passed(self) -> Floats:
+        """Whether the way from ground to each body passes each edge (bodies, edges), 0 or 1."""
+        edges = self.opened.graph.edges
+        found = np.zeros((len(self.number), len(edges)))
+        for k, edge in enumerate(edges):
+            found[self.number[edge.child]] = found[self.number[edge.parent]]
+            found[self.number[edge.child], k] = 1.0
+        return found
+
+    @cached_property
+    def edge_signs(self) -> Floats:
+        """How the loop of each cut passes each edge (cuts, edges): outward +1, back to ground
+        -1."""
+        return self.passed[self._copies] - self.passed[self._links]
+
+    @cached_property
+    def signs(self) -> Floats:
+        """How the loop of each cut passes each freedom (cuts, freedoms)."""
+        return self.edge_signs[:, self._edges]
+
+    def closing(self, states: Floats) -> LoopClosure:
+        """Misses and Jacobian at states (rows, states)."""
+        return self.closing_of(*self.poses.at(np.empty((0, len(states))), states.T))
+
+    def closing_of(self, turns: Floats, places: Floats) -> LoopClosure:
+        """Misses and Jacobian at poses of all bodies."""
+        one, two = self._copies, self._links
+        misses = displacement(turns[:, one], places[:, one], turns[:, two], places[:, two])
+        screws = np.swapaxes(self.screws(turns, places), 1, 2)
+        jacobian = self.signs[:, None, :] * screws[:, None]
+        rows = len(turns)
+        return LoopClosure(
+            misses.reshape(rows, 6 * len(one)), jacobian.reshape(rows, 6 * len(one), self.count)
+        )
+
+    def screws(self, turns: Floats, places: Floats) -> Floats:
+        """Unit screws (rows, freedoms, 6) of all freedoms where the bodies are."""
+        turn, place = turns[:, self._parents], places[:, self._parents]
+        spins = (turn @ self._spins)[..., 0]
+        slides = (turn @ self._slides)[..., 0] + cross(place, spins)
+        return np.concatenate([spins, slides], axis=2)
+
+    def twists(self, turns: Floats, places: Floats) -> Floats:
+        """Twists (rows, bodies, 6, freedoms) of all bodies for unit rates of the freedoms."""
+        screws = np.swapaxes(self.screws(turns, places), 1, 2)
+        return np.asarray(self.passed[:, self._edges][:, None, :] * screws[:, None])
+
+    def moved(self, states: Floats, steps: Floats) -> Floats:
+        """States (rows, states) displaced by steps (rows, freedoms)."""
+        found = states.copy()
+        columns, slots, units = self._scalars
+        found[:, slots] += steps[:, columns] * units
+        columns, slots = self._balls
+        if slots.size:
+            found[:, slots] = turned(found[:, slots], steps[:, columns])
+        return found
+
+    def steps(self, states: Floats, others: Floats) -> Floats:
+        """The steps (rows, freedoms) that lead from `others` to `states`, both (rows, states)."""
+        found = np.zeros((len(states), self.count))
+        columns, slots, units = self._scalars
+        found[:, columns] = (states[:, slots] - others[:, slots]) / units
+        columns, slots = self._balls
+        if slots.size:
+            found[:, columns] = turn_between(states[:, slots], others[:, slots])
+        return found
+
+    @cached_property
+    def _scalars(self) -> tuple[NDArray[np.intp], NDArray[np.intp], Floats]:
+        """Columns, slots in the state and units of the freedoms that are no ball's."""
+        columns, slots, units = [], [], []
+        unit = self.poses.size / self.layout.length
+        for carrier in self.layout.carriers:
+            if carrier.part.type.is_ball:
+                continue
+            for k, freedom in enumerate(carrier.part.type.freedoms):
+                columns.append(carrier.column + k)
+                slots.append(carrier.state + k)
+                units.append(unit if freedom.is_slide else 1.0)
+        return np.array(columns, dtype=np.intp), np.array(slots, dtype=np.intp), np.array(units)
+
+    @cached_property
+    def _balls(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Columns (balls, 3) and slots in the state (balls, 4) of the balls."""
+        balls = [c for c in self.layout.carriers if c.part.type.is_ball]
+        columns = np.array([c.column for c in balls], dtype=np.intp)
+        slots = np.array([c.state for c in balls], dtype=np.intp)
+        return columns[:, None] + np.arange(3), slots[:, None] + np.arange(4)
+
+
+# Rank of a Jacobian by singular values, with the motions that it allows and the stresses.
+
+
+class Rank(NamedTuple):
+    """Rank of the loops' closing: `motions` (freedoms, count) are what it allows, `stresses`
+    (equations, redundant) the wrenches that hold each other; `gap` is the ratio of singular values
+    at the rank."""
+
+    motions: Floats
+    stresses: Floats
+    gap: float
+
+    @property
+    def clear(self) -> bool:
+        """Whether the gap decides the rank."""
+        return self.gap >= tolerances.RANK_GAP
+
+    @property
+    def doubt(self) -> str:
+        """Why the rank is not clear, in words."""
+        return f"a gap of {self.gap:.3g} between singular values"
+
+
+def rank_of(matrix: Floats, zero: float) -> Rank:
+    """Rank, motions and stresses; singular values below `zero` of the largest are none."""
+    rows, columns = matrix.shape
+    if not matrix.any():  # nothing closes, or welds alone
+        return Rank(np.eye(columns), np.eye(rows), np.inf)
+    left, values, right = np.linalg.svd(matrix)
+    least = tolerances.RANK_ROUNDING * values[0]
+    values = np.maximum(values, least)
+    rank = int(np.count_nonzero(values > zero * values[0]))
+    below = values[rank] if rank < len(values) else least
+    return Rank(right[rank:].T, left[:, rank:], float(values[rank - 1] / below))

@@ -1,0 +1,275 @@
+"""`Model.analyze`: the sweep of the file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from mechkin_cli.arguments import a_text, a_whole_number, texts
+from mechkin_cli.building import used_quantities
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
+from mechkin_cli.kernel.functions import check_threads, check_width
+from mechkin_cli.mechanism import find_legs, response_problem
+from mechkin_cli.model.analysis import Analysis
+from mechkin_cli.plan import needs_all_links
+from mechkin_cli.response import respond as run_response
+from mechkin_cli.session import Packing, Session
+from mechkin_cli.structure import UnsolvableGraph
+from mechkin_cli.sweep import analyze
+from mechkin_cli.tables import TableLayout, chosen, row_texts
+from mechkin_cli.verdict import SWEEP
+
+if TYPE_CHECKING:
+    from mechkin_cli.building import Built
+    from mechkin_cli.expressions import Quantity
+    from mechkin_cli.mechanism import Problem
+    from mechkin_cli.model.model import Model
+    from mechkin_cli.session import Precise
+
+
+# What a caller wants of a run: its tables, and the quantities that are computed with them.
+
+QUANTITIES = (
+    "quantities are such as J.theta, J.force of a joint J, or p.position of a point p; components "
+    'and expressions are read from the analysis: r["J.force.x"]'
+)
+
+
+def a_packing(lanes: object, threads: object) -> Packing:
+    """How rows are packed.
+
+    Raises:
+        UsageError: no numbers, or a width that the machine lacks.
+    """
+    lanes = a_whole_number("lanes", lanes, "rows at a time")
+    threads = a_whole_number("threads", threads, "threads")
+    check_width(lanes)
+    check_threads(threads)
+    return Packing(lanes, threads)
+
+
+def run_name(runs: Sequence[str], name: str | None) -> str:
+    """The run that is meant; None: the first.
+
+    Raises:
+        UsageError: there is no such run.
+    """
+    if name is None:
+        return runs[0]
+    a_text("run", name, f'"{runs[0]}"')
+    if name not in runs:
+        hint = nearest_hint(name, runs) or f"runs are {', '.join(runs)}"
+        raise UsageError(f"there is no run {name[:LONGEST_NAME]}; {hint}")
+    return name
+
+
+def chosen_tables(built: Built, names: Sequence[str] | None, run: str) -> tuple[TableLayout, ...]:
+    """The tables of a run that are wanted; None: all.
+
+    Raises:
+        UsageError: the run has no such table.
+    """
+    own = built.tables_of(run)
+    if names is None:
+        return own
+    known = {table.name: table for table in own}
+    others = (*built.coefficients, *built.balances) if run == SWEEP else ()
+    of_systems = [one.name for one in others]
+    names = texts("tables", names, '["table_03"]')
+    names = [name for name in names if name not in of_systems]
+    for name in names:
+        if name not in known:
+            raise UsageError(
+                f"there is no table {name[:LONGEST_NAME]}; "
+                f"tables are {', '.join([*known, *sorted(of_systems)])}"
+            )
+    return tuple(known[name] for name in dict.fromkeys(names))
+
+
+def wanted_names(
+    session: Session,
+    run: str,
+    layouts: Sequence[TableLayout],
+    quantities: Iterable[str] | None,
+) -> list[str]:
+    """The quantities that tables of a run read, then those asked for; `session` is the run's. What
+    there is, is asked only where something is wanted.
+
+    Raises:
+        UsageError: an unknown quantity.
+    """
+    asked = () if quantities is None else texts("quantities", quantities, '["O4.theta"]')
+    if not layouts and not asked:
+        return []
+    always, known = row_texts(run), session.problem.quantities()
+    key = ("read by", run, tuple(layout.name for layout in layouts))
+    used = session.once(key, lambda: used_quantities(layouts, known))
+    names = [name for name in asked if name not in always]
+    for name in names:
+        if name not in known:
+            hint = session.problem.why_not(name) or nearest_hint(name, known) or QUANTITIES
+            raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
+    return [*used, *names]
+
+
+def known_mode(analysis: Analysis) -> Analysis:
+    """The analysis of a mode that was asked for.
+
+    Raises:
+        UsageError: there is no such mode.
+    """
+    for diagnostic in analysis.diagnostics:
+        if diagnostic.code == "no-such-mode":
+            raise UsageError(f"{diagnostic.message}: {diagnostic.measured}")
+    return analysis
+
+
+def run_sweep(
+    model: Model,
+    quantities: Iterable[str] | None,
+    tables: Sequence[str] | None,
+    mode: str | None,
+    closed_at: Sequence[str] | None,
+    lanes: int,
+    threads: int,
+    errors: bool,
+) -> Analysis:
+    """Runs the sweep of a model; arguments and errors are those of `Model.analyze`."""
+    packing = a_packing(lanes, threads)
+    if SWEEP not in model.runs:
+        raise UsageError(
+            f"{model.name} has no sweep: its file has no motion:; its responses are run by "
+            f'respond("{model.runs[0]}")'
+        )
+    session, problem = model.session, model.problem
+    if closed_at is not None:
+        session = _closed_at(problem, closed_at)
+    if mode is not None:
+        a_text("mode", mode, '"A"')
+        session = session.assembled(replace(problem.assembly, mode=mode))
+    layouts = chosen_tables(model.built, tables, SWEEP)
+    balances = chosen(model.built.balances, tables)
+    names = wanted_names(session, SWEEP, layouts, quantities)
+    asked = tuple(names)
+    if balances:
+        from mechkin_cli.mechanism import read_by
+
+        names += read_by(balances, problem)
+    refuse_loaded_spin(session, names)
+    result = analyze(session.packed(packing), names)
+    systems = chosen(model.built.coefficients, tables)
+    analysis = Analysis(model, layouts, result, SWEEP, systems, balances, asked)
+    analysis = analysis if mode is None else known_mode(analysis)
+    if errors:
+        _ = analysis.errors
+    return analysis
+
+
+def _closed_at(problem: Problem, names: Sequence[str]) -> Session:
+    """The session whose loops are closed at some joints."""
+    closings = list(texts("closed_at", names, '["O3"]'))
+    joints = problem.mechanism.joints
+    for name in closings:
+        if name not in joints:
+            known = ", ".join(joints)
+            raise UsageError(
+                f"closed_at: there is no joint {name[:LONGEST_NAME]}; joints are {known}"
+            )
+    try:
+        return Session(problem, closed_at=closings)
+    except UnsolvableGraph as error:
+        why = f"closed_at {', '.join(closings) or 'nothing'}: {error.diagnostic.message}"
+        cure = "leave out closed_at, or choose other closing joints"
+        raise UsageError(f"{why}; {cure}") from None
+
+
+def refuse_loaded_spin(session: Session, names: Sequence[str]) -> None:
+    """Forces and energies need what spins freely to have no cause to spin.
+
+    Raises:
+        UsageError: one of some quantities is such, and something would spin.
+    """
+    problem = session.problem
+    if not names or not (find_legs(problem.mechanism) or problem.held):
+        return
+    from mechkin_cli.idle import spin_errors
+
+    for _, diagnostic in session.own("causes of spin", lambda: list(spin_errors(problem))):
+        known = problem.quantities()
+        if needs_all_links(problem.mechanism, [known[name] for name in names]):
+            raise UsageError(str(diagnostic))
+
+
+# `Model.respond`: one of the file's responses, by its name.
+
+_AS_WRITTEN: Mapping[str, Quantity] = MappingProxyType({})
+
+
+def respond(
+    model: Model,
+    name: str | None,
+    quantities: Iterable[str] | None,
+    tables: Sequence[str] | None,
+    mode: str | None,
+    lanes: int,
+    threads: int,
+) -> Analysis:
+    """Runs a response of a model; arguments and errors are those of `Model.respond`."""
+    packing = a_packing(lanes, threads)
+    run = response_name(model, name)
+    session = model.session_of(run)
+    problem = model.problem
+    response = problem.responses[run]
+    if mode is not None:
+        a_text("mode", mode, '"A"')
+        assembly = replace(response.assembly, near={}, mode=mode)
+        response = replace(response, assembly=assembly)
+        session = session.assembled(assembly)
+    layouts = chosen_tables(model.built, tables, run)
+    names = wanted_names(session, run, layouts, quantities)
+    result = run_response(problem, response, names, packing, session)
+    analysis = Analysis(model, layouts, result, run, asked=tuple(names))
+    return analysis if mode is None else known_mode(analysis)
+
+
+def session_at_start(model: Model, run: str) -> Session:
+    """The mechanism in the kernel at the start of a response; errors as those of
+    `Model.session_of`."""
+    graph = model.response_graph(run)
+    first = response_problem(model.problem, model.problem.responses[run])
+    return Session(first, graph).reading(exactly_read(model.built, first, model._given))
+
+
+def exactly_read(
+    built: Built, first: Problem, given: Mapping[str, Quantity] = _AS_WRITTEN
+) -> Callable[[], Precise]:
+    """What gives the numbers of a response as its text says them, read when they are first asked
+    for; `first` is its first moment, `given` are values of parameters that were set."""
+    from mechkin_cli.building import precise_response
+
+    return cache(lambda: precise_response(built, first, given))
+
+
+def response_name(model: Model, name: str | None) -> str:
+    """The response that is meant; without a name the only one.
+
+    Raises:
+        UsageError: there is none, or none of this name.
+    """
+    known = list(model.built.problem.responses)
+    if not known:
+        raise UsageError(
+            "the file has no responses; add responses: {NAME: {start: {...}, time: {...}}}"
+        )
+    if name is None:
+        if len(known) > 1:
+            raise UsageError(f"respond() needs a name; responses are {', '.join(known)}")
+        return known[0]
+    a_text("name", name, f'"{known[0]}"')
+    if name not in known:
+        hint = nearest_hint(name, known) or f"responses are {', '.join(known)}"
+        raise UsageError(f"there is no response {name[:LONGEST_NAME]}; {hint}")
+    return name

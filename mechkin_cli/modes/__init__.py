@@ -1,0 +1,24 @@
+"""What else could be assembled from the same parts, circuits, and how far an input can go."""
+
+from __future__ import annotations
+
+from mechkin_cli.lazy import lazy_names
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from mechkin_cli.modes.circuits import Passage as Passage, Walker as Walker
+    from mechkin_cli.modes.modes import UNNAMED as UNNAMED, Modes as Modes, find_modes as find_modes
+    from mechkin_cli.modes.ranges import (
+        Range as Range,
+        Ranges as Ranges,
+        find_ranges as find_ranges,
+    )
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "circuits": ["Passage", "Walker"],
+        "modes": ["Modes", "UNNAMED", "find_modes"],
+        "ranges": ["Range", "Ranges", "find_ranges"],
+    },
+)

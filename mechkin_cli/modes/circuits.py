@@ -1,0 +1,238 @@
+"""Which modes belong to one circuit, and where that is not known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import pi
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.plan import TrackEnd
+from mechkin_cli.search import pose_keys, same_poses
+from mechkin_cli.session import BranchFold, BranchPoint, Runaway, find_limit
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from mechkin_cli.session import Followed, InputTie, Session
+    from mechkin_cli.show import Floats
+
+
+# Circuits: everything that a mechanism reaches by moving one input to and fro, without taking it
+# apart.
+#
+# A branch is followed up and down from a place. Where it folds, the motion goes on along the branch
+# on the other side of the dead centre, with the input turning back; so branch after branch, until
+# the first one comes again or something else ends the walk.
+
+EndKind = Literal["dead-centre", "branch-point", "unbounded", "branch-lost", "full-turn", "far"]
+
+
+class End(NamedTuple):
+    """Where a branch ends: the input there (kernel units), and what may lie beyond.
+
+    `unbounded`: a slide grew out of bounds before it; `full-turn`: it came to an assembly that was
+    met before, turns ago; `far`: not found within the reach that is looked over.
+    """
+
+    kind: EndKind
+    value: float
+    fold: BranchFold | None = None
+
+
+class Passage(NamedTuple):
+    """States where the input has its first value, or whole turns more."""
+
+    value: float
+    state: Floats
+
+
+@dataclass
+class Branch:
+    """A stretch of one input between two ends, with the places where it passes the first value."""
+
+    lower: End
+    upper: End
+    places: list[Passage] = field(default_factory=list)
+
+
+def is_open(branches: Sequence[Branch]) -> bool:
+    """Whether a walk through branches may have missed some of their circuit: one could not be
+    followed to its end, or there are too many."""
+    lost = any("branch-lost" in (one.lower.kind, one.upper.kind) for one in branches)
+    return lost or len(branches) > tolerances.MOST_BRANCHES
+
+
+class Walker:
+    """Walks along the branches of one input; the other inputs are held, or follow it.
+
+    Args:
+        session: the mechanism as it is driven.
+        number: the input that moves.
+        inputs: (inputs,) where places are taken.
+        tie: what follows it.
+    """
+
+    def __init__(
+        self, session: Session, number: int, inputs: Floats, tie: InputTie | None = None
+    ) -> None:
+        self.session, self.number, self.inputs, self.tie = session, number, inputs, tie
+        layout = session.layout
+        edge, freedom = layout.graph.inputs[number]
+        joint = layout.graph.edges[edge].joint
+        self.period = 2.0 * pi if joint.type.chain[freedom].is_cyclic else None
+
+    def circuit(self, state: Floats) -> list[Branch]:
+        """All branches of the circuit through an assembly at the first value, that one first."""
+        origin = float(self.inputs[self.number])
+        start = Passage(origin, state)
+        upper, above = self._climb(start, 1.0, start)
+        if upper.kind == "full-turn":
+            return [Branch(upper._replace(value=origin), upper, [start, *above])]
+        lower, below = self._climb(start, -1.0, start)
+        first = Branch(lower, upper, [*below[::-1], start, *above])
+        onward, closed = self._walk(first, upper, 1.0)
+        if closed:
+            return [first, *onward]
+        backward, _ = self._walk(first, lower, -1.0)
+        return [first, *onward, *backward]
+
+    def end(self, start: Passage, direction: float) -> End:
+        """Where the branch through a place ends in a direction."""
+        return self._climb(start, direction, start)[0]
+
+    def _walk(self, first: Branch, end: End, direction: float) -> tuple[list[Branch], bool]:
+        """The branches beyond an end of the first one; whether they lead back to its other end."""
+        found: list[Branch] = []
+        goal = first.lower if direction > 0.0 else first.upper
+        while end.fold is not None and len(found) < tolerances.MOST_BRANCHES:
+            beyond = float(end.fold.inputs_beyond[self.number])
+            start = Passage(beyond, end.fold.beyond)
+            direction = -direction
+            far, places = self._climb(start, direction, None)
+            places = [*self._back_to(end, start, direction), *places]
+            ends = (end, far) if direction > 0.0 else (far, end)
+            found.append(Branch(*ends, places if direction > 0.0 else places[::-1]))
+            if far.fold is not None and goal.fold is not None and self._same(far.fold, goal.fold):
+                return found, True
+            end = far
+        return found, False
+
+    def _back_to(self, fold: End, start: Passage, direction: float) -> list[Passage]:
+        """The place between a dead centre and the first place of the branch beyond it."""
+        value = self._next(start.value, -direction, here=True)
+        if (fold.value - value) * -direction <= 0.0:
+            return []
+        if value == start.value:
+            return [start]
+        way = self.follow(np.array([start.value, value]), start.state)
+        return [Passage(value, way.state)] if way.end == TrackEnd.FINISHED else []
+
+    def _climb(
+        self, start: Passage, direction: float, first: Passage | None
+    ) -> tuple[End, list[Passage]]:
+        """Follows a branch in a direction to its end; places on the way."""
+        place = start
+        places: list[Passage] = []
+        for _ in range(tolerances.MOST_TURNS):
+            target = self._next(place.value, direction)
+            way = self.follow(np.array([place.value, target]), place.state)
+            if way.end != TrackEnd.FINISHED:
+                limit = find_limit(self.session, way)
+                last = float(way.inputs[self.number])
+                if isinstance(limit, BranchFold):
+                    return End("dead-centre", float(limit.inputs[self.number]), limit), places
+                if isinstance(limit, Runaway):
+                    return End("unbounded", last), places
+                if isinstance(limit, BranchPoint):
+                    return End("branch-point", float(limit.inputs[self.number])), places
+                return End("branch-lost", last), places
+            place = Passage(target, way.state)
+            if self.period is None and target != self.inputs[self.number]:
+                return End("far", target), places
+            if first is not None and self._is_same(place.state, first.state):
+                return End("full-turn", target), places
+            places.append(place)
+        return End("far", place.value), places
+
+    def follow(self, values: Floats, state: Floats) -> Followed:
+        """The branch through a state along values of the input."""
+        if self.tie is not None:
+            return self.session.follow_way(self.tie.way(values), state)
+        return self.session.follow(np.ascontiguousarray(self.at(values)[0]), state)
+
+    def at(self, values: Floats) -> Floats:
+        """All inputs, and first and second derivatives by the one that moves, (3, inputs,
+        places)."""
+        if self.tie is not None:
+            return self.tie.derivatives(values)
+        found = np.zeros((3, self.inputs.size, values.size))
+        found[0] = self.inputs[:, None]
+        found[0, self.number], found[1, self.number] = values, 1.0
+        return found
+
+    def _next(self, value: float, direction: float, *, here: bool = False) -> float:
+        """The next value in a direction at which a place is taken, or the end of the reach; `here`:
+        the value itself if it is one.
+
+        Values are compared as they are: a range may be narrower than any tolerance.
+        """
+        origin = float(self.inputs[self.number])
+
+        def is_ahead(place: float) -> bool:
+            return (place - value) * direction > 0.0 or (here and place == value)
+
+        if self.period is None:
+            return origin if is_ahead(origin) else value + direction * tolerances.FAR_INPUT
+        whole = float(np.floor((value - origin) / self.period * direction)) - 1.0
+        while not is_ahead(origin + direction * whole * self.period):
+            whole += 1.0
+        return origin + direction * whole * self.period
+
+    def _same(self, one: BranchFold, other: BranchFold) -> bool:
+        return self._is_same(one.state, other.state, tolerances.SAME_DEAD_CENTRE)
+
+    def _is_same(self, one: Floats, other: Floats, limit: float = tolerances.SAME_MODE) -> bool:
+        keys = [pose_keys(self.session.layout, state[:, None]) for state in (one, other)]
+        return bool(same_poses(keys[0], keys[1], limit)[0, 0])
+
+
+class Circuit(NamedTuple):
+    """Modes that are reached from one another, and whether others may be reached, too: no walk
+    through them came to all of its ends."""
+
+    modes: frozenset[str]
+    is_open: bool
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """The modes in the order of their letters."""
+        return tuple(sorted(self.modes, key=lambda name: (len(name), name)))
+
+
+def joined(circuits: Sequence[Circuit]) -> list[Circuit]:
+    """Circuits that share a mode with the last are one with it: a walk may end early on one side of
+    a narrow place and get through from the other, and one that came to all ends knows them all."""
+    *before, last = circuits
+    apart = [one for one in before if not one.modes & last.modes]
+    same = [last, *(one for one in before if one.modes & last.modes)]
+    modes = frozenset().union(*(one.modes for one in same))
+    return [*apart, Circuit(modes, all(one.is_open for one in same))]
+
+
+def undecided(circuits: Sequence[Circuit], name: str) -> list[Diagnostic]:
+    """That circuits may be one: those of which no walk came to all ends; a closed one has no part
+    in the others."""
+    numbers = [str(number) for number, one in enumerate(circuits, 1) if one.is_open]
+    if len(numbers) < 2:
+        return []
+    *first, last = numbers
+    text = (
+        f"whether circuits {', '.join(first)} and {last} are one is not known: moving {name}, a "
+        "branch of each could not be followed to its end"
+    )
+    hint = "begin at another value of it"
+    return [Diagnostic("circuits-undecided", "warning", text, hint=hint)]

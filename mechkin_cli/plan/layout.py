@@ -1,0 +1,291 @@
+"""How a mechanism lies in the kernel: numbering, scaled lengths, link frames, reversed joints.
+
+The kernel's length unit is a power of two near the mechanism's size, so scaling never rounds. Its
+origin is the ground origin unless the drawing lies far from it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.mechanism import (
+    GROUND,
+    GROUND_NAME,
+    ZERO,
+    Attached,
+    Coordinate,
+    Drives,
+    Frame,
+    Joint,
+    Mechanism,
+    Part,
+    Vector,
+    dot,
+    frame_on,
+    norm,
+    scale,
+    subtract,
+    upright,
+)
+from mechkin_cli.structure import SolverGraph, TreeEdge
+from mechkin_cli.tape import next_power_of_two
+
+if TYPE_CHECKING:
+    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.mechanism import Laws
+    from mechkin_cli.show import Floats
+
+
+class Carrier(NamedTuple):
+    """A kernel joint: one part of a tree edge, passed outward. It carries the body of its own
+    number.
+
+    `first_freedom` is the number of its first freedom among the user's freedoms of the joint.
+    """
+
+    edge: int
+    part: Part
+    parent: int
+    first_freedom: int
+    column: int
+    state: int
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Numbers, scale and frames of a mechanism and its solver graph, and the laws of its loads that
+    vary. All methods are pure."""
+
+    mechanism: Mechanism
+    graph: SolverGraph
+    unit: float | None = None
+    laws: Laws | None = None
+
+    @cached_property
+    def length(self) -> float:
+        """The length unit in m: `unit`, or the power of two next to the size of the drawing."""
+        if self.unit is not None:
+            return self.unit
+        return next_power_of_two(self.mechanism.box_diagonal())
+
+    @cached_property
+    def origin(self) -> Vector:
+        """The kernel's origin in m."""
+        points = [at.vector for _, at in self.mechanism.joint_points()]
+        centre = scale(1.0 / len(points), _sum(points)) if points else ZERO
+        near = tolerances.FAR_DRAWING * self.mechanism.box_diagonal()
+        return centre if norm(centre) > near else ZERO
+
+    @cached_property
+    def carriers(self) -> tuple[Carrier, ...]:
+        """The kernel's tree joints; bodies between the parts of a joint have no name."""
+        found: list[Carrier] = []
+        body = {GROUND_NAME: -1}
+        column = state = 0
+        for number, edge in enumerate(self.graph.edges):
+            parent = body[edge.parent]
+            for part, first_freedom in _hung(edge) if edge.hung else _outward(edge):
+                found.append(Carrier(number, part, parent, first_freedom, column, state))
+                parent = len(found) - 1
+                column += len(part.type.freedoms)
+                state += part.type.states
+            body[edge.child] = parent
+        return tuple(found)
+
+    @cached_property
+    def link_number(self) -> dict[str, int]:
+        """The kernel's body of each link; ground is -1."""
+        last = {carrier.edge: k for k, carrier in enumerate(self.carriers)}
+        return {GROUND_NAME: -1} | {e.child: last[n] for n, e in enumerate(self.graph.edges)}
+
+    @cached_property
+    def body_frame(self) -> tuple[Frame, ...]:
+        """Frame of each body in its own drawing (m): the far side of its part; last: ground."""
+        ground = Frame(GROUND.x, GROUND.y, GROUND.z, self.origin)
+        return (*(carrier.part.after for carrier in self.carriers), ground)
+
+    @cached_property
+    def link_frame(self) -> dict[str, Frame]:
+        """Frame of each link in its own drawing (m)."""
+        return {name: self.body_frame[number] for name, number in self.link_number.items()}
+
+    @cached_property
+    def edge_number(self) -> dict[str, int]:
+        """Number of the tree edge of each joint that is one."""
+        return {edge.joint.name: k for k, edge in enumerate(self.graph.edges)}
+
+    @cached_property
+    def joint_reference(self) -> dict[str, int]:
+        """The kernel's number of a joint: k of its last part for a tree joint, -1-c for a closing
+        joint."""
+        tree = {e.joint.name: self.link_number[e.child] for e in self.graph.edges}
+        return tree | {c.joint.name: -1 - k for k, c in enumerate(self.graph.closings)}
+
+    @cached_property
+    def leg_number(self) -> dict[str, int]:
+        """Number of each leg in the kernel, by its body."""
+        legs = [c.leg for c in self.graph.closings if c.leg is not None]
+        return {leg.body: k for k, leg in enumerate(legs)}
+
+    @cached_property
+    def place_number(self) -> dict[str, int]:
+        """Number of each joint's place in the kernel."""
+        return {name: k for k, name in enumerate(self.mechanism.joints)}
+
+    @cached_property
+    def axis_number(self) -> dict[tuple[str, str], int]:
+        """Number of the axis of each coordinate (joint, name) that something may act along."""
+        pairs = [
+            (joint.name, coordinate)
+            for joint in self.mechanism.joints.values()
+            if not joint.type.is_free
+            for coordinate in joint.type.coordinates
+        ]
+        return {pair: k for k, pair in enumerate(pairs)}
+
+    @cached_property
+    def parts_of(self) -> tuple[tuple[int, ...], ...]:
+        """The kernel joints of each tree edge, outward."""
+        found: list[list[int]] = [[] for _ in self.graph.edges]
+        for k, carrier in enumerate(self.carriers):
+            found[carrier.edge].append(k)
+        return tuple(tuple(parts) for parts in found)
+
+    def carrier_of(self, edge: int, freedom: int) -> tuple[int, int]:
+        """The kernel joint that has a user's freedom of a tree edge, and its freedom there."""
+        for k in self.parts_of[edge]:
+            carrier = self.carriers[k]
+            count = len(carrier.part.type.freedoms)
+            if 0 <= freedom - carrier.first_freedom < count:
+                return k, freedom - carrier.first_freedom
+        raise IndexError(f"edge {edge} has no freedom {freedom}")
+
+    def column(self, edge: int, freedom: int) -> int:
+        """Column of a user's freedom of a tree edge."""
+        k, local = self.carrier_of(edge, freedom)
+        return self.carriers[k].column + local
+
+    def state(self, edge: int, freedom: int) -> int:
+        """State of a user's scalar freedom of a tree edge."""
+        k, local = self.carrier_of(edge, freedom)
+        return self.carriers[k].state + local
+
+    @cached_property
+    def states(self) -> int:
+        """Length of the state vector."""
+        return sum(c.part.type.states for c in self.carriers)
+
+    def point(self, at: Attached) -> Vector:
+        """A point of a link in the link's frame, in length units."""
+        return scale(1.0 / self.length, self.link_frame[at.link].local(at.vector))
+
+    def vector(self, at: Attached) -> Vector:
+        """A direction of a link in the link's frame."""
+        return self.link_frame[at.link].components(at.vector)
+
+    def frame_on(self, body: int, frame: Frame) -> list[float]:
+        """A frame drawn on a body, in the body's frame and length units, as the kernel takes it."""
+        inner = self.body_frame[body].of(frame)
+        return [*inner.x, *inner.y, *inner.z, *scale(1.0 / self.length, inner.o)]
+
+    @cached_property
+    def drives(self) -> Drives | None:
+        """What drives the inputs, where those of the graph are the mechanism's own and some of them
+        have no drive of their own."""
+        drives = self.mechanism.drives
+        if drives is None or drives.are_plain:
+            return None
+        return drives if self.graph.driven[: len(drives.inputs)] == drives.inputs else None
+
+    def build(self, size: float | None = None) -> Plan:
+        """The kernel's plan without outputs; `size` (m) normalises residual and condition."""
+        from mechkin_cli.plan.plan import build_plan
+
+        return build_plan(self, size)
+
+
+def _outward(edge: TreeEdge) -> list[tuple[Part, int]]:
+    """The parts of an edge from parent to child, each with its first freedom in the user's
+    count."""
+    parts, first = [], 0
+    for part in edge.joint.parts:
+        parts.append((part, first))
+        first += len(part.type.freedoms)
+    if edge.forward:
+        return parts
+    return [(part.reversed(), start) for part, start in reversed(parts)]
+
+
+def _hung(edge: TreeEdge) -> list[tuple[Part, int]]:
+    """The one part of a leg's body: its sphere, without a freedom."""
+    parent, body = (frame_on(edge.joint, link) for link in (edge.parent, edge.child))
+    return [(Part("L", upright(parent.o), upright(body.o)), 0)]
+
+
+def _sum(points: list[Vector]) -> Vector:
+    total = ZERO
+    for p in points:
+        total = subtract(total, scale(-1.0, p))
+    return total
+
+
+# The axis of a coordinate: the unit wrench that works on it and on no other of its joint's.
+#
+# A couple (or, for a slide, a force through the joint's point) along a sum of two vectors that ride
+# on links. The sum is only needed for two turns, whose axes may be oblique: their dual basis is
+# (z1 - c z2) / (1 - c^2) with c = z1 . z2.
+
+
+class CoordinateAxis(NamedTuple):
+    """`terms`: the two vectors, in the home drawing."""
+
+    slide: bool
+    terms: tuple[Attached, Attached]
+
+
+def coordinate_axis(joint: Joint, coordinate: str) -> CoordinateAxis:
+    """The axis of one of a joint's coordinates."""
+    known = joint.type.coordinate[coordinate]
+    if known.axis is not None:
+        terms = joint.drawn(known.axis), Attached(joint.second, ZERO)
+        return CoordinateAxis(not known.is_angle, terms)
+    own = Attached(joint.first, joint.on_first.z), Attached(joint.second, joint.on_second.z)
+    turn, other = own if known == _turns_of(joint)[0] else own[::-1]
+    c = dot(joint.on_first.z, joint.on_second.z)
+    dual = 1.0 / (1.0 - c * c)
+    along = Attached(turn.link, scale(dual, turn.vector))
+    return CoordinateAxis(False, (along, Attached(other.link, scale(-c * dual, other.vector))))
+
+
+def _turns_of(joint: Joint) -> list[Coordinate]:
+    return [coordinate for coordinate in joint.type.named if coordinate.axis is None]
+
+
+# The home drawing as states of the kernel: every coordinate is zero there but those of guided
+# points (`building.point_inputs`).
+
+
+def home_state(layout: Layout) -> Floats:
+    """States of the home drawing (states,)."""
+    state = np.zeros(layout.states)
+    for carrier in layout.carriers:
+        if carrier.part.type.is_ball:
+            state[carrier.state] = 1.0
+        elif carrier.part.drawn != 0.0:
+            state[carrier.state] = carrier.part.drawn / layout.length
+    return state
+
+
+def home_inputs(layout: Layout) -> Floats:
+    """The inputs of the home drawing (inputs,)."""
+    state = home_state(layout)
+    found = [
+        state[layout.state(edge, freedom)] if edge >= 0 else 0.0
+        for edge, freedom in layout.graph.inputs
+    ]
+    return np.array(found, dtype=np.float64)

@@ -1,0 +1,243 @@
+"""Proofs of positions by the kernel: boxes about places, and tubes along a way of the inputs.
+
+A box is as wide as rounding leaves the position; a tube is a box at every place between two places
+of the way (docs/numerics.md, Proofs).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.plan import Demand
+from mechkin_cli.structure import equations_that_follow
+from mechkin_cli.tape import TraceLost
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.session import Session
+    from mechkin_cli.show import Bools, Floats
+
+
+def about_high(parts: Iterable[Floats]) -> Floats:
+    """Radii about high parts, of numbers given as high parts, low parts and radii about both."""
+    _, low, radius = parts
+    widened: Floats = np.nextafter(np.abs(low) + radius, np.inf)
+    return np.where((low == 0.0) & (radius == 0.0), 0.0, widened)
+
+
+class Enclosed(NamedTuple):
+    """A session's mechanism with its constants enclosed.
+
+    Attributes:
+        session: the mechanism in doubles.
+        plan: its plan at the constants' high parts.
+        radii: a plan of their radii about these; None where the doubles are taken as they are.
+        constants: high and low parts and radii about their sums (constants, 3); None likewise.
+        of_text: whether these constants enclose the numbers of the file's text.
+        follows: which closing equations follow from others of their joint, one byte
+            each; None where none does.
+    """
+
+    session: Session
+    plan: Plan
+    radii: Plan | None
+    constants: Floats | None
+    of_text: bool
+    follows: bytes | None
+
+    @classmethod
+    def of(cls, session: Session) -> Enclosed:
+        """As the file's text says it; where the text cannot be followed to all constants, the
+        mechanism that the doubles are."""
+        try:
+            constants = session.precise.enclosed_constants(session)
+        except (LookupError, ValueError, TraceLost):
+            return cls(session, session.plan, None, None, False, None)
+        scale = [_kernel.CONSTANT_LENGTH, _kernel.CONSTANT_SIZE]
+        middle, radius = constants[:, 0].copy(), about_high(constants.T)
+        radius[scale] = middle[scale]  # of units, which are conventions
+        plan = session.plan.with_constants(middle)
+        follows = bytes(equations_that_follow(session)) if session.is_redundant else None
+        return cls(session, plan, plan.with_constants(radius), constants, True, follows)
+
+
+class Boxes(NamedTuple):
+    """Boxes about places, arrays over these.
+
+    Attributes:
+        proven: whether the box holds exactly one solution of the equations solved for.
+        radius: of the box by columns (columns, places), rad and lengths of the kernel; of an
+            orientation of the increments that turn it.
+        contraction: at most the part of a box that the operator leaves, below 1 where proven.
+        beyond: at most the size of the closing equations beyond those solved for; 0 where there
+            are none, or where they follow or hold exactly.
+    """
+
+    proven: Bools
+    radius: Floats
+    contraction: Floats
+    beyond: Floats
+
+    def part(self, places: slice) -> Boxes:
+        """Some of the places."""
+        radius = np.ascontiguousarray(self.radius[:, places])
+        return Boxes(self.proven[places], radius, self.contraction[places], self.beyond[places])
+
+
+_MEASURED = 1.0 + 1.0 / 1024.0
+"""Above what a distance in double-double may be off."""
+
+
+class Nodes(NamedTuple):
+    """Places along a way of the inputs in the kernel's units, which goes straight from each to the
+    next; arrays over the places.
+
+    Attributes:
+        values: of the inputs with their whole turns (inputs, nodes).
+        reduced: without them, likewise.
+        states: (states, nodes).
+        off: how far the inputs may be from what is meant (inputs, nodes).
+        least: boxes are at least so wide (columns, nodes).
+    """
+
+    values: Floats
+    reduced: Floats
+    states: Floats
+    off: Floats
+    least: Floats
+
+    @classmethod
+    def of(cls, session: Session, values: Floats, reduced: Floats, states: Floats) -> Nodes:
+        """Places whose inputs are as near to the file's as rounding leaves them, with boxes as
+        narrow as can be proven."""
+        least = np.zeros((session.plan.columns, values.shape[1]))
+        return cls(values, reduced, states, input_rounding(session, values), least)
+
+    def part(self, nodes: slice) -> Nodes:
+        """Some of the places."""
+        return Nodes(*(array[:, nodes] for array in self))
+
+    def between(self, before: NDArray[np.intp], values: Floats, states: Floats) -> Nodes:
+        """Other places, each between one of these and the next, whose inputs are as far off as
+        those of both; values with whole turns (inputs, places)."""
+        return Nodes(
+            values,
+            self.reduced[:, before] + (values - self.values[:, before]),
+            states,
+            np.maximum(self.off[:, before], self.off[:, before + 1]),
+            np.zeros((len(self.least), before.size)),
+        )
+
+    def inserted(self, before: NDArray[np.intp], places: Nodes) -> Nodes:
+        """These and other places behind some of them."""
+        pairs = zip(self, places, strict=True)
+        return Nodes(*(np.insert(own, before + 1, more, axis=1) for own, more in pairs))
+
+
+class Tubes(NamedTuple):
+    """Whether each node is joined to the next (nodes - 1,), the largest radius of the tube there,
+    and how many tubes there are."""
+
+    joined: Bools
+    width: Floats
+    number: int
+
+
+def input_rounding(session: Session, values: Floats) -> Floats:
+    """How far inputs may be from what the file says, of the same shape: their largest values over
+    the rows tell, since one near zero may be what two large ones leave."""
+    largest = np.abs(session.inputs.values).max(axis=1, initial=0.0, keepdims=True)
+    rounding: Floats = tolerances.INPUT_ROUNDING * np.maximum(largest, np.abs(values))
+    return np.maximum(
+        rounding,
+        session.once(
+            ("off the text", session.inputs.values.tobytes()), lambda: _off_the_text(session)
+        ),
+    )
+
+
+def _off_the_text(session: Session) -> Floats:
+    """How far the inputs (inputs, 1) are from the text in some row, measured in double-double; zero
+    where the text cannot be followed to them. Laws and expressions may cancel."""
+    own = session.inputs
+    try:
+        found = session.precise.inputs(session)
+    except (LookupError, ValueError, TraceLost):
+        return np.zeros((len(own.values), 1))
+    pairs = ((own.values, found.values), (own.reduced, found.reduced))
+    off = [distance(text[:, 0], text[:, 1], mine) for mine, text in pairs]
+    largest: Floats = np.maximum(*off).max(axis=1, initial=0.0, keepdims=True)
+    return largest * _MEASURED
+
+
+def distance(high: Floats, low: Floats, other: Floats) -> Floats:
+    """How far numbers high + low are from doubles next to them: but for one rounding of it, since
+    those of nearly the same size differ exactly."""
+    found: Floats = np.abs((high - other) + low)
+    return found
+
+
+def prove_boxes(enclosed: Enclosed, nodes: Nodes) -> Boxes:
+    """Looks for the one position near each node's states."""
+    plan, places = enclosed.plan, nodes.states.shape[1]
+    radius, proven = np.empty((plan.columns, places)), np.empty(places, dtype=np.uint8)
+    contraction, beyond = np.empty(places), np.empty(places)
+    _kernel.prove_boxes(
+        plan,
+        states=np.ascontiguousarray(nodes.states),
+        off=np.ascontiguousarray(nodes.off),
+        least=np.ascontiguousarray(nodes.least),
+        radii=enclosed.radii,
+        follows=enclosed.follows,
+        radius=radius,
+        contraction=contraction,
+        beyond=beyond,
+        proven=proven,
+    )
+    return Boxes(proven.astype(bool), radius, contraction, beyond)
+
+
+def prove_tubes(enclosed: Enclosed, nodes: Nodes, boxes: Boxes) -> Tubes:
+    """Joins nodes by tubes; those whose box is not proven are joined to none."""
+    session, count = enclosed.session, nodes.states.shape[1]
+    step = np.diff(nodes.values, axis=1)
+    length = np.sqrt(sum((way * way for way in step), np.zeros(count - 1)))
+    direction = step / np.where(length > 0.0, length, 1.0)
+    after = np.concatenate([direction, direction[:, -1:]], axis=1)
+    before = np.concatenate([direction[:, :1], direction], axis=1)
+    bends = (np.abs(after - before) > tolerances.STRAIGHT_WAY).any(axis=0)
+    first = _derivatives(session, nodes, after)
+    joined, width = np.empty(count, dtype=np.uint8), np.empty(count)
+    found, _ = _kernel.prove_tubes(
+        enclosed.plan,
+        radii=enclosed.radii,
+        follows=enclosed.follows,
+        place=np.concatenate([[0.0], np.cumsum(length)]),
+        inputs=np.ascontiguousarray(nodes.values),
+        off=np.ascontiguousarray(nodes.off),
+        states=np.ascontiguousarray(nodes.states),
+        after=first,
+        before=_derivatives(session, nodes, before) if bends.any() else first,
+        radius=boxes.radius,
+        proven=boxes.proven.astype(np.uint8),
+        bends=bends.astype(np.uint8),
+        joined=joined,
+        width=width,
+    )
+    return Tubes(joined[:-1].astype(bool), width[:-1], found)
+
+
+def _derivatives(session: Session, nodes: Nodes, direction: Floats) -> Floats:
+    """Derivatives of the columns (columns, nodes) by the way's length."""
+    batch = session.run(
+        nodes.reduced, nodes.states, demand=Demand.VELOCITY, rates=direction, derivatives=True
+    )
+    assert batch.first is not None
+    return batch.first

@@ -1,0 +1,292 @@
+"""Dead centres at which a sweep ends: proven where they are, with the branch of the rows that leads
+to them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.proofs.boxes import Boxes, Enclosed, Nodes, prove_boxes, prove_tubes
+from mechkin_cli.proofs.fold import Fold, prove_fold
+from mechkin_cli.proofs.modes import FULL_TURN
+from mechkin_cli.session import exchange
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import Self
+
+    from numpy.typing import NDArray
+
+    from mechkin_cli.mechanism import Wanted
+    from mechkin_cli.session import Ending, EndOfRows, Followed, Session
+    from mechkin_cli.show import Floats
+
+
+# Joins two rows that no one tube joins, by closing the mechanism at places between them.
+
+
+def bridge(enclosed: Enclosed, ends: Nodes) -> int:
+    """The tubes that join two nodes; 0 where the branch is not proven to lead from one to the
+    other.
+
+    A long way is cut into parts at once. Where a tube is missing its middle is closed, and both
+    halves are tried: near a dead centre the places go there by halves of what is left.
+    """
+    nodes = _cut(enclosed.session, ends)
+    if nodes is None:
+        return 0
+    most = nodes.states.shape[1] + tolerances.BRIDGE_NODES
+    while True:
+        boxes = prove_boxes(enclosed, nodes)
+        tubes = prove_tubes(enclosed, nodes, boxes)
+        if tubes.joined.all():
+            return tubes.number
+        missing = np.flatnonzero(~tubes.joined)
+        length = np.abs(np.diff(nodes.values, axis=1)).max(axis=0, initial=0.0)
+        is_hopeless = (
+            not boxes.proven.all()
+            or nodes.states.shape[1] + missing.size > most
+            or bool((length[missing] < tolerances.BRIDGE_STEP).any())
+        )
+        middle = None if is_hopeless else _middles(enclosed.session, nodes, missing)
+        if middle is None:
+            return 0
+        nodes = nodes.inserted(missing, middle)
+
+
+def _cut(session: Session, ends: Nodes) -> Nodes | None:
+    """Two nodes and closed places between them, so that no input goes farther than `BRIDGE_PART`
+    from one to the next; None where these would be more than `BRIDGE_PARTS`, or the branch ends."""
+    length = float(np.abs(np.diff(ends.values, axis=1)).max(initial=0.0))
+    parts = int(min(length / tolerances.BRIDGE_PART, tolerances.BRIDGE_PARTS)) + 1
+    if parts == 1:
+        return ends
+    if parts > tolerances.BRIDGE_PARTS:
+        return None
+    way = np.arange(1, parts) / parts
+    values = ends.values[:, :1] + way * (ends.values[:, 1:] - ends.values[:, :1])
+    places = ends.between(np.zeros(parts - 1, dtype=np.intp), values, ends.states[:, :1])
+    reduced = np.concatenate([ends.reduced[:, :1], places.reduced], axis=1)
+    found = session.follow(reduced, ends.states[:, 0], every_row=True)
+    if found.reached < parts:
+        return None
+    closed = session.close(places.reduced, found.guess[:, 1:])
+    if not closed.good.all():
+        return None
+    return ends.inserted(np.zeros(parts - 1, dtype=np.intp), places._replace(states=closed.states))
+
+
+def _middles(session: Session, nodes: Nodes, before: NDArray[np.intp]) -> Nodes | None:
+    """The closed places half way between nodes and the next, followed from there; None where the
+    branch does not lead so far."""
+    values = 0.5 * (nodes.values[:, before] + nodes.values[:, before + 1])
+    places = nodes.between(before, values, nodes.states[:, before])
+    guess = np.empty_like(places.states)
+    for k, node in enumerate(before):
+        way = np.stack([nodes.reduced[:, node], places.reduced[:, k]], axis=1)
+        found = session.follow(way, nodes.states[:, node], every_row=True)
+        if found.reached < 2:
+            return None
+        guess[:, k] = found.guess[:, 1]
+    closed = session.close(places.reduced, guess)
+    return places._replace(states=closed.states) if closed.good.all() else None
+
+
+# How far coordinates go along a way, with the whole turns that its ends do not show.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Turned:
+    """How far coordinates went, rad and lengths of the kernel.
+
+    Attributes:
+        tree: the states (states,); those of orientations say nothing.
+        closing: the angles of closing joints by (closing joint, freedom).
+    """
+
+    tree: Floats
+    closing: Mapping[tuple[int, int], float]
+
+    @classmethod
+    def along(cls, session: Session, found: Followed) -> Self:
+        """From the first place of a way to the last, that was followed with its turns."""
+        assert found.turns is not None
+        slots, turns = session.turn_slots, found.turns[:, -1] - found.turns[:, 0]
+        tree = found.guess[:, -1] - found.guess[:, 0]
+        for state, slot in slots.tree.items():
+            tree[state] += FULL_TURN * turns[slot]
+        return cls(tree, {angle: float(turns[slot]) for angle, slot in slots.closing.items()})
+
+    def and_on(self, other: Turned) -> Turned:
+        """Along this way and another one behind it, of the same tree."""
+        both = {angle: way + other.closing[angle] for angle, way in self.closing.items()}
+        return Turned(self.tree + other.tree, both)
+
+    def of_angle(self, session: Session, wanted: Wanted) -> float:
+        """How far a joint's angle went, rad."""
+        layout = session.layout
+        reference = layout.joint_reference[wanted.owner]
+        freedom = layout.mechanism.joints[wanted.owner].type.freedom_of[wanted.coordinate]
+        if reference < 0:
+            return self.closing[-1 - reference, freedom]
+        return float(self.tree[layout.state(layout.edge_number[wanted.owner], freedom)])
+
+
+WhyNot = Literal["inputs", "balls", "box", "closure", "branch"]
+"""Why a dead centre is not proven: several inputs move there together; no joint coordinate leads
+through it; no box could be proven to hold exactly one; its loops are only proven to closure; it is
+proven to exist, but not that the branch of the rows leads to it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DeadCentreProof:
+    """What is proven of a dead centre at which a way along the rows ends.
+
+    Attributes:
+        row: the last row before it, counted from 0.
+        number: of the input that has it.
+        place: the inputs there in doubles, with their whole turns (inputs,), kernel units.
+        fold: what is proven to exist; None where nothing is.
+        tubes: how many tubes lead there from the row.
+        turned: how far the coordinates go from the row to there; None where the branch is not
+            proven to lead there.
+        why: why it is not proven; None where it is.
+    """
+
+    row: int
+    number: int
+    place: Floats
+    fold: Fold | None
+    tubes: int
+    turned: Turned | None
+    why: WhyNot | None
+
+
+class Lead(NamedTuple):
+    """The tubes along a way, and how far the coordinates go on it."""
+
+    tubes: int
+    turned: Turned
+
+
+def prove_dead_centre(
+    enclosed: Enclosed, row: Nodes, box: Boxes, end: EndOfRows
+) -> DeadCentreProof:
+    """What is proven of a dead centre.
+
+    Args:
+        enclosed: the mechanism as it is driven.
+        row: the last row before the dead centre.
+        box: of that row.
+        end: what following found.
+    """
+    session, ending = enclosed.session, end.ending
+    way = ending.inputs - row.values[:, 0]
+    moved = np.flatnonzero(np.abs(way) > row.off[:, 0])
+    number = int(np.abs(way).argmax())
+
+    def found(fold: Fold | None, lead: Lead | None, why: WhyNot | None) -> DeadCentreProof:
+        tubes, turned = lead or (0, None)
+        return DeadCentreProof(end.row, number, ending.inputs, fold, tubes, turned, why)
+
+    if moved.size > 1:
+        return found(None, None, "inputs")
+    exchanged = exchange(session, number, ending.block, ending.first)
+    if exchanged is None:
+        return found(None, None, "balls")
+    inputs = row.reduced[:, 0].copy()
+    inputs[number] += way[number]
+    guess = _guess(session, row, inputs, number, ending)
+    fold = prove_fold(exchanged, inputs, row.off[:, 0], guess)
+    if fold is None:
+        return found(None, None, "box")
+    if fold.boxes.beyond[0] > 0.0:
+        return found(None, None, "closure")
+    lead = _lead(enclosed, row, box, fold) if box.proven[0] else None
+    return found(fold, lead, None if lead else "branch")
+
+
+def _guess(session: Session, row: Nodes, inputs: Floats, number: int, ending: Ending) -> Floats:
+    """States (states,) at a dead centre: of the block that has it as following found them, all
+    others at a place just before it, since the walk of one block may leave others behind."""
+    before = inputs[:, None].copy()
+    gap = float(inputs[number] - row.reduced[number, 0])
+    before[number] -= np.copysign(min(abs(gap), tolerances.DEAD_CENTRE_NEAR), gap)
+    place = _place_on_way(session, row, before)
+    state: Floats = (row if place is None else place[0]).states[:, 0].copy()
+    for edge, freedom in session.graph.blocks[ending.block].unknowns:
+        carrier = session.layout.carriers[session.layout.carrier_of(edge, freedom)[0]]
+        own = slice(carrier.state, carrier.state + carrier.part.type.states)
+        state[own] = ending.state[own]
+    return state
+
+
+def _lead(enclosed: Enclosed, row: Nodes, box: Boxes, fold: Fold) -> Lead | None:
+    """From a row to a dead centre, None where the branch is not proven to lead there: with the
+    input as parameter to a place before it, and from there with the exchanged coordinate."""
+    number = fold.exchanged.number
+    gap = fold.value - float(row.reduced[number, 0])
+    for far in tolerances.DEAD_CENTRE_APPROACH:
+        ahead = 0.5 * abs(fold.bend) * far * far
+        if ahead < abs(gap):
+            inputs = row.reduced.copy()
+            inputs[number] += gap - np.copysign(ahead, gap)
+            found = _place_on_way(enclosed.session, row, inputs)
+            if found is None:
+                continue
+            place, turned = found
+            way = Nodes(*(np.concatenate(pair, axis=1) for pair in zip(row, place, strict=True)))
+            near = prove_boxes(enclosed, place)
+            before = bridge(enclosed, way._replace(values=way.reduced)) if near.proven[0] else 0
+            behind = _lead_exchanged(place, near, fold) if before else None
+            if behind:
+                return Lead(before + behind.tubes, turned.and_on(behind.turned))
+        else:
+            behind = _lead_exchanged(row, box, fold)
+            if behind:
+                return behind
+    return None
+
+
+def _place_on_way(session: Session, row: Nodes, inputs: Floats) -> tuple[Nodes, Turned] | None:
+    """The closed place at some inputs (inputs, 1) to which the branch leads from a row, and how far
+    the coordinates go to there."""
+    path = np.concatenate([row.reduced, inputs], axis=1)
+    followed = session.follow(path, row.states[:, 0], every_row=True, turns=True)
+    if followed.reached < 2:
+        return None
+    closed = session.close(inputs, followed.guess[:, 1:])
+    if not closed.good[0]:
+        return None
+    place = Nodes.of(session, inputs, inputs, closed.states)
+    return place, Turned.along(session, followed)
+
+
+def _lead_exchanged(place: Nodes, box: Boxes, fold: Fold) -> Lead | None:
+    """From a place before a dead centre to it, with the exchanged coordinate as parameter.
+
+    The place's position has that coordinate only as near as its box says: the first node is all of
+    the box, in which each value of the coordinate has one position; that of the place is among
+    them.
+    """
+    exchanged = fold.exchanged
+    number, driven, freed = exchanged.number, exchanged.driven, exchanged.freed
+    value = float(place.states[driven.state, 0])
+    if driven.is_cyclic:
+        value += FULL_TURN * np.rint((fold.node.values[number, 0] - value) / FULL_TURN)
+    values, states, off = place.reduced.copy(), place.states.copy(), place.off.copy()
+    least = box.radius.copy()
+    rounding = tolerances.INPUT_ROUNDING * (FULL_TURN + abs(value))
+    values[number], off[number] = value, box.radius[driven.column] + rounding
+    states[freed.state], states[driven.state] = place.reduced[number], value
+    least[freed.column], least[driven.column] = place.off[number], 0.0
+    start = Nodes(values, values, states, off, least)
+    ends = Nodes(*(np.concatenate(pair, axis=1) for pair in zip(start, fold.node, strict=True)))
+    session = exchanged.session
+    followed = session.follow(ends.reduced, states[:, 0], every_row=True, turns=True)
+    tubes = bridge(fold.enclosed, ends) if followed.reached == 2 else 0
+    return Lead(tubes, Turned.along(session, followed)) if tubes else None

@@ -1,0 +1,409 @@
+"""Errors of a validation -> diagnostics with file, line and column.
+
+An error is a plain record: `type` (its kind), `loc` (the way to the value), `ctx` (numbers and
+words for the message). Three conventions let a rule say more than where the validator stood:
+
+- a step of `loc` in parentheses that is no key of the file names one of several forms;
+- a last step `[key]` means the key itself and not its value;
+- `ctx["at"]` leads on from `loc`, `ctx["text"]` is the whole message, `ctx["hint"]` what to do.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from yaml import MarkedYAMLError, YAMLError
+
+from mechkin_cli.diagnostics import Diagnostic, Place, nearest
+from mechkin_cli.reading.document import Document, KeyPath
+from mechkin_cli.reading.yaml import Mapping, Node, ScalarNode, Sequence, in_order
+
+# What is wrong with one value, in words: a phrase per kind of validation error.
+#
+# The kinds are the names that validators give (`missing`, `too_short`, ...). The phrases speak of
+# what is written in the file, never of the validator's types.
+
+_LONGEST_LIST = 16
+"""A message lists the known words up to this many."""
+
+
+class Wording(NamedTuple):
+    """The code, message and hint of a diagnostic."""
+
+    code: str
+    message: str
+    hint: str | None
+
+
+def missing_key(key: str, context: dict[str, Any]) -> Wording:
+    """A mapping lacks a key; `context` may say the key's `purpose`."""
+    purpose = context.get("purpose")
+    hint = f"add {key}: {_lower_first(purpose)}" if purpose else f"add {key}"
+    return Wording("missing-key", f"the key {key} is missing", hint.rstrip("."))
+
+
+def unknown_key(key: str, context: dict[str, Any]) -> Wording:
+    """A mapping has a key that it cannot have; `context` may hold the `known` keys and `advice`."""
+    known = context.get("known") or []
+    hint = context.get("advice") or choice_hint(key, known, "keys") or "remove it"
+    return Wording("unknown-key", f"there is no key {shown(key)} here", hint)
+
+
+def unknown_word(found: Node | None, known: list[str], advice: str | None = None) -> Wording:
+    """A value is none of the words possible at its place; `advice` says what to do instead."""
+    if not isinstance(found, ScalarNode):
+        text = f"expected one of the words {', '.join(known)}, found {kind(found)}"
+        return Wording("unknown-word", text, None)
+    hint = advice or choice_hint(found.text, known, "words")
+    return Wording("unknown-word", f"{shown(found.text)} is none of the words possible here", hint)
+
+
+def wrong_value(error: dict[str, Any], found: Node | None) -> Wording:
+    """A value that is of the wrong kind, too long, too short, or not of the form wanted."""
+    name, context = str(error["type"]), error.get("ctx") or {}
+    if name in ("too_short", "too_long"):
+        return _wrong_length(context, found)
+    if name in _KINDS:
+        expected, hint = _KINDS[name]
+        return Wording("wrong-kind", f"expected {expected}, found {kind(found)}", hint)
+    if name == "string_pattern_mismatch":
+        return _wrong_form(context, found)
+    if name in _BOUNDS:
+        key, relation, direction = _BOUNDS[name]
+        limit = context.get(key)
+        message = f"{kind(found)} is {relation} the limit {limit}"
+        return Wording("out-of-range", message, f"write {limit} or {direction}")
+    return Wording("invalid-value", f"{kind(found)} cannot stand here", None)
+
+
+def choice_hint(word: str, known: list[str], what: str) -> str | None:
+    """'did you mean ...?' for a close word, else the list of known words where it is short."""
+    close = nearest(word, known)
+    if close:
+        return f"did you mean {close}?"
+    if known and len(known) <= _LONGEST_LIST:
+        return f"known {what}: {', '.join(known)}"
+    return None
+
+
+def kind(node: Node | None) -> str:
+    """What is written at a place, in words."""
+    if isinstance(node, ScalarNode):
+        return shown(node.text)
+    if isinstance(node, Sequence):
+        return "an empty list" if not node.items else f"a list of {len(node.items)}"
+    if isinstance(node, Mapping):
+        return "a mapping {key: value}" if node.entries else "an empty mapping"
+    return "nothing"
+
+
+def shown(text: str) -> str:
+    """A text of the file as messages quote it: on one line, not too long."""
+    text = re.sub(r"\s+", " ", text)
+    return f"'{text if len(text) <= 40 else text[:37] + '...'}'"
+
+
+_LIST = ("a list [...]", "write it in brackets: [x, y, z]")
+_MAPPING = ("a mapping", "write {key: value}, or key: value on indented lines")
+_KINDS = {
+    "tuple_type": _LIST,
+    "list_type": _LIST,
+    "dict_type": _MAPPING,
+    "model_type": _MAPPING,
+    "model_attributes_type": _MAPPING,
+    "string_type": ("a word", "write a name"),
+}
+_BOUNDS = {
+    "greater_than_equal": ("ge", "below", "more"),
+    "less_than_equal": ("le", "above", "less"),
+}
+
+
+def _wrong_length(context: dict[str, Any], found: Node | None) -> Wording:
+    least, most = context.get("min_length"), context.get("max_length")
+    count = len(found.items) if isinstance(found, Sequence) else context.get("actual_length")
+    if isinstance(found, Mapping):
+        count = len(found.entries)
+    what = "entry" if count == 1 else "entries"
+    limit = f"at least {least}" if most is None else f"at most {most}"
+    is_vector = 3 in (least, most)
+    hint = "a vector has three: [x, y, z]; with plane: xy two" if is_vector else None
+    return Wording("wrong-length", f"found {count} {what}, expected {limit}", hint)
+
+
+def _wrong_form(context: dict[str, Any], found: Node | None) -> Wording:
+    expected = context.get("expected") or f"of the form {context.get('pattern')}"
+    return Wording("wrong-form", f"{kind(found)} is not {expected}", context.get("hint"))
+
+
+def _lower_first(text: str) -> str:
+    # an abbreviation stays as it is: "CSV file"
+    return text if text[1:2].isupper() else text[:1].lower() + text[1:]
+
+
+_KEY = "[key]"
+
+
+def explain(errors: Iterable[dict[str, Any]], document: Document) -> list[Diagnostic]:
+    """One diagnostic per error, in the order of the file."""
+    errors = list(errors)
+    misspelt = _misspelt(errors)
+    told = (
+        _diagnostic(error, document)
+        for error in errors
+        if not _is_echo(error, document)
+        and not (error["type"] == "missing" and tuple(error["loc"]) in misspelt)
+    )
+    return in_order(list(dict.fromkeys(told)))
+
+
+def _misspelt(errors: list[dict[str, Any]]) -> set[tuple[str | int, ...]]:
+    """The ways to keys that are missing only because they are misspelt, which is told."""
+    found = set()
+    for error in errors:
+        if error["type"] == "extra_forbidden":
+            *mapping, key = error["loc"]
+            close = nearest(str(key), (error.get("ctx") or {}).get("known") or [])
+            found.add((*mapping, close or ""))
+    return found
+
+
+def _is_echo(error: dict[str, Any], document: Document) -> bool:
+    """Whether a list counts as too short only because items of it were refused for themselves."""
+    if error["type"] != "too_short":
+        return False
+    node = document.node(_path(error["loc"], document))
+    if isinstance(node, ScalarNode):
+        return True  # it stands for a list of one
+    if isinstance(node, Mapping):
+        return bool(error["ctx"].get("field_type") != "Dictionary")  # so does this
+    return isinstance(node, Sequence) and len(node.items) >= error["ctx"]["min_length"]
+
+
+def _path(steps: Iterable[str | int], document: Document) -> KeyPath:
+    """The steps without the names of forms, and without the number of an item where one value
+    stands for a list; a key that somebody wrote in parentheses stays."""
+    path: KeyPath = ()
+    for step in steps:
+        if isinstance(step, int) and isinstance(document.node(path), ScalarNode | Mapping):
+            continue
+        is_form = str(step).startswith("(") and document.node((*path, step)) is None
+        path = path if is_form else (*path, step)
+    return path
+
+
+def _diagnostic(error: dict[str, Any], document: Document) -> Diagnostic:
+    context = error.get("ctx") or {}
+    path = _path([*error["loc"], *context.get("at", ())], document)
+    kind = str(error["type"])
+    if kind == "missing":
+        words = missing_key(str(path[-1]), context)
+        return _told(words, path[:-1], document.place(path[:-1]))
+    if kind == "extra_forbidden":
+        words = unknown_key(str(path[-1]), context)
+        return _told(words, path[:-1], document.key_place(path))
+    if kind in ("unknown-word", "literal_error"):
+        return _unknown_word(kind, path, context, document)
+    at_key = path[-1:] == (_KEY,)
+    path = path[:-1] if at_key else path
+    place = document.key_place(path) if at_key else document.place(path)
+    if "text" in context:
+        words = _own_words(kind, context, path, document)
+    elif at_key:
+        text = f"{shown(str(path[-1]))} is not {context.get('expected', 'a key')}"
+        words = Wording("wrong-form", text, context.get("hint"))
+    else:
+        words = wrong_value(error, document.node(path))
+    return _told(words, path[:-1] if at_key else path, place)
+
+
+def _unknown_word(
+    kind: str, path: KeyPath, context: dict[str, Any], document: Document
+) -> Diagnostic:
+    if kind == "literal_error":
+        known = re.findall(r"'([^']*)'", str(context.get("expected")))
+    else:
+        known = str(context["words"]).split(", ")
+        if not _is_mapping(path, document):
+            words = wrong_value({"type": "model_type"}, document.node(path))
+            return _told(words, path, document.place(path))
+        key = str(context["key"])
+        if document.node((*path, key)) is None:
+            words = missing_key(key, {"purpose": f"one of {', '.join(known)}"})
+            return _told(words, path, document.place(path))
+        path = (*path, key)
+    words = unknown_word(document.node(path), known, context.get("advice"))
+    return _told(words, path, document.place(path))
+
+
+def _is_mapping(path: KeyPath, document: Document) -> bool:
+    return isinstance(document.node(path), Mapping)
+
+
+def _own_words(code: str, context: dict[str, Any], path: KeyPath, document: Document) -> Wording:
+    text = str(context["text"])
+    if text.startswith("expected"):
+        text += f", found {kind(document.node(path))}"
+    return Wording(code, text, context.get("hint"))
+
+
+def _told(words: Wording, path: KeyPath, place: Place) -> Diagnostic:
+    where = "".join(f"#{step + 1}" if isinstance(step, int) else f".{step}" for step in path)
+    message = f"{where[1:]}: {words.message}" if where else words.message
+    return Diagnostic(words.code, "error", message, place, hint=words.hint)
+
+
+def is_study(document: Document) -> list[Diagnostic]:
+    """One message where a mechanism is needed and the file is a study; none where it is not."""
+    if not _begins(document, "study", "format"):
+        return []
+    text = "this is a study, and a mechanism file is needed"
+    hint = f"run it with mechkin study {document.file}"
+    named = document.data.get("mechanism")
+    if isinstance(named, str):
+        hint += f", or give its mechanism, {named}"
+    return [Diagnostic("a-study", "error", text, document.place(("study",)), hint=hint)]
+
+
+def is_mechanism(document: Document) -> list[Diagnostic]:
+    """One message where a study is needed and the file is a mechanism; none where it is not."""
+    if not _begins(document, "format", "study"):
+        return []
+    text = "this is a mechanism file, and a study is needed"
+    hint = (
+        "write study: 1, mechanism: FILE, vary: {NAME: [VALUES]} and keep: into a file of its own "
+        f"(docs/studies.md), or run this one with mechkin analyze {document.file}"
+    )
+    return [Diagnostic("a-mechanism", "error", text, document.place(("format",)), hint=hint)]
+
+
+def _begins(document: Document, key: str, other: str) -> bool:
+    return key in document.data and other not in document.data
+
+
+# Errors of YAML's own grammar in plain words, the same for the C parser and for the Python parser.
+#
+# Both parsers name the rule that failed in slightly different words; the table below knows the part
+# they have in common. Whatever it doesn't know gets one general message, never the parser's own.
+
+_QUOTE = "put the text in quotes"
+_COLON = "a ':' cannot stand here"
+_NO_COLON = "a ':' is missing after this key"
+_WITH_COLON = "write key: value, with a blank after the colon"
+_INDENT = "indent keys of one mapping equally, and put a value that holds ': ' in quotes"
+
+
+class _Rule(NamedTuple):
+    pattern: re.Pattern[str]
+    message: str
+    hint: str
+    at_start: bool = False
+    """Report where the unfinished construct starts, not where the parser gave up."""
+    open_message: str | None = None
+    """The message at the start of the construct, for when the parser gave up on a later line."""
+
+
+def _rule(
+    pattern: str, message: str, hint: str, at_start: bool = False, open_message: str | None = None
+) -> _Rule:
+    return _Rule(re.compile(pattern), message, hint, at_start, open_message)
+
+
+_RULES = (
+    _rule(
+        r"quoted scalar.*(end of stream|document)",
+        "this quoted text is never closed",
+        "add the closing quote",
+        at_start=True,
+    ),
+    _rule(
+        r"(double-)?quoted scalar",
+        "an unknown escape sequence in a double-quoted text",
+        "write \\\\ for a backslash, or use single quotes",
+        at_start=True,
+    ),
+    _rule(r"cannot start any token", "this character cannot start a value", _QUOTE),
+    _rule(
+        r"flow sequence",
+        "',' or ']' was expected here",
+        "close the list with ], and put an expression with commas or brackets in quotes",
+        open_message="this list is not closed on its line and goes wrong further down",
+    ),
+    _rule(
+        r"flow mapping",
+        "',' or '}' was expected here",
+        "close the mapping with }, and put an expression with commas or brackets in quotes",
+        open_message="this mapping is not closed on its line and goes wrong further down",
+    ),
+    _rule(r"mapping values are not allowed", _COLON, _INDENT),
+    _rule(
+        r"sequence entries are not allowed",
+        "a '-' cannot start a list here",
+        "start the list on a new line, or put the text in quotes",
+    ),
+    _rule(r"mapping keys are not allowed", "a '?' cannot stand here", _QUOTE),
+    _rule(
+        r"simple key",
+        _NO_COLON,
+        _WITH_COLON,
+        at_start=True,
+    ),
+    _rule(
+        r"block mapping",
+        "a key was expected here",
+        "give all keys of a mapping the same indentation, and check brackets and quotes before it",
+    ),
+    _rule(
+        r"block (collection|sequence)",
+        "an item of the list ('- ') was expected here",
+        "give all items of a list the same indentation",
+    ),
+    _rule(r"block scalar", "a block text (| or >) cannot start or continue like this", _QUOTE),
+    _rule(r"(anchor|alias|tag)", "anchors, aliases and tags (& * !) are not used here", _QUOTE),
+    _rule(
+        r"plain scalar.*':'", "a blank is missing after this ':'", "write key: value, or use quotes"
+    ),
+    _rule(r"node", "a value is missing here", "write the value, or remove the comma or colon"),
+    _rule(
+        r"document start",
+        "the file goes on after its mapping has ended",
+        "check indentation and brackets before this place",
+    ),
+)
+_GENERAL = _rule("", "the text is not valid YAML here", "check indentation, quotes and brackets")
+
+
+def syntax_diagnostic(error: YAMLError, file: str, text: str) -> Diagnostic:
+    """The message for an error that a YAML parser raised about a text."""
+    if not isinstance(error, MarkedYAMLError):
+        return Diagnostic("yaml", "error", _GENERAL.message, Place(file, 1, 1), hint=_GENERAL.hint)
+    words = f"{error.context} {error.problem}"
+    rule = next((rule for rule in _RULES if rule.pattern.search(words)), _GENERAL)
+    start, stop = error.context_mark, error.problem_mark or error.context_mark
+    message, mark = rule.message, stop
+    if start and stop and rule.open_message and start.line != stop.line:
+        message, mark = rule.open_message, start
+    elif start and rule.at_start:
+        mark = start
+    if stop and rule.message == _COLON:
+        before = _line_without_colon(text.split("\n"), stop.line)
+        if before is not None:
+            return Diagnostic("yaml", "error", _NO_COLON, Place(file, *before), hint=_WITH_COLON)
+    place = Place(file, mark.line + 1, mark.column + 1) if mark else Place(file, 1, 1)
+    return Diagnostic("yaml", "error", message, place, hint=rule.hint)
+
+
+def _line_without_colon(lines: list[str], number: int) -> tuple[int, int] | None:
+    """Line and column, from 1, of a key without its colon: the line before the one where a second
+    value begins, where it is indented as that and has none. YAML takes both for one text."""
+    above = number - 1
+    while above >= 0 and not lines[above].strip():
+        above -= 1
+    if above < 0:
+        return None
+    line, indent = lines[above], len(lines[above]) - len(lines[above].lstrip())
+    own = len(lines[number]) - len(lines[number].lstrip())
+    is_key = line[indent : indent + 1].isidentifier() and ":" not in line
+    return (above + 1, indent + 1) if is_key and indent == own else None

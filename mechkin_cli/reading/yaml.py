@@ -1,0 +1,479 @@
+"""YAML text -> nodes, by a walk over the parser's events.
+
+The tree is never built by YAML itself: a composer recurses, and a file of two hundred thousand open
+brackets would overflow the stack of the C library. Limits are tested while the events come in.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import lru_cache
+from itertools import accumulate
+from typing import Any, NamedTuple, TypeAlias
+
+import yaml
+from yaml import events
+
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place
+from mechkin_cli.reading.text import (
+    INVISIBLE,
+    LONGEST_EXPRESSION,
+    MOST_DIAGNOSTICS,
+    MOST_EVENTS,
+    MOST_LEVELS,
+    MOST_PIECES,
+    character_name,
+    check_characters,
+    lines_of,
+)
+
+# What the reader makes of a YAML text: scalars, sequences and mappings that know where they stand.
+#
+# Scalars stay text, so that `1e-3`, `on` and `010` mean what the schema says and not what YAML
+# guesses.
+
+
+class Mark(NamedTuple):
+    """A position in a text; line and column count from 1, columns in characters."""
+
+    line: int
+    column: int
+
+
+class Style(Enum):
+    """How a scalar is written; decides how its characters lie in the source text."""
+
+    PLAIN = "plain"
+    SINGLE_QUOTED = "single quoted"
+    DOUBLE_QUOTED = "double quoted"
+    BLOCK = "block"
+
+
+class ScalarNode(NamedTuple):
+    """One value as text; `mark` is its first character (the quote, where there is one)."""
+
+    text: str
+    mark: Mark
+    style: Style
+
+
+class Sequence(NamedTuple):
+    """A list; `mark` is its bracket, or its first dash in block style."""
+
+    items: tuple[Node, ...]
+    mark: Mark
+
+
+class Entry(NamedTuple):
+    """One `key: value` of a mapping; `mark` is the first character of the key."""
+
+    mark: Mark
+    value: Node
+
+
+class Mapping(NamedTuple):
+    """Keys and values in the order written; `mark` is the brace, in block style the first key."""
+
+    entries: dict[str, Entry]
+    mark: Mark
+
+
+Node: TypeAlias = ScalarNode | Sequence | Mapping
+PlainData: TypeAlias = "str | list[PlainData] | dict[str, PlainData]"
+
+
+def plain_data(node: Node) -> PlainData:
+    """The node as dict, list and str, without places.
+
+    >>> plain_data(Sequence((Scalar("1", Mark(1, 2), Style.PLAIN),), Mark(1, 1)))
+    ['1']
+    """
+    if isinstance(node, ScalarNode):
+        return node.text
+    if isinstance(node, Sequence):
+        return [plain_data(item) for item in node.items]
+    return {key: plain_data(entry.value) for key, entry in node.entries.items()}
+
+
+# The classic mistake of one-line mappings: `{value: det(a, b, c)}` without quotes.
+#
+# Inside braces and brackets YAML ends an unquoted scalar at the comma, so the example has the keys
+# `value`, `b` and `c)`. A scalar with an open parenthesis gives the mistake away.
+
+_OPENING, _CLOSING = "([{", ")]}"
+_ENDS_AN_EXPRESSION = ",}]"
+
+
+def is_cut_off(node: Node) -> bool:
+    """Whether the node is an unquoted scalar in which a parenthesis stays open."""
+    return (
+        isinstance(node, ScalarNode) and node.style is Style.PLAIN and _open_parentheses(node) > 0
+    )
+
+
+def pieces_of_mapping(pairs: list[tuple[Node, Node]], first: int) -> int:
+    """The number of entries after `pairs[first]` that are pieces of its cut off value.
+
+    A piece is a key without a value; the pieces end where the parentheses are closed.
+    """
+    still_open = _open_parentheses(pairs[first][1])
+    end = first + 1
+    last = min(len(pairs), end + MOST_PIECES)
+    while end < last and still_open > 0 and is_empty(pairs[end][1]):
+        still_open += _open_parentheses(pairs[end][0])
+        end += 1
+    return end - first - 1
+
+
+def pieces_of_sequence(items: list[Node], first: int) -> int:
+    """The number of items after `items[first]` that are pieces of it; 0 where nothing closes it."""
+    still_open = _open_parentheses(items[first])
+    for end in range(first + 1, min(len(items), first + 1 + MOST_PIECES)):
+        still_open += _open_parentheses(items[end])
+        if still_open <= 0:
+            return end - first
+    return 0
+
+
+def is_empty(node: Node) -> bool:
+    """Whether YAML reads the node as 'no value'."""
+    nothing = ("", "~", "null", "Null", "NULL")
+    return isinstance(node, ScalarNode) and node.style is Style.PLAIN and node.text in nothing
+
+
+def cut_at_comma(scalar: ScalarNode, line: str, file: str) -> Diagnostic:
+    """The message for a cut off scalar; `line` is the source line on which it starts."""
+    whole = _whole_expression(line, scalar.mark.column - 1)
+    hint = f'put it in quotes: "{whole}"' if whole else "put the whole expression in quotes"
+    return Diagnostic(
+        "comma-without-quotes",
+        "error",
+        f"YAML ends the value {_shortened(scalar.text)} at the comma or bracket that follows",
+        Place(file, *scalar.mark),
+        hint=hint,
+    )
+
+
+def _open_parentheses(node: Node) -> int:
+    if not isinstance(node, ScalarNode) or node.style is not Style.PLAIN:
+        return 0
+    return node.text.count("(") - node.text.count(")")
+
+
+def _whole_expression(line: str, start: int) -> str | None:
+    depths, ends = _nesting(line)
+    level = depths[min(start, len(line))]
+    places = ends.get(level, [])
+    first = bisect_left(places, start)
+    if first < len(places) and places[first] < start + LONGEST_EXPRESSION:
+        return line[start : places[first]].strip()
+    source = line[start:]
+    return source.strip() if depths[-1] == level and len(source) <= LONGEST_EXPRESSION else None
+
+
+@lru_cache(maxsize=1)
+def _nesting(line: str) -> tuple[list[int], dict[int, list[int]]]:
+    """How deep each character of a line stands in brackets, and the end's depth; and by depth where
+    an expression could end. A line may have thousands of values that ask."""
+    steps = ((c in _OPENING) - (c in _CLOSING) for c in line)
+    depths = list(accumulate(steps, initial=0))
+    ends: dict[int, list[int]] = {}
+    for index, character in enumerate(line):
+        if character in _ENDS_AN_EXPRESSION or line.startswith(" #", index):
+            ends.setdefault(depths[index], []).append(index)
+    return depths, ends
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= 40 else text[:37] + "..."
+
+
+# From YAML events to nodes, with every problem that is not a matter of YAML's grammar.
+#
+# A stack holds the lists and mappings that are still open; their children are gathered in one flat
+# list (key, value, key, value for a mapping) and judged when the collection closes. No recursion,
+# so that deep nesting ends in a message and not in a full stack.
+
+_STYLES = {"'": Style.SINGLE_QUOTED, '"': Style.DOUBLE_QUOTED, "|": Style.BLOCK, ">": Style.BLOCK}
+
+
+class TooDeepError(Exception):
+    """Raised when the nesting exceeds `MOST_LEVELS`; the diagnostic is already noted."""
+
+
+@dataclass(slots=True)
+class _Open:
+    mark: Mark
+    is_mapping: bool
+    children: list[Node] = field(default_factory=list)
+
+
+class TreeBuilder:
+    """Takes the events of one document in order; afterwards `root` is its node.
+
+    `diagnostics` holds what was wrong; the tree is meant to be used only where it stayed empty.
+    """
+
+    def __init__(self, lines: list[str], file: str) -> None:
+        self.diagnostics: list[Diagnostic] = []
+        self.root: Node | None = None
+        self._lines = lines
+        self._file = file
+        self._stack: list[_Open] = []
+        self._last: Node | None = None
+
+    def take(self, event: events.Event) -> None:
+        """Add one scalar, alias, or the start or end of a list or mapping."""
+        if isinstance(event, events.ScalarEvent):
+            has_properties = self._check_properties(event)
+            self._check_escapes(event)
+            style = _STYLES.get(event.style or "", Style.PLAIN)
+            if has_properties and not event.value:
+                style = Style.SINGLE_QUOTED  # one message about this scalar is enough
+            self._add(ScalarNode(event.value, mark_of(event), style))
+        elif isinstance(event, (events.SequenceStartEvent, events.MappingStartEvent)):
+            self._check_properties(event)
+            self._open(mark_of(event), isinstance(event, events.MappingStartEvent))
+        elif isinstance(event, (events.SequenceEndEvent, events.MappingEndEvent)):
+            self._add(self._close(self._stack.pop()))
+        elif isinstance(event, events.AliasEvent):
+            hint = (
+                "write the value out, or use a parameter; put a text that starts with * in quotes"
+            )
+            self._report("alias", "aliases (*) are not used here", mark_of(event), hint)
+            self._add(ScalarNode(f"*{event.anchor}", mark_of(event), Style.SINGLE_QUOTED))
+
+    def cut_off_value(self) -> Diagnostic | None:
+        """The message for the scalar taken last, if it was cut off inside its parentheses."""
+        if isinstance(self._last, ScalarNode) and is_cut_off(self._last):
+            return self._cut_at_comma(self._last)
+        return None
+
+    def _open(self, mark: Mark, is_mapping: bool) -> None:
+        if len(self._stack) >= MOST_LEVELS:
+            self._report(
+                "too-deep",
+                f"lists and mappings lie more than {MOST_LEVELS} deep inside one another",
+                mark,
+                "format 1 needs no such depth; check the brackets",
+            )
+            raise TooDeepError
+        self._stack.append(_Open(mark, is_mapping))
+
+    def _add(self, node: Node) -> None:
+        self._last = node
+        if self._stack:
+            self._stack[-1].children.append(node)
+        else:
+            self.root = node
+
+    def _close(self, collection: _Open) -> Node:
+        if collection.is_mapping:
+            return self._mapping(collection)
+        return self._sequence(collection)
+
+    def _sequence(self, collection: _Open) -> Sequence:
+        items = collection.children
+        index = 0
+        while index < len(items):
+            item = items[index]
+            if is_empty(item):
+                # the parsers disagree on where nothing stands, but not on where the list starts
+                hint = "write a value or remove the item"
+                message = f"item {index + 1} of this list is empty"
+                self._report("empty-value", message, collection.mark, hint)
+            elif isinstance(item, ScalarNode) and is_cut_off(item):
+                pieces = pieces_of_sequence(items, index)
+                if pieces:
+                    self.diagnostics.append(self._cut_at_comma(item))
+                index += pieces
+            index += 1
+        return Sequence(tuple(items), collection.mark)
+
+    def _mapping(self, collection: _Open) -> Mapping:
+        children = collection.children
+        pairs = list(zip(children[::2], children[1::2], strict=True))
+        entries: dict[str, Entry] = {}
+        index = 0
+        while index < len(pairs):
+            key, value = pairs[index]
+            pieces = 0
+            if isinstance(value, ScalarNode) and is_cut_off(value):
+                pieces = pieces_of_mapping(pairs, index)
+                if pieces:
+                    self.diagnostics.append(self._cut_at_comma(value))
+            if self._accepts_key(key, entries) and isinstance(key, ScalarNode):
+                if is_empty(value):
+                    self._report_empty(key)
+                entries[key.text] = Entry(key.mark, value)
+            index += 1 + pieces
+        return Mapping(entries, collection.mark)
+
+    def _accepts_key(self, key: Node, entries: dict[str, Entry]) -> bool:
+        if not isinstance(key, ScalarNode):
+            hint = "write key: value; put an expression with brackets in quotes"
+            self._report("bad-key", "a list or mapping cannot be a key", key.mark, hint)
+        elif key.text == "" and key.style is Style.PLAIN:
+            self._report("bad-key", "a key is missing before the ':'", key.mark, "write key: value")
+        elif key.text == "<<" and key.style is Style.PLAIN:
+            hint = "write the keys out"
+            self._report("merge-key", "merge keys (<<) are not used here", key.mark, hint)
+        elif key.text in entries:
+            message = f"the key {_quoted(key.text)} is written twice in one mapping"
+            first = entries[key.text].mark
+            hint = f"keep one of them; the first is at line {first.line}, column {first.column}"
+            self._report("duplicate-key", message, key.mark, hint)
+        else:
+            return True
+        return False
+
+    def _report_empty(self, key: ScalarNode) -> None:
+        name, colon, rest = key.text.partition(":")
+        if key.style is Style.PLAIN and colon and rest:
+            hint = f"write a blank after the colon: {name}: {rest}"
+        else:
+            hint = "write a value, {} for an empty mapping, or remove the key"
+        message = f"the key {_quoted(key.text)} has no value"
+        self._report("empty-value", message, key.mark, hint)
+
+    def _check_properties(
+        self, event: events.ScalarEvent | events.SequenceStartEvent | events.MappingStartEvent
+    ) -> bool:
+        if event.anchor is not None:
+            hint = (
+                "write the value out, or use a parameter; put a text that starts with & in quotes"
+            )
+            self._report("anchor", "anchors (&) are not used here", mark_of(event), hint)
+        if event.tag is not None:
+            hint = "remove it, or put a text that starts with ! in quotes"
+            self._report("tag", "YAML tags (!) are not used here", mark_of(event), hint)
+        return event.anchor is not None or event.tag is not None
+
+    def _check_escapes(self, event: events.ScalarEvent) -> None:
+        """Escape sequences must not bring in what a text cannot hold as it stands."""
+        if event.style == '"' and (found := INVISIBLE.search(event.value)):
+            message = f"an escape sequence stands for {character_name(found[0])}"
+            hint = "remove it; names and titles are plain text"
+            self._report("bad-character", message, mark_of(event), hint)
+
+    def _cut_at_comma(self, scalar: ScalarNode) -> Diagnostic:
+        return cut_at_comma(scalar, self._lines[scalar.mark.line - 1], self._file)
+
+    def _report(self, code: str, message: str, mark: Mark, hint: str) -> None:
+        place = Place(self._file, *mark)
+        self.diagnostics.append(Diagnostic(code, "error", message, place, hint=hint))
+
+
+def mark_of(event: events.Event) -> Mark:
+    """Where an event starts."""
+    start = event.start_mark
+    return Mark(start.line + 1, start.column + 1) if start else Mark(1, 1)
+
+
+def _quoted(text: str) -> str:
+    return f"'{text if len(text) <= 40 else text[:37] + '...'}'"
+
+
+FASTEST_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+"""PyYAML's wrapper of libyaml where it was built, else the parser in Python."""
+
+_LIBRARY_DEPTH = "exceeded maximum nesting depth"
+
+CORRECT_FIRST = "correct these first"
+
+_START_OF_A_FILE = "a mechanism file starts with the line format: 1, a study with study: 1"
+
+
+class _BeyondLibraryError(Exception):
+    """The parser in C gives up at its own depth, before it tells of the brackets that lead there;
+    that in Python tells at which one the limit is passed."""
+
+
+def parse(text: str, file: str, *, loader: Any = FASTEST_LOADER) -> Mapping:
+    """The top-level mapping of a YAML text.
+
+    Raises `InvalidFile` with every independent problem found up to the first break of YAML's
+    grammar: empty values, duplicate keys, anchors, aliases, merge keys, tags, several documents, an
+    empty file, another top level than a mapping.
+    """
+    check_characters(text, file)
+    lines = lines_of(text)
+    whole = f"{text}\n"  # both parsers agree on the end of a whole last line
+    builder = TreeBuilder(lines, file)
+    try:
+        _walk(whole, file, loader, builder)
+    except _BeyondLibraryError:
+        builder = TreeBuilder(lines, file)
+        _walk(whole, file, yaml.SafeLoader, builder)
+    diagnostics = builder.diagnostics
+    if not diagnostics and isinstance(builder.root, Mapping):
+        return builder.root
+    if not diagnostics:
+        diagnostics = [_not_a_mapping(builder, file)]
+    raise InvalidFile(in_order([_inside(found, lines) for found in diagnostics]))
+
+
+def _inside(diagnostic: Diagnostic, lines: list[str]) -> Diagnostic:
+    """The diagnostic at the end of the text, where a parser complains behind it."""
+    place = diagnostic.place
+    if place is None or place.line <= len(lines):
+        return diagnostic
+    end = Place(place.file, len(lines), len(lines[-1]) + 1)
+    return diagnostic._replace(place=end)
+
+
+def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
+    """The diagnostics by place: at most `MOST_DIAGNOSTICS`, and one that counts the rest."""
+    first = Place("", 0, 0)
+    ordered = sorted(diagnostics, key=lambda found: _position(found.place or first))
+    rest = len(ordered) - MOST_DIAGNOSTICS
+    if rest <= 0:
+        return ordered
+    message = f"{rest} more problems are not shown"
+    return [*ordered[:MOST_DIAGNOSTICS], Diagnostic("more", "note", message, hint=CORRECT_FIRST)]
+
+
+def _position(place: Place) -> tuple[int, int]:
+    return place.line, place.column
+
+
+def _walk(text: str, file: str, loader: Any, builder: TreeBuilder) -> None:
+    documents = 0
+    try:
+        for count, event in enumerate(yaml.parse(text, Loader=loader)):
+            if isinstance(event, events.DocumentStartEvent):
+                documents += 1
+            if documents > 1 or count > MOST_EVENTS:
+                place = Place(file, *mark_of(event))
+                builder.diagnostics.append(_too_many(place, documents))
+                return
+            builder.take(event)
+    except TooDeepError:
+        return
+    except yaml.YAMLError as error:
+        if _LIBRARY_DEPTH in str(error) and loader is not yaml.SafeLoader:
+            raise _BeyondLibraryError from None
+        from mechkin_cli.reading.messages import syntax_diagnostic  # only on the way to messages
+
+        builder.diagnostics.append(builder.cut_off_value() or syntax_diagnostic(error, file, text))
+
+
+def _too_many(place: Place, documents: int) -> Diagnostic:
+    if documents > 1:
+        message, hint = "a second YAML document starts here", "write one mechanism in one file"
+        return Diagnostic("several-documents", "error", message, place, hint=hint)
+    hint = "keep long tables of numbers in CSV files"
+    limit = f"{MOST_EVENTS} values and brackets"
+    message = "the file is too long for a mechanism file"
+    return Diagnostic("file-too-long", "error", f"{message} (limit {limit})", place, hint=hint)
+
+
+def _not_a_mapping(builder: TreeBuilder, file: str) -> Diagnostic:
+    if builder.root is None:
+        message = "the file is empty"
+        return Diagnostic("empty-file", "error", message, Place(file, 1, 1), hint=_START_OF_A_FILE)
+    place = Place(file, *builder.root.mark)
+    message = "the top level must be a mapping of keys such as format, links, joints"
+    return Diagnostic("not-a-mapping", "error", message, place, hint=_START_OF_A_FILE)

@@ -1,0 +1,268 @@
+"""The rows of a response, read as those of a sweep are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.expressions import Quantity
+from mechkin_cli.mechanism import (
+    COEFFICIENT_KINDS,
+    ORDERS,
+    DrivenInput,
+    MotionInputs,
+    Varying,
+    dimension_of,
+    law_value,
+    response_quantities,
+)
+from mechkin_cli.sweep import Result, SweepRows
+from mechkin_cli.units import TIME
+
+if TYPE_CHECKING:
+    from mechkin_cli.assembly import AssemblyStart
+    from mechkin_cli.mechanism import Amount, ResponseProblem, Wanted
+    from mechkin_cli.plan import Demand
+    from mechkin_cli.response.integration import MotionReport
+    from mechkin_cli.session import Batch, Chart, KernelInputs, Session
+    from mechkin_cli.show import Bools, Floats
+
+
+# The rows of a response as if the start's coordinates were driven through them.
+
+
+def driven_rows(response: ResponseResult) -> Result:
+    """A sweep with the states, rates and accelerations of a response, on the same tree."""
+    own, moving = response.row_states, response.problem.motion
+    free = [_driven(response, *at) for at in response.response.independent]
+    motion = MotionInputs((*free, *moving.inputs), moving.rows, moving.time, moving.course)
+    session = response.chosen.moved(replace(response.chosen.problem, motion=motion))
+    rows = SweepRows.without_guesses(own.states.shape[0], 0, moving.rows)
+    rows.states, rows.reached, rows.status = own.states, own.reached, own.status
+    # closing joints have the same turns; the tree's angles have theirs in the states
+    closing = own.turns[: own.turns.shape[0] - len(response.session.turn_slots.tree)]
+    still = np.zeros((len(session.turn_slots.tree), moving.rows))
+    rows.turns = np.concatenate([closing, still])
+    return Result(session, response.start, rows)
+
+
+def _driven(response: ResponseResult, joint: str, coordinate: str) -> DrivenInput:
+    name, units, rows = f"{joint}.{coordinate}", response.units, response.rows
+    orders = [_numbers(response, name + ORDERS[order]) for order in range(3)] + [np.zeros(rows)]
+    dimension = dimension_of(coordinate)
+    written = np.array(
+        [units.from_si(found.copy(), dimension / TIME**order) for order, found in enumerate(orders)]
+    )
+    values, rates, accelerations, jerks = orders
+    return DrivenInput(joint, coordinate, values, rates, accelerations, jerks, written)
+
+
+def _numbers(response: ResponseResult, name: str) -> Floats:
+    """A quantity over the rows in SI, zero where there is none."""
+    value = np.asarray(response.quantity(name).value, dtype=np.float64)
+    return np.where(response.solved, np.broadcast_to(value, (response.rows,)), 0.0)
+
+
+ENERGIES = ("row.kinetic_energy", "row.potential_energy")
+
+
+class ResponseResult(Result):
+    """The rows of a response with a position and a verdict each.
+
+    Args:
+        session: of the free motion, with the driven coordinates at the rows' moments.
+        start: the first assembly, of a session `chosen` with the start's coordinates as inputs.
+        rows: the rows.
+        chart: about each row.
+        work: put in and lost up to each row (2, rows), J.
+        events: what each row is reached by, empty for a moment asked for.
+        response: what was asked for.
+        report: how the motion ended.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        chosen: Session,
+        start: AssemblyStart,
+        rows: SweepRows,
+        chart: Chart,
+        work: Floats,
+        events: Sequence[str],
+        response: ResponseProblem,
+        report: MotionReport | None,
+    ) -> None:
+        super().__init__(session, start, rows)
+        self.chosen = chosen
+        self.chart = chart
+        self.exchanged = work
+        self.events = tuple(events)
+        self.response = response
+        self.report = report
+
+    @cached_property
+    def solved(self) -> Bools:
+        """Rows that were reached and have a position (rows,)."""
+        return self.row_states.reached & super().solved
+
+    @cached_property
+    def mode(self) -> str:
+        """The letter of the first assembly where a short search proves it; else `near` or
+        `home`."""
+        from mechkin_cli.assembly import mode_letter
+
+        return mode_letter(self.chosen, self.start, thorough=False)
+
+    @cached_property
+    def letter(self) -> str:
+        """The letter of the first assembly, searched for if it is not known yet."""
+        from mechkin_cli.assembly import mode_letter
+
+        return mode_letter(self.chosen, self.start)
+
+    def run(
+        self,
+        wanted: Sequence[Wanted],
+        demand: Demand,
+        *,
+        session: Session | None = None,
+        inputs: KernelInputs | None = None,
+        shift: int = 0,
+        iterations: int = 0,
+        chart: Chart | None = None,
+    ) -> Batch:
+        """As `Result.run`, with the chart about each row."""
+        return super().run(
+            wanted,
+            demand,
+            session=session,
+            inputs=inputs,
+            shift=shift,
+            iterations=iterations,
+            chart=self.chart if chart is None else chart,
+        )
+
+    @cached_property
+    def input_rates(self) -> Mapping[str, Floats]:
+        """As of a sweep; and the start's coordinates, which the first row has as they were
+        given."""
+        found = dict(super().input_rates)
+        if not self.solved[:1].all():
+            return found
+        for one in self.response.start:
+            for name, given in ((one.name, one.value), (one.name + ORDERS[1], one.rate)):
+                if given is not None:
+                    found[name] = self._as_given(name, given)
+        return found
+
+    def _as_given(self, name: str, given: float) -> Floats:
+        """A quantity in the file's units, its first value the shortest number that is `given` in
+        SI."""
+        quantity, units = self.quantity(name), self.units
+        rows = np.array(np.broadcast_to(np.asarray(quantity.value, dtype=np.float64), (self.rows,)))
+        column = np.array(units.from_si(rows, quantity.dimension), dtype=np.float64)
+        short = float(f"{column[0]:.15g}")
+        if float(units.to_si(short, quantity.dimension)) == given:
+            column[0] = short
+        return column
+
+    @cached_property
+    def as_driven(self) -> Result:
+        """The same rows as a sweep of the start's coordinates, by whose accelerations the
+        coefficients of the equations of motion are; near a dead centre of them there are none."""
+        return driven_rows(self)
+
+    def quantity(self, name: str) -> Quantity:
+        """A parameter, direction or result by name, in SI.
+
+        Raises:
+            UnknownName: nothing has this name.
+        """
+        of_response = response_quantities().get(name)
+        if of_response is not None:
+            return Quantity(getattr(self, of_response.kind), of_response.dimension)
+        wanted = self.problem.quantities().get(name)
+        if wanted is not None and wanted.kind in COEFFICIENT_KINDS:
+            return self.as_driven.quantity(name)
+        if wanted is not None and wanted.kind == "effort":
+            given = self._given_effort(wanted)
+            if given is not None:
+                return Quantity(given, wanted.dimension)
+        return super().quantity(name)
+
+    def read(self, wanted: Iterable[Wanted]) -> None:
+        """Evaluates the quantities that have not been read yet."""
+        own = response_quantities()
+        super().read(
+            quantity
+            for quantity in wanted
+            if quantity.name not in own
+            and quantity.kind not in COEFFICIENT_KINDS
+            and not self.is_given(quantity)
+        )
+
+    def is_given(self, quantity: Wanted) -> bool:
+        """Whether a quantity is an effort that the response gives."""
+        return quantity.kind == "effort" and bool(self._amounts(quantity))
+
+    @property
+    def work(self) -> Floats:
+        """Work put in up to each row, J (rows,)."""
+        put: Floats = self.exchanged[0]
+        return put
+
+    @property
+    def dissipated(self) -> Floats:
+        """What was lost up to each row, J (rows,)."""
+        lost: Floats = self.exchanged[1]
+        return lost
+
+    @cached_property
+    def energy_error(self) -> Floats:
+        """|T + V - T0 - V0 - work + dissipated| beyond the rounding of V, in parts of the largest
+        of them over all rows and of T between them (rows,); nan where nothing moves or works."""
+        kinetic, potential = (self._energy(name) for name in ENERGIES)
+        work, lost = self.exchanged
+        solved = np.flatnonzero(self.solved)
+        if not solved.size:
+            return self._nothing
+        first = solved[0]
+        gained = potential - potential[first]
+        parts = np.abs([kinetic, gained, work, lost])[:, solved]
+        assert self.report is not None
+        length = self.session.layout.length
+        largest = max(float(parts.max()), length * length * self.report.energy)
+        if not largest > 0.0:
+            return self._nothing
+        missing = ((kinetic - kinetic[first]) + gained) - (work - lost)
+        rounding = tolerances.ENERGY_ROUNDING * float(np.abs(potential[solved]).max())
+        error: Floats = np.maximum(np.abs(missing) - rounding, 0.0) / largest
+        return error
+
+    def _energy(self, name: str) -> Floats:
+        value: Floats = np.asarray(super().quantity(name).value, dtype=np.float64)
+        return value
+
+    def _amounts(self, wanted: Wanted) -> list[Amount]:
+        at = (wanted.owner, wanted.coordinate)
+        return [e.amount for e in self.response.efforts if (e.joint, e.coordinate) == at]
+
+    def _given_effort(self, wanted: Wanted) -> Floats | None:
+        """The sum of the response's efforts along a coordinate over the rows; None where it is
+        driven."""
+        given = self._amounts(wanted)
+        if not given:
+            return None
+        total = np.zeros(self.rows)
+        for amount in given:
+            if isinstance(amount, Varying):
+                law = self.problem.load_laws[amount.number]
+                total = total + law_value(law, self.quantity, self.rows)
+            else:
+                total = total + amount
+        return np.where(self.solved, total, np.nan)

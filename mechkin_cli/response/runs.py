@@ -1,0 +1,383 @@
+"""From a response's start to its rows: assembly, integration, a verdict per row."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from math import nan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.mechanism import (
+    CrossingEnd,
+    DeadCentreEnd,
+    DrivenInput,
+    Moments,
+    MotionInputs,
+    dimension_of,
+    read_for,
+    response_problem,
+)
+from mechkin_cli.response.endings import ending
+from mechkin_cli.response.integration import (
+    MotionEnd,
+    MotionRows,
+    MotionStart,
+    WatchedStop,
+    driven_laws,
+    free_session,
+    integrate,
+)
+from mechkin_cli.response.result import ENERGIES, ResponseResult
+from mechkin_cli.response.start import Beginning, beginning
+from mechkin_cli.session import Chart, Packing, Session, input_unit, turn_count
+from mechkin_cli.sweep import (
+    SweepRows,
+    at_once,
+    first_assembly,
+    judge_condition,
+    rest_on_reactions,
+    row_notes,
+    unfounded_in_motion,
+)
+from mechkin_cli.units import TIME
+from mechkin_cli.variants import structure_of
+from mechkin_cli.verdict import Status
+
+if TYPE_CHECKING:
+    from mechkin_cli.assembly import AssemblyStart
+    from mechkin_cli.kernel._kernel import DrivenLaws
+    from mechkin_cli.mechanism import Problem, ResponseProblem, Stop, Wanted
+    from mechkin_cli.show import Floats
+    from mechkin_cli.units import Dimension
+
+
+# The moments of a response's rows, with what is driven at them, and its stops as the kernel has
+# them.
+
+_WAYS = {"up": 1, "down": -1, "any": 0}
+
+
+def watched_stop(stop: Stop) -> WatchedStop:
+    """A stop as the kernel takes it."""
+    if isinstance(stop, CrossingEnd):
+        return WatchedStop(0, _WAYS[stop.direction], 1, stop.at, *_powers(stop.dimension))
+    if isinstance(stop, DeadCentreEnd):
+        rate = dimension_of(stop.coordinate) / TIME
+        return WatchedStop(1, 0, stop.count, 0.0, *_powers(rate))
+    return WatchedStop(2, 0, stop.count, 0.0)
+
+
+def _powers(dimension: Dimension) -> tuple[int, int]:
+    """`lengths` and `rates` of a `WatchedStop`."""
+    length, mass, time, _ = dimension.exponents
+    if mass or time > 0 or length != int(length) or time != int(time):
+        return 0, -1
+    return int(length), -int(time)
+
+
+def rows_problem(
+    free: Session, response: ResponseProblem, laws: DrivenLaws | None, found: MotionRows, count: int
+) -> Problem:
+    """The problem whose motion has the first `count` rows, a stop's moment among them."""
+    asked = response.moments
+    if count <= found.report.rows or found.count <= found.report.rows:
+        moments = Moments(asked.values[:count], asked.written[:count])
+        driven = tuple(_part(item, count) for item in response.driven)
+    else:
+        end = found.report.time
+        written = float(free.problem.units.from_si(end, TIME))
+        moments = Moments(
+            np.append(asked.values[: count - 1], end),
+            np.append(asked.written[: count - 1], written),
+        )
+        at = [] if laws is None else laws.at(end)
+        driven = tuple(
+            _stopped(free, _part(item, count - 1), at[number])
+            for number, item in enumerate(response.driven)
+        )
+    if laws is not None and response.course is not None:
+        edges = response.course.edges[1:] * float(free.problem.units.to_si(1.0, TIME))
+        driven = _before_jumps(free, edges, laws, driven, moments)
+    return free.problem.moved(MotionInputs(driven, count, moments, response.course))
+
+
+def _before_jumps(
+    free: Session,
+    edges: Floats,
+    laws: DrivenLaws,
+    driven: tuple[DrivenInput, ...],
+    moments: Moments,
+) -> tuple[DrivenInput, ...]:
+    """Accelerations of laws where a piece of one ends at a row, at an edge (s): those that the
+    motion came with, as the free coordinates have them there."""
+    rows = [k for k in range(1, moments.values.size) if moments.values[k] in edges]
+    if not rows:
+        return driven
+    accelerations = [item.accelerations.copy() for item in driven]
+    written = [item.written_orders.copy() for item in driven]
+    for row in rows:
+        at = laws.at(float(np.nextafter(moments.values[row], moments.values[0])))
+        for number, item in enumerate(driven):
+            second = at[number][2] * input_unit(free.layout, item)
+            dimension = dimension_of(item.coordinate) / TIME**2
+            accelerations[number][row] = second
+            written[number][2, row] = float(free.problem.units.from_si(second, dimension))
+    return tuple(
+        item._replace(accelerations=a, written_orders=w)
+        for item, a, w in zip(driven, accelerations, written, strict=True)
+    )
+
+
+def _part(item: DrivenInput, count: int) -> DrivenInput:
+    return item._replace(
+        values=item.values[:count],
+        rates=item.rates[:count],
+        accelerations=item.accelerations[:count],
+        jerks=item.jerks[:count],
+        written_orders=item.written_orders[:, :count],
+    )
+
+
+def _stopped(free: Session, item: DrivenInput, at: tuple[float, float, float]) -> DrivenInput:
+    """With one row more, where the motion was stopped; `at` in kernel units."""
+    unit, units = input_unit(free.layout, item), free.problem.units
+    found = [value * unit for value in at] + [nan]
+    dimension = dimension_of(item.coordinate)
+    written = [
+        float(units.from_si(value, dimension / TIME**order)) for order, value in enumerate(found)
+    ]
+    arrays = (item.values, item.rates, item.accelerations, item.jerks)
+    values, rates, accelerations, jerks = (
+        np.append(array, value) for array, value in zip(arrays, found, strict=True)
+    )
+    orders = np.concatenate([item.written_orders, np.array(written)[:, None]], axis=1)
+    return DrivenInput(
+        item.joint, item.coordinate, values, rates, accelerations, jerks, orders, item.follows
+    )
+
+
+ANY_PACKING = Packing()
+"""As many lanes and threads as pay."""
+
+
+def respond(
+    problem: Problem,
+    response: ResponseProblem,
+    quantities: Iterable[str] = (),
+    packing: Packing = ANY_PACKING,
+    session: Session | None = None,
+) -> ResponseResult:
+    """Integrates a response and reads the quantities asked for.
+
+    Args:
+        problem: of the file.
+        response: one of its responses.
+        quantities: names out of `response_problem(problem, response).quantities()`.
+        packing: how variants and rows are packed.
+        session: of that problem, where there is one; it keeps what is found of the start.
+
+    Raises:
+        UnsolvableGraph: the start names too few or too many coordinates, or such that do not fix
+            the place.
+        KeyError: an unknown quantity.
+    """
+    prepared = prepare(problem, response, packing, session)
+    (result,) = integrated([prepared], packing)
+    read(result, quantities)
+    return result
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A response before it is integrated: the session that its assembly was `chosen` in, that of
+    the `free` motion, and how it begins; None where it cannot."""
+
+    response: ResponseProblem
+    chosen: Session
+    start: AssemblyStart
+    free: Session
+    begun: Beginning | None
+    driven: DrivenLaws | None
+
+
+def prepare(
+    problem: Problem,
+    response: ResponseProblem,
+    packing: Packing = ANY_PACKING,
+    session: Session | None = None,
+) -> Prepared:
+    """The first assembly of a response, and how it moves there; arguments as those of `respond`.
+
+    Raises:
+        UnsolvableGraph: as `respond`.
+    """
+    if session is None:
+        session = Session(response_problem(problem, response))
+    key = ("prepared", str(session.problem.assembly))
+    found = session.once(key, lambda: _prepared(session, response))
+    return replace(found, chosen=found.chosen.packed(packing), free=found.free.packed(packing))
+
+
+def _prepared(chosen: Session, response: ResponseProblem) -> Prepared:
+    chosen, start = first_assembly(chosen)
+    place = response.place
+    start.diagnostics[:] = [
+        told if told.place else told._replace(place=place) for told in start.diagnostics
+    ]
+    free = free_session(chosen, response.independent)
+    if start.state is None:
+        return Prepared(response, chosen, start, free, None, None)
+    begun = beginning(chosen, response, start.state)
+    unfounded = unfounded_in_motion(free.problem, redundant=free.is_redundant)
+    begun = begun if unfounded is None else unfounded
+    if not isinstance(begun, Beginning):
+        start = replace(start, diagnostics=[*start.diagnostics, begun])
+        return Prepared(response, chosen, start, free, None, None)
+    return Prepared(response, chosen, start, free, begun, driven_laws(free, response))
+
+
+def integrated(variants: Sequence[Prepared], packing: Packing) -> list[ResponseResult]:
+    """The rows of variants of one response, before anything is read; those that share what the
+    kernel takes once march together in lanes."""
+    found: dict[int, ResponseResult] = {}
+    groups: dict[object, list[int]] = {}
+    for number, one in enumerate(variants):
+        if one.begun is None:
+            found[number] = _nothing(one)
+        else:
+            groups.setdefault(_shared(one, number), []).append(number)
+    for numbers in groups.values():
+        together = [variants[number] for number in numbers]
+        for number, rows in zip(numbers, _integrated(together, packing), strict=True):
+            found[number] = rows_of(variants[number], rows)
+    return [found[number] for number in range(len(variants))]
+
+
+def _shared(one: Prepared, number: int) -> object:
+    """Equal for variants that the kernel takes in one call: it is given laws of drives, stops and
+    moments once, and plans of one structure."""
+    if one.driven is not None:
+        return number
+    response, plan = one.response, one.free.plan
+    return (
+        response.moments.values.tobytes(),
+        tuple(watched_stop(stop) for stop in response.stops),
+        (response.tolerance, response.fixed_step),
+        (structure_of(one.free.graph), one.free.layout.length, plan.constants.size),
+    )
+
+
+def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRows]:
+    first = together[0]
+    response, times = first.response, first.response.moments.values
+    starts = []
+    for one in together:
+        assert one.begun is not None
+        plan = first.free.plan
+        if one is not first:
+            # of the same structure: plans of one call share it
+            plan = plan.with_constants(one.free.plan.constants).with_size(one.free.plan.size)
+        starts.append(MotionStart(plan, one.begun.state, one.begun.first, one.begun.tangents))
+    return integrate(
+        starts,
+        float(times[0]),
+        times,
+        stops=[watched_stop(stop) for stop in response.stops],
+        driven=first.driven,
+        tolerance=response.tolerance,
+        fixed_step=response.fixed_step,
+        straight=first.chosen.problem.assembly.straight,
+        packing=packing,
+    )
+
+
+def rows_of(one: Prepared, found: MotionRows) -> ResponseResult:
+    """The rows with their verdicts, before anything is read: those asked for, or up to a stop."""
+    response, chosen, free = one.response, one.chosen, one.free
+    stopped = found.report.end is MotionEnd.STOPPED
+    count = found.count if stopped else response.rows
+    if stopped and _stops_at_row(response, found):
+        count -= 1
+    part = slice(0, count)
+    reached = np.arange(count) < found.count
+    rows = SweepRows.without_guesses(free.layout.states, 0, count)
+    rows.states = np.where(reached, found.states[:, part], 0.0)
+    rows.reached, rows.nodes = reached, found.report.steps
+    rows.turns = _all_turns(free, found.turns[:, part])
+    last = np.array(found.report.last)
+    status, notes = ending(chosen, free, response, found.report, last)
+    rows.status[~reached] = status
+    rows.diagnostics += notes
+    energy = free.layout.length * free.layout.length
+    events = [""] * count
+    if stopped:
+        events[-1] = response.stops[found.report.stop].words
+    chart = found.chart.at(part)
+    return ResponseResult(
+        free.moved(rows_problem(free, response, one.driven, found, count)),
+        chosen,
+        one.start,
+        rows,
+        Chart(*(np.where(reached, array, 0.0) for array in chart)),
+        np.where(reached, energy * found.work[:, part], np.nan),
+        events,
+        response,
+        found.report,
+    )
+
+
+def _stops_at_row(response: ResponseProblem, found: MotionRows) -> bool:
+    """Whether the stop's moment is that of the last row before it, which then is its row."""
+    if not found.report.rows:
+        return False
+    row = float(response.moments.values[found.report.rows - 1])
+    return abs(found.report.time - row) <= tolerances.SAME_MOMENT * abs(row)
+
+
+def _nothing(one: Prepared) -> ResponseResult:
+    """Rows without a place: there is no first assembly."""
+    response, free, start = one.response, one.free, one.start
+    count, charts = response.rows, len(response.independent)
+    rows = SweepRows.without_guesses(free.layout.states, turn_count(free.plan), count)
+    rows.status[:] = Status.not_assembled if start.state is None else Status.branch_lost
+    zeros = np.zeros((charts, count))
+    directions = np.zeros((charts * free.plan.columns, count))
+    chart = Chart(directions, zeros, zeros, np.zeros((0, count)))
+    motion = MotionInputs(response.driven, count, response.moments, response.course)
+    session = free.moved(replace(free.problem, motion=motion))
+    lost = np.full((2, count), np.nan)
+    events = [""] * count
+    return ResponseResult(session, one.chosen, start, rows, chart, lost, events, response, None)
+
+
+def _all_turns(free: Session, closing: Floats) -> Floats:
+    """Turns of closing joints, and no whole turns of the tree's angles, whose states have them."""
+    tree = np.zeros((len(free.turn_slots.tree), closing.shape[1]))
+    return np.concatenate([closing, tree])
+
+
+def read(result: ResponseResult, quantities: Iterable[str]) -> None:
+    """Closes the rows once more, judges them, and reads what is asked for."""
+    known = result.problem.quantities()
+    asked: list[Wanted] = [known[name] for name in read_for(quantities, known)]
+    rows = result.row_states
+    if rows.reached.any():
+        energies = [known[name] for name in ENERGIES]
+        wanted, demand = at_once(result.session, [*asked, *energies], verdicts=True)
+        wanted = [q for q in wanted if not result.is_given(q)]
+        wanted += result.friction.beside(result.problem, wanted, demand)
+        batch = result.run(wanted, demand, iterations=tolerances.NEWTON_ITERATIONS)
+        # what is read later is read on the same states
+        rows.states = np.where(rows.reached & batch.good, batch.states, rows.states)
+        failed = rows.reached & ~batch.good
+        rows.status[failed] = Status.not_converged
+        rows.reached &= ~failed
+        judge_condition(result.session, rows, batch)
+        result.keep(batch, wanted, demand)
+        result.read(asked)
+    result.row_states.diagnostics += row_notes(
+        result, asked, rests_on_reactions=rest_on_reactions(result.problem, asked)
+    )

@@ -1,0 +1,390 @@
+"""Keys of other programs, at a wrong place, or of what mechkin leaves out: what to write instead.
+
+Looked up for an unknown key before the nearest known one is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from types import UnionType
+from typing import Annotated, Any, Final, NamedTuple, Union, get_args, get_origin
+
+from mechkin_cli.schema.base import Section, Tag, field_descriptions, fields_of
+
+# What to write instead of words of other programs, and of what mechkin leaves out.
+
+FRICTION = "friction is a load: loads: [{type: friction, joint: A, coefficient: 0.1, ...}]"
+CONTACT = (
+    "mechkin has no contact: bodies that stay in touch are a joint (Sp: a sphere on a plane, Sg: a "
+    "sphere in a groove), and a response may end where they would meet (stop:)"
+)
+RATIO = "tie two inputs by their ratio: motion: {inputs: {B.theta: {with: -2*A.theta}, ...}}"
+CAM = (
+    "give the follower a law: {law: table, file: lift.csv} with time, or {with: an expression of "
+    "the cam's angle}"
+)
+RIGID = "links are rigid; put a spring between two of them: {type: spring, joint: A, ...}"
+CONTROL = (
+    "an effort may be an expression of coordinates, rates and time: responses: {NAME: {efforts: "
+    '{A.theta: "-k*(A.theta - 1 rad) - c*A.theta_dot"}}}'
+)
+MOTOR = (
+    "prescribe a motion under motion: inputs:, or give a torque or force under responses: {NAME: "
+    "{efforts: {A.theta: 10 N*m}}}"
+)
+STUDY = (
+    "give another value with --set NAME=VALUE, or many from Python: load(FILE).vary({NAME: values})"
+)
+RESPONSE = (
+    "a motion under forces stands under responses: {NAME: {start: {A.theta: 20}, time: {from: 0, "
+    "to: 2, step: 0.1}}}"
+)
+PLANE = (
+    "write plane: xy, then points and forces as [x, y], inertias and torques as one number, and "
+    "hinges as R without an axis"
+)
+COEFFICIENT = (
+    "give it to a friction of its joint: loads: [{type: friction, joint: A, coefficient: 0.1, "
+    "radius: 8 mm}]"
+)
+DAMPER = (
+    "a damper is a load: loads: [{type: damper, joint: A, coordinate: theta, damping: 0.1 "
+    "N*m*s/rad}]"
+)
+ROWS_IN_TIME = (
+    "moments stand under time: {from: 0, to: 2, step: 0.1}, of motion: or of a response under "
+    "responses:"
+)
+STEPS = (
+    "a response takes its own steps: responses: {NAME: {tolerance: 1e-10}}, or fixed_step: 1e-3 s"
+)
+ACTUATORS = "coordinates at which efforts act: actuators: [leg1.s, leg2.s]"
+NOTE = "write name: and source:, or a comment behind #"
+TABLES = "what is written stands under tables: [{name: t, columns: [A.theta, A.effort]}]"
+PARAMETERS = "named values stand under parameters: {r: 40 mm}"
+LIMITS = (
+    "joints have no stops; a response may end where a coordinate comes to a value: stop: [{value: "
+    "A.theta, at: 45}]"
+)
+LOAD = "write loads: [{type: gravity, g: standard}], likewise force, torque, spring, damper"
+
+OUTSIDE: Final = {
+    **dict.fromkeys(("contact", "contacts", "collision", "impact", "clearance"), CONTACT),
+    **dict.fromkeys(("gear", "gears", "gearing", "belt", "pulley", "chain_drive", "rack"), RATIO),
+    **dict.fromkeys(("cam", "cams", "follower"), CAM),
+    **dict.fromkeys(("flexible", "elastic", "beam", "beams", "bushing", "bushings"), RIGID),
+    **dict.fromkeys(("control", "controls", "controller", "pid"), CONTROL),
+    **dict.fromkeys(("motor", "motors", "drive", "drives", "engine"), MOTOR),
+    "friction": FRICTION,
+}
+"""What is asked for at any place."""
+
+
+TOP_KEYS: Final = {
+    **OUTSIDE,
+    **dict.fromkeys(("study", "studies", "sweep", "optimize", "optimization"), STUDY),
+    **dict.fromkeys(
+        ("simulate", "simulation", "dynamics", "transient", "initial", "initial_conditions"),
+        RESPONSE,
+    ),
+    **dict.fromkeys(("start", "driven", "response", "free_motion", "integrate"), RESPONSE),
+    **dict.fromkeys(("gravity", "force", "forces", "torque", "torques", "springs"), LOAD),
+    **dict.fromkeys(("g", "spring", "damper", "dampers", "moment", "moments"), LOAD),
+    **dict.fromkeys(("planar", "dimension", "2d", "dimensions"), PLANE),
+    **dict.fromkeys(("mu", "coulomb", "stiction", "friction_coefficient"), COEFFICIENT),
+    "frictions": FRICTION,
+    **dict.fromkeys(("viscous", "damping", "dissipation"), DAMPER),
+    **dict.fromkeys(("actuator", "actuation", "actuated"), ACTUATORS),
+    **dict.fromkeys(("t_end", "t_start", "tspan", "t_span", "end_time", "tend"), ROWS_IN_TIME),
+    **dict.fromkeys(("duration", "time", "times", "dt", "timestep", "time_step"), ROWS_IN_TIME),
+    **dict.fromkeys(("solver", "integrator", "tolerance", "tolerances"), STEPS),
+    **dict.fromkeys(("rtol", "atol", "fixed_step", "max_step", "method"), STEPS),
+    **dict.fromkeys(("output", "outputs", "plot", "plots", "columns", "results"), TABLES),
+    **dict.fromkeys(("variables", "constants", "variable", "constant"), PARAMETERS),
+    **dict.fromkeys(("title", "description", "author", "comment", "notes"), NOTE),
+    **dict.fromkeys(("limit", "limits", "stops", "end_stops"), LIMITS),
+    "version": "the version of the format stands in format: 1",
+    "bodies": "bodies are links:",
+    "body": "bodies are links:",
+    "constraints": "constraints are joints:",
+    "pairs": "pairs are joints:",
+    **dict.fromkeys(
+        ("mass", "masses", "inertia"), "mass and inertia stand with their link: links:"
+    ),
+    **dict.fromkeys(("input", "inputs"), "inputs stand under motion: {inputs: {A.theta: ...}}"),
+    **dict.fromkeys(("mode", "near"), "write assembly: {near: {A.theta: 20}}, or mode: A there"),
+    **dict.fromkeys(
+        ("work", "harmonics", "flywheel", "fourier"),
+        "write balances: [{name: work, type: work}], likewise harmonics and flywheel",
+    ),
+    **dict.fromkeys(
+        ("published", "rows_by", "printed"),
+        "printed values belong to a table: tables: [{name: t, published: {file: printed.csv, "
+        "rows_by: t}, columns: ...}]",
+    ),
+    "run": "a run is named where it is read: tables: [{name: t, run: NAME, ...}], or --run NAME",
+    "runs": "a load names its runs: loads: [{type: gravity, g: standard, runs: [NAME]}]",
+    "efforts": "efforts belong to a response: responses: {NAME: {efforts: {A.theta: 10 N*m}}}",
+    "events": "a response ends at its stop: [{value: A.theta, at: 45}]",
+    "stop": "a response ends at its own stop:; write it under responses: {NAME: ...}",
+}
+"""Keys of the file."""
+
+JOINT_KEYS: Final = {
+    "friction": FRICTION,
+    "damping": "a damper is a load: loads: [{type: damper, joint: A, coordinate: theta, ...}]",
+    "stiffness": "a spring is a load: loads: [{type: spring, joint: A, coordinate: theta, ...}]",
+    **dict.fromkeys(
+        ("mu", "coulomb", "stiction", "coefficient", "friction_coefficient"), COEFFICIENT
+    ),
+    **dict.fromkeys(("viscous", "dampings"), DAMPER),
+    **dict.fromkeys(("limit", "limits", "min", "max", "range", "stops"), LIMITS),
+    **dict.fromkeys(("motor", "drive", "actuator", "actuated"), MOTOR),
+    **dict.fromkeys(
+        ("parent", "child", "bodies", "body1", "body2", "from", "to", "between"),
+        "the two links stand in links: [first, second]; coordinates are of the second against the "
+        "first",
+    ),
+    **dict.fromkeys(("at", "position", "location", "origin"), "the place is point:, a vector"),
+    **dict.fromkeys(
+        ("initial", "initial_value", "value", "theta0", "angle"),
+        "every coordinate is zero as drawn; which assembly is meant says assembly: {near: ...}",
+    ),
+}
+"""Keys of every joint."""
+
+FRICTION_KEYS: Final = {
+    "mu": "the key is coefficient: a number, or {static: .15, sliding: .1, speed: 5 mm/s}",
+    **dict.fromkeys(
+        ("static", "sliding", "speed", "mu_s", "mu_k", "kinetic", "stribeck"),
+        "they belong to the coefficient: {static: .15, sliding: .1, speed: 5 mm/s}",
+    ),
+    **dict.fromkeys(("viscous", "damping"), DAMPER),
+    "diameter": "radius is half of it",
+    "force": "a constant force of friction is a load: {type: force, joint: A, value: "
+    "-3 N*sign(A.s_dot)}",
+    "torque": "a constant torque of friction is a load: {type: torque, joint: A, value: "
+    "-3 N*m*sign(A.theta_dot)}",
+    "coordinate": "friction acts on all that the joint leaves free; leave it out",
+}
+"""Keys of friction."""
+
+RESPONSE_KEYS: Final = {
+    **dict.fromkeys(
+        ("t_end", "t_start", "tspan", "t_span", "duration", "end", "to", "end_time"),
+        "write time: {from: 0, to: 2, step: 0.1}",
+    ),
+    **dict.fromkeys(
+        ("count", "dt", "timestep", "time_step"),
+        "rows stand under time: {from, to, step}, the integrator's own step under fixed_step",
+    ),
+    **dict.fromkeys(
+        ("initial_conditions", "initial", "x0", "state", "begin"),
+        "write start: {A.theta: 20, A.theta_dot: 0 rad/s}",
+    ),
+    **dict.fromkeys(
+        ("rtol", "atol", "accuracy", "epsilon", "error"), "the key is tolerance: 1e-10"
+    ),
+    **dict.fromkeys(
+        ("solver", "method", "integrator"),
+        "the integrator is chosen by itself: DOP853, where it is stiff Radau IIA; leave it out",
+    ),
+    **dict.fromkeys(
+        ("effort", "forces", "force", "torque", "torques", "motor", "motors"),
+        "write efforts: {A.theta: 10 N*m}",
+    ),
+    **dict.fromkeys(
+        ("drive", "drives", "prescribed", "motion", "law"),
+        "coordinates that move by laws stand under driven: {A.theta: {law: harmonic, ...}}",
+    ),
+    "assembly": "write near: {A.theta: 20} or mode: A here",
+    "at_branch_points": "write assembly: {at_branch_points: straight} in the file",
+    "friction": FRICTION,
+    "actuators": "in a response efforts act where efforts: names them; leave it out",
+    "columns": "columns stand in tables: [{name: t, run: NAME, columns: [...]}]",
+    "rates": "rates stand in start: {A.theta: 20, A.theta_dot: 1 rad/s}",
+    "gravity": LOAD,
+}
+"""Keys of a response."""
+
+MOTION_KEYS: Final = {
+    "driven": "in the sweep they are inputs:; driven: belongs to a response",
+    "efforts": "in the sweep efforts follow from the motion; as given they belong to a response",
+    "start": RESPONSE,
+    **dict.fromkeys(
+        ("input", "drive", "drives"), "write inputs: {A.theta: {from: 0, to: 90, step: 5}}"
+    ),
+    **dict.fromkeys(
+        ("from", "to", "step", "count", "values"),
+        "rows belong to an input: inputs: {A.theta: {from: 0, to: 90, step: 5}}, or to time:",
+    ),
+}
+"""Keys of the motion."""
+
+TABLE_KEYS: Final = {
+    "rows_by": "it stands with the file: published: {file: printed.csv, rows_by: t}",
+    "remarks": "they stand with the file: published: {file: printed.csv, remarks: [...]}",
+    "file": "printed values are published: {file: printed.csv}; its own file is called by name:",
+    "runs": "a table reads one run: run: NAME",
+    "response": "the key is run: NAME",
+    **dict.fromkeys(
+        ("values", "quantities", "outputs", "rows"), "the key is columns: [A.theta, ...]"
+    ),
+    "summary": "from Python: r = m.analyze(); max(r[NAME]); a table has the rows of its run",
+}
+"""Keys of a table."""
+
+_SECTIONS: Final = {
+    "MechanismFile": TOP_KEYS,
+    "PlaneFile": TOP_KEYS,
+    "FrictionAtJoint": FRICTION_KEYS,
+    "PlaneFriction": FRICTION_KEYS,
+    "Response": RESPONSE_KEYS,
+    "MotionSection": MOTION_KEYS,
+    "Table": TABLE_KEYS,
+}
+
+
+def advice_for_key(section: str, key: str) -> str | None:
+    """What to do instead of a key that a section, by the name of its class, does not have."""
+    known = JOINT_KEYS if section.endswith("Joint") else {}
+    return _SECTIONS.get(section, known).get(key.casefold())
+
+
+# Types of loads and joints in the words of other programs, each with what to write instead.
+#
+# Looked up before the nearest known word is.
+
+LOAD_TYPES: Final = {
+    **OUTSIDE,
+    "moment": "a moment is a torque: {type: torque, ...}",
+    "couple": "a couple is a torque: {type: torque, ...}",
+    "weight": "weights follow from the masses and {type: gravity, g: standard}",
+    "acceleration": "write {type: gravity, g: [x, y, z]}",
+    "damping": "write {type: damper, ..., damping: c}",
+    "stiffness": "write {type: spring, ..., stiffness: k}",
+    "effort": "efforts belong to a response: responses: {NAME: {efforts: {A.theta: 10 N*m}}}",
+    "actuator": MOTOR,
+}
+"""Types of a load."""
+
+JOINT_TYPES: Final = {
+    **OUTSIDE,
+    **dict.fromkeys(("revolute", "hinge", "pin", "turning", "pivot"), "a hinge is R"),
+    **dict.fromkeys(("prismatic", "slider", "sliding", "translational"), "a slider is P"),
+    **dict.fromkeys(("cylindrical", "cylindric", "cylinder"), "turning and sliding is C"),
+    **dict.fromkeys(("helical", "screw", "thread"), "a screw is H, with lead: length per turn"),
+    **dict.fromkeys(("spherical", "ball", "sphere", "globe"), "a ball joint is S"),
+    **dict.fromkeys(("universal", "cardan", "hooke"), "a universal joint is U"),
+    **dict.fromkeys(("planar", "plane"), "a plane on a plane is E"),
+    **dict.fromkeys(("fixed", "weld", "rigid", "welded"), "what is one body is W"),
+    "spring": "a spring is a load: loads: [{type: spring, ...}]",
+    "damper": "a damper is a load: loads: [{type: damper, ...}]",
+    "motor": "a motor is no joint: give the type of the pair that it turns, and its effort",
+}
+"""Types of a joint."""
+
+
+_SPATIAL = "it is a pair in space; a plane has R, P, Ps (a pin in a slot) and W"
+_POSE = (
+    "a pose in a plane is P along x, P along y and R, one after the other through two links "
+    "without mass; their coordinates may be inputs"
+)
+PLANE_JOINT_TYPES: Final = {
+    **JOINT_TYPES,
+    **dict.fromkeys(("c", "h", "s", "sp", "u", "e", "ss", "sc", "cp"), _SPATIAL),
+    **dict.fromkeys(("f", "free", "pose"), _POSE),
+    "sg": "a pin in a slot is Ps, with slot: [x, y]",
+    **dict.fromkeys(
+        ("pin_in_slot", "slot", "half", "pinslot"), "a pin in a slot is Ps, with slot: [x, y]"
+    ),
+    **dict.fromkeys(("cylindrical", "cylindric", "cylinder", "spherical"), _SPATIAL),
+    **dict.fromkeys(("helical", "screw", "thread", "universal", "cardan"), _SPATIAL),
+    **dict.fromkeys(("hooke", "ball", "sphere", "globe", "planar", "plane"), _SPATIAL),
+}
+"""Types of a joint in a plane file."""
+
+
+def advice_for_type(section: str, word: str, in_plane: bool = False) -> str | None:
+    """What to do instead of a type that `loads` or `joints` do not have."""
+    joints = PLANE_JOINT_TYPES if in_plane else JOINT_TYPES
+    found = {"loads": LOAD_TYPES, "joints": joints}.get(section, {})
+    return found.get(word.casefold())
+
+
+# What a mapping of the file may hold, found by following an error's location through the models.
+#
+# Used only on the way to a message: the validation reports an unknown key, but not the known ones.
+
+
+class KnownKeys(NamedTuple):
+    """The keys of one kind of mapping: what each is for, answers for keys it doesn't have, and the
+    name of its class."""
+
+    descriptions: dict[str, str]
+    advice: dict[str, str]
+    section: str
+
+
+def known_keys(top: type[Section], location: tuple[str | int, ...]) -> KnownKeys | None:
+    """The keys of the mapping at a validation error's location (which includes the tags of forms).
+
+    None where the location is no mapping with fixed keys.
+    """
+    current: Any = top
+    for step in location:
+        current = _step_into(current, step)
+        if current is None:
+            return None
+    section = next((item for item in _alternatives(current) if _is_section(item)), None)
+    if section is None:
+        return None
+    texts = field_descriptions(section)
+    descriptions = {key: texts.get(field.name, "") for key, field in fields_of(section).items()}
+    return KnownKeys(descriptions, section.advice, section.__name__)
+
+
+def _step_into(annotation: Any, step: str | int) -> Any:
+    if isinstance(step, str) and step.startswith("("):
+        return next((form for tag, form in _tagged(annotation) if tag == step), None)
+    for item in _alternatives(annotation):
+        if _is_section(item):
+            for key, field in fields_of(item).items():
+                if step in (key, field.name):
+                    return field.annotation
+        elif get_origin(item) in (dict, tuple):
+            arguments = get_args(item)
+            return arguments[1] if get_origin(item) is dict else arguments[0]
+    return None
+
+
+def _alternatives(annotation: Any) -> Iterator[Any]:
+    """The annotation without aliases and metadata, each member of a union by itself."""
+    if hasattr(annotation, "__value__"):
+        yield from _alternatives(annotation.__value__)
+    elif get_origin(annotation) is Annotated:
+        yield from _alternatives(get_args(annotation)[0])
+    elif get_origin(annotation) in (Union, UnionType):
+        for member in get_args(annotation):
+            yield from _alternatives(member)
+    else:
+        yield annotation
+
+
+def _tagged(annotation: Any) -> Iterator[tuple[str, Any]]:
+    if hasattr(annotation, "__value__"):
+        yield from _tagged(annotation.__value__)
+    elif get_origin(annotation) is Annotated:
+        form, *metadata = get_args(annotation)
+        tags = [item.tag for item in metadata if isinstance(item, Tag)]
+        if tags:
+            yield tags[0], form
+        else:
+            yield from _tagged(form)
+    elif get_origin(annotation) in (Union, UnionType):
+        for member in get_args(annotation):
+            yield from _tagged(member)
+
+
+def _is_section(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, Section)

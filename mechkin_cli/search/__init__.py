@@ -1,0 +1,28 @@
+"""All assemblies of a structure at given inputs: block by block, by random starts or by polynomial.
+
+Hides which loops have closed equations and when a search may stop.
+"""
+
+from __future__ import annotations
+
+from mechkin_cli.lazy import lazy_names
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from mechkin_cli.search.clusters import pose_keys as pose_keys, same_poses as same_poses
+    from mechkin_cli.search.search import (
+        Assemblies as Assemblies,
+        assemblies as assemblies,
+        single_assembly as single_assembly,
+        with_assemblies as with_assemblies,
+    )
+    from mechkin_cli.search.starts import Within as Within, is_in_reach as is_in_reach
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "clusters": ["pose_keys", "same_poses"],
+        "search": ["Assemblies", "assemblies", "single_assembly", "with_assemblies"],
+        "starts": ["Within", "is_in_reach"],
+    },
+)

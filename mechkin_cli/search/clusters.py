@@ -1,0 +1,295 @@
+"""Which end points of a search are the same assembly, and how many may still be unknown."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.kernel import functions
+from mechkin_cli.plan import Carrier, Layout
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Sequence
+
+    from numpy.typing import NDArray
+
+    from mechkin_cli.show import Bools, Floats
+
+
+if TYPE_CHECKING:
+    Isolated = Callable[[Floats], tuple[Floats, Bools, Floats, int]]
+    """From end points (columns) to the points closed as well as possible, which of them are
+    isolated assemblies, their conditions, and how many are assemblies but not isolated."""
+
+
+_IN_CACHE = 1 << 14
+"""Differences of poses that are taken all at once; more of them leave the processor's cache."""
+
+
+class Clusters:
+    """Representatives (columns of `states`) of the assemblies that starts ended on, told apart by
+    some of the kernel's joints (None: all), and how often each was met.
+
+    Starts are independent, so while k assemblies are known a start that closes meets a new one with
+    a chance u that stays the same until it happens. That the wait for it is longer than w happens
+    with chance (1 - u)^w; so with a doubt d / (k (k + 1)) for each k, d for all of them, u is at
+    most log(k (k + 1) / d) / w, whenever one looks (`rest`).
+
+    Many different assemblies that are near singular are places on a motion that dimensions only
+    just stop (`SEARCH_MOST_SINGULAR`): they count as free, and so do all that come after. If they
+    stand on few folds they are what rounding leaves of those: one for each.
+    """
+
+    def __init__(self, layout: Layout, carriers: Sequence[Carrier] | None = None) -> None:
+        self.layout, self.carriers = layout, carriers
+        self.states = np.empty((layout.states, 0))
+        self.keys: Floats | None = None
+        self.met = np.empty(0, dtype=np.int64)
+        self.condition = np.empty(0)
+        self.is_fold = np.empty(0, dtype=bool)
+        self.folds = False
+        self.tried = 0
+        self.closed = 0
+        self.newest = 0
+        self.free = 0
+        self.closest = float("inf")
+
+    @property
+    def number(self) -> int:
+        """Number of assemblies."""
+        return int(self.met.size)
+
+    def add(self, states: Floats, isolated: Isolated) -> None:
+        """Sorts end points (columns, in the order of their starts) into the clusters; those that
+        are not known yet as `isolated` leaves them."""
+        keys = pose_keys(self.layout, states, self.carriers)
+        unknown = self._left(keys)
+        given = states[:, unknown]
+        ended, good, condition, free = isolated(given)
+        if self.folds:
+            singular = _near_singular(condition)
+            free += int(np.count_nonzero(good & singular))
+            good = good & ~singular
+        closing = np.ones(keys.shape[1], dtype=bool)
+        closing[unknown[~good]] = False
+        order = self.closed + np.cumsum(closing)
+        self.closed += int(np.count_nonzero(closing))
+        self.free += free
+        moved = ended is not given
+        keys = pose_keys(self.layout, ended, self.carriers) if moved else keys[:, unknown]
+        self._take(ended[:, good], keys[:, good], order[unknown[good]], condition[good])
+        if int(np.count_nonzero(_near_singular(self.condition))) > tolerances.SEARCH_MOST_SINGULAR:
+            self._merge_folds()
+
+    def _take(
+        self, states: Floats, keys: Floats, order: NDArray[np.int64], condition: Floats
+    ) -> None:
+        """Takes in those that are still not known, each after those of them that it is."""
+        rest = self._left(keys, condition)
+        chosen, met = [], []
+        while rest.size:
+            # the others are none of those taken in before
+            same = same_poses(keys[:, rest[:1]], keys[:, rest[1:]])[0]
+            chosen.append(int(rest[0]))
+            met.append(1 + int(np.count_nonzero(same)))
+            rest = rest[1:][~same]
+        if not chosen:
+            return
+        known = keys[:, :0] if self.keys is None else self.keys
+        self.keys = np.concatenate([known, keys[:, chosen]], axis=1)
+        self.states = np.concatenate([self.states, states[:, chosen]], axis=1)
+        self.met = np.append(self.met, np.array(met, dtype=np.int64))
+        self.condition = np.append(self.condition, condition[chosen])
+        self.is_fold = np.append(self.is_fold, np.zeros(len(chosen), dtype=bool))
+        self.newest = max(self.newest, int(order[chosen].max()))
+
+    def _merge_folds(self) -> None:
+        """Leaves one of those that are near singular on each fold, unless there are too many folds:
+        that of middle condition, neither the farthest off nor one that has no tangent."""
+        assert self.keys is not None
+        left = np.flatnonzero(_near_singular(self.condition))
+        kept = np.ones(self.number, dtype=bool)
+        folds: list[int] = []
+        left = left[np.argsort(self.condition[left], kind="stable")]
+        while left.size:
+            keys = self.keys[:, left]
+            limit = _scatter(self.condition[left[:1]], self.condition[left])
+            same = same_poses(keys[:, :1], keys, limit)[0]
+            own = left[same]
+            middle = own[own.size // 2]
+            self.met[middle] = int(np.add.reduce(self.met[own]))
+            kept[own] = own == middle
+            folds.append(int(middle))
+            left = left[~same]
+        if len(folds) > tolerances.SEARCH_MOST_FOLDS:
+            self._free_singular()
+            return
+        self.is_fold[folds] = True
+        self._keep(kept)
+
+    def _keep(self, kept: Bools) -> None:
+        assert self.keys is not None
+        self.states, self.keys = self.states[:, kept], self.keys[:, kept]
+        self.met, self.condition = self.met[kept], self.condition[kept]
+        self.is_fold = self.is_fold[kept]
+
+    def _free_singular(self) -> None:
+        """Leaves out those that are near singular; the wait for a new one begins again."""
+        assert self.keys is not None
+        kept = ~_near_singular(self.condition)
+        left_out = int(np.add.reduce(self.met[~kept]))
+        self._keep(kept)
+        self.closed = max(self.closed - left_out, self.number)
+        self.newest, self.free, self.folds = self.closed, self.free + left_out, True
+
+    def _left(self, keys: Floats, condition: Floats | None = None) -> NDArray[np.int64]:
+        """Which columns, of some conditions where these are known, are not known; those that are,
+        are counted."""
+        if self.keys is None:
+            return np.arange(keys.shape[1])
+        limit: float | Floats = tolerances.SAME_MODE
+        if condition is not None:
+            scattered = self.is_fold[:, None] & _near_singular(condition)
+            reach = np.maximum(_scatter(self.condition, condition), tolerances.SAME_MODE)
+            limit = np.where(scattered, reach, tolerances.SAME_MODE)
+        known = same_poses(self.keys, keys, limit)
+        self.met += np.count_nonzero(known, axis=1)
+        return np.flatnonzero(~known.any(axis=0))
+
+    @property
+    def estimate(self) -> float:
+        """Estimated chance that one more closing start finds a new assembly (Good 1953)."""
+        return max(int(np.count_nonzero(self.met == 1)), 1) / self.closed if self.closed else 1.0
+
+    def rest(self, doubt: float) -> float:
+        """Bound of that chance, and before the first closing of the chance that a start closes; the
+        chance that it does not hold is `doubt`."""
+        waited = self.closed - self.newest if self.closed else self.tried
+        if not waited:
+            return 1.0
+        ways = max(self.number * (self.number + 1), 1)
+        return min(1.0, float(functions.log(ways / doubt)) / waited)
+
+
+def _near_singular(condition: Floats) -> Bools:
+    found: Bools = ~(condition < tolerances.CONDITION_NEAR_SINGULAR)
+    return found
+
+
+def _scatter(known: Floats, others: Floats) -> Floats:
+    """By how much poses on one fold may differ, of some conditions (known, others): these go as the
+    inverse of the distance from it, which tells a fold from a motion that hardly ends."""
+    apart: Floats = tolerances.FOLD_CONDITION * (1.0 / known[:, None] + 1.0 / others[None, :])
+    return apart
+
+
+def pose_keys(
+    layout: Layout,
+    states: Floats,
+    carriers: Sequence[Carrier] | None = None,
+    left_out: Collection[tuple[int, int]] = (),
+) -> Floats:
+    """What tells assemblies apart: cosines and sines of turns, slides, products of quaternions, of
+    some of the kernel's joints (None: all).
+
+    `left_out` are freedoms (tree edge, number) that do not matter.
+    """
+    kept = [
+        carrier
+        for carrier in (layout.carriers if carriers is None else carriers)
+        if (carrier.edge, carrier.first_freedom) not in left_out
+    ]
+    told = _told_poses(layout, kept)
+    turns = _cosines_and_sines(states, kept)
+    keys: list[Floats] = []
+    for turn in told:
+        keys.extend(_rotation_keys(states, turn))
+    for carrier in kept:
+        state = carrier.state
+        if any(state in turn for turn in told):
+            continue
+        if carrier.part.type.is_ball:
+            q = states[state : state + 4]
+            keys.extend(q[i] * q[j] for i in range(4) for j in range(i, 4))
+            continue
+        for number, freedom in enumerate(carrier.part.type.freedoms, start=state):
+            keys.extend(turns[number] if freedom.is_cyclic else (states[number],))
+    return np.array(keys) if keys else np.zeros((0, states.shape[1]))
+
+
+def _told_poses(layout: Layout, carriers: Sequence[Carrier]) -> list[list[int]]:
+    """States of three turns rz, ry, rx that tell an orientation: two sets of them tell the same."""
+    found: dict[int, list[int]] = {}
+    for carrier in sorted(carriers, key=lambda carrier: carrier.first_freedom):
+        turns = any(freedom.is_cyclic for freedom in carrier.part.type.freedoms)
+        if turns and layout.graph.edges[carrier.edge].joint.type.is_free:
+            found.setdefault(carrier.edge, []).append(carrier.state)
+    return [turns for turns in found.values() if len(turns) == 3]
+
+
+def _rotation_keys(states: Floats, turns: Sequence[int]) -> list[Floats]:
+    """Entries of the rotation that turns about z, y and x make, one after the other."""
+    (cz, sz), (cy, sy), (cx, sx) = (
+        (functions.cos(states[n]), functions.sin(states[n])) for n in turns
+    )
+    return [
+        *(cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx),
+        *(sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx),
+        *(-sy, cy * sx, cy * cx),
+    ]
+
+
+def _cosines_and_sines(
+    states: Floats, carriers: Sequence[Carrier]
+) -> dict[int, tuple[Floats, Floats]]:
+    """Of the turns of some joints, by state; all in one call."""
+    cyclic = [
+        number
+        for carrier in carriers
+        for number, freedom in enumerate(carrier.part.type.freedoms, start=carrier.state)
+        if freedom.is_cyclic
+    ]
+    angles = states[cyclic].reshape(-1)
+    shape = (len(cyclic), states.shape[1])
+    cosines, sines = (f(angles).reshape(shape) for f in (functions.cos, functions.sin))
+    return dict(zip(cyclic, zip(cosines, sines, strict=True), strict=True))
+
+
+def same_poses(
+    known: Floats, keys: Floats, limit: float | Floats = tolerances.SAME_MODE
+) -> NDArray[np.bool_]:
+    """Which columns of `keys` are the poses of which columns of `known`: (known, keys), as `limit`
+    may be."""
+    if known.size * keys.shape[1] <= _IN_CACHE:
+        near = np.abs(known[:, :, None] - keys[:, None, :]) < limit
+        few: NDArray[np.bool_] = np.logical_and.reduce(near, axis=0)
+        return few
+    found = np.ones((known.shape[1], keys.shape[1]), dtype=bool)
+    for one, other in zip(known, keys, strict=True):
+        found &= np.abs(one[:, None] - other[None, :]) < limit
+    return found
+
+
+def first_of_each(keys: Floats) -> NDArray[np.int64]:
+    """Which columns are poses that no column before them is.
+
+    Columns are sorted by one sum over their keys; the same poses are neighbours there.
+    """
+    weights = 1.0 + 0.6180339887498949 * np.arange(keys.shape[0])
+    sums = np.zeros(keys.shape[1])
+    for weight, key in zip(weights, keys, strict=True):
+        sums = sums + weight * key
+
+    reach = tolerances.SAME_MODE * keys.shape[0] * float(weights[-1:].max(initial=1.0))
+    order = np.argsort(sums, kind="stable")
+    is_first = np.ones(keys.shape[1], dtype=bool)
+    for apart in range(1, keys.shape[1]):
+        near = np.flatnonzero(sums[order[apart:]] - sums[order[:-apart]] <= reach)
+        if not near.size:
+            break
+        one, other = order[near], order[near + apart]
+        same = (np.abs(keys[:, one] - keys[:, other]) < tolerances.SAME_MODE).all(axis=0)
+        is_first[np.maximum(one, other)[same]] = False
+    return np.flatnonzero(is_first)

@@ -1,0 +1,21 @@
+"""What a change of a parameter does to any quantity, and what tolerances add up to."""
+
+from __future__ import annotations
+
+from mechkin_cli.lazy import lazy_names
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from mechkin_cli.sensitivities.first_order import (
+        Sensitivities as Sensitivities,
+        sensitivities as sensitivities,
+    )
+    from mechkin_cli.sensitivities.tolerance_stack import Tolerances as Tolerances, stack as stack
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "first_order": ["Sensitivities", "sensitivities"],
+        "tolerance_stack": ["Tolerances", "stack"],
+    },
+)

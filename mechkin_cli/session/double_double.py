@@ -1,0 +1,531 @@
+"""A session's constants as the file's text says them, in double-double and enclosed.
+
+The file is recorded once with all its numbers exact (`building.recording.record_exactly`); the
+layout of the session is laid over that recording, and what reaches the kernel is replayed. Tree,
+blocks, the choice of frames, length unit and origin are the session's own, in doubles; so is the
+size in whose parts residuals are told. They are conventions, not measures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.exact import nearest
+from mechkin_cli.kernel.functions import threads_for, width
+from mechkin_cli.mechanism import ORDERS, ExactMotion, dimension_of
+from mechkin_cli.plan import Demand, Layout, OutputPlan, RowFlag, flatten, plan_records
+from mechkin_cli.session.inputs import held_values, turn_of
+from mechkin_cli.session.kernel_run import NO_CHART
+from mechkin_cli.structure import graph_of
+from mechkin_cli.tape import ExactRows, NotEnclosed, TraceLost, double_doubles, enclosures, register
+from mechkin_cli.units import ANGLE, TIME
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.kernel._kernel import Outputs, Plan
+    from mechkin_cli.mechanism import Assembly, Attached, ExactMoments, Problem, Wanted
+    from mechkin_cli.session.kernel_run import Chart
+    from mechkin_cli.session.session import Session
+    from mechkin_cli.show import Floats
+    from mechkin_cli.tape import ExactRecorder, ExactTape
+
+
+# The inputs of a session over its rows as the text says them, in double-double and enclosed.
+
+
+class PreciseInputs(NamedTuple):
+    """Inputs over the rows, high and low parts, in the order of `Session.inputs`; enclosed they
+    have a third part, a radius.
+
+    Attributes:
+        values: (inputs, 2, rows) in kernel units; what holds idle freedoms stands behind.
+        rates: (inputs, 2, rows) their first derivatives over time.
+        accelerations: (inputs, 2, rows) their second derivatives.
+        jerks: (inputs, 2, rows) their third derivatives.
+        reduced: (inputs, 2, rows) values without the whole turns of angles.
+        whole: (inputs, rows) those turns, as `Session.inputs` has them.
+        time: (2, rows) in s; None without any.
+        tie_rates: (ties, 2, rows) as `Session.tie_rates`; None without any.
+        written: (2, rows) by the names of time, of inputs and of their rates, in the file's units.
+    """
+
+    values: Floats
+    rates: Floats
+    accelerations: Floats
+    jerks: Floats
+    reduced: Floats
+    whole: Floats
+    time: Floats | None
+    tie_rates: Floats | None
+    written: Mapping[str, Floats]
+
+
+class _Numbers(NamedTuple):
+    """What `PreciseInputs` are made of, recorded: by order, then by input."""
+
+    rows: ExactRows
+    orders: Sequence[Sequence[Any]]
+    reduced: Sequence[Any]
+    time: Sequence[Any]
+    tie_rates: Sequence[Any]
+    written: Mapping[str, Any]
+
+    @property
+    def listed(self) -> list[Any]:
+        """All of them."""
+        orders = [number for order in self.orders for number in order]
+        return [*orders, *self.reduced, *self.time, *self.tie_rates, *self.written.values()]
+
+
+def precise_inputs(precise: Precise, session: Session) -> PreciseInputs:
+    """The inputs of a session's rows in double-double."""
+    recorded = _recorded(precise, session)
+    return _put_together(session, recorded, recorded.rows.double_doubles(recorded.listed))
+
+
+def enclosed_inputs(precise: Precise, session: Session) -> PreciseInputs:
+    """The same enclosed: a third part is the radius about the two."""
+    recorded = _recorded(precise, session)
+    return _put_together(session, recorded, recorded.rows.enclosures(recorded.listed))
+
+
+def _put_together(session: Session, recorded: _Numbers, found: Floats) -> PreciseInputs:
+    count = len(session.inputs.values)
+    ends = np.cumsum([count] * 5 + [len(recorded.time), len(recorded.tie_rates)])
+    *parts, time, ties, written = np.split(found, ends)
+    values, rates, accelerations, jerks, reduced = parts
+    names = dict(zip(recorded.written, written, strict=True))
+    return PreciseInputs(
+        values,
+        rates,
+        accelerations,
+        jerks,
+        reduced,
+        session.inputs.whole,
+        time[0] if len(time) else None,
+        ties if len(ties) else None,
+        names,
+    )
+
+
+def _recorded(precise: Precise, session: Session) -> _Numbers:
+    problem = precise.problem_of(session)
+    layout, inputs = precise.layout(session), problem.motion.inputs
+    motion = _motion_of(precise, problem)
+    units = [layout.mechanism.joints[i.joint].unit_of(i.coordinate, layout.length) for i in inputs]
+    held = held_values(problem, layout)
+    orders = [
+        [
+            *(motion.in_si[i.name][k] / unit for i, unit in zip(inputs, units, strict=True)),
+            *(held if k == 0 else [0.0] * len(held)),
+        ]
+        for k in range(len(ORDERS))
+    ]
+    ties = [
+        rate * (units[leader] / units[tied])
+        for rate, (tied, leader) in zip(motion.tie_rates, problem.motion.tied, strict=False)
+    ]
+    written = {} if "time" not in motion.written else {"time": motion.written["time"]}
+    for item in inputs:
+        names = (item.name + suffix for suffix in ORDERS)
+        written |= dict(zip(names, motion.written[item.name], strict=True))
+    return _Numbers(
+        motion.rows,
+        orders,
+        [_reduced(session, motion, k, values) for k, values in enumerate(orders[0])],
+        [motion.in_si["time"]] if "time" in motion.in_si else [],
+        ties,
+        written,
+    )
+
+
+def _reduced(session: Session, motion: ExactMotion, number: int, value: Any) -> Any:
+    """An input without its whole turns, taken off in the file's unit."""
+    whole = session.inputs.whole[number]
+    if not whole.any():
+        return value
+    problem = session.problem
+    item = problem.motion.inputs[number]
+    turn = turn_of(problem, item)
+    assert turn is not None
+    rest = motion.written[item.name][0] - motion.rows.given(whole) * nearest(turn)
+    return problem.units.to_si(rest, ANGLE)
+
+
+def _motion_of(precise: Precise, problem: Problem) -> ExactMotion:
+    """The file's motion, or another one as the doubles of its rows in the file's units."""
+    motion, units = problem.motion, problem.units
+    if motion is precise.base.motion:
+        return precise.motion
+    rows = ExactRows(precise.recorder, motion.rows)
+    written: dict[str, Any] = {}
+    in_si: dict[str, Any] = {}
+    if motion.time is not None:
+        written["time"] = rows.given(motion.time.written)
+        in_si["time"] = units.to_si(written["time"], TIME)
+    for item in motion.inputs:
+        written[item.name] = [rows.given(order) for order in item.written_orders]
+        in_si[item.name] = [
+            units.to_si(number, dimension_of(item.coordinate) / TIME**order)
+            for order, number in enumerate(written[item.name])
+        ]
+    ties = () if motion.tie_rates is None else tuple(rows.given(rate) for rate in motion.tie_rates)
+    return ExactMotion(rows, in_si, written, ties)
+
+
+class Precise:
+    """The numbers of a file's sessions as its text says them.
+
+    Args:
+        recorder: that holds the exact numbers.
+        problem: the file's problem on that recorder.
+        motion: the file's motion over its rows.
+        base: the same problem in doubles, of which the sessions are.
+        moments: of the rows of a response, whose first moment `problem` is.
+    """
+
+    def __init__(
+        self,
+        recorder: ExactRecorder,
+        problem: Problem,
+        motion: ExactMotion,
+        base: Problem,
+        moments: ExactMoments | None = None,
+    ) -> None:
+        self.recorder = recorder
+        self.problem = problem
+        self.motion = motion
+        self.base = base
+        self.moments = moments
+        self._layouts: dict[int, tuple[Session, Layout]] = {}
+        self._inputs: dict[int, tuple[Problem, PreciseInputs]] = {}
+
+    def constants(self, session: Session) -> Floats:
+        """The constants of the session's plan in double-double (constants, 2), in the order in
+        which the kernel numbers them: high and low, |low| <= ulp(high)/2.
+
+        The session may be any of the file's: of the whole mechanism, of the loops that are
+        followed, with other loads left out, sized or packed otherwise.
+        """
+        return double_doubles(self.tape(self._constants(session)))
+
+    def enclosed_constants(self, session: Session) -> Floats:
+        """The same enclosed (constants, 3): high and low parts, and radii about their sums.
+
+        Raises:
+            TraceLost: loads are read from tables (`rounds_tables`).
+            NotEnclosed: a constant is not defined.
+        """
+        if self.rounds_tables(session):
+            raise TraceLost("the curve through a table of a load is known in doubles alone")
+        return enclosures(self.tape(self._constants(session)))
+
+    def rounds_tables(self, session: Session) -> bool:
+        """Whether loads of the session are read from tables. The curves through these are structure
+        of a plan, not constants: they stay doubles."""
+        laws = self.layout(session).laws
+        return laws is not None and any(law.curve is not None for law in laws.laws)
+
+    def outputs(
+        self, session: Session, wanted: Iterable[Wanted], points: Iterable[Attached] = ()
+    ) -> Floats:
+        """The constants of `session.readout(wanted, points)` in double-double (constants, 2)."""
+        return double_doubles(self.tape(self._outputs(session, wanted, points)))
+
+    def enclosed_outputs(
+        self, session: Session, wanted: Iterable[Wanted], points: Iterable[Attached] = ()
+    ) -> Floats:
+        """The same enclosed (constants, 3)."""
+        return enclosures(self.tape(self._outputs(session, wanted, points)))
+
+    def inputs(self, session: Session) -> PreciseInputs:
+        """The inputs of all rows in double-double, as `session.inputs` has them in doubles; kept.
+
+        Rows that a call asked for in place of the file's are the doubles that it gave, in the
+        file's units.
+        """
+        problem = session.problem
+        if id(problem) not in self._inputs:
+            self._inputs[id(problem)] = (problem, precise_inputs(self, session))
+        return self._inputs[id(problem)][1]
+
+    def enclosed_inputs(self, session: Session) -> PreciseInputs:
+        """The same enclosed: a third part is the radius about the two."""
+        return enclosed_inputs(self, session)
+
+    @cached_property
+    def parameters(self) -> Mapping[str, Floats]:
+        """The file's parameters in SI and double-double (2,), by name; nan where the text says no
+        number, as where it divides by zero."""
+        return self._parameters()
+
+    def _parameters(self) -> dict[str, Floats]:
+        known = self.problem.parameters
+        try:
+            values = double_doubles(self.tape([quantity.value for quantity in known.values()]))
+        except NotEnclosed:
+            return {name: self._parameter(quantity.value) for name, quantity in known.items()}
+        return dict(zip(known, values, strict=True))
+
+    def _parameter(self, value: Any) -> Floats:
+        try:
+            found: Floats = double_doubles(self.tape([value]))[0]
+        except NotEnclosed:
+            return np.full(2, np.nan)
+        return found
+
+    def tape(self, numbers: Iterable[Any]) -> ExactTape:
+        """The tape to some numbers of the recording."""
+        return self.recorder.exact_tape([register(self.recorder, n) for n in numbers])
+
+    def layout(self, session: Session) -> Layout:
+        """The session's layout over the recording; kept."""
+        if id(session) not in self._layouts:
+            problem = self.problem_of(session)
+            own = session.layout
+            graph = graph_of(problem.solved_mechanism, session.graph)
+            layout = Layout(problem.laid_mechanism, graph, own.length, problem.laws)
+            # a choice of the drawing, as the length unit
+            layout.__dict__["origin"] = own.origin
+            self._layouts[id(session)] = (session, layout)
+        return self._layouts[id(session)][1]
+
+    def _constants(self, session: Session) -> list[Any]:
+        size = session.size or session.layout.mechanism.box_diagonal()
+        return flatten(plan_records(self.layout(session), size))
+
+    def _outputs(
+        self, session: Session, wanted: Iterable[Wanted], points: Iterable[Attached]
+    ) -> list[Any]:
+        plan = OutputPlan(self.layout(session), None, session.driven)
+        for quantity in wanted:
+            plan.add(quantity)
+        for at in points:
+            plan.add_point(at, 0)
+        return flatten(plan.records)
+
+    def problem_of(self, session: Session) -> Problem:
+        """The recorded problem of what the session's problem is made of."""
+        own = session.problem
+        mechanism = own.mechanism
+        parts: dict[str, Any] = {
+            name: {key: self._recorded(part) for key, part in getattr(mechanism, name).items()}
+            for name in ("links", "joints", "points", "directions")
+        }
+        for name in ("loads", "frictions"):
+            parts[name] = tuple(map(self._recorded, getattr(mechanism, name)))
+        parts["gravity"] = self._recorded(mechanism.gravity)
+        return replace(
+            own,
+            mechanism=replace(mechanism, **parts),
+            assembly=self._assembly(own.assembly),
+            parameters=self.problem.parameters,
+            load_laws=tuple(map(self._recorded, own.load_laws)),
+            held=tuple(map(self._recorded, own.held)),
+        )
+
+    def _assembly(self, own: Assembly) -> Assembly:
+        """The recorded assembly; what a session names of the file's coordinates."""
+        near = self.problem.assembly.near
+        return replace(own, near={name: near.get(name, own.near[name]) for name in own.near})
+
+    def _recorded(self, part: Any) -> Any:
+        """A part of the file's problem as it is recorded; another one must be of whole numbers, as
+        what is left out and what has the size 1."""
+        found = self._counterparts.get(id(part))
+        if found is not None:
+            return found[1]
+        if any(number != int(number) for number in _numbers(part)):
+            raise ValueError(f"{part} stands in no text")
+        return part
+
+    @cached_property
+    def _counterparts(self) -> dict[int, tuple[Any, Any]]:
+        """Each part of the problem with the recorded one, by its identity."""
+        own, recorded = self.base, self.problem
+        pairs: list[tuple[Any, Any]] = [
+            (own.mechanism.gravity, recorded.mechanism.gravity),
+            *zip(own.mechanism.loads, recorded.mechanism.loads, strict=True),
+            *zip(own.mechanism.frictions, recorded.mechanism.frictions, strict=True),
+            *zip(own.load_laws, recorded.load_laws, strict=True),
+            *zip(own.held, recorded.held, strict=True),
+        ]
+        for name in ("links", "joints", "points", "directions"):
+            parts = getattr(recorded.mechanism, name)
+            pairs += [(part, parts[key]) for key, part in getattr(own.mechanism, name).items()]
+        return {id(one): (one, other) for one, other in pairs}
+
+
+def _numbers(part: Any) -> Iterator[float]:
+    if isinstance(part, float):
+        yield part
+    elif isinstance(part, tuple):
+        for item in part:
+            yield from _numbers(item)
+    elif is_dataclass(part):
+        for field in fields(part):
+            yield from _numbers(getattr(part, field.name))
+    elif isinstance(part, Mapping):
+        for item in part.values():
+            yield from _numbers(item)
+
+
+# One call of the kernel over many rows in double-double: about 32 digits.
+#
+# Newton starts from converged doubles and goes on to the rounding of double-double; nothing is
+# judged and no branch is followed. Numbers have two parts, high and low, whose sum they are: arrays
+# are (numbers, 2, rows), or (2, rows) for one number a row. Wherever such an array is given,
+# doubles (numbers, rows) stand for themselves.
+
+PRECISE_TESTS = (
+    tolerances.PRECISE_RESIDUAL_TIGHT,
+    tolerances.PRECISE_STEP_COARSE,
+    tolerances.PRECISE_RESIDUAL_ACCEPT,
+)
+
+
+class PreciseBatch(NamedTuple):
+    """What the kernel found, row by row, as `solver.batch.Batch`, in double-double.
+
+    `flags` (rows,) are `RowFlag`s: a row that Newton could not bring to the rounding of
+    double-double is not converged, and its numbers are as good as its residual. `chart_forces`
+    (charts, 2, rows), in kernel units, are what would have to act along a chart's coordinates for
+    its accelerations: M u'' + r in docs/numerics.md, zero along a free motion.
+    """
+
+    states: Floats
+    outputs: Floats | None
+    first: Floats | None
+    second: Floats | None
+    residual: Floats
+    correction: Floats
+    power_error: Floats | None
+    flags: NDArray[np.uint8]
+    loads: Floats | None = None
+    undefined: NDArray[np.uint8] | None = None
+    chart_forces: Floats | None = None
+
+    @property
+    def good(self) -> NDArray[np.bool_]:
+        """Rows that are closed."""
+        return np.equal(self.flags, RowFlag.GOOD)
+
+
+def run_precise(
+    plan: Plan,
+    inputs: Floats,
+    guess: Floats,
+    *,
+    rates: Floats | None = None,
+    accelerations: Floats | None = None,
+    ties: Floats | None = None,
+    jerks: Floats | None = None,
+    turned: Floats | None = None,
+    whole: Floats | None = None,
+    full: Floats | None = None,
+    time: Floats | None = None,
+    demand: Demand = Demand.POSITION,
+    outputs: Outputs | None = None,
+    constants: Floats | None = None,
+    output_constants: Floats | None = None,
+    derivatives: bool = False,
+    chart: Chart | None = None,
+    shift: int = 0,
+    iterations: int = tolerances.NEWTON_ITERATIONS,
+    tests: tuple[float, float, float] = PRECISE_TESTS,
+    lanes: int = 0,
+    threads: int = 0,
+) -> PreciseBatch:
+    """Closes all rows from their guesses and computes what is demanded.
+
+    Args as those of `solver.batch.run`, numbers in two parts, and besides:
+        guess: states (states, rows) of a run in doubles.
+        demand: without the condition, which that run tells.
+        constants: (constants, 2) of the plan, as `solver.precise.Precise.constants`; None for the
+            plan's own, which are doubles.
+        output_constants: (constants, 2) of the outputs, likewise.
+
+    Raises:
+        ValueError: shapes, codes or numbers that do not fit the plan or each other.
+    """
+    rows = inputs.shape[-1]
+    low = low_outputs = None
+    if constants is not None:
+        plan, low = plan.with_constants(constants[:, 0].copy()), constants[:, 1].copy()
+    if outputs is not None and output_constants is not None:
+        outputs = outputs.with_constants(output_constants[:, 0].copy())
+        low_outputs = output_constants[:, 1].copy()
+
+    def empty(*shape: int) -> Floats:
+        return np.empty((*shape, 2, rows))
+
+    states = empty(plan.states)
+    values = None if outputs is None else empty(outputs.slots)
+    moving, second_order = demand & Demand.VELOCITY, demand & Demand.ACCELERATION
+    first = empty(plan.columns) if derivatives and moving else None
+    second = empty(plan.columns) if derivatives and second_order else None
+    residual, correction = empty(), empty()
+    power_error = empty() if demand & Demand.POWER else None
+    flags = np.empty(rows, dtype=np.uint8)
+    varying = plan.load_values and demand & Demand.FORCES
+    loads = empty(plan.load_values) if varying else None
+    undefined = np.empty(rows, dtype=np.uint8) if varying else None
+    charted = NO_CHART if chart is None else chart.arguments(demand)
+    chart_forces = empty(plan.charts) if chart is not None and demand & Demand.FORCES else None
+    plan.run_precise(
+        inputs=in_parts(inputs, 1),
+        guess=in_parts(guess, 1),
+        rates=in_parts(rates, 1),
+        accelerations=in_parts(accelerations, 1),
+        jerks=in_parts(jerks, 1),
+        ties=in_parts(ties, 1),
+        turned=in_parts(turned, 1),
+        whole=in_parts(whole, 1),
+        chart=in_parts(charted.directions, 1),
+        friction_told=in_parts(charted.friction_told, 1),
+        chart_rates=in_parts(charted.rates, 1),
+        chart_accelerations=in_parts(charted.accelerations, 1),
+        full=in_parts(full, 1),
+        time=in_parts(time, 0),
+        outputs=outputs,
+        low=low,
+        low_outputs=low_outputs,
+        states=states,
+        values=values,
+        first=first,
+        second=second,
+        residual=residual,
+        correction=correction,
+        power_error=power_error,
+        loads=loads,
+        undefined=undefined,
+        chart_forces=chart_forces,
+        flags=flags,
+        demand=int(demand),
+        shift=shift,
+        iterations=iterations,
+        tests=tests,
+        lanes=width(lanes),
+        threads=threads_for(rows, threads),
+    )
+    measured = (residual, correction, power_error)
+    acting = (loads, undefined, chart_forces)
+    return PreciseBatch(states, values, first, second, *measured, flags, *acting)
+
+
+def in_parts(array: Floats | None, dimensions: int) -> Floats | None:
+    """Numbers in two parts: those that are given so, or doubles, of `dimensions` beside their rows,
+    with zero for their low parts."""
+    if array is None:
+        return None
+    given: Floats = np.ascontiguousarray(array, np.float64)
+    if given.ndim == dimensions + 2:
+        return given
+    return np.ascontiguousarray(np.stack([given, np.zeros_like(given)], axis=-2))

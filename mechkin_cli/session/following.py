@@ -1,0 +1,326 @@
+"""Following a branch along the rows of a sweep: guesses for every row, where it ended.
+
+The kernel does the work in one call (kernel/src/polyline.cpp), linear in the rows.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.kernel._kernel import StepLimits
+from mechkin_cli.plan import Layout, PassageEnd, TrackEnd
+from mechkin_cli.session.inputs import turn_count
+from mechkin_cli.tolerances import FREE_INPUT_MISS, FREE_INPUT_STEP
+
+if TYPE_CHECKING:
+    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.session.path import FollowedPath
+    from mechkin_cli.session.session import Session
+    from mechkin_cli.show import Floats
+
+
+# The kernel's limits of a step along a path, by name.
+
+
+@cache
+def step_limits(
+    longest_step: float = tolerances.LONGEST_STEP,
+    least_step: float = tolerances.LEAST_STEP,
+    *,
+    straight: bool = False,
+) -> StepLimits:
+    """What a step may do, from `tolerances`; `straight`: pass branch points."""
+    return StepLimits(
+        turn_cosine=tolerances.TURN_LIMIT_COSINE,
+        turn=tolerances.TURN_WANTED,
+        bend=tolerances.BEND_WANTED,
+        jump=tolerances.JUMP_LIMIT,
+        infill=tolerances.INFILL_LIMIT,
+        longest_step=longest_step,
+        least_step=least_step,
+        most_steps=tolerances.MOST_STEPS,
+        tight=tolerances.RESIDUAL_TIGHT,
+        coarse=tolerances.STEP_COARSE,
+        accept=tolerances.RESIDUAL_ACCEPT,
+        pivot=tolerances.NODE_PIVOT,
+        iterations=tolerances.NEWTON_ITERATIONS,
+        same_line=tolerances.SAME_LINE,
+        knot=tolerances.PATH_KNOT,
+        corner_cosine=tolerances.PATH_CORNER_COSINE,
+        stray=tolerances.PATH_STRAY,
+        angle_step=tolerances.CLOSING_ANGLE_STEP,
+        angle_miss=tolerances.CLOSING_ANGLE_MISS,
+        angle_bend=tolerances.CLOSING_ANGLE_BEND,
+        plan_step=tolerances.PLAN_STEP,
+        arc_pivot=tolerances.ARC_PIVOT,
+        radius=tolerances.SPECTRAL_RADIUS,
+        narrow=tolerances.NARROW_STEP,
+        arc_steps=tolerances.ARC_STEPS,
+        straight=straight,
+    )
+
+
+class Ending(NamedTuple):
+    """A dead centre or a branch point that ends a branch.
+
+    `block` is the one that is singular there, `inputs` (inputs,) and `state` (states,) the place;
+    `first` and `second` are derivatives of the columns by the arclength of the block's branch,
+    `bend` the second one of the path's parameter, whose first is zero at a dead centre. `beyond`
+    are inputs and states of a place on a dead centre's other side.
+    """
+
+    kind: PassageEnd
+    block: int
+    inputs: Floats
+    state: Floats
+    first: Floats
+    second: Floats
+    bend: float
+    inputs_beyond: Floats
+    beyond: Floats
+
+
+class BranchCrossing(NamedTuple):
+    """A branch point that was passed straight on: the first row behind it, and its inputs."""
+
+    row: int
+    inputs: Floats
+
+
+class Followed(NamedTuple):
+    """Guesses for the rows that were reached.
+
+    `guess` (states, rows) and `limit` (rows: largest correction that a fill-in row may still need)
+    hold for the first `reached` rows, and so do `turns` (turn slots, rows) where they were asked
+    for (`solver.closing_turns`): the angles and quaternions of closing joints, continuous from the
+    first row, and the whole turns of the tree's angles, whose states are then within half a turn.
+    If the branch could not be followed further, `inputs` and `state` are the last place on it,
+    `turn` the turns there, and `direction` the way the inputs were going; where that lies on a
+    piece of their course, `parameter` is the course's, at the ending where it is known.
+    """
+
+    guess: Floats
+    limit: Floats
+    reached: int
+    end: TrackEnd
+    steps: int
+    inputs: Floats
+    state: Floats
+    direction: Floats
+    turns: Floats | None = None
+    turn: Floats | None = None
+    ending: Ending | None = None
+    crossings: tuple[BranchCrossing, ...] = ()
+    parameter: float | None = None
+
+    @property
+    def turn_is_known(self) -> bool:
+        """Whether turns were asked for, and the first row closed."""
+        return self.turn is not None and self.turn.size > 0
+
+
+def follow(
+    plan: Plan,
+    inputs: Floats,
+    start: Floats,
+    *,
+    every_row: bool = False,
+    turns: bool = False,
+    turn: Floats | None = None,
+    straight: bool = False,
+    course: _kernel.Course | None = None,
+    whole: Floats | None = None,
+    limits: StepLimits | None = None,
+) -> Followed:
+    """Follows the branch through `start` (states at the first row) along all rows.
+
+    Args:
+        plan: the kernel's plan.
+        inputs: (inputs, rows) in kernel units; angles without their `whole` turns, if these are
+            given.
+        start: (states,) closed at the first row.
+        every_row: make each row a node of the skeleton instead of filling in.
+        turns: carry turns along.
+        turn: (turn slots,) turns at the first row, where they are known from a way before it.
+        straight: pass branch points along the smooth continuation.
+        course: of the inputs between the rows, where they do not go straight.
+        whole: (inputs, rows) whole turns.
+        limits: what a step may do, instead of what `tolerances` says (and of `straight`).
+    """
+    rows = inputs.shape[1]
+    guess, limit = np.empty((start.size, rows)), np.empty(rows)
+    along = np.empty((turn_count(plan), rows)) if turns else None
+    given = [] if turn is None else turn.tolist()
+    found = _kernel.follow_rows(
+        plan,
+        np.ascontiguousarray(inputs),
+        None if whole is None else np.ascontiguousarray(whole),
+        start.tolist(),
+        given,
+        every_row,
+        limits or step_limits(straight=straight),
+        guess,
+        limit,
+        along,
+        course,
+    )
+    end, reached, steps, _, place, state, last_turn, direction = found[:8]
+    ends, crossings, piece, parameter = found[8:]
+    ending = None if ends is None else Ending(PassageEnd(ends[0]), *ends[1:])
+    crossed = tuple(BranchCrossing(*each) for each in crossings)
+    return Followed(
+        guess,
+        limit,
+        reached,
+        TrackEnd(end),
+        steps,
+        place,
+        state,
+        direction,
+        along,
+        last_turn,
+        ending,
+        crossed,
+        parameter if piece >= 0 else None,
+    )
+
+
+def follow_way(
+    plan: Plan,
+    way: FollowedPath,
+    start: Floats,
+    *,
+    every_row: bool = False,
+    straight: bool = False,
+) -> Followed:
+    """Follows the branch along a way, with the turns of closing joints, and gives its rows alone;
+    arguments as those of `follow`."""
+    found = follow(
+        plan,
+        way.values,
+        start,
+        every_row=every_row,
+        turns=True,
+        straight=straight,
+        course=way.course,
+    )
+    if found.end != TrackEnd.FINISHED and found.parameter is None:
+        inputs = found.inputs if found.ending is None else found.ending.inputs
+        found = found._replace(parameter=way.parameter_of(found.reached - 1, inputs))
+    real = way.real
+    if real.size == way.rows.size:
+        return found
+    assert found.turns is not None
+    return found._replace(
+        guess=np.ascontiguousarray(found.guess[:, real]),
+        limit=found.limit[real],
+        reached=int(np.count_nonzero(real < found.reached)),
+        turns=np.ascontiguousarray(found.turns[:, real]),
+        crossings=tuple(
+            BranchCrossing(int(np.count_nonzero(real < crossing.row)), crossing.inputs)
+            for crossing in found.crossings
+        ),
+    )
+
+
+# Runaways: a branch that goes to infinity, a slide growing out of bounds before some input value.
+#
+# RCCC is an example: its turns have a dead centre there, and its slides go with their rates.
+
+
+class Runaway(NamedTuple):
+    """The joint whose slide has grown the most, to `slide` (length units)."""
+
+    joint: str
+    slide: float
+
+
+def find_runaway(layout: Layout, state: Floats) -> Runaway | None:
+    """The longest slide at the last place of a branch that was lost, if it is out of bounds."""
+    driven = {layout.state(edge, freedom) for edge, freedom in layout.graph.inputs}
+    longest = Runaway("", 0.0)
+    for carrier in layout.carriers:
+        for freedom, slide in enumerate(carrier.part.type.slides):
+            number = carrier.state + freedom
+            length = float(state[number])
+            if slide and number not in driven and abs(length) > abs(longest.slide):
+                longest = Runaway(layout.graph.edges[carrier.edge].joint.name, length)
+    return longest if abs(longest.slide) >= tolerances.RUNAWAY_SLIDE else None
+
+
+# Why a branch cannot be followed further: a dead centre, a branch point, a slide that grows out of
+# bounds, or no clear reason.
+#
+# Dead centres and branch points are located while the branch is followed, by arclength
+# (kernel/src/passage.cpp); never as minima of a determinant.
+
+
+class BranchFold(NamedTuple):
+    """A fold: inputs (inputs,) and states (states,) where the path stops while the mechanism could
+    go on; and a place of the branch on its other side, where the path goes back."""
+
+    inputs: Floats
+    state: Floats
+    inputs_beyond: Floats
+    beyond: Floats
+
+
+class EndOfRows(NamedTuple):
+    """A dead centre at which a way along rows ends: the last row before it, counted from 0, and
+    what following found."""
+
+    row: int
+    ending: Ending
+
+
+class BranchPoint(NamedTuple):
+    """A place where two branches cross: inputs (inputs,) and states (states,)."""
+
+    inputs: Floats
+    state: Floats
+
+
+def find_limit(session: Session, followed: Followed) -> BranchFold | Runaway | BranchPoint | None:
+    """What ended a branch, or None where it is not known."""
+    found = followed.ending
+    if found is not None and found.kind == PassageEnd.DEAD_CENTRE:
+        return BranchFold(found.inputs, found.state, found.inputs_beyond, found.beyond)
+    runaway = find_runaway(session.layout, followed.state)
+    if runaway is None and found is not None and found.kind == PassageEnd.BRANCH_POINT:
+        return BranchPoint(found.inputs, found.state)
+    return runaway
+
+
+# Whether each input can move: what follows from its rate closes the loops.
+
+
+def moves_freely(session: Session, inputs: Floats, state: Floats) -> bool:
+    """Whether the loops still close, to third order, a little further on each input in turn, with
+    the others held; False also where the rates are not known, as next to a dead centre.
+
+    Args:
+        session: the mechanism as it is driven.
+        inputs: (inputs,) in kernel units.
+        state: (states,) closed there.
+    """
+    limits = step_limits()
+    for number in range(inputs.size):
+        direction = np.zeros(inputs.size)
+        direction[number] = 1.0
+        stepper = _kernel.Stepper.straight(
+            session.plan, inputs.tolist(), direction.tolist(), limits
+        )
+        node = stepper.close(0.0, state.tolist())
+        if node is None:
+            return False
+        guess = np.asarray(stepper.predict(node, FREE_INPUT_STEP))[:, None]
+        moved = (inputs + FREE_INPUT_STEP * direction)[:, None]
+        batch = session.run(moved, np.ascontiguousarray(guess), iterations=0)
+        if not batch.residual[0] <= FREE_INPUT_MISS:
+            return False
+    return True

@@ -1,0 +1,388 @@
+"""The inputs of a motion as the kernel takes them, and its numbers in words for messages.
+
+Slides are in the kernel's length unit; a helical joint is driven by its angle. An angle that may
+turn for ever is its part within half a turn and its whole turns; their sum is for ways and
+messages, and rounds by its size.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cache
+from math import pi, sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.diagnostics import Number
+from mechkin_cli.exact import PI
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.mechanism import dimension_of
+from mechkin_cli.units import ANGLE
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.mechanism import DrivenInput, Frame, Joint, Problem, Wanted
+    from mechkin_cli.plan import Layout, Slot
+    from mechkin_cli.session.session import Session
+    from mechkin_cli.show import Floats
+    from mechkin_cli.units import CompoundUnit
+
+
+# Whole turns of angles: taken off in the file's own unit, so that decimal degrees stay exact.
+#
+# 360 deg are exact in degrees and not in radians: 36010 deg is 100 turns and 10 deg, exactly, while
+# its radians are rounded by half the last place of 628. Where a turn is no whole number of the unit
+# (rad), it is subtracted in three parts with their rounding errors (W. J. Cody, W. Waite, Software
+# Manual for the Elementary Functions, 1980; D. E. Knuth, The Art of Computer Programming 2, 4.2.2).
+
+MOST_TURNS = float(1 << 52)
+"""Whole turns beyond which an angle says nothing of the place within a turn."""
+
+_PART_BITS = 26
+"""Bits of the first parts of a turn: their products with as many bits of turns are exact."""
+
+
+def reduce_angle(value: float, turn: Fraction) -> tuple[float, float]:
+    """One angle; as `without_turns`."""
+    if abs(value) <= 0.5 * float(turn):
+        return value, 0.0
+    rest, whole = without_turns(np.array([value]), turn)
+    return float(rest[0]), float(whole[0])
+
+
+def without_turns(values: Floats, turn: Fraction) -> tuple[Floats, Floats]:
+    """Angles in (-half a turn, half a turn] and the whole turns taken off, both (rows,).
+
+    Args:
+        values: angles.
+        turn: a full turn in their unit.
+    """
+    size = float(turn)
+    most = float(np.max(np.abs(values), initial=0.0))
+    if not 0.5 * size < most <= MOST_TURNS * size:
+        return values, np.zeros_like(values)
+    if Fraction(size) == turn:
+        rest = np.fmod(values, size)  # exact by IEEE 754
+    else:
+        rest = _subtract(values, np.rint(values / size), turn)
+    for way in (1.0, -1.0):
+        beyond = rest > 0.5 * size if way > 0.0 else rest <= -0.5 * size
+        if beyond.any():
+            here = rest[beyond]
+            rest[beyond] = _subtract(here, np.full_like(here, way), turn)
+    return rest, np.rint((values - rest) / size)
+
+
+def _subtract(values: Floats, whole: Floats, turn: Fraction) -> Floats:
+    """values - whole * turn to the last place."""
+    if np.any(np.abs(whole) >= float(1 << _PART_BITS)):
+        rows = zip(values.tolist(), whole.tolist(), strict=True)
+        return np.array([float(Fraction(x) - int(k) * turn) for x, k in rows])
+    first, second, third = _parts(turn)
+    one, lost = _difference(values, whole * first)
+    two, more = _difference(one, whole * second)
+    rest: Floats = two + ((lost + more) - whole * third)
+    return rest
+
+
+def _difference(a: Floats, b: Floats) -> tuple[Floats, Floats]:
+    """a - b and what rounding lost of it."""
+    s = a - b
+    t = s - a
+    return s, (a - (s - t)) - (b + t)
+
+
+@cache
+def _parts(turn: Fraction) -> tuple[float, float, float]:
+    found = []
+    rest = turn
+    for _ in range(2):
+        places = _PART_BITS - int(np.frexp(float(rest))[1])
+        scale = Fraction(1 << max(places, 0), 1 << max(-places, 0))
+        part = Fraction(int(rest * scale), 1) / scale
+        found.append(float(part))
+        rest -= part
+    return found[0], found[1], float(rest)
+
+
+class KernelInputs(NamedTuple):
+    """Values and their derivatives over time (inputs, rows) in kernel units.
+
+    `reduced` are the values without the `whole` turns of angles, which threads keep.
+    """
+
+    values: Floats
+    rates: Floats
+    accelerations: Floats
+    jerks: Floats
+    reduced: Floats
+    whole: Floats
+
+    @classmethod
+    def of(
+        cls, problem: Problem, values: Floats, rates: Floats, accelerations: Floats, jerks: Floats
+    ) -> KernelInputs:
+        """Of a problem's inputs in kernel units."""
+        return cls(values, rates, accelerations, jerks, *_reduced(problem, values))
+
+    @property
+    def orders(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """Values, rates, accelerations and jerks."""
+        return (self.values, self.rates, self.accelerations, self.jerks)
+
+    def at_unit_rate(self, number: int) -> KernelInputs:
+        """The same places, where input `number` moves at unit rate and all others are held."""
+        rates = np.zeros_like(self.rates)
+        rates[number] = 1.0
+        still = np.zeros_like(rates)
+        return self._replace(rates=rates, accelerations=still, jerks=still)
+
+    def at_unit_acceleration(self, number: int) -> KernelInputs:
+        """The same places at rest, where input `number` has unit acceleration and no other has."""
+        accelerations, still = np.zeros_like(self.rates), np.zeros_like(self.rates)
+        accelerations[number] = 1.0
+        return self._replace(rates=still, accelerations=accelerations, jerks=still)
+
+    def at_rest(self) -> KernelInputs:
+        """The same places at rest."""
+        still = np.zeros_like(self.rates)
+        return self._replace(rates=still, accelerations=still, jerks=still)
+
+    def without_accelerations(self) -> KernelInputs:
+        """The same places and rates, with no acceleration."""
+        still = np.zeros_like(self.rates)
+        return self._replace(accelerations=still, jerks=still)
+
+    def part(self, rows: slice | Floats) -> KernelInputs:
+        """Some of the rows."""
+        return KernelInputs(*(np.ascontiguousarray(array[:, rows]) for array in self))
+
+
+def kernel_inputs(problem: Problem, layout: Layout) -> KernelInputs:
+    """The inputs of all rows, then the coordinates that hold idle freedoms, at rest."""
+    inputs, rows = problem.motion.inputs, problem.motion.rows
+    units = [input_unit(layout, item) for item in inputs]
+    held = held_values(problem, layout)
+
+    def table(name: str, at: list[float]) -> Floats:
+        moving = [getattr(i, name) / unit for i, unit in zip(inputs, units, strict=True)]
+        still = [np.full(rows, value) for value in at]
+        return np.array([*moving, *still]) if moving or still else np.empty((0, rows))
+
+    rest = [0.0] * len(held)
+    rates, accelerations, jerks = (
+        table(name, rest) for name in ("rates", "accelerations", "jerks")
+    )
+    return KernelInputs.of(problem, table("values", held), rates, accelerations, jerks)
+
+
+def held_values(problem: Problem, layout: Layout) -> list[float]:
+    """The held coordinates in kernel units."""
+    joints = layout.mechanism.joints
+    return [
+        value / joints[name].unit_of(coordinate, layout.length)
+        for (name, coordinate), value in problem.held_at.items()
+    ]
+
+
+def turn_of(problem: Problem, item: DrivenInput) -> Fraction | None:
+    """A full turn of an input in the file's unit; None where a turn is not the same place."""
+    kind = problem.mechanism.joints[item.joint].type
+    if not kind.chain[kind.freedom_of[item.coordinate]].is_cyclic:
+        return None
+    return _turn(problem.units.angle)
+
+
+@cache
+def _turn(unit: CompoundUnit) -> Fraction:
+    return 2 * PI / unit.factor
+
+
+def input_rest(session: Session, name: str) -> Floats | None:
+    """An input (rows,) without its whole turns in rad, None if it has none."""
+    for number, item in enumerate(session.problem.motion.inputs):
+        if name == item.name and session.inputs.whole[number].any():
+            rest: Floats = session.inputs.reduced[number]
+            return rest
+    return None
+
+
+def _reduced(problem: Problem, values: Floats) -> tuple[Floats, Floats]:
+    """The values without whole turns, and these; recorded numbers as they are."""
+    whole = np.zeros(values.shape)
+    reduced = values
+    for number, item in enumerate(problem.motion.inputs):
+        turn = turn_of(problem, item)
+        if turn is None or item.written.dtype != np.float64:
+            continue
+        rest, turns = without_turns(item.written, turn)
+        if turns.any():
+            reduced = values.copy() if reduced is values else reduced
+            reduced[number] = problem.units.to_si(rest, ANGLE)
+            whole[number] = turns
+    return reduced, whole
+
+
+def input_unit(layout: Layout, item: DrivenInput) -> float:
+    """The SI value of one kernel unit of an input."""
+    return layout.mechanism.joints[item.joint].unit_of(item.coordinate, layout.length)
+
+
+def input_number(problem: Problem, layout: Layout, number: int, value: float) -> Number:
+    """A value of input `number` in kernel units as a number in the file's units."""
+    item = problem.motion.inputs[number]
+    dimension = dimension_of(item.coordinate)
+    in_file = float(problem.units.from_si(value * input_unit(layout, item), dimension))
+    return Number(item.name, in_file, problem.units.label(dimension))
+
+
+def input_numbers(problem: Problem, layout: Layout, values: Floats) -> tuple[Number, ...]:
+    """Values of all inputs in kernel units, shape (inputs,), as numbers in the file's units; what
+    is held is no input of the file."""
+    count = len(problem.motion.inputs)
+    return tuple(input_number(problem, layout, k, float(v)) for k, v in enumerate(values[:count]))
+
+
+def input_text(number: Number) -> str:
+    """An input's value as messages show it.
+
+    >>> input_text(Number("O1.theta", 205.1376, "deg"))
+    'O1.theta = 205.1376 deg'
+    """
+    return f"{number.name} = {number.value:.12g} {number.unit}"
+
+
+# Turns: continuous angles and orientations of closing joints, whole turns of the tree's angles.
+#
+# The kernel has the angle of a closing joint from an arctangent and its orientation from a rotation
+# matrix: whole turns and the quaternion's sign are lost. Following carries both along from node to
+# node by the integral of their rates (`follow(..., turns=True)`), so each row only has to take the
+# value that is nearest to what following says. The states of the tree's angles are kept within half
+# a turn, where their rounding stays that of a turn, and their whole turns are counted.
+
+ORIENTATION = -1
+"""Stands for the freedom of an orientation, which has four slots."""
+
+Four = tuple["Floats", "Floats", "Floats", "Floats"]
+
+
+class TurnSlots(NamedTuple):
+    """Rows of `Followed.turns`.
+
+    Attributes:
+        closing: the first row of each (closing joint, freedom); freedom `ORIENTATION` of a joint
+            that has no angles.
+        tree: the row with the whole turns of each state that is an angle of the tree.
+    """
+
+    closing: Mapping[tuple[int, int], int]
+    tree: Mapping[int, int]
+
+    @classmethod
+    def of(cls, plan: Plan) -> TurnSlots:
+        """Those of a plan."""
+        turns = _kernel.closing_turns(plan)
+        closing = {(joint, freedom): slot for joint, freedom, slot, _ in turns}
+        return cls(closing, dict(_kernel.tree_turns(plan)))
+
+    def of_angle(self, layout: Layout, quantity: Wanted) -> int | None:
+        """The row of a joint's angle, None where it has no turns."""
+        reference = layout.joint_reference[quantity.owner]
+        freedom = layout.mechanism.joints[quantity.owner].type.freedom_of[quantity.coordinate]
+        if reference < 0:
+            return self.closing.get((-1 - reference, freedom))
+        return self.tree.get(layout.state(layout.edge_number[quantity.owner], freedom))
+
+
+def angle_slots(session: Session, names: Mapping[str, Slot]) -> list[tuple[int, int, bool]]:
+    """Outputs that are angles, as native runs take them: (output slot, row of `Followed.turns`,
+    whether of a closing joint); of an input -2 - its number."""
+    known, layout = session.problem.quantities(), session.layout
+    inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
+    found = []
+    for name, slot in names.items():
+        quantity = known.get(name)
+        if quantity is None or quantity.kind != "coordinate" or quantity.order:
+            continue
+        of_closing = layout.joint_reference[quantity.owner] < 0
+        if name in inputs and not of_closing:
+            turn: int | None = -2 - inputs[name]
+        else:
+            turn = session.turn_slots.of_angle(layout, quantity)
+        if turn is not None:
+            found.append((slot.first, turn, of_closing))
+    return found
+
+
+def turn_count(plan: Plan) -> int:
+    """Number of rows of `Followed.turns`."""
+    return sum(width for *_, width in _kernel.closing_turns(plan)) + len(_kernel.tree_turns(plan))
+
+
+def continuous_angle(values: Floats, followed: Floats) -> Floats:
+    """An angle with the whole turns that following says.
+
+    Args:
+        values: (rows,) from an arctangent, rad.
+        followed: (rows,) the same angle out of `Followed.turns`.
+    """
+    continuous: Floats = values - np.rint((values - followed) / (2.0 * pi)) * (2.0 * pi)
+    return continuous
+
+
+def continuous_signs(q: Four, followed: Four, first: int) -> Floats:
+    """Signs (rows,) that make unit quaternions continuous, 1 at row `first`.
+
+    Args:
+        q: four arrays (rows,), scalar first, of either sign.
+        followed: as `drawn_quaternion` gives them.
+        first: a row that keeps its sign.
+    """
+    signs = np.where(_inner(q, followed) < 0.0, -1.0, 1.0)
+    alike: Floats = signs * signs[first]
+    return alike
+
+
+def drawn_quaternion(joint: Joint, turns: Floats) -> Four:
+    """The orientation that following carries along, (4, rows), about the axes as drawn.
+
+    The kernel turns the joint's frame on the second link against the one on the first, R = A^T B;
+    against the drawing that is A0 R B0^T.
+    """
+    a, b = _frame_quaternion(joint.on_first), _frame_quaternion(joint.on_second)
+    r = (turns[0], turns[1], turns[2], turns[3])
+    return _product(_product(a, r), (b[0], -b[1], -b[2], -b[3]))
+
+
+def _inner(p: Four, q: Four) -> Floats:
+    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3]
+
+
+def _product(p: Four, q: Four) -> Four:
+    (a, b, c, d), (e, f, g, h) = p, q
+    return (
+        a * e - b * f - c * g - d * h,
+        a * f + b * e + c * h - d * g,
+        a * g - b * h + c * e + d * f,
+        a * h + b * g - c * f + d * e,
+    )
+
+
+def _frame_quaternion(frame: Frame) -> Four:
+    """The rotation whose columns are the frame's axes, as arrays of no dimension."""
+    (m00, m10, m20), (m01, m11, m21), (m02, m12, m22) = frame.x, frame.y, frame.z
+    a, b, c = m21 - m12, m02 - m20, m10 - m01
+    d, e, f = m10 + m01, m20 + m02, m21 + m12
+    rows = (
+        (1.0 + m00 + m11 + m22, a, b, c),
+        (a, 1.0 + m00 - m11 - m22, d, e),
+        (b, d, 1.0 - m00 + m11 - m22, f),
+        (c, e, f, 1.0 - m00 - m11 + m22),
+    )
+    best = max(range(4), key=lambda k: rows[k][k])
+    size = sqrt(sum(part * part for part in rows[best]))
+    w, x, y, z = (np.asarray(part / size) for part in rows[best])
+    return (w, x, y, z)

@@ -1,0 +1,356 @@
+"""The way of the inputs along the rows as the kernel follows it: rows, the places between them
+where the motion turns or bends, and their course in kernel units.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.mechanism import CellKind, Course, Parameter
+from mechkin_cli.session.cells import Cells, Formula, cells_of
+from mechkin_cli.session.inputs import input_unit
+from mechkin_cli.show import Floats
+from mechkin_cli.tape import compiled, replay
+from mechkin_cli.tolerances import COURSE_JUMP
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.session.session import Session
+    from mechkin_cli.tape import Tape
+
+
+Piece = tuple[int, int, float, float, float, float]
+"""First and last place, parameters there, scale and power (kernel/src/course.hpp)."""
+
+LENGTH_SAMPLES = 33
+"""Places from which the length of a cell's way is read: a scale only."""
+
+
+class FollowedPath(NamedTuple):
+    """Places in the order in which they are followed.
+
+    Attributes:
+        rows: (places,) the row, -1 between rows.
+        at: (places,) the course's parameter, nan where it has none.
+        values: (inputs, places) in kernel units.
+        course: the kernel's, None where all is straight.
+        cells: (places - 1,) the cell from each place to the next, -1 for none.
+        route: that it is part of.
+    """
+
+    rows: NDArray[np.int64]
+    at: Floats
+    values: Floats
+    course: _kernel.Course | None
+    cells: NDArray[np.int64]
+    route: Route
+
+    @property
+    def real(self) -> NDArray[np.int64]:
+        """Places that are rows."""
+        return np.flatnonzero(self.rows >= 0)
+
+    def parameter_of(self, place: int, inputs: Floats) -> float:
+        """The course's parameter between a place and the next, where the inputs are as given."""
+        cell = int(self.cells[place]) if place < self.cells.size else -1
+        if cell < 0:
+            return float(self.at[place])
+        low, high = float(self.at[place]), float(self.at[place + 1])
+        for _ in range(16):
+            at = low + (high - low) * np.linspace(0.0, 1.0, 33)
+            miss = np.max(
+                np.abs(self.route.jets(cell, at)[:, :, 0] - inputs[: self.route.units.size]), axis=1
+            )
+            best = int(np.argmin(miss))
+            low, high = float(at[max(best - 1, 0)]), float(at[min(best + 1, 32)])
+        return 0.5 * (low + high)
+
+
+class Route:
+    """All ways along the rows of a motion.
+
+    Args:
+        course: of the inputs.
+        values: (inputs, rows) in kernel units; inputs beyond those of the course are held.
+        units: (inputs of the course,) SI values of the kernel's units.
+    """
+
+    def __init__(self, course: Course, values: Floats, units: Floats) -> None:
+        self.course, self.units = course, units
+        held = np.repeat(values[units.size :, :1], course.rows.size, axis=1)
+        self.values = np.concatenate([course.values / units[:, None], held])
+        real = course.rows >= 0
+        self.values[:, real] = values[:, course.rows[real]]
+
+    def way(self, row: int, step: int = 1) -> FollowedPath:
+        """From a row on, or with step -1 back from it."""
+        course = self.course
+        first = int(np.flatnonzero(course.rows == row)[0])
+        if step > 0:
+            chosen, cells = slice(first, None), course.cells[first:]
+        else:
+            chosen = slice(first, None, -1)
+            cells = course.cells[:first][::-1]
+        return self._way(course.rows[chosen], course.at[chosen], self.values[:, chosen], cells)
+
+    def _way(
+        self, rows: NDArray[np.int64], at: Floats, values: Floats, cells: NDArray[np.int64]
+    ) -> FollowedPath:
+        pieces, numbers = self._pieces(at, cells)
+        course = self.course
+        native = None
+        if pieces:
+            native = _kernel.Course(
+                self._tape,
+                pieces,
+                np.ascontiguousarray(course.constants[numbers]),
+                np.ascontiguousarray(course.ways[numbers]),
+                self.units,
+                np.ascontiguousarray(at),
+            )
+        return FollowedPath(rows, at, np.ascontiguousarray(values), native, cells, self)
+
+    def _pieces(self, at: Floats, cells: NDArray[np.int64]) -> tuple[list[Piece], list[int]]:
+        """Runs of places on one curved cell that are passed in one direction."""
+        rising = at[1:] > at[:-1]
+        curved = (cells >= 0) & (self.course.kinds[cells] == CellKind.CURVED)
+        same = (cells[1:] == cells[:-1]) & (rising[1:] == rising[:-1])
+        bounds = [0, *(np.flatnonzero(~same) + 1).tolist(), cells.size]
+        pieces, numbers = [], []
+        for first, last in pairwise(bounds):
+            if last > first and curved[first]:
+                cell = int(cells[first])
+                pieces.append((first, last, *self._shape(cell, bool(rising[first]))))
+                numbers.append(cell)
+        return pieces, numbers
+
+    def _shape(self, cell: int, rising: bool) -> tuple[float, float, float, float]:
+        """Parameters at both ends, scale and power of a cell."""
+        order = 1 if rising else -1
+        ends = self.course.edges[cell : cell + 2][::order].tolist()
+        here, there = self.course.powers[cell][::order].tolist()
+        power = float(here) if here > 1 else -float(there) if there > 1 else 1.0
+        return ends[0], ends[1], self._lengths[cell], power
+
+    @cached_property
+    def _tape(self) -> _kernel.Tape:
+        return compiled(self.course.tape)
+
+    @cached_property
+    def _lengths(self) -> list[float]:
+        """Of each cell: the sum of the largest change of an input from place to place."""
+        edges = self.course.edges
+        found = []
+        for cell in range(edges.size - 1):
+            at = edges[cell] + (edges[cell + 1] - edges[cell]) * np.linspace(0, 1, LENGTH_SAMPLES)
+            changes = np.abs(np.diff(self.jets(cell, at)[:, :, 0], axis=0))
+            length = sum(np.max(changes, axis=1, initial=0.0).tolist())
+            found.append(length if 0.0 < length < np.inf else 1.0)
+        return found
+
+    def jets(self, cell: int, at: Floats) -> Floats:
+        """Inputs and two derivatives by the parameter (places, inputs, 3) in kernel units."""
+        constants = self.course.constants[cell]
+        given = np.concatenate([at[None], np.repeat(constants[:, None], at.size, axis=1)])
+        found = self._tape.jets(np.ascontiguousarray(given), self.course.ways[cell])
+        return found / self.units[:, None]
+
+
+# The places of a course: its rows, and between them the ends of cells that the motion passes.
+
+
+def places_of(
+    formula: Formula,
+    cells: Cells,
+    parameter: Parameter,
+    at: Floats,
+    values: Floats,
+) -> Course:
+    """Rows at the parameters `at` (rows,), where the inputs are `values` (inputs, rows) in SI, with
+    the ends of cells between them."""
+    ends = _Ends(formula, cells)
+    rows: list[int] = [0]
+    places: list[float] = [float(at[0])]
+    columns: list[Floats] = [values[:, 0]]
+    between: list[int] = []
+
+    def put(row: int, place: float, column: Floats, cell: int) -> None:
+        rows.append(row)
+        places.append(place)
+        columns.append(column)
+        between.append(cell)
+
+    for row in range(1, at.size):
+        here, there = float(at[row - 1]), float(at[row])
+        for edge in ends.passed(here, there):
+            before, behind = ends.sides(edge, there > here)
+            place = float(cells.edges[edge])
+            put(-1, place, ends.value(before, place), before)
+            if ends.jumps(edge):
+                put(-1, place, ends.value(behind, place), -1)
+        put(row, there, values[:, row], ends.cell(float(places[-1]), there))
+    return Course(
+        parameter,
+        formula.tape,
+        cells.edges,
+        cells.kinds,
+        cells.constants,
+        cells.ways,
+        cells.powers,
+        np.array(rows),
+        np.array(places),
+        np.stack(columns, axis=1),
+        np.array(between),
+    )
+
+
+def places_at(course: Course, at: Floats, values: Floats) -> Course:
+    """A course of which the rows are at other rising parameters `at` (rows,), within those of its
+    rising rows, where the inputs are `values` (inputs, rows) in SI."""
+    between = course.rows < 0
+    order = np.argsort(np.concatenate([course.at[between], at]), kind="stable")
+    ends = np.count_nonzero(between)
+    places = np.concatenate([course.at[between], at])[order]
+    columns = np.concatenate([course.values[:, between], values], axis=1)[:, order]
+    first, last = np.flatnonzero(order >= ends)[[0, -1]]
+    kept = slice(int(first), int(last) + 1)
+    rows = np.where(order >= ends, order - ends, -1)[kept]
+    cells = np.searchsorted(course.edges, 0.5 * (places[:-1] + places[1:])) - 1
+    cells = np.clip(cells, 0, course.edges.size - 2)
+    cells[places[:-1] == places[1:]] = -1
+    return replace(
+        course,
+        rows=rows,
+        at=places[kept],
+        values=columns[:, kept],
+        cells=cells[int(first) : int(last)],
+    )
+
+
+class _Ends:
+    """What the motion meets at the edges of cells."""
+
+    def __init__(self, formula: Formula, cells: Cells) -> None:
+        self.formula, self.cells = formula, cells
+        self._jumps: dict[int, bool] = {}
+
+    def passed(self, here: float, there: float) -> list[int]:
+        """Edges strictly between two parameters, in the order in which they are passed."""
+        edges = self.cells.edges
+        low, high = min(here, there), max(here, there)
+        found = list(range(edges.searchsorted(low, side="right"), edges.searchsorted(high)))
+        return found if there > here else found[::-1]
+
+    def sides(self, edge: int, rising: bool) -> tuple[int, int]:
+        """The cells before and behind an edge."""
+        return (edge - 1, edge) if rising else (edge, edge - 1)
+
+    def cell(self, here: float, there: float) -> int:
+        """The cell in which two neighbouring places lie, -1 for one place."""
+        if here == there:
+            return -1
+        edges = self.cells.edges
+        number = int(edges.searchsorted(0.5 * (here + there))) - 1
+        return min(max(number, 0), edges.size - 2)
+
+    def value(self, cell: int, place: float) -> Floats:
+        """The inputs at a place as the formula on a cell has them."""
+        constants = self.cells.constants[cell].tolist()
+        jets = self.formula.jets(np.array([place]), constants, self.cells.ways[cell])
+        return jets[0, :, 0]
+
+    def jumps(self, edge: int) -> bool:
+        """Whether the inputs are not continuous at an edge."""
+        if edge not in self._jumps:
+            place = float(self.cells.edges[edge])
+            one, other = self.value(edge - 1, place), self.value(edge, place)
+            scale = COURSE_JUMP * (1.0 + np.abs(one))
+            self._jumps[edge] = not bool((np.abs(other - one) <= scale).all())
+        return self._jumps[edge]
+
+
+# Inputs that follow one that moves: all of them as a function of it, for any of its values.
+
+
+class InputTie:
+    """What follows input `number` of a session, where all others stand as in a row.
+
+    Args:
+        session: the mechanism as it is driven.
+        tape: its motion's for that input.
+        number: the input.
+        row: where the others stand.
+    """
+
+    def __init__(self, session: Session, tape: Tape, number: int, row: int) -> None:
+        motion = session.problem.motion
+        self.number, self.name = number, motion.inputs[number].name
+        self.units = np.array([input_unit(session.layout, item) for item in motion.inputs])
+        followers = followers_of(session)
+        self.followers = {name for name, leader in followers.items() if leader == self.name}
+        own = [i for i in motion.inputs if i.name not in followers]
+        given = [float(item.values[row]) for item in own]
+        given += [] if motion.time is None else [float(motion.time.values[row])]
+        self.formula = Formula(tape, [], lambda _: given)
+        self.given = given
+        self.held = session.inputs.values[len(motion.inputs) :, row : row + 1]
+
+    def at(self, values: Floats) -> Floats:
+        """All inputs (inputs, places) at values of the one that moves; in kernel units."""
+        own = self._in_si(values * self.units[self.number]) / self.units[:, None]
+        inputs: Floats = np.concatenate([own, np.repeat(self.held, own.shape[1], axis=1)])
+        return inputs
+
+    def derivatives(self, values: Floats) -> Floats:
+        """All inputs with first and second derivatives by the one that moves (3, inputs, places),
+        in kernel units."""
+        unit = self.units[self.number]
+        found = np.empty((3, self.units.size, values.size))
+        for k, value in enumerate((values * unit).tolist()):
+            at = np.array([value])
+            ways = self.formula.ways(at, self.given)[0]
+            found[:, :, k] = self.formula.jets(at, self.given, ways)[0].T
+        powers = np.array([1.0, unit, unit * unit])
+        own = found * powers[:, None, None] / self.units[None, :, None]
+        held = np.zeros((3, self.held.size, values.size))
+        held[0] = self.held
+        jets: Floats = np.concatenate([own, held], axis=1)
+        return jets
+
+    def way(self, values: Floats) -> FollowedPath:
+        """The way of all inputs along values of the one that moves, in kernel units."""
+        places = values * self.units[self.number]
+        cells = cells_of(self.formula, places)
+        course = places_of(self.formula, cells, Parameter(self.name), places, self._in_si(places))
+        own = course.values[:, course.rows >= 0] / self.units[:, None]
+        inputs = np.concatenate([own, np.repeat(self.held, own.shape[1], axis=1)])
+        return Route(course, inputs, self.units).way(0)
+
+    def _in_si(self, places: Floats) -> Floats:
+        given = np.empty((1 + len(self.given), places.size))
+        given[0], given[1:] = places, np.array(self.given)[:, None]
+        inputs: Floats = replay(self._native, given)[0].T
+        return inputs
+
+    @cached_property
+    def _native(self) -> _kernel.Tape:
+        return self.formula.native
+
+
+def followers_of(session: Session) -> dict[str, str]:
+    """Inputs that follow another, and the first of those that they follow."""
+    motion = session.problem.motion
+    found: dict[str, str] = {}
+    for leader, tape in motion.ties:
+        number = [item.name for item in motion.inputs].index(leader)
+        for k, item in enumerate(motion.inputs):
+            if k != number and tape.depends(k):
+                found.setdefault(item.name, leader)
+    return found

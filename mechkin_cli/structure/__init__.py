@@ -1,0 +1,52 @@
+"""The solver graph: spanning tree, cut joints, and blocks in the order of solution.
+
+By structure first (components, Assur groups by matching), by rank where structure counts too many
+equations. Neither order nor names of a file change the result; the work is nearly linear in the
+number of loops.
+"""
+
+from __future__ import annotations
+
+from mechkin_cli.lazy import lazy_names
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from mechkin_cli.structure.build import build_graph as build_graph
+    from mechkin_cli.structure.changed import (
+        charted as charted,
+        exchanged as exchanged,
+        graph_of as graph_of,
+        left_free as left_free,
+    )
+    from mechkin_cli.structure.graph import (
+        Block as Block,
+        CutJoint as CutJoint,
+        SolverGraph as SolverGraph,
+        TreeEdge as TreeEdge,
+        UnsolvableGraph as UnsolvableGraph,
+        is_redundant as is_redundant,
+        listed as listed,
+    )
+    from mechkin_cli.structure.network import whole_link as whole_link
+    from mechkin_cli.structure.random_starts import RandomStarts as RandomStarts
+    from mechkin_cli.structure.redundancy import equations_that_follow as equations_that_follow
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "build": ["build_graph"],
+        "changed": ["charted", "exchanged", "graph_of", "left_free"],
+        "graph": [
+            "Block",
+            "CutJoint",
+            "SolverGraph",
+            "TreeEdge",
+            "UnsolvableGraph",
+            "is_redundant",
+            "listed",
+        ],
+        "network": ["whole_link"],
+        "random_starts": ["RandomStarts"],
+        "redundancy": ["equations_that_follow"],
+    },
+)

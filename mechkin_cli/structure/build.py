@@ -1,0 +1,572 @@
+"""From a mechanism and its inputs to its solver graph."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from heapq import heapify, heappop, heappush
+from itertools import combinations, groupby, product
+from math import comb, prod
+
+from mechkin_cli.mechanism import GROUND_NAME, Joint, Leg, Mechanism
+from mechkin_cli.structure import graph as errors
+from mechkin_cli.structure.assur import AssurGroup, Undriven, assur_groups
+from mechkin_cli.structure.graph import Block, CutJoint, SolverGraph, TreeEdge, UnsolvableGraph
+from mechkin_cli.structure.matching import strong_components
+from mechkin_cli.structure.network import (
+    Connection,
+    Reduction,
+    biconnected,
+    connections_of,
+    cut_link,
+    distances,
+    incidence,
+    order_of,
+    reduce,
+)
+from mechkin_cli.structure.rank import Rates, unit_of
+from mechkin_cli.tolerances import MOST_COMPARED_TREES, MOST_EQUATIONS
+
+# Blocks: groups with their closings, each after the groups that place the links it hangs on.
+
+Freedom = tuple[int, int]
+
+
+class NothingSolved(Exception):
+    """Some connections without unknowns beside those of their closing joints.
+
+    `loops` are the names of the joints in their loops, the closing joint first; legs close others.
+    """
+
+    def __init__(
+        self, connections: Sequence[Connection], loops: Sequence[Sequence[str]], equations: int
+    ) -> None:
+        self.connections = tuple(connections)
+        self.loops = loops
+        self.equations = equations
+        super().__init__()
+
+
+def in_order(
+    groups: Sequence[AssurGroup], edges: Sequence[TreeEdge], place: Mapping[str, int]
+) -> list[list[AssurGroup]]:
+    """Groups in the order of solution; those together that the tree makes depend on each other.
+
+    `place` numbers the closings; first comes what has fewest of them, then what is numbered first.
+    """
+    owner = {link: k for k, group in enumerate(groups) for link in group.links}
+    ahead: list[set[int]] = [set() for _ in groups]
+    for k, group in enumerate(groups):
+        ends = {link for c in group.connections for link in (c.first, c.second)}
+        ahead[k] = {owner[link] for link in (*ends, group.entry) if link != GROUND_NAME} - {k}
+    for edge in edges:
+        if edge.child in owner and edge.parent in owner:
+            one, other = owner[edge.child], owner[edge.parent]
+            if one != other:
+                ahead[one].add(other)
+    parts = strong_components([sorted(some) for some in ahead], range(len(groups)))
+    part_of = {k: p for p, part in enumerate(parts) for k in part}
+    waits = [{part_of[o] for k in part for o in ahead[k]} - {p} for p, part in enumerate(parts)]
+    behind: list[list[int]] = [[] for _ in parts]
+    for p, some in enumerate(waits):
+        for other in some:
+            behind[other].append(p)
+
+    def key(p: int) -> tuple[int, list[int], int]:
+        names = [c.name for k in parts[p] for c in groups[k].connections]
+        numbers = sorted(place[name] for name in names if name in place)
+        return (len(numbers), numbers, p)
+
+    count = [len(some) for some in waits]
+    ready = [key(p) for p in range(len(parts)) if not count[p]]
+    heapify(ready)
+    found: list[list[AssurGroup]] = []
+    while ready:
+        p = heappop(ready)[2]
+        found.append([groups[k] for k in parts[p]])
+        for other in behind[p]:
+            count[other] -= 1
+            if not count[other]:
+                heappush(ready, key(other))
+    return found
+
+
+def lay_blocks(
+    order: Sequence[Sequence[AssurGroup]],
+    edges: Sequence[TreeEdge],
+    closings: Mapping[str, CutJoint],
+    place: Mapping[str, int],
+    driven: Sequence[Freedom],
+) -> tuple[list[CutJoint], list[Block], set[Freedom]]:
+    """Closings in block order, the blocks, and the freedoms that are known in the end.
+
+    Raises:
+        NothingSolved: a block has no unknowns.
+    """
+    solved = set(driven)
+    laid: list[CutJoint] = []
+    blocks: list[Block] = []
+    for part in order:
+        connections = [c for group in part for c in group.connections]
+        names = sorted((c.name for c in connections if c.name in closings), key=place.__getitem__)
+        if not names:
+            continue
+        some = [closings[name] for name in names]
+        members = sorted({k for closing in some for k, _ in closing.loop})
+        freedoms = [(k, f) for k in members for f in range(edges[k].freedoms)]
+        unknowns = tuple(freedom for freedom in freedoms if freedom not in solved)
+        equations = sum(closing.equations for closing in some)
+        if not unknowns:
+            loops = [
+                [closing.joint.name, *(edges[k].joint.name for k, _ in closing.loop)]
+                for closing in some
+                if closing.leg is None
+            ]
+            raise NothingSolved(connections, loops, equations)
+        start = len(laid)
+        laid.extend(some)
+        solved.update(unknowns)
+        blocks.append(Block(tuple(range(start, len(laid))), unknowns, equations))
+    return laid, blocks, solved
+
+
+# The spanning tree from ground and the loops that its closings make with it.
+
+
+def spanning_tree(whole: Reduction, closing: Iterable[str]) -> list[TreeEdge] | None:
+    """Edges from ground outward, breadth first, the legs last; None if no tree is left."""
+    names = set(closing)
+    free = [joint for name, joint in whole.joints.items() if name not in names]
+    at: dict[str, list[Joint]] = {}
+    for joint in free:
+        at.setdefault(joint.first, []).append(joint)
+        at.setdefault(joint.second, []).append(joint)
+    reached = {GROUND_NAME}
+    edges: list[TreeEdge] = []
+    front = [GROUND_NAME]
+    for link in front:
+        for joint in at.get(link, ()):
+            other = joint.second if link == joint.first else joint.first
+            if other not in reached:
+                reached.add(other)
+                edges.append(TreeEdge(joint, link, other))
+                front.append(other)
+    if len(edges) != len(free) or len(reached) != len(whole.links) + 1:
+        return None
+    for leg in whole.legs:
+        edges.append(TreeEdge(leg.start, leg.first, leg.body, hung=True))
+        if leg.slide is not None and leg.rod is not None:
+            edges.append(TreeEdge(leg.slide, leg.body, leg.rod))
+    return edges
+
+
+class Ways:
+    """Ways through a tree."""
+
+    def __init__(self, edges: Sequence[TreeEdge]) -> None:
+        self.edges = edges
+        self.carrier = {edge.child: k for k, edge in enumerate(edges)}
+        self.depth = {GROUND_NAME: 0}
+        for edge in edges:
+            self.depth[edge.child] = self.depth[edge.parent] + 1
+        self.number = {edge.joint.name: k for k, edge in enumerate(edges) if not edge.hung}
+
+    def closing(self, joint: Joint) -> CutJoint:
+        """A joint that closes a loop."""
+        return CutJoint(joint, self._loop(joint.first, joint.second))
+
+    def leg(self, leg: Leg) -> CutJoint:
+        """A leg that closes one."""
+        slides = [(self.number[leg.slide.name], -1)] if leg.slide is not None else []
+        return CutJoint(leg.end, (*self._loop(leg.first, leg.second), *slides), leg)
+
+    def _loop(self, one: str, other: str) -> tuple[tuple[int, int], ...]:
+        """Edges from where the ways part to the other link (+1), then to the one (-1)."""
+        first: list[tuple[int, int]] = []
+        second: list[tuple[int, int]] = []
+        while one != other:
+            if self.depth[one] >= self.depth[other]:
+                first.append((self.carrier[one], -1))
+                one = self.edges[self.carrier[one]].parent
+            else:
+                second.append((self.carrier[other], 1))
+                other = self.edges[self.carrier[other]].parent
+        return (*reversed(second), *reversed(first))
+
+
+# The joints at which the loops of a group are closed, and the tree that is left.
+#
+# What is placed before a group counts as one vertex. Joints with most freedoms close
+# (docs/numerics.md, Closing joints): least equations, a minimum spanning tree by freedoms (Kruskal
+# 1956). Among equals the loops are split evenly at their closing joints; then the first joints as
+# written close.
+
+
+class NothingCloses(Exception):
+    """A loop of connections none of which may close it; `links` lie on it."""
+
+    def __init__(self, connections: Sequence[Connection]) -> None:
+        self.connections = tuple(connections)
+        super().__init__()
+
+
+def closings_of(group: AssurGroup, depth: Mapping[str, int]) -> list[Connection]:
+    """The connections at which a group's loops are closed, legs left out.
+
+    `depth` is the number of tree edges from ground to each link that is placed before.
+
+    Raises:
+        NothingCloses: a loop of inputs, H and the like alone.
+    """
+    joints = [c for c in group.connections if c.leg is None]
+    loops = len(joints) - len(group.links)
+    if not loops:
+        _check_tree(group, joints)
+        return []
+    able = sorted((c for c in joints if not c.stays), key=lambda c: c.equations)
+    fixed = [c for c in joints if c.stays]
+    chosen = _first_choice(group, fixed, able)
+    if sum(c.equations for c in chosen) > MOST_EQUATIONS:
+        return chosen  # too large a block to be solved, however its loops are split
+    return _most_even(group, joints, able, chosen, depth)
+
+
+class _Sets:
+    """Which links are joined so far."""
+
+    def __init__(self, links: Iterable[str]) -> None:
+        self.top = {link: link for link in links}
+
+    def join(self, c: Connection) -> bool:
+        """Joins the ends of a connection; False if they are joined already."""
+        one, other = self._root(c.first), self._root(c.second)
+        if one == other:
+            return False
+        if one:
+            self.top[one] = other
+        else:
+            self.top[other] = one
+        return True
+
+    def _root(self, link: str) -> str:
+        """Its representative; empty for what is placed before."""
+        top = self.top
+        while link in top and top[link] != link:
+            up = top[link]
+            top[link] = top.get(up, up)
+            link = top[link]
+        return link if link in top else ""
+
+
+def _check_tree(group: AssurGroup, joints: Sequence[Connection]) -> None:
+    sets = _Sets(group.links)
+    for number, c in enumerate(joints):
+        if not sets.join(c):
+            raise NothingCloses(_loop(group, joints[:number], c))
+
+
+def _first_choice(
+    group: AssurGroup, fixed: Sequence[Connection], able: Sequence[Connection]
+) -> list[Connection]:
+    """The first in the order of `able` that leaves a tree."""
+    sets = _Sets(group.links)
+    for number, c in enumerate(fixed):
+        if not sets.join(c):
+            raise NothingCloses(_loop(group, fixed[:number], c))
+    return [c for c in reversed(able) if not sets.join(c)][::-1]
+
+
+def _loop(group: AssurGroup, before: Sequence[Connection], last: Connection) -> list[Connection]:
+    """The loop that a connection closes with some before it."""
+    own = set(group.links)
+
+    def of(link: str) -> str:
+        return link if link in own else ""
+
+    came: dict[str, Connection | None] = {of(last.first): None}
+    front = [of(last.first)]
+    for link in front:
+        for c in before:
+            for here, there in ((of(c.first), of(c.second)), (of(c.second), of(c.first))):
+                if here == link and there not in came:
+                    came[there] = c
+                    front.append(there)
+    found, link = [last], of(last.second)
+    while (back := came.get(link)) is not None:
+        found.append(back)
+        link = of(back.first) if of(back.second) == link else of(back.second)
+    return found
+
+
+def _most_even(
+    group: AssurGroup,
+    joints: Sequence[Connection],
+    able: Sequence[Connection],
+    chosen: Sequence[Connection],
+    depth: Mapping[str, int],
+) -> list[Connection]:
+    """Of the choices with as few equations the one whose loops are split most evenly."""
+    legs = [c for c in group.connections if c.leg is not None]
+    names = {c.name for c in chosen}
+    classes = [list(some) for _, some in groupby(able, key=lambda c: c.equations)]
+    counts = [sum(c.name in names for c in some) for some in classes]
+    if prod(comb(len(s), n) for s, n in zip(classes, counts, strict=True)) > MOST_COMPARED_TREES:
+        return _exchanged(joints, legs, classes, list(chosen), depth)
+    best, least = list(chosen), _unevenness(joints, legs, chosen, depth)
+    every = (combinations(s, n) for s, n in zip(classes, counts, strict=True))
+    for choice in product(*every):
+        if not least:
+            break
+        some = [c for part in choice for c in part]
+        found = _unevenness(joints, legs, some, depth, least)
+        if found < least:
+            best, least = some, found
+    return best
+
+
+def _exchanged(
+    joints: Sequence[Connection],
+    legs: Sequence[Connection],
+    classes: Sequence[Sequence[Connection]],
+    chosen: list[Connection],
+    depth: Mapping[str, int],
+) -> list[Connection]:
+    """Exchanges a closing joint for another of its loop with as many freedoms where it helps."""
+    least = _unevenness(joints, legs, chosen, depth)
+    equals = {c.name: some for some in classes for c in some}
+    for k, old in enumerate(chosen):
+        for new in equals[old.name]:
+            if new in chosen:
+                continue
+            some = [*chosen[:k], new, *chosen[k + 1 :]]
+            found = _unevenness(joints, legs, some, depth, least)
+            if found < least:
+                chosen, least = some, found
+    order = {c.name: k for k, c in enumerate(c for some in classes for c in some)}
+    return sorted(chosen, key=lambda c: order[c.name])
+
+
+def _unevenness(
+    joints: Sequence[Connection],
+    legs: Sequence[Connection],
+    closings: Sequence[Connection],
+    depth: Mapping[str, int],
+    most: float = float("inf"),
+) -> float:
+    """How much longer one way is than the other, of all loops; infinite if no tree is left."""
+    names = {c.name for c in closings}
+    tree = [c for c in joints if c.name not in names]
+    found = tree_depths(tree, depth)
+    total = 0
+    for c in (*closings, *legs):
+        first = found.get(c.first, depth.get(c.first))
+        second = found.get(c.second, depth.get(c.second))
+        if first is None or second is None:
+            return float("inf")
+        slides = c.leg is not None and c.leg.slide is not None
+        total += abs(second - first - slides)
+        if total >= most:
+            return float("inf")
+    reached = all(c.first in found and c.second in found for c in tree)
+    return total if reached else float("inf")
+
+
+def tree_depths(tree: Sequence[Connection], depth: Mapping[str, int]) -> dict[str, int]:
+    """Tree edges from ground to each link at some connections that are reached from those
+    placed before."""
+    ends: dict[str, list[str]] = {}
+    for c in tree:
+        ends.setdefault(c.first, []).append(c.second)
+        ends.setdefault(c.second, []).append(c.first)
+    found = {link: depth[link] for link in ends if link in depth}
+    front = list(found)
+    for link in front:
+        for other in ends[link]:
+            if other not in found:
+                found[other] = found[link] + 1
+                front.append(other)
+    return found
+
+
+def build_graph(
+    mechanism: Mechanism,
+    inputs: Sequence[tuple[str, str]],
+    closed_at: Sequence[str] | None = None,
+) -> SolverGraph:
+    """The solver graph of a mechanism whose `inputs` (joint, coordinate) are driven.
+
+    `closed_at` forces the closing joints (one per independent loop).
+
+    Raises:
+        UnsolvableGraph: links not connected to ground, no joint to close a loop at, undriven or
+            overconstrained loops.
+    """
+    return _built(mechanism, inputs, closed_at, _AssembledRates(mechanism, inputs))
+
+
+class _AssembledRates:
+    """The rates at places where a mechanism is assembled, each found when it is asked for."""
+
+    def __init__(self, mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> None:
+        self._sought = self._seek(mechanism, inputs)
+        self._found: list[Rates] = []
+
+    def __iter__(self) -> Iterator[Rates]:
+        yield from self._found
+        for rates in self._sought:
+            self._found.append(rates)
+            yield rates
+
+    @staticmethod
+    def _seek(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> Iterator[Rates]:
+        from mechkin_cli.session import assembled_places
+
+        def coarse() -> SolverGraph:
+            return _built(mechanism, inputs, None, ())
+
+        joints = mechanism.joints
+        driven = {(name, joints[name].freedom_number(c)) for name, c in inputs}
+        unit = unit_of(mechanism)
+        for poses in assembled_places(mechanism, coarse):
+            yield Rates(poses, driven, unit)
+
+
+def _built(
+    mechanism: Mechanism,
+    inputs: Sequence[tuple[str, str]],
+    closed_at: Sequence[str] | None,
+    places: Iterable[Rates],
+) -> SolverGraph:
+    """As `build_graph`; without places whatever has too many equations is one block."""
+    whole = reduce(mechanism)
+    while True:
+        connections = connections_of(mechanism, whole, inputs)
+        groups = _groups(mechanism, whole, connections, inputs, places)
+        try:
+            names = _closing_names(whole, groups) if closed_at is None else list(closed_at)
+            return _laid(mechanism, whole, groups, names, inputs)
+        except NothingCloses as loop:
+            whole = _cut(mechanism, whole, connections, loop.connections)
+        except NothingSolved as block:
+            if closed_at is not None:
+                raise errors.driven_solid(block.connections, block.equations) from None
+            whole = _cut(mechanism, whole, connections, _carried_loop(block, connections))
+
+
+def _groups(
+    mechanism: Mechanism,
+    whole: Reduction,
+    connections: Sequence[Connection],
+    inputs: Sequence[tuple[str, str]],
+    places: Iterable[Rates],
+) -> list[AssurGroup]:
+    """The Assur groups of all components, each after those that it hangs on."""
+    components = biconnected(connections, incidence(connections), GROUND_NAME)
+    reached = {link for component in components for link in component.links}
+    if apart := [link for link in whole.links if link not in reached]:
+        raise errors.disconnected(apart)
+    found: list[AssurGroup] = []
+    loose: list[Undriven] = []
+    for component in components:
+        groups, undriven = assur_groups(component, places)
+        found += groups
+        if undriven is not None:
+            loose.append(undriven)
+    if loose:
+        raise errors.undriven(mechanism, inputs, loose)
+    return found
+
+
+def _closing_names(whole: Reduction, groups: Sequence[AssurGroup]) -> list[str]:
+    """The closing joints of all groups: fewest equations first, then as written."""
+    depth = {GROUND_NAME: 0}
+    chosen: dict[str, int] = {}
+    for group in groups:
+        some = {c.name: c.equations for c in closings_of(group, depth)}
+        tree = [c for c in group.connections if c.leg is None and c.name not in some]
+        depth.update(tree_depths(tree, depth))
+        chosen.update(some)
+    written = [name for name in whole.joints if name in chosen]
+    return sorted(written, key=chosen.__getitem__)
+
+
+def _carried_loop(block: NothingSolved, connections: Sequence[Connection]) -> list[Connection]:
+    """A loop that its closing joint alone would have to follow, with that joint as an unknown.
+
+    Raises:
+        UnsolvableGraph: a closing joint does not follow the inputs as they are drawn, or there is
+            none.
+    """
+    named = {c.name: c for c in connections}
+    found: list[Connection] = []
+    for names in block.loops:
+        own, *around = loop = [named[name] for name in names]
+        are_inputs = all(c.driven == c.freedoms for c in around)
+        if are_inputs and order_of(loop) > order_of([own]):
+            raise errors.driven_solid(block.connections, block.equations)
+        if not found and own.freedoms:
+            found = loop
+    if not found:
+        raise errors.driven_solid(block.connections, block.equations)
+    return found
+
+
+def _cut(
+    mechanism: Mechanism,
+    whole: Reduction,
+    connections: Sequence[Connection],
+    loop: Sequence[Connection],
+) -> Reduction:
+    """With the link of the loop that is farthest from ground cut in two halves."""
+    members = {c.name for c in loop}
+    names = [name for name in whole.joints if name in members]
+    ends = [link for c in loop for link in (c.first, c.second)]
+    inside = [link for link in whole.links if ends.count(link) == 2]
+    if not inside:
+        raise errors.no_closing_joint(mechanism.name, names)
+    away = distances(connections, incidence(connections), GROUND_NAME)
+    return cut_link(whole, max(inside, key=away.__getitem__), names)
+
+
+def _laid(
+    mechanism: Mechanism,
+    whole: Reduction,
+    groups: Sequence[AssurGroup],
+    names: Sequence[str],
+    inputs: Sequence[tuple[str, str]],
+) -> SolverGraph:
+    """Tree, closings and blocks for chosen closing joints."""
+    names = [name for name in names if name in whole.joints]
+    edges = spanning_tree(whole, names)
+    if edges is None:
+        raise errors.no_closing_joint(mechanism.name, tuple(mechanism.joints))
+    ways = Ways(edges)
+    driven = []
+    for name, coordinate in inputs:
+        if name not in ways.number:
+            raise errors.input_closes(name)
+        k = ways.number[name]
+        driven.append((k, edges[k].joint.freedom_number(coordinate)))
+    closings = {name: ways.closing(whole.joints[name]) for name in names}
+    closings |= {leg.end.name: ways.leg(leg) for leg in whole.legs}
+    place = {name: k for k, name in enumerate(closings)}
+    order = in_order(groups, edges, place)
+    laid, blocks, solved = lay_blocks(order, edges, closings, place, driven)
+    everything = {(k, f) for k, e in enumerate(edges) for f in range(e.freedoms)}
+    short = any(len(block.unknowns) > block.equations for block in blocks)
+    if short or everything - solved:
+        raise _left_over(mechanism, groups, inputs, edges, everything - solved)
+    return SolverGraph(tuple(edges), tuple(laid), tuple(blocks), tuple(driven), tuple(inputs))
+
+
+def _left_over(
+    mechanism: Mechanism,
+    groups: Sequence[AssurGroup],
+    inputs: Sequence[tuple[str, str]],
+    edges: Sequence[TreeEdge],
+    unknown: set[tuple[int, int]],
+) -> UnsolvableGraph:
+    """Freedoms in no loop's way."""
+    names = {edges[k].joint.name for k, _ in unknown}
+    members = [c for group in groups for c in group.connections]
+    concerned = tuple(c for c in members if c.name in names) or tuple(members)
+    return errors.undriven(mechanism, inputs, [Undriven(concerned, max(1, len(unknown)))])

@@ -1,0 +1,131 @@
+"""The solver graph of a free motion: what were its inputs is solved for, too.
+
+A chart's equations (kernel/src/chart.hpp) take the place of the inputs, and all loops are one
+block: which of them hang on which coordinate changes along a motion, and no coordinate is to have
+a dead centre.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Mapping
+from typing import TYPE_CHECKING
+
+from mechkin_cli.mechanism import GROUND_NAME, Joint, Leg, Mechanism
+from mechkin_cli.structure.build import build_graph
+from mechkin_cli.structure.graph import Block, SolverGraph
+from mechkin_cli.structure.network import connections_of, reduce
+from mechkin_cli.structure.rank import Rates, unit_of
+
+if TYPE_CHECKING:
+    from mechkin_cli.structure.build import Freedom
+
+
+def charted(graph: SolverGraph, free: Container[tuple[str, str]]) -> SolverGraph:
+    """The same tree and closing joints with the inputs `free` (joint, coordinate) undriven."""
+    pairs = list(zip(graph.inputs, graph.driven, strict=True))
+    freed = [at for at, name in pairs if name in free]
+    kept = [(at, name) for at, name in pairs if name not in free]
+    closings = tuple(c for block in graph.blocks for c in block.closings)
+    unknowns = (*freed, *(at for block in graph.blocks for at in block.unknowns))
+    equations = sum(block.equations for block in graph.blocks) + len(freed)
+    block = Block(closings, unknowns, equations, len(freed))
+    return graph._replace(
+        blocks=(block,),
+        inputs=tuple(at for at, _ in kept),
+        driven=tuple(name for _, name in kept),
+    )
+
+
+# The solver graph in which an unknown drives the mechanism in place of an input.
+#
+# At a dead centre of the input its rate by the unknown is zero: there the input is no parameter of
+# the branch, and the unknown is one.
+
+
+def exchanged(
+    graph: SolverGraph, number: int, unknown: Freedom, name: tuple[str, str]
+) -> SolverGraph:
+    """The same tree and closing joints, driven at an unknown (edge, freedom) in place of input
+    `number`, which is solved for.
+
+    Blocks that hang on each other by the exchange become one: those from the first whose loops the
+    input moves to that of the unknown.
+
+    Args:
+        graph: as it is driven.
+        number: of the input.
+        unknown: of one of the blocks.
+        name: its (joint, coordinate).
+    """
+    last = next(b for b, block in enumerate(graph.blocks) if unknown in block.unknowns)
+    edge, _ = freed = graph.inputs[number]
+    moved = [
+        b
+        for b, block in enumerate(graph.blocks[:last])
+        if any(edge == on_way for c in block.closings for on_way, _ in graph.closings[c].loop)
+    ]
+    first = min(moved, default=last)
+    joined = graph.blocks[first : last + 1]
+    unknowns = (freed, *(at for block in joined for at in block.unknowns if at != unknown))
+    closings = tuple(c for block in joined for c in block.closings)
+    together = Block(closings, unknowns, sum(block.equations for block in joined))
+    inputs, driven = list(graph.inputs), list(graph.driven)
+    inputs[number], driven[number] = unknown, name
+    return graph._replace(
+        blocks=(*graph.blocks[:first], together, *graph.blocks[last + 1 :]),
+        inputs=tuple(inputs),
+        driven=tuple(driven),
+    )
+
+
+# Whether something can move at assembled places while some coordinates rest.
+#
+# Where constraints are redundant, counting equations does not tell; the rank of the loops' screws
+# at places where they are closed does.
+
+
+def left_free(mechanism: Mechanism, inputs: Mapping[tuple[str, str], float]) -> list[bool]:
+    """For each assembled place whether some link can move while the inputs rest; none where no
+    place is found, or the ranks would take too long.
+
+    Args:
+        mechanism: with pairs that hold idle freedoms.
+        inputs: (joint, coordinate) that rest, and where (rad, m).
+    """
+    from mechkin_cli.session import closed_places
+
+    whole, names, at = reduce(mechanism), list(inputs), list(inputs.values())
+    connections = connections_of(mechanism, whole, names)
+    driven = {(name, mechanism.joints[name].freedom_number(c)) for name, c in inputs}
+    unit, found = unit_of(mechanism), []
+    for poses in closed_places(mechanism, lambda: build_graph(mechanism, names), at):
+        rates = Rates(poses, driven, unit)
+        still = rates.still(whole.links, connections, {GROUND_NAME})
+        if rates.work:
+            found.append(set(whole.links) > still)
+    return found
+
+
+# A solver graph carried over to a mechanism of the same structure and other dimensions.
+
+
+def graph_of(mechanism: Mechanism, graph: SolverGraph) -> SolverGraph:
+    """The graph with the joints and legs of `mechanism` in the places of those with their names."""
+    reduction = reduce(mechanism)
+    joints = {**mechanism.joints, **reduction.joints}
+    legs = {leg.body: leg for leg in reduction.legs}
+
+    def renewed(joint: Joint) -> Joint:
+        other = joints.get(joint.name)  # the weld of a cut link has no dimensions
+        return joint if other is None else other._replace(first=joint.first, second=joint.second)
+
+    edges = tuple(edge._replace(joint=renewed(edge.joint)) for edge in graph.edges)
+    closings = tuple(
+        closing._replace(joint=renewed(closing.joint), leg=_leg(closing.leg, legs))
+        for closing in graph.closings
+    )
+    return graph._replace(edges=edges, closings=closings)
+
+
+def _leg(leg: Leg | None, legs: Mapping[str, Leg]) -> Leg | None:
+    return None if leg is None else legs[leg.body]

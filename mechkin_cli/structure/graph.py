@@ -1,0 +1,193 @@
+"""What a solver graph consists of: tree edges, closings, blocks; the error where there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from mechkin_cli.diagnostics import Diagnostic, MechkinError
+from mechkin_cli.mechanism import Joint, Leg, Mechanism
+from mechkin_cli.structure.assur import Undriven
+from mechkin_cli.structure.network import Connection
+
+
+class UnsolvableGraph(MechkinError):
+    """The mechanism's graph cannot be solved as it is driven; `diagnostic` says why, `joints`
+    where. Where too little is driven, `missing` counts the freedoms left and `candidates` are
+    coordinates that could be driven."""
+
+    def __init__(
+        self,
+        diagnostic: Diagnostic,
+        joints: tuple[str, ...] = (),
+        missing: int = 0,
+        candidates: tuple[str, ...] = (),
+    ) -> None:
+        self.diagnostic = diagnostic
+        self.joints = joints
+        self.missing = missing
+        self.candidates = candidates
+        super().__init__(str(diagnostic))
+
+
+class TreeEdge(NamedTuple):
+    """A joint of the tree: it carries `child`; `forward` where the child is the joint's second
+    link.
+
+    The body of a leg is `hung`: two points place it, it has no freedom of its own.
+    """
+
+    joint: Joint
+    parent: str
+    child: str
+    hung: bool = False
+
+    @property
+    def forward(self) -> bool:
+        """Whether the tree passes the joint from its first link to its second."""
+        return self.child == self.joint.second
+
+    @property
+    def freedoms(self) -> int:
+        """Unknown or driven freedoms."""
+        return 0 if self.hung else self.joint.type.freedoms
+
+
+class CutJoint(NamedTuple):
+    """A closing joint; `loop` holds the tree edges on the way to its second (+1) and first link
+    (-1).
+
+    Of a leg it is the sphere at the end; the ways lead to the links that the leg joins, and its
+    slide counts -1.
+    """
+
+    joint: Joint
+    loop: tuple[tuple[int, int], ...]
+    leg: Leg | None = None
+
+    @property
+    def equations(self) -> int:
+        """Number of closing equations."""
+        return 1 if self.leg else self.joint.type.equations
+
+
+class Block(NamedTuple):
+    """Closing joints (by index) that are solved together for unknown coordinates (edge,
+    freedom); the last `charts` of its equations are those of a chart (`charted`)."""
+
+    closings: tuple[int, ...]
+    unknowns: tuple[tuple[int, int], ...]
+    equations: int
+    charts: int = 0
+
+
+class SolverGraph(NamedTuple):
+    """Tree edges in placing order (edge k carries link k), closings in block order, blocks.
+
+    `inputs` are (edge, freedom), `driven` the same as (joint, coordinate).
+    """
+
+    edges: tuple[TreeEdge, ...]
+    closings: tuple[CutJoint, ...]
+    blocks: tuple[Block, ...]
+    inputs: tuple[tuple[int, int], ...]
+    driven: tuple[tuple[str, str], ...]
+
+
+def is_redundant(graph: SolverGraph) -> bool:
+    """Whether some loop has more closing equations than unknowns (redundant constraints)."""
+    return any(block.equations > len(block.unknowns) for block in graph.blocks)
+
+
+# Why a mechanism has no solver graph, each as an error that names the joints concerned.
+
+MOST_NAMES = 20
+"""Names in a message."""
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names with commas, the first of them where they are many."""
+    if len(names) <= MOST_NAMES:
+        return ", ".join(names)
+    return f"{', '.join(names[:MOST_NAMES])}, ... ({len(names)} in all)"
+
+
+def no_closing_joint(name: str, joints: Sequence[str]) -> UnsolvableGraph:
+    """A loop has no joint that may close it."""
+    diagnostic = Diagnostic(
+        "no-closing-joint",
+        "error",
+        f"the loops of {name} cannot be closed: every loop needs a joint "
+        "other than H that is not an input and has no spring on its angle",
+        hint="drive another coordinate, or put the spring on another joint",
+    )
+    return UnsolvableGraph(diagnostic, tuple(joints))
+
+
+def input_closes(name: str) -> UnsolvableGraph:
+    """A loop shall be closed at an input."""
+    diagnostic = Diagnostic(
+        "input-closes",
+        "error",
+        f"{name} is driven, so no loop can be closed there",
+        hint="choose another closing joint",
+    )
+    return UnsolvableGraph(diagnostic, (name,))
+
+
+def disconnected(links: Sequence[str]) -> UnsolvableGraph:
+    """Links that nothing joins to ground."""
+    diagnostic = Diagnostic(
+        "disconnected-link",
+        "error",
+        f"not joined to ground, nor to a link that is: {listed(links)}",
+        hint="add a joint, or remove the link",
+    )
+    return UnsolvableGraph(diagnostic)
+
+
+def driven_solid(connections: Iterable[Connection], equations: int) -> UnsolvableGraph:
+    """A loop all of whose freedoms are driven."""
+    joints = sorted({name for c in connections for name in _joints(c)})
+    diagnostic = Diagnostic(
+        "driven-solid",
+        "error",
+        f"nothing is left to close the loop through {listed(joints)}: "
+        "all its other freedoms are driven",
+        measured=f"{equations} equations, no unknowns",
+        hint="drive fewer coordinates",
+    )
+    return UnsolvableGraph(diagnostic, tuple(joints))
+
+
+def undriven(
+    mechanism: Mechanism, inputs: Sequence[tuple[str, str]], parts: Sequence[Undriven]
+) -> UnsolvableGraph:
+    """Freedoms that neither an input nor a loop determines."""
+    concerned = {name for part in parts for c in part.connections for name in _joints(c)}
+    joints = [joint for name, joint in mechanism.joints.items() if name in concerned]
+    taken = set(inputs)
+    names = [
+        f"{joint.name}.{coordinate}"
+        for joint in joints
+        for coordinate, freedom in joint.type.freedom_of.items()
+        if not any(
+            (joint.name, c) in taken for c, f in joint.type.freedom_of.items() if f == freedom
+        )
+    ]
+    names = names or [joint.name for joint in joints]
+    missing = sum(part.missing for part in parts)
+    count = "one free coordinate is" if missing == 1 else f"{missing} free coordinates are"
+    diagnostic = Diagnostic(
+        "undriven-freedom",
+        "error",
+        f"{count} not driven; candidates: {listed(names)}",
+        measured=f"{missing} more unknown{'s' * (missing > 1)} than closing equations",
+        hint="add inputs under motion",
+    )
+    around = tuple(joint.name for joint in joints)
+    return UnsolvableGraph(diagnostic, around, missing, tuple(names))
+
+
+def _joints(c: Connection) -> tuple[str, ...]:
+    return (c.name,) if c.leg is None else c.leg.joints

@@ -1,0 +1,476 @@
+"""The mechanism as a network: links are vertices, every joint and every leg is a connection.
+
+Independent of any tree. A leg is one distance equation between the links that it joins.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+from mechkin_cli.exact import part
+from mechkin_cli.mechanism import (
+    FREE,
+    GROUND,
+    GROUND_NAME,
+    ZERO,
+    Joint,
+    Leg,
+    Mechanism,
+    Part,
+    Screw,
+    Spring,
+    Vector,
+    add,
+    diagonal,
+    find_legs,
+    frame_about,
+    frame_on,
+    is_angle,
+    scale,
+    upright,
+)
+from mechkin_cli.tolerances import LOOP_RANK
+
+# What the spanning tree is laid through: a mechanism without its legs, every body within reach.
+#
+# Legs become distance equations (legs.py). A body that only legs hold hangs from ground by a free
+# pair of six unknowns. A loop without a joint to close it at, or whose closing joint has all its
+# unknowns, is closed through a link: the link is cut in two halves that a weld joins
+# (docs/numerics.md, Closing joints).
+
+HALF = " (cut)"
+"""Ends the name of the second half of a cut link; a name as written has no such end."""
+
+
+class Reduction(NamedTuple):
+    """Joints by name and moving links of the tree and its closing joints, and the legs beside
+    them; joints in loops that are `cut` close none."""
+
+    joints: Mapping[str, Joint]
+    links: tuple[str, ...]
+    legs: tuple[Leg, ...]
+    cut: frozenset[str] = frozenset()
+
+    @property
+    def loops(self) -> int:
+        """Joints that close loops, legs not counted."""
+        return len(self.joints) - len(self.links)
+
+
+def reduce(mechanism: Mechanism) -> Reduction:
+    """The mechanism without its legs, with free pairs for what only legs hold."""
+    legs = find_legs(mechanism)
+    of_legs = {name for leg in legs for name in leg.joints}
+    bodies = {name for leg in legs for name in leg.links}
+    links = tuple(n for n in mechanism.links if n != GROUND_NAME and n not in bodies)
+    joints = {name: joint for name, joint in mechanism.joints.items() if name not in of_legs}
+    held: dict[str, list[Vector]] = {}
+    for leg in legs:
+        for link in (leg.first, leg.second):
+            held.setdefault(link, []).append(_end_point(leg, link))
+    at: dict[str, list[str]] = {}
+    for joint in joints.values():
+        at.setdefault(joint.first, []).append(joint.second)
+        at.setdefault(joint.second, []).append(joint.first)
+    reached = {GROUND_NAME}
+    _reach(at, reached, GROUND_NAME)
+    # of bodies that joints hold together the one that most legs hold
+    for body in sorted(held, key=lambda link: -len(held[link])):
+        if body not in reached:
+            joints[f"{body} (free)"] = _free_pair(body, held[body])
+            _reach(at, reached, body)
+    return Reduction(joints, links, legs)
+
+
+def cut_link(reduction: Reduction, link: str, loop: Sequence[str]) -> Reduction:
+    """The same with a link cut in two halves between its joints in a loop."""
+    own = [
+        reduction.joints[name]
+        for name in loop
+        if link in (reduction.joints[name].first, reduction.joints[name].second)
+    ]
+    joints = dict(reduction.joints)
+    half = link + HALF
+    while half in joints:  # a link may be cut in several loops
+        half += HALF
+    joints[own[-1].name] = _moved(own[-1], link, half)
+    parts = (Part("W", GROUND, GROUND),)
+    joints[half] = Joint(half, "W", link, half, GROUND, GROUND, parts, plane=own[-1].plane)
+    return Reduction(joints, (*reduction.links, half), reduction.legs, reduction.cut.union(loop))
+
+
+def whole_link(link: str) -> str:
+    """The link of which one is a half, however often it is cut, or itself."""
+    while link.endswith(HALF):
+        link = link.removesuffix(HALF)
+    return link
+
+
+def _moved(joint: Joint, link: str, half: str) -> Joint:
+    if joint.first == link:
+        return joint._replace(first=half)
+    return joint._replace(second=half)
+
+
+def _reach(at: Mapping[str, list[str]], reached: set[str], start: str) -> None:
+    """Adds to the reached links those that joints lead to from one more."""
+    reached.add(start)
+    front = [start]
+    for link in front:
+        for other in at.get(link, ()):
+            if other not in reached:
+                reached.add(other)
+                front.append(other)
+
+
+def _end_point(leg: Leg, link: str) -> Vector:
+    return frame_on(leg.start if link == leg.first else leg.end, link).o
+
+
+def _free_pair(body: str, points: list[Vector]) -> Joint:
+    """Slides along the ground's axes, then turns about the middle of the legs' ends."""
+    total = ZERO
+    for point in points:
+        total = add(total, point)
+    middle = scale(part(len(points)), total)
+    still = upright(middle)
+    axes = ((GROUND.x, GROUND.y), (GROUND.y, GROUND.z), (GROUND.z, GROUND.x))
+    slides = [frame_about(axis, x, middle) for axis, x in axes]
+    parts = (*(Part("P", frame, frame) for frame in slides), Part("S", still, still))
+    return Joint(f"{body} (free)", FREE.letter, GROUND_NAME, body, still, still, parts)
+
+
+class Connection(NamedTuple):
+    """A joint or a leg between two links.
+
+    `driven` counts its driven freedoms (of a leg: of its slide); `stays` says that no loop may be
+    closed at it.
+    """
+
+    name: str
+    first: str
+    second: str
+    joint: Joint
+    driven: int = 0
+    stays: bool = False
+    leg: Leg | None = None
+
+    @property
+    def freedoms(self) -> int:
+        """Freedoms between the two links, a leg's slide included."""
+        if self.leg is None:
+            return self.joint.type.freedoms
+        return 5 if self.leg.slide is None else 6
+
+    @property
+    def equations(self) -> int:
+        """Closing equations."""
+        return 1 if self.leg is not None else self.joint.type.equations
+
+    @property
+    def space(self) -> int:
+        """Freedoms of a free body where it works: six, or three in a plane."""
+        return self.joint.type.space
+
+    @property
+    def has_screws(self) -> bool:
+        """Whether its freedoms are screws of a joint: neither a leg nor a free pair."""
+        return self.leg is None and not self.joint.type.is_free
+
+    def other(self, link: str) -> str:
+        """The link at the other end."""
+        return self.second if link == self.first else self.first
+
+
+def connections_of(
+    mechanism: Mechanism, whole: Reduction, inputs: Sequence[tuple[str, str]]
+) -> list[Connection]:
+    """The joints in the order written, then the legs.
+
+    Inputs stay in the tree, and springs whose angle goes beyond half a turn, which a closing joint
+    does not count; so do H and free pairs, which close no loop, and joints of loops that are cut.
+    """
+    driven = Counter(joint for joint, _ in inputs)
+    sprung = {
+        load.joint
+        for load in mechanism.loads
+        if isinstance(load, Spring) and load.joint and is_angle(load.coordinate or "")
+    }
+    found = [
+        Connection(
+            name,
+            joint.first,
+            joint.second,
+            joint,
+            driven[name],
+            name in driven or name in sprung or name in whole.cut or not joint.type.equations,
+        )
+        for name, joint in whole.joints.items()
+    ]
+    for leg in whole.legs:
+        count = driven[leg.slide.name] if leg.slide is not None else 0
+        found.append(Connection(leg.end.name, leg.first, leg.second, leg.end, count, True, leg))
+    return found
+
+
+def incidence(connections: Sequence[Connection]) -> dict[str, list[int]]:
+    """Numbers of the connections at each link, in their order."""
+    found: dict[str, list[int]] = {}
+    for number, c in enumerate(connections):
+        found.setdefault(c.first, []).append(number)
+        found.setdefault(c.second, []).append(number)
+    return found
+
+
+def distances(
+    connections: Sequence[Connection], at: dict[str, list[int]], root: str
+) -> dict[str, int]:
+    """Number of connections between each link and the root."""
+    found = {root: 0}
+    front = [root]
+    for link in front:
+        for number in at.get(link, ()):
+            other = connections[number].other(link)
+            if other not in found:
+                found[other] = found[link] + 1
+                front.append(other)
+    return found
+
+
+# Biconnected components: the parts of the network whose loops share connections.
+#
+# Loops of different components have no connection in common, so each component is solved by itself,
+# against the link at which it hangs (Hopcroft, Tarjan 1973, Algorithm 447; linear).
+
+
+class GraphComponent(NamedTuple):
+    """Connections of one component in their order; `entry` is its link nearest to ground."""
+
+    entry: str
+    connections: tuple[Connection, ...]
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Its links without the entry."""
+        ends = (link for c in self.connections for link in (c.first, c.second))
+        return tuple(link for link in dict.fromkeys(ends) if link != self.entry)
+
+    @property
+    def space(self) -> int:
+        """Freedoms of a free body of it: six, or three in a plane."""
+        return min(c.space for c in self.connections)
+
+    @property
+    def loops(self) -> int:
+        """Independent loops."""
+        return len(self.connections) - len(self.links)
+
+
+def biconnected(
+    connections: Sequence[Connection], at: dict[str, list[int]], root: str
+) -> list[GraphComponent]:
+    """The components of what is joined to the root; each after the one that holds its entry."""
+    depth = {root: 0}
+    low = {root: 0}
+    walked: list[int] = []
+    used: set[int] = set()
+    found: list[GraphComponent] = []
+    path = [(root, iter(at.get(root, ())), 0)]
+    while path:
+        link, ahead, start = path[-1]
+        for number in ahead:
+            if number in used:
+                continue
+            used.add(number)
+            walked.append(number)
+            other = connections[number].other(link)
+            if other in depth:
+                low[link] = min(low[link], depth[other])
+                continue
+            depth[other] = low[other] = len(path)
+            path.append((other, iter(at[other]), len(walked) - 1))
+            break
+        else:
+            path.pop()
+            if path:
+                parent = path[-1][0]
+                low[parent] = min(low[parent], low[link])
+                if low[link] >= depth[parent]:
+                    members = tuple(connections[k] for k in sorted(walked[start:]))
+                    found.append(GraphComponent(parent, members))
+                    del walked[start:]
+    return found[::-1]
+
+
+# How many closing equations of a loop tell something new: its order, less the closing joint's
+# freedoms.
+#
+# The order of a loop is the rank of all its joints' screws as drawn: six in general, three in a
+# plane or about a point. A plane loop that is closed at an R has five equations, of which two
+# determine unknowns; the other three hold by its dimensions.
+
+
+@lru_cache(maxsize=1024)
+def loop_order(joints: tuple[Joint, ...]) -> int:
+    """Rank of the screws of a loop's joints as drawn, moments in parts of the loop's size."""
+    length = diagonal([f.o for joint in joints for f in (joint.on_first, joint.on_second)])
+    rows = [_scaled(screw, length) for joint in joints for screw in joint.screws]
+    order = 0
+    for column in range(6):
+        best = max(range(order, len(rows)), key=lambda i: abs(rows[i][column]), default=None)
+        if best is None or abs(rows[best][column]) <= LOOP_RANK:
+            continue
+        rows[order], rows[best] = rows[best], rows[order]
+        pivot = rows[order]
+        for row in rows[order + 1 :]:
+            factor = row[column] / pivot[column]
+            for i in range(column, 6):
+                row[i] -= factor * pivot[i]
+        order += 1
+    return order
+
+
+def _scaled(screw: Screw, length: float) -> list[float]:
+    """Angular part first; the moment of a turn in parts of `length`, a slide as it is."""
+    angular, linear = screw
+    unit = 1.0 if angular == ZERO else length
+    return [*angular, *(component / unit for component in linear)]
+
+
+# Regions of low order: joints whose screws span less than those of their component.
+#
+# Links of a plane linkage in space have three freedoms against each other, not six, and each of its
+# joints that many equations less; likewise about a point, without turning, in Bennett's loop. Where
+# such a region is only a part of a component, its links share the pose of its frame (the plane),
+# and have the freedoms of its order beside it. The order is that of the screws as drawn
+# (loop_rank.py).
+
+SPACE = 6
+"""Freedoms of a body in space."""
+
+
+class Region(NamedTuple):
+    """Numbers of the connections of a region in its component, its links, and its order."""
+
+    connections: frozenset[int]
+    links: frozenset[str]
+    order: int
+
+
+def order_of(connections: Iterable[Connection]) -> int:
+    """Rank of the screws of some connections; six with a leg or a free pair among them."""
+    members = tuple(connections)
+    if not all(c.has_screws for c in members):
+        return SPACE
+    return loop_order(tuple(sorted(c.joint for c in members)))
+
+
+def find_regions(component: GraphComponent, order: int) -> list[Region]:
+    """The regions of lower order than the component's, the lowest first."""
+    connections = component.connections
+    at = incidence(connections)
+    cycles = {
+        cycle
+        for one, other in _neighbours(connections, at)
+        if (cycle := _shortest(connections, at, one, other))
+    }
+    seeds = [
+        (rank, sorted(cycle))
+        for cycle in cycles
+        if (rank := order_of(connections[k] for k in cycle)) < order
+    ]
+    if not seeds:
+        return []
+    merged = _merged(connections, sorted(seeds))
+    found = [_grown(connections, at, numbers, rank) for rank, numbers in merged]
+    return sorted(found, key=lambda region: (region.order, -len(region.connections)))
+
+
+def _neighbours(
+    connections: Sequence[Connection], at: dict[str, list[int]]
+) -> list[tuple[int, int]]:
+    """Pairs of joints on a link, of each joint's two links that with fewer joints."""
+    found: set[tuple[int, int]] = set()
+    for number, c in enumerate(connections):
+        fewest = min(len(at[c.first]), len(at[c.second]))
+        for link in (c.first, c.second):
+            if len(at[link]) == fewest:
+                found |= {(min(number, k), max(number, k)) for k in at[link] if k != number}
+    screws = [c.has_screws for c in connections]
+    return sorted(pair for pair in found if screws[pair[0]] and screws[pair[1]])
+
+
+def _shortest(
+    connections: Sequence[Connection], at: dict[str, list[int]], one: int, other: int
+) -> frozenset[int] | None:
+    """A shortest loop of joints through two on one link, None where there is none."""
+    pair = (connections[one], connections[other])
+    link = next(end for end in (pair[0].first, pair[0].second) if end in pair[1][1:3])
+    start, goal = pair[0].other(link), pair[1].other(link)
+    came = {start: (start, one), link: (link, one)}
+    front = [start]
+    for near in front:
+        if near == goal:
+            cycle = [one, other]
+            while near != start:
+                near, k = came[near]
+                cycle.append(k)
+            return frozenset(cycle)
+        for k in at[near]:
+            far = connections[k].other(near)
+            if far not in came and connections[k].has_screws:
+                came[far] = (near, k)
+                front.append(far)
+    return None
+
+
+def _merged(
+    connections: Sequence[Connection], seeds: Sequence[tuple[int, list[int]]]
+) -> list[tuple[int, set[int]]]:
+    """Loops of one order that share a joint and span nothing more together, as one region."""
+    regions: list[tuple[int, set[int], tuple[int, ...]] | None] = []
+    owners: dict[int, list[int]] = {}
+    for rank, cycle in seeds:
+        members, base = set(cycle), _base(connections, cycle, rank)
+        near = {r for k in cycle for r in owners.get(k, ())}
+        for r in sorted(near):
+            other = regions[r]
+            if other is None or other[0] != rank:
+                continue
+            both = {*base, *other[2]}
+            if order_of(connections[k] for k in both) == rank:
+                members |= other[1]
+                regions[r] = None
+        for k in members:
+            owners.setdefault(k, []).append(len(regions))
+        regions.append((rank, members, base))
+    return [(region[0], region[1]) for region in regions if region is not None]
+
+
+def _base(connections: Sequence[Connection], cycle: Sequence[int], rank: int) -> tuple[int, ...]:
+    """The first joints of a loop that span what all of them do."""
+    for count in range(1, len(cycle)):
+        if order_of(connections[k] for k in cycle[:count]) == rank:
+            return tuple(cycle[:count])
+    return tuple(cycle)
+
+
+def _grown(
+    connections: Sequence[Connection], at: dict[str, list[int]], numbers: set[int], rank: int
+) -> Region:
+    """With the joints between links of the region that span nothing more."""
+    links = {link for k in numbers for link in (connections[k].first, connections[k].second)}
+    base = _base(connections, sorted(numbers), rank)
+    inside = {k for link in links for k in at[link]} - numbers
+    more = {
+        k
+        for k in inside
+        if connections[k].first in links
+        and connections[k].second in links
+        and connections[k].has_screws
+        and order_of(connections[b] for b in (*base, k)) == rank
+    }
+    return Region(frozenset(numbers | more), frozenset(links), rank)

@@ -1,0 +1,286 @@
+"""What is kept of a stretch of a study's variants: `Model.vary`, and the rows made into records."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.diagnostics import InvalidFile, MechkinError
+from mechkin_cli.studies.formats import Heading, Records, empty_values
+from mechkin_cli.tables import REDUCTIONS, mean, root_mean_square
+from mechkin_cli.tolerances import LAST_ROW
+from mechkin_cli.verdict import SWEEP, Status
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from mechkin_cli.model import Model
+    from mechkin_cli.show import Floats
+    from mechkin_cli.studies.formats import Values
+    from mechkin_cli.variants import Variants
+
+
+# What a study says of a variant that is not ok, in one line.
+
+LONGEST_MESSAGE = 300
+
+
+def messages(
+    found: Variants, texts: Iterable[str], along: Heading | None, places: Floats | None
+) -> Values:
+    """Why variants are not ok (variants,), "" of those that are: what was said where one cannot be
+    built, else the verdict of the first row that is not ok, with what is infinite.
+
+    Args:
+        found: all rows of the variants.
+        texts: what is kept of them.
+        along: what the run goes along, None where nothing moves.
+        places: its values in the rows (variants, rows).
+    """
+    told = empty_values("text", len(found))
+    not_ok = found.codes != Status.ok
+    infinite = _infinite(found, texts)
+    for number in np.flatnonzero(not_ok.any(axis=1)).tolist():
+        row = int(np.argmax(not_ok[number]))
+        place = "" if places is None else _place(along, float(places[number, row]))
+        reason = _reason(Status(int(found.codes[number, row])))
+        text = f"row {row + 1}{place}: {reason}{infinite.get(number, '')}"
+        told[number] = text[:LONGEST_MESSAGE]
+    for number, error in found.errors.items():
+        told[number] = _said(error)
+    return told
+
+
+def _reason(status: Status) -> str:
+    """Without what becomes of cells where those that are infinite are named."""
+    sentence = status.sentence.rstrip(".")
+    return sentence.partition(":")[0] if status is Status.dead_centre else sentence
+
+
+def _infinite(found: Variants, texts: Iterable[str]) -> dict[int, str]:
+    """Which of what is kept is infinite, and in which row first, by the number of the variant."""
+    at = found.codes == Status.dead_centre
+    numbers = np.flatnonzero(at.any(axis=1))
+    told: dict[int, str] = {}
+    for text in texts if numbers.size else ():
+        rows = np.isinf(found[text][numbers])
+        for number, where in zip(numbers.tolist(), rows, strict=True):
+            if where.any():
+                one = f"{text} in row {int(np.argmax(where)) + 1}"
+                told[number] = f"{told[number]}, {one}" if number in told else f"; infinite: {one}"
+    return told
+
+
+def _place(along: Heading | None, place: float) -> str:
+    if along is None or np.isnan(place):
+        return ""
+    return f" ({along.label} = {place:.9g} {along.unit}".rstrip() + ")"
+
+
+def _said(error: MechkinError) -> str:
+    """What was said of a variant that cannot be built."""
+    text = str(error)
+    if isinstance(error, InvalidFile):
+        first = next((d for d in error.diagnostics if d.severity == "error"), None)
+        text = str(first._replace(place=None)) if first is not None else text
+    return " ".join(text.split())[:LONGEST_MESSAGE]
+
+
+VARIANT = Heading("variant", kind="whole")
+ROW = Heading("row", kind="whole")
+DEAD_CENTRE = "dead_centre"
+VERDICTS = (
+    Heading("rows_not_ok", kind="whole"),
+    Heading("verdict", kind="text"),
+    Heading("message", kind="text"),
+)
+"""What is told of every variant beside what is asked for."""
+
+NOT_BUILT, WORKER_DIED = "not-built", "worker-died"
+"""Verdicts of variants without rows."""
+
+VALUE = "value"
+PLACES: Mapping[str, Callable[[Floats], Floats]] = {
+    "place_of_max": lambda values: values,
+    "place_of_min": np.negative,
+    "place_of_peak": np.abs,
+}
+"""Words for places, and that whose largest value stands there."""
+
+
+class StudyColumn(NamedTuple):
+    """A column of variants: a word of `keep:` for a quantity; `at` is the place of `value`, in the
+    file's units."""
+
+    heading: Heading
+    text: str
+    word: str
+    at: float = float("nan")
+
+
+@dataclass(frozen=True)
+class StudyQuestion:
+    """What a study asks of every variant.
+
+    Attributes:
+        run: of the mechanism.
+        parameter: what the run goes along, None where nothing moves.
+        parameters: headings of what varies.
+        kept: columns of variants.
+        rows: headings of quantities of which all rows are kept, their labels the quantities.
+        dead_centre: heading of the place at which a branch ends; None: not asked.
+    """
+
+    run: str
+    parameter: Heading | None
+    parameters: tuple[Heading, ...]
+    kept: tuple[StudyColumn, ...]
+    rows: tuple[Heading, ...]
+    dead_centre: Heading | None
+
+    @property
+    def tables(self) -> dict[str, tuple[Heading, ...]]:
+        """Headings of `variants` and, where rows are kept, of `rows`."""
+        own = tuple(kept.heading for kept in self.kept)
+        ends = () if self.dead_centre is None else (self.dead_centre,)
+        found = {"variants": (VARIANT, *self.parameters, *own, *ends, *VERDICTS)}
+        if self.rows:
+            along = () if self.parameter is None else (self.parameter,)
+            others = tuple(heading for heading in self.rows if heading not in along)
+            found["rows"] = (VARIANT, ROW, *along, *others, VERDICTS[1])
+        return found
+
+
+def chunk(
+    model: Model, question: StudyQuestion, values: Mapping[str, Floats], begin: int, threads: int
+) -> dict[str, Records]:
+    """What is kept of variants that have these values (variants,) by name, in the file's units; the
+    first has the number `begin`. By name of table."""
+    found, places = _varied(model, question, values, threads)
+    count = len(found)
+    records: Records = {VARIANT.label: np.arange(begin, begin + count, dtype=np.int64)}
+    records |= {name: np.asarray(column, dtype=np.float64) for name, column in values.items()}
+    for kept in question.kept:
+        records[kept.heading.label] = _kept(found[kept.text], kept, places)
+    words = np.array([status.label for status in Status], dtype=object)
+    not_ok = found.codes != Status.ok
+    records[VERDICTS[0].label] = np.count_nonzero(not_ok, axis=1).astype(np.int64)
+    verdicts = words[found.codes[np.arange(count), np.argmax(not_ok, axis=1)]]
+    verdicts[list(found.errors)] = NOT_BUILT
+    if question.dead_centre is not None:
+        records[question.dead_centre.label] = _dead_centres(model, values, found, places)
+    records[VERDICTS[1].label] = verdicts
+    texts = dict.fromkeys([kept.text for kept in question.kept] + [h.label for h in question.rows])
+    records[VERDICTS[2].label] = messages(found, texts, question.parameter, places)
+    tables = {"variants": records}
+    if question.rows:
+        tables["rows"] = _rows(question, found, places, begin, words)
+    return tables
+
+
+def lost(question: StudyQuestion, values: Mapping[str, Floats], begin: int) -> dict[str, Records]:
+    """The records of variants that their worker has died of."""
+    count = len(next(iter(values.values())))
+    tables = {
+        name: {h.label: empty_values(h.kind, count if name == "variants" else 0) for h in headings}
+        for name, headings in question.tables.items()
+    }
+    variants = tables["variants"]
+    variants[VARIANT.label] = np.arange(begin, begin + count, dtype=np.int64)
+    variants |= {name: np.asarray(column, dtype=np.float64) for name, column in values.items()}
+    variants[VERDICTS[1].label][:] = WORKER_DIED
+    variants[VERDICTS[2].label][:] = "the process that computed this variant died of it, every time"
+    return tables
+
+
+def _varied(
+    model: Model, question: StudyQuestion, values: Mapping[str, Floats], threads: int
+) -> tuple[Variants, Floats | None]:
+    """The variants, with all rows of what is asked for; and the places of the rows."""
+    asked = [kept.text for kept in question.kept] + [heading.label for heading in question.rows]
+    if question.parameter is not None:
+        asked.append(question.parameter.label)
+    found = model.vary(values, list(dict.fromkeys(asked)), run=question.run, threads=threads)
+    if question.parameter is None:
+        return found, None
+    return found, found[question.parameter.label]
+
+
+def _kept(values: Floats, kept: StudyColumn, places: Floats | None) -> Floats:
+    """One number of the rows of every variant, (variants,)."""
+    if kept.word == VALUE:
+        return _value_at(kept.at, values, places)
+    if kept.word in PLACES:
+        return _study_chunk_place(PLACES[kept.word](values), places)
+    if kept.word not in ("mean", "rms"):
+        return REDUCTIONS[kept.word](values)
+    over = mean if kept.word == "mean" else root_mean_square
+    return over(values, places)
+
+
+def _value_at(at: float, values: Floats, places: Floats | None) -> Floats:
+    """The value in the first row that stands at a place; nan in variants without such a row."""
+    if places is None:
+        return np.full(len(values), np.nan)
+    off = np.where(np.isnan(places), np.inf, np.abs(places - at))
+    row = np.argmin(off, axis=1)
+    every = np.arange(len(values))
+    way = np.fmax.reduce(places, axis=1) - np.fmin.reduce(places, axis=1)
+    return np.where(off[every, row] <= LAST_ROW * way, values[every, row], np.nan)
+
+
+def _study_chunk_place(sizes: Floats, places: Floats | None) -> Floats:
+    """Where the first of the largest sizes stands; the number of the row where nothing moves."""
+    there = ~np.isnan(sizes)
+    row = np.argmax(np.where(there, sizes, -np.inf), axis=1)
+    at = row + 1.0 if places is None else places[np.arange(len(row)), row]
+    return np.where(there.any(axis=1), at, np.nan)
+
+
+def _dead_centres(
+    model: Model, values: Mapping[str, Floats], found: Variants, places: Floats | None
+) -> Floats:
+    """The input at the dead centre at which a variant's branch ends, or at which a row stands, in
+    the file's units; nan where it meets none."""
+    stands = found.codes == Status.dead_centre
+    ends = np.full(len(found), np.nan)
+    if places is not None and stands.any():
+        ends = np.where(
+            stands.any(axis=1), _study_chunk_place(stands.astype(np.float64), places), np.nan
+        )
+    for number in np.flatnonzero((found.codes == Status.beyond_dead_centre).any(axis=1)):
+        own = {name: float(column[number]) for name, column in values.items()}
+        for diagnostic in model.with_parameters(own).analyze([], tables=[]).diagnostics:
+            if diagnostic.code == "dead-centre" and diagnostic.numbers:
+                ends[number] = diagnostic.numbers[0].value
+    return ends
+
+
+def _rows(
+    question: StudyQuestion,
+    found: Variants,
+    places: Floats | None,
+    begin: int,
+    words: NDArray[np.object_],
+) -> Records:
+    """All rows of all variants, one below the other; none behind the one at which a stop ends a
+    response."""
+    count, rows = found.codes.shape
+    records: Records = {
+        VARIANT.label: np.repeat(np.arange(begin, begin + count, dtype=np.int64), rows),
+        ROW.label: np.tile(np.arange(1, rows + 1, dtype=np.int64), count),
+    }
+    if question.parameter is not None and places is not None:
+        records[question.parameter.label] = places.reshape(-1)
+    for heading in question.rows:
+        records[heading.label] = found[heading.label].reshape(-1)
+    records[VERDICTS[1].label] = words[found.codes.reshape(-1)]
+    if places is not None and question.run != SWEEP:
+        asked = ~(np.isnan(places) & (found.codes == Status.ok)).reshape(-1)
+        records = {label: column[asked] for label, column in records.items()}
+    return records

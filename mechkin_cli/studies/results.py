@@ -1,0 +1,232 @@
+"""Results of a study in memory: columns over the variants, as arrays and as data frames."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.arguments import a_text
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError, nearest_hint
+from mechkin_cli.show import Listed, Listing
+from mechkin_cli.studies.chunk import VARIANT, VERDICTS
+from mechkin_cli.studies.folder import ROWS, VARIANTS
+from mechkin_cli.studies.formats import Heading, Records, numbers
+
+if TYPE_CHECKING:
+    import pandas
+    from numpy.typing import NDArray
+
+    from mechkin_cli.show import Floats
+    from mechkin_cli.studies.formats import Values
+
+
+# What a study has found, in a few numbers for each column.
+
+
+class Spread(NamedTuple):
+    """Of a column of numbers: how many are found, the least and the largest and the variants that
+    have them, mean and standard deviation."""
+
+    label: str
+    unit: str
+    found: int
+    least: float
+    least_at: int
+    largest: float
+    largest_at: int
+    mean: float
+    deviation: float
+
+    @property
+    def shown(self) -> tuple[float, float, float, float]:
+        """Least, mean and largest value, and the deviation."""
+        return self.least, self.mean, self.largest, self.deviation
+
+
+@dataclass
+class _RunningColumn:
+    """Sums about the first value, so that a narrow band far from zero keeps its digits."""
+
+    count: int = 0
+    finite: int = 0
+    origin: float = 0.0
+    first: float = 0.0
+    second: float = 0.0
+    least: tuple[float, int] = (np.inf, -1)
+    largest: tuple[float, int] = (-np.inf, -1)
+    infinite: float = 0.0
+
+    def add(self, values: Floats, variants: NDArray[np.int64]) -> None:
+        there = ~np.isnan(values)
+        if not there.any():
+            return
+        values, variants = values[there], variants[there]
+        low, high = int(values.argmin()), int(values.argmax())
+        if values[low] < self.least[0]:
+            self.least = float(values[low]), int(variants[low])
+        if values[high] > self.largest[0]:
+            self.largest = float(values[high]), int(variants[high])
+        finite = values[np.isfinite(values)]
+        if finite.size < values.size:
+            # infinite of both signs have no mean
+            self.infinite += float(np.unique(values[np.isinf(values)]).sum())
+        if finite.size and not self.finite:
+            self.origin = float(finite[0])
+        off = finite - self.origin
+        self.count += values.size
+        self.finite += finite.size
+        self.first += float(off.sum())
+        self.second += float((off * off).sum())
+
+
+class Overview(NamedTuple):
+    """A study's variants: how many, how many have each verdict, and the spreads of columns."""
+
+    variants: int
+    verdicts: dict[str, int]
+    spreads: tuple[Spread, ...]
+
+
+def overview(
+    pieces: Iterable[Records], headings: Sequence[Heading], number: str, verdict: str
+) -> Overview:
+    """The overview of a study's pieces; `number` and `verdict` are labels of columns."""
+    columns = {h.label: _RunningColumn() for h in headings if h.kind == "number"}
+    verdicts: dict[str, int] = {}
+    variants = 0
+    for records in pieces:
+        variants += len(records[number])
+        words, counts = np.unique(records[verdict].astype(str), return_counts=True)
+        for word, count in zip(words.tolist(), counts.tolist(), strict=True):
+            verdicts[word] = verdicts.get(word, 0) + count
+        for label, column in columns.items():
+            column.add(numbers(records[label]), np.asarray(records[number], dtype=np.int64))
+    units = {heading.label: heading.unit for heading in headings}
+    spreads = tuple(_spread(label, units[label], column) for label, column in columns.items())
+    ordered = dict(sorted(verdicts.items(), key=lambda item: (-item[1], item[0])))
+    return Overview(variants, ordered, spreads)
+
+
+def _spread(label: str, unit: str, column: _RunningColumn) -> Spread:
+    if not column.count:
+        return Spread(label, unit, 0, np.nan, -1, np.nan, -1, np.nan, np.nan)
+    if column.infinite != 0.0:
+        ends = (*column.least, *column.largest)
+        return Spread(label, unit, column.count, *ends, column.infinite, np.nan)
+    mean = column.first / column.count
+    variance = max(column.second / column.count - mean * mean, 0.0)
+    return Spread(
+        label,
+        unit,
+        column.count,
+        *column.least,
+        *column.largest,
+        column.origin + mean,
+        float(np.sqrt(variance)),
+    )
+
+
+class StudyFiles(NamedTuple):
+    """What a study has written, and its overview."""
+
+    name: str
+    files: tuple[Path, ...]
+    overview: Overview
+    diagnostics: tuple[Diagnostic, ...]
+
+
+class StudyResults(Listed):
+    """What was kept of all variants: `r["peak(O1.effort)"]` is an array over them, in the file's
+    units.
+
+    Attributes:
+        name: of the study.
+        rows: columns of all rows of all variants by label, empty where none were kept.
+        diagnostics: what the study has to say.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        headings: Mapping[str, Sequence[Heading]],
+        records: Mapping[str, Records],
+        diagnostics: tuple[Diagnostic, ...],
+    ) -> None:
+        self.name = name
+        self.diagnostics = diagnostics
+        self.rows: Records = records.get(ROWS, {})
+        self._headings = headings
+        self._columns = records[VARIANTS]
+
+    def __len__(self) -> int:
+        return len(self._columns[VARIANT.label])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __contains__(self, label: object) -> bool:
+        return label in self._columns
+
+    def __getitem__(self, label: str) -> Values:
+        """A column over the variants (variants,); nan where a variant has no such number.
+
+        Raises:
+            UsageError: there is no such column.
+        """
+        if a_text("a column", label, '"peak(O1.effort)"') not in self._columns:
+            labels = list(self._columns)
+            hint = nearest_hint(label, labels) or f"columns are {', '.join(labels)}"
+            raise UsageError(f"there is no column {label[:LONGEST_NAME]}; {hint}")
+        return self._columns[label]
+
+    def unit(self, label: str) -> str:
+        """The unit of a column; "" where it has none."""
+        self[label]
+        return next(h.unit for h in self._headings[VARIANTS] if h.label == label)
+
+    @property
+    def overview(self) -> Overview:
+        """Counts of verdicts, and least, largest and mean values of the columns."""
+        headings = self._headings[VARIANTS]
+        return overview([self._columns], headings, VARIANT.label, VERDICTS[1].label)
+
+    @property
+    def listing(self) -> Listing:
+        """The overview as a table."""
+        seen = self.overview
+        rows = tuple(
+            (
+                s.label,
+                s.unit,
+                *(f"{value:.6g}" for value in (s.least, s.mean, s.largest, s.deviation)),
+            )
+            for s in seen.spreads
+        )
+        verdicts = ", ".join(f"{count} {word}" for word, count in seen.verdicts.items())
+        head = f"{self.name}: {seen.variants} variants, {verdicts}"
+        labels = ("column", "unit", "least", "mean", "largest", "deviation")
+        return Listing(head, labels, rows, tuple(map(str, self.diagnostics)))
+
+    def to_pandas(self, table: str = VARIANTS) -> pandas.DataFrame:
+        """`variants` or `rows` as a DataFrame; `attrs["units"]` has the unit of each column.
+
+        Raises:
+            UsageError: pandas is not installed, or there is no such table.
+        """
+        try:
+            import pandas
+        except ImportError:
+            raise UsageError("to_pandas needs pandas: pip install 'mechkin[pandas]'") from None
+        if a_text("table", table, f'"{VARIANTS}"') not in self._headings:
+            raise UsageError(
+                f"there is no table {table[:LONGEST_NAME]}; tables are {', '.join(self._headings)}"
+            )
+        columns: Any = self._columns if table == VARIANTS else self.rows
+        order = [heading.label for heading in self._headings[table]]
+        frame = pandas.DataFrame({label: columns[label] for label in order})
+        frame.attrs |= {"units": {h.label: h.unit for h in self._headings[table]}}
+        return frame

@@ -1,0 +1,404 @@
+"""Many variants in pieces, in memory or in a folder that the next run goes on with."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import pickle
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import ExitStack
+from functools import partial
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.arguments import a_path, a_text, a_whole_number
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.kernel.functions import check_threads
+from mechkin_cli.studies.chunk import VARIANT, VERDICTS, StudyQuestion, chunk, lost
+from mechkin_cli.studies.folder import VARIANTS, Contents, StudyFolder, spare
+from mechkin_cli.studies.formats import Records, format_of, joined
+from mechkin_cli.studies.plan import StudyPlan, study_plan
+from mechkin_cli.studies.results import StudyFiles, StudyResults, overview
+from mechkin_cli.studies.source import open_study
+from mechkin_cli.studies.workers import Executors, Task, TaskCall, executed
+from mechkin_cli.tolerances import MOST_KEPT, MOST_THREADS
+from mechkin_cli.verdict import SWEEP, version
+
+if TYPE_CHECKING:
+    from mechkin_cli.model import Model
+    from mechkin_cli.show import Floats
+    from mechkin_cli.studies.source import StudySource
+
+
+# What travels to those who compute a study, and what they do with it.
+
+
+class Parcel(NamedTuple):
+    """A mechanism and what is asked of its variants, as bytes: the text of the file and of the
+    tables that it names, so that a worker needs nothing but the package."""
+
+    content: bytes
+    version: str
+
+    @classmethod
+    def of(cls, model: Model, question: StudyQuestion) -> Parcel:
+        """The parcel of a model and a question."""
+        return cls(pickle.dumps((model, question)), version())
+
+
+class Answer(NamedTuple):
+    """What a worker found, and which version of mechkin it has."""
+
+    tables: dict[str, Records]
+    version: str
+
+
+def work_off(parcel: Parcel, values: Mapping[str, Floats], begin: int, threads: int) -> Answer:
+    """Done by a worker: the records of variants with these values, the first with the number
+    `begin`."""
+    own = version()
+    if own != parcel.version:
+        return Answer({}, own)
+    model, question = _unpacked(parcel)
+    return Answer(chunk(model, question, values, begin, threads), own)
+
+
+def submit(
+    executor: Executor, parcel: Parcel, values: Mapping[str, Floats], begin: int, threads: int
+) -> Future[Answer]:
+    """Hands the variants to an executor."""
+    return executor.submit(work_off, parcel, values, begin, threads)
+
+
+def check_version(found: str) -> None:
+    """Refuses a worker of another version.
+
+    Raises:
+        UsageError: its numbers might be others.
+    """
+    own = version()
+    if found != own:
+        raise UsageError(
+            f"a worker has mechkin {found}, this is mechkin {own}: results would not be those of "
+            "one program; install the same version everywhere"
+        )
+
+
+class _Kept(threading.local):
+    """What a thread has unpacked last: a model of its own, built once for all its tasks."""
+
+    parcel: Parcel | None = None
+    content: tuple[Model, StudyQuestion]
+
+
+_kept = _Kept()
+
+
+def _unpacked(parcel: Parcel) -> tuple[Model, StudyQuestion]:
+    if _kept.parcel != parcel:
+        _kept.content = pickle.loads(parcel.content)
+        _kept.parcel = parcel
+    return _kept.content
+
+
+PIECE_NUMBERS = 2_000_000
+"""Numbers that a piece's rows hold at most while it is computed."""
+
+MOST_IN_PIECE = 4096
+RESPONSES_IN_PIECE = 512
+"""Variants of a piece: enough to fill the kernel's packs and threads, few enough to lose little."""
+
+TRIAL = 16
+TRIAL_SECONDS = 0.25
+"""Variants of the first trial; a trial that takes less than this is made again with more."""
+
+Progress = Callable[[int, int], None]
+"""Told how many variants are done, and of how many."""
+
+
+class Workers(NamedTuple):
+    """Who computes.
+
+    Attributes:
+        threads: of the kernel, in each process; 0: as many as pay.
+        processes: new ones on this machine; 0: this process alone.
+        executor: one of the caller's.
+        scheduler: the address of a Dask cluster.
+        at_once: how many tasks the executor does at a time; 0: as many as it says it does.
+    """
+
+    threads: int = 0
+    processes: int = 0
+    executor: Executor | None = None
+    scheduler: str | None = None
+    at_once: int = 0
+
+    @property
+    def is_here(self) -> bool:
+        """Whether this process computes."""
+        return not self.processes and self.executor is None and self.scheduler is None
+
+
+class Trial(NamedTuple):
+    """Some variants, and what all would take, in seconds and bytes."""
+
+    variants: int
+    seconds: float
+    whole_seconds: float
+    whole_bytes: float
+
+
+class Study:
+    """A study of a model, planned and not yet carried out."""
+
+    def __init__(self, model: Model, source: StudySource) -> None:
+        """Raises:
+        InvalidFile: with every independent error and its place.
+        """
+        self.model = model
+        self.source = source
+        self.plan: StudyPlan = study_plan(source.file, source.document, model)
+
+    @property
+    def variants(self) -> int:
+        """How many."""
+        return len(self.plan.variation)
+
+    @property
+    def piece(self) -> int:
+        """Variants of a piece."""
+        question = self.plan.question
+        if question.run != SWEEP:
+            return RESPONSES_IN_PIECE
+        wide = 2 + len({kept.text for kept in question.kept}) + len(question.rows)
+        return max(1, min(MOST_IN_PIECE, PIECE_NUMBERS // (self.model.problem.motion.rows * wide)))
+
+    def contents(self, file_format: str) -> Contents:
+        """What a folder with this study's results holds."""
+        document = self.model.built.read.document
+        study = {
+            k: v for k, v in self.source.document.data.items() if k not in ("mechanism", "name")
+        }
+        sources = {
+            "mechanism": _digest(document.text.encode("utf-8", "surrogatepass")),
+            "parameters": _digest(_canonical(self._given())),
+            "study": _digest(_canonical(study)),
+            "version": version(),
+        }
+        tables = {**document.tables, **self.source.document.tables}
+        sources |= {name: _digest(content) for name, content in tables.items()}
+        return Contents(sources, self.variants, file_format, self.plan.question.tables)
+
+    def _given(self) -> dict[str, Any]:
+        """Values of parameters that the model was given."""
+        overrides = dict(self.model.built.read.document.overrides)
+        known = self.model.problem.parameters
+        return overrides | {name: repr(known[name].value) for name in known}
+
+    def trial(self, workers: Workers, file_format: str) -> Trial:
+        """Computes some variants, spread over all, as an estimate of the time and the size of all.
+
+        Raises:
+            UsageError: there is no such format.
+        """
+        kind, tables = format_of(file_format), self.plan.question.tables
+        count = TRIAL
+        while True:
+            count = min(count, self.variants)
+            places = [number * self.variants // count for number in range(count)]
+            values = [self.plan.variation.values(place, place + 1) for place in places]
+            joint = {name: np.concatenate([one[name] for one in values]) for name in values[0]}
+            begin = perf_counter()
+            found = chunk(self.model, self.plan.question, joint, 0, workers.threads)
+            seconds = perf_counter() - begin
+            if seconds > TRIAL_SECONDS or count == min(self.variants, self.piece):
+                break
+            count = min(4 * count, self.piece)
+        size = sum(len(kind.piece(headings, found[name])) for name, headings in tables.items())
+        share = self.variants / count
+        at_once = max(workers.processes, 1)
+        return Trial(count, seconds, seconds * share / at_once, size * share)
+
+    def computed(
+        self, tasks: list[Task], workers: Workers
+    ) -> Iterator[tuple[Task, dict[str, Records]]]:
+        """The records of tasks, in the order in which they end."""
+        question, variation = self.plan.question, self.plan.variation
+        with ExitStack() as stack:
+            # threads of the kernel split a piece that is the only one
+            found = None if len(tasks) < 2 and workers.is_here else _executors(workers, stack)
+            if found is None:
+                for task in tasks:
+                    values = variation.values(task.begin, task.end)
+                    yield task, chunk(self.model, question, values, task.begin, workers.threads)
+                return
+            executors, count, threads = found
+            parcel = Parcel.of(self.model, question)
+
+            def hand_over(executor: Executor, task: Task) -> Future[Answer]:
+                values = variation.values(task.begin, task.end)
+                return submit(executor, parcel, values, task.begin, threads)
+
+            def died(task: Task) -> Answer:
+                values = variation.values(task.begin, task.end)
+                return Answer(lost(question, values, task.begin), version())
+
+            for task, answer in executed(tasks, TaskCall(hand_over, died), executors, count):
+                check_version(answer.version)
+                yield task, answer.tables
+
+    def in_memory(self, workers: Workers, progress: Progress | None = None) -> StudyResults:
+        """All results as arrays.
+
+        Raises:
+            UsageError: they are too many for the memory.
+        """
+        workers = _checked(workers)
+        question = self.plan.question
+        width = len(question.tables[VARIANTS]) + len(question.tables.get("rows", ())) * (
+            self.model.problem.motion.rows
+        )
+        if self.variants * width > MOST_KEPT:
+            raise UsageError(
+                f"the results of {self.variants} variants are {self.variants * width} numbers "
+                f"(limit {MOST_KEPT}); write them to a folder: out="
+            )
+        size = self.piece
+        pieces = range(-(-self.variants // size))
+        tasks = [Task(n, n * size, min((n + 1) * size, self.variants)) for n in pieces]
+        found: dict[int, dict[str, Records]] = {}
+        for task, tables in self._whole_pieces(tasks, workers, progress, 0):
+            found[task.piece] = tables
+        ordered = [found[number] for number in pieces]
+        records = {name: joined([piece[name] for piece in ordered]) for name in question.tables}
+        return StudyResults(self.source.name, question.tables, records, self.plan.notes)
+
+    def in_folder(
+        self,
+        folder: Path,
+        workers: Workers,
+        file_format: str = "csv",
+        anew: bool = False,
+        progress: Progress | None = None,
+    ) -> StudyFiles:
+        """Writes the results into a folder; takes up what an earlier run of the same study left.
+
+        Raises:
+            UsageError: the folder holds another study, another process writes to it, or a file
+                cannot be written; pieces that were written stay.
+        """
+        workers, kind = _checked(workers), format_of(file_format)
+        spare(folder, [*self.model.built.read.document.files, *self.source.document.files])
+        with StudyFolder(folder, self.contents(file_format), kind, self.piece) as output:
+            output.begin(anew)
+            missing = [] if output.is_complete else output.missing()
+            tasks = [Task(number, *output.stretch(number)) for number in missing]
+            done = self.variants - sum(task.end - task.begin for task in tasks)
+            for task, tables in self._whole_pieces(tasks, workers, progress, done):
+                output.put(task.piece, tables)
+            headings = self.plan.question.tables[VARIANTS]
+            if not output.is_complete:
+                output.finish()
+            seen = overview(output.read(VARIANTS), headings, VARIANT.label, VERDICTS[1].label)
+            return StudyFiles(self.source.name, tuple(output.results), seen, self.plan.notes)
+
+    def _whole_pieces(
+        self, tasks: list[Task], workers: Workers, progress: Progress | None, done: int
+    ) -> Iterator[tuple[Task, dict[str, Records]]]:
+        """Pieces, of which a worker that died may have left several parts."""
+        whole = {task.piece: task for task in tasks}
+        parts: dict[int, list[tuple[Task, dict[str, Records]]]] = {}
+        for part, tables in self.computed(tasks, workers):
+            task = whole[part.piece]
+            own = parts.setdefault(part.piece, [])
+            own.append((part, tables))
+            done += part.end - part.begin
+            if sum(p.end - p.begin for p, _ in own) == task.end - task.begin:
+                own.sort(key=lambda item: item[0].begin)
+                names = self.plan.question.tables
+                yield task, {name: joined([tables[name] for _, tables in own]) for name in names}
+                del parts[part.piece]
+            if progress is not None:
+                progress(done, self.variants)
+
+
+def study_of(
+    model: Model,
+    given: str | Path | Mapping[str, Any],
+    out: str | Path | None,
+    file_format: str,
+    again: bool,
+    workers: Workers,
+    progress: Progress | None,
+) -> StudyResults | StudyFiles:
+    """`Model.study`, whose arguments these are."""
+    if not isinstance(given, Mapping):
+        given = a_path("study", given)
+    a_text("format", file_format, '"csv"')
+    source = open_study(given)
+    study = Study(source.applied_to(model), source)
+    if out is None:
+        return study.in_memory(workers, progress)
+    return study.in_folder(a_path("out", out), workers, file_format, again, progress)
+
+
+def _checked(workers: Workers) -> Workers:
+    """The same with whole numbers; UsageError where they are none, or too many."""
+    processes = a_whole_number("processes", workers.processes, "processes")
+    if processes > MOST_THREADS:
+        raise UsageError(f"processes {processes}: at most {MOST_THREADS}")
+    threads = a_whole_number("threads", workers.threads, "threads")
+    check_threads(threads)
+    return workers._replace(threads=threads, processes=processes)
+
+
+def _executors(workers: Workers, stack: ExitStack) -> tuple[Executors, int, int] | None:
+    """Executors, how many tasks they do at a time, threads of each; None: this process computes."""
+    given = [workers.executor is not None, workers.scheduler is not None, workers.processes > 0]
+    if sum(given) > 1:
+        raise UsageError("processes, executor and scheduler say who computes; give one of them")
+    if workers.scheduler is not None:
+        from mechkin_cli.studies.workers import cluster
+
+        found = stack.enter_context(cluster(workers.scheduler))
+        for answer in found.ask(version).values():
+            check_version(answer)
+        return (
+            Executors(found.executor, None),
+            workers.at_once or found.workers,
+            workers.threads or 1,
+        )
+    if workers.executor is not None:
+        count = (
+            workers.at_once or getattr(workers.executor, "_max_workers", 0) or os.cpu_count() or 1
+        )
+        check_version(workers.executor.submit(version).result())
+        return Executors(workers.executor, None), count, workers.threads or 1
+    if workers.processes:
+        from mechkin_cli.studies.workers import processes
+
+        make = partial(processes, workers.processes)
+        executors = Executors(make(), make)
+        stack.callback(lambda: executors.current.shutdown(wait=False, cancel_futures=True))
+        return executors, workers.processes, workers.threads or 1
+    threads = workers.threads or os.cpu_count() or 1
+    if threads == 1:
+        return None
+    # a piece to a thread: what is done beside the kernel goes on in several, too
+    pool = ThreadPoolExecutor(threads)
+    stack.callback(pool.shutdown, wait=False, cancel_futures=True)
+    return Executors(pool, None), threads, 1
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _canonical(data: Mapping[str, Any]) -> bytes:
+    return json.dumps(data, sort_keys=True, ensure_ascii=False).encode("utf-8", "surrogatepass")

@@ -1,0 +1,317 @@
+"""Why a branch ends: at a dead centre, which is located, or somewhere it could not be followed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.assembly import MAY_BE_RIGID
+from mechkin_cli.diagnostics import Diagnostic, Number, Place
+from mechkin_cli.kernel._kernel import MOST_PATH_STEPS
+from mechkin_cli.modes import Passage, Walker
+from mechkin_cli.plan import TrackEnd
+from mechkin_cli.session import (
+    BranchFold,
+    BranchPoint,
+    EndOfRows,
+    Followed,
+    Runaway,
+    find_limit,
+    input_number,
+    input_numbers,
+    input_text,
+)
+from mechkin_cli.sweep.rows import SweepRows
+from mechkin_cli.units import LENGTH, TIME
+from mechkin_cli.verdict import Status
+
+if TYPE_CHECKING:
+    from mechkin_cli.session import Session
+    from mechkin_cli.show import Floats
+
+
+MAY_BE_SPECIAL = "this may be a branch point or a special position; sweep from its other side"
+MOST_SHOWN = 4
+"""Places that a message shows."""
+
+
+def explain_end(session: Session, path: Floats, followed: Followed, rows: SweepRows) -> None:
+    """Says why a branch ended, and gives the rows that it does not reach their status.
+
+    `path` (inputs, rows) in kernel units and `rows` are in the order in which they were followed.
+    """
+    missing = ~rows.reached
+    rows.status[missing] = Status.branch_lost
+    locked = locked_inputs(session, followed.inputs - path[:, 0])
+    if locked:
+        rows.diagnostics.extend(fault for fault in locked if fault not in rows.diagnostics)
+        return
+    if followed.end == TrackEnd.EXHAUSTED:
+        rows.diagnostics.append(_exhausted_note(session, followed, rows))
+        return
+    limit = find_limit(session, followed) if len(path) else None
+    if isinstance(limit, BranchFold):
+        rows.status[missing] = Status.beyond_dead_centre
+    if session.problem.held and (held := _lost_hold_note(session, followed, limit, rows)):
+        rows.diagnostics.append(held)
+    elif isinstance(limit, BranchFold):
+        assert followed.ending is not None
+        rows.ends.append(EndOfRows(int(rows.numbers[rows.reached][-1]), followed.ending))
+        rows.diagnostics.append(_dead_centre_note(session, followed, limit, path, rows))
+    elif isinstance(limit, Runaway):
+        rows.diagnostics.append(_runaway_note(session, followed, limit, rows))
+    elif isinstance(limit, BranchPoint):
+        rows.diagnostics.append(_branch_point_note(session, followed, limit, rows))
+    else:
+        rows.diagnostics.append(_lost_note(session, followed, path, rows))
+
+
+def crossing_note(session: Session, followed: Followed) -> Diagnostic:
+    """The branch points that a way passed straight on."""
+    places = [
+        input_numbers(session.problem, session.layout, crossing.inputs)
+        for crossing in followed.crossings
+    ]
+    return passed_straight_on("branch", places)
+
+
+def passed_straight_on(
+    subject: str, places: Sequence[Sequence[Number]], place: Place | None = None
+) -> Diagnostic:
+    """The note that a branch or a motion went straight on through branch points.
+
+    Args:
+        subject: what passed them.
+        places: numbers that tell each branch point.
+        place: of what asked for the motion.
+    """
+    shown = [", ".join(map(input_text, numbers)) for numbers in places[:MOST_SHOWN]]
+    more = len(places) - len(shown)
+    return Diagnostic(
+        "branch-point-passed",
+        "note",
+        f"the {subject} passes {'a branch point' if len(places) == 1 else 'branch points'} along "
+        "its smooth continuation, as assembly: {at_branch_points: straight} asks",
+        place,
+        measured="; ".join(shown) + (f" and {more} more" if more else ""),
+        numbers=tuple(number for numbers in places[:MOST_SHOWN] for number in numbers),
+    )
+
+
+def input_faults(session: Session) -> list[Diagnostic]:
+    """What mobility says of inputs that are locked, dependent or too few, where by the count of
+    their equations all loops would be driven.
+
+    To be asked where a run is stuck or its rank unclear from its first row on. At a branch point
+    ways of several kinds meet, and inputs that are locked on one drive another: then only freedoms
+    are named that are left undriven on all of them.
+    """
+    from mechkin_cli.mobility import find_mobility, undriven_notes
+
+    found = find_mobility(session.problem, session)
+    driven, idle, useful = session.problem.motion.driven, len(found.idle), found.useful
+    codes = {"input-locked", "inputs-dependent", "undriven-freedom"}
+    is_at_branch_point = found.first_order != found.mobility and not session.is_redundant
+    if is_at_branch_point:
+        least = min(found.dimensions, default=0)
+        codes = {"undriven-freedom"} if least > len(driven) + idle else set()
+    elif useful and len(driven) > useful:
+        # at the first row one of them may stand still by chance; together they cannot move
+        return [_too_many(driven, useful)]
+    notes = found.diagnostics if driven else undriven_notes(found.mobility or 0, idle, 0)
+    return [note._replace(severity="error") for note in notes if note.code in codes]
+
+
+def _too_many(driven: Sequence[tuple[str, str]], useful: int) -> Diagnostic:
+    names = ", ".join(".".join(each) for each in driven)
+    freedoms = "one freedom" if useful == 1 else f"{useful} freedoms"
+    return Diagnostic(
+        "inputs-dependent",
+        "error",
+        f"the inputs {names} are not independent",
+        measured=f"{len(driven)} inputs drive {freedoms}",
+        hint="drive fewer coordinates",
+    )
+
+
+def locked_inputs(session: Session, moved: Floats) -> list[Diagnostic]:
+    """The same of inputs that hardly `moved` (inputs,)."""
+    way = float(np.max(np.abs(moved), initial=0.0))
+    return input_faults(session) if way <= tolerances.PASSED else []
+
+
+def _row_span(rows: SweepRows) -> str:
+    missing = np.sort(rows.numbers[~rows.reached]) + 1
+    return f"row {missing[0]}" if missing.size == 1 else f"rows {missing[0]} to {missing[-1]}"
+
+
+def _stay_empty(rows: SweepRows, where: str = "") -> str:
+    """The missing rows in words, and `where` they lie."""
+    one = int(np.count_nonzero(~rows.reached)) == 1
+    lie = f"{'lies' if one else 'lie'} {where} and " if where else ""
+    return f"{_row_span(rows)} {lie}{'stays' if one else 'stay'} empty"
+
+
+def _place(
+    session: Session, followed: Followed, inputs: Floats, shown: Iterable[int] | None = None
+) -> tuple[Number, ...]:
+    """Where a way ended: the time, where inputs move by laws, and the inputs, or those `shown`."""
+    course = session.problem.motion.course
+    numbers = input_numbers(session.problem, session.layout, inputs)
+    found = numbers if shown is None else tuple(numbers[number] for number in shown)
+    if followed.parameter is None or course is None or course.parameter.name != "time":
+        return found
+    moment = Number("time", followed.parameter, session.problem.units.label(TIME))
+    return (moment, *found)
+
+
+def _dead_centre_note(
+    session: Session, followed: Followed, limit: BranchFold, path: Floats, rows: SweepRows
+) -> Diagnostic:
+    moving = np.flatnonzero(limit.inputs_beyond != limit.inputs)
+    shown = _place(session, followed, limit.inputs, moving if moving.size else None)
+    beyond = _all_beyond(limit, path, rows)
+    where = "beyond it" if beyond else "beyond it on the way of the rows"
+    again = _assembled_again(session, followed, limit, path, rows)
+    cure = "end the sweep before it, or choose another assembly"
+    if again:
+        cure = f"end the sweep before it; from {input_text(again)} on it can be assembled again"
+    return Diagnostic(
+        "dead-centre",
+        "warning",
+        f"the branch ends at a dead centre; {_stay_empty(rows, where)}",
+        measured=", ".join(map(input_text, shown)),
+        hint=f"{cure}{_chords(session, path)}",
+        numbers=shown,
+    )
+
+
+def _chords(session: Session, path: Floats) -> str:
+    """What to know of rows that no law joins."""
+    course = session.problem.motion.course
+    together = np.count_nonzero((path != path[:, :1]).any(axis=1)) > 1
+    if not together or (course is not None and course.parameter.name != "row"):
+        return ""
+    return "; between rows that list their values the inputs go straight from one to the next"
+
+
+def _assembled_again(
+    session: Session, followed: Followed, limit: BranchFold, path: Floats, rows: SweepRows
+) -> Number | None:
+    """Where a sweep of one turning input comes to the branch's other end, a whole turn on, before
+    its last row."""
+    moving = np.flatnonzero((path != path[:, :1]).any(axis=1))
+    if moving.size != 1 or not rows.reached[0]:
+        return None
+    number = int(moving[0])
+    walker = Walker(session, number, path[:, 0])
+    direction = float(np.sign(followed.direction[number]))
+    if walker.period is None or direction == 0.0:
+        return None
+    other = walker.end(Passage(float(path[number, 0]), rows.states[:, 0]), -direction)
+    value = other.value + direction * walker.period
+    ahead = direction * (path[number, ~rows.reached] - value)
+    behind = direction * (value - float(limit.inputs[number]))
+    if other.kind != "dead-centre" or behind <= 0.0 or not (ahead >= 0.0).any():
+        return None
+    return input_number(session.problem, session.layout, number, value)
+
+
+def _all_beyond(limit: BranchFold, path: Floats, rows: SweepRows) -> bool:
+    """Whether the missing rows lie where the branch does not come at all."""
+    back = limit.inputs_beyond - limit.inputs
+    off = path[:, ~rows.reached] - limit.inputs[:, None]
+    along = sum(one * other for one, other in zip(off, back, strict=True))
+    return bool(np.all(along <= 0.0))
+
+
+def _runaway_note(
+    session: Session, followed: Followed, limit: Runaway, rows: SweepRows
+) -> Diagnostic:
+    places = _place(session, followed, followed.inputs)
+    units = session.problem.units
+    slide = float(units.from_si(limit.slide * session.layout.length, LENGTH))
+    return Diagnostic(
+        "unbounded",
+        "error",
+        f"the slide of {limit.joint} grows out of bounds, the branch seems to go to infinity; "
+        f"{_stay_empty(rows)}",
+        measured=f"{slide:.6g} {units.label(LENGTH)} at the last place followed, "
+        f"{', '.join(map(input_text, places))}",
+        hint="end the sweep before it, or choose another assembly",
+        numbers=places,
+    )
+
+
+def _branch_point_note(
+    session: Session, followed: Followed, point: BranchPoint, rows: SweepRows
+) -> Diagnostic:
+    places = _place(session, followed, point.inputs)
+    return Diagnostic(
+        "branch-point",
+        "error",
+        "the branch comes to a branch point, where it crosses another and the mechanism may go "
+        f"either way; {_stay_empty(rows)}",
+        measured=", ".join(map(input_text, places)),
+        hint="assembly: {at_branch_points: straight} goes on along the smooth continuation; or "
+        "begin another sweep beyond it with assembly: {near: ...}",
+        numbers=places,
+    )
+
+
+def _lost_hold_note(
+    session: Session,
+    followed: Followed,
+    limit: BranchFold | Runaway | BranchPoint | None,
+    rows: SweepRows,
+) -> Diagnostic | None:
+    """If what holds an idle freedom ends the branch, and not the mechanism, that."""
+    from mechkin_cli.mobility import lost_holds
+
+    at = limit if isinstance(limit, BranchFold | BranchPoint) else followed
+    held = lost_holds(session, at.inputs, at.state)
+    if not held:
+        return None
+    places = _place(session, followed, at.inputs)
+    words = "; ".join(dict.fromkeys(one.words for one in held))
+    kept = ", ".join(dict.fromkeys(one.convention for one in held))
+    names = [one.name for one in held if one.cure == f"drive {one.name}"]
+    drive = f"drive it (inputs: {{{names[0]}: ...}}) so that it can go on, or " if names else ""
+    return Diagnostic(
+        "hold-ends",
+        "error",
+        f"{words}; {kept}, and cannot be kept there beyond this place, where the mechanism itself "
+        f"has no dead centre; {_stay_empty(rows)}",
+        measured=", ".join(map(input_text, places)),
+        hint=f"{drive}put the idle links elsewhere, by the drawing or by assembly: {{near: ...}}",
+        numbers=places,
+    )
+
+
+def _exhausted_note(session: Session, followed: Followed, rows: SweepRows) -> Diagnostic:
+    places = _place(session, followed, followed.inputs)
+    return Diagnostic(
+        "steps-exhausted",
+        "error",
+        "following the branch takes too many steps: the way to the next row is too long, or the "
+        f"mechanism turns too fast on it; {_stay_empty(rows)}",
+        measured=f"{followed.steps} steps, last place {', '.join(map(input_text, places))}",
+        limit=f"{MOST_PATH_STEPS} steps, {tolerances.MOST_STEPS} for half a radian or length unit",
+        hint="check the range of the input and its unit",
+        numbers=places,
+    )
+
+
+def _lost_note(session: Session, followed: Followed, path: Floats, rows: SweepRows) -> Diagnostic:
+    places = _place(session, followed, followed.inputs)
+    return Diagnostic(
+        "branch-lost",
+        "error",
+        f"the branch could not be followed further; {_stay_empty(rows)}",
+        measured=f"last place {', '.join(map(input_text, places))}",
+        hint=(MAY_BE_RIGID if session.is_redundant else MAY_BE_SPECIAL) + _chords(session, path),
+        numbers=places,
+    )

@@ -1,0 +1,293 @@
+"""Rows that stand at a dead centre: there a coordinate goes as the root of what is left of the
+input, so that its rates, and what a load costs the input, grow without bound.
+
+Doubles give the position there to half its digits, and of the rates none. So these are not read off
+the row: two places a little before it on its branch tell what grows towards it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.assembly import PlacesBefore, at_unit_rate, left_for, unit_rates
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.plan import Demand, demand_of
+from mechkin_cli.session import precise_inputs
+from mechkin_cli.tape import TraceLost
+from mechkin_cli.tolerances import (
+    BEFORE_DEAD_CENTRE,
+    CONDITION_RATES_UNCLEAR,
+    DEAD_CENTRE_LOST,
+    GROWS_WITHOUT_BOUND,
+    ON_FOLD,
+    REACTION_ROUNDING,
+    RESTS,
+)
+from mechkin_cli.verdict import Status
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.mechanism import Wanted
+    from mechkin_cli.plan import Slot
+    from mechkin_cli.session import Batch, RowPlaces, Session
+    from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.sweep.rows import SweepRows
+
+
+# Places before a row at a dead centre, on its branch: what grows without bound shows there.
+
+
+def places_before(session: Session, rows: SweepRows, row: int) -> list[PlacesBefore]:
+    """The places before a row: followed from another row that is clear of the fold; where there
+    is none, left for along the branches that meet in the row: along that of other rows, or that
+    which `near` means, or along both."""
+    found = _followed(session, rows, row)
+    if found is not None:
+        return [found]
+    return _chosen(session, rows, row, left_for(session, row, rows.states[:, row]))
+
+
+def _followed(session: Session, rows: SweepRows, row: int) -> PlacesBefore | None:
+    """Along the branch of the nearest row that is clear of the fold, towards it or, where that row
+    stands nearer, away from it. None where there is no such row, or where the branch does not lead
+    there."""
+    values = session.inputs.values
+    away = values - values[:, [row]]
+    distance = np.abs(away).max(axis=0)
+    serves = rows.reached & (rows.status == Status.ok) & (rows.section == rows.section[row])
+    numbers = np.flatnonzero(serves & (distance > 0.0))
+    if not numbers.size:
+        return None
+    far = distance[numbers] > BEFORE_DEAD_CENTRE[0]
+    numbers = numbers[far] if far.any() else numbers
+    start = numbers[np.argmin(np.abs(numbers - row))]
+    parts = np.array([1.0, *(part / distance[start] for part in BEFORE_DEAD_CENTRE)])
+    path = values[:, [row]] + away[:, [start]] * parts
+    found = session.follow(path, rows.states[:, start], every_row=True)
+    if found.reached < parts.size:
+        return None
+    places = np.ascontiguousarray(path[:, 1:])
+    batch = session.close(places, np.ascontiguousarray(found.guess[:, 1:]))
+    return PlacesBefore(row, places, batch.states) if batch.good.all() else None
+
+
+def _chosen(
+    session: Session, rows: SweepRows, row: int, ways: list[PlacesBefore]
+) -> list[PlacesBefore]:
+    """Those of two branches on which other rows lie, or which `near` means; both where nothing
+    tells."""
+    if len(ways) < 2:
+        return ways
+    apart = ways[0].states[:, :1] - ways[1].states[:, :1]
+    others = rows.reached & (rows.section == rows.section[row])
+    along = _products(apart, rows.states - rows.states[:, [row]])
+    seen = np.flatnonzero(others & (np.abs(along) > ON_FOLD * _products(apart, apart)))
+    if seen.size:
+        nearest = seen[np.argmin(np.abs(seen - row))]
+        return [ways[0 if along[nearest] > 0.0 else 1]]
+    # a variant's branch is the base's, which `near` names where the base stands
+    if not session.problem.assembly.near or session.continued is not None:
+        return ways
+    from mechkin_cli.assembly import distances_of, is_unclear
+
+    states = np.stack([way.states[:, 0] for way in ways], axis=1)
+    distances, _ = distances_of(session, ways[0].inputs[:, 0], states)
+    return ways if is_unclear(*sorted(distances)) else [ways[int(np.argmin(distances))]]
+
+
+def _products(way: Floats, states: Floats) -> Floats:
+    """Scalar products (places,) with a way (states, 1), added up in the order of the states."""
+    total = np.zeros(states.shape[1])
+    for along, state in zip(way[:, 0], states, strict=True):
+        total = total + along * state
+    return total
+
+
+# Rates of which no digit is left, measured in double-double.
+#
+# A row's states x are closed in doubles, and next to a dead centre a few roundings of that, of the
+# file's constants or of an input are a large part of the distance from it, with which rates go. How
+# large is seen by one step of Newton's method with the numbers as the file writes them,
+#
+#     x + dx,   J dx = -F(x),   F in double-double,
+#
+# and the rates there. At a dead centre itself J is singular at the true place: the step goes half
+# the way to it, from wherever rounding has left the row, and all that grows there doubles. Beside
+# it the step ends at the true place but for its square. A row that has come so near that one
+# rounding of an input u is as much, |x''| eps against |x'|, may be right by chance, or on the other
+# branch.
+
+
+def lost_rates(session: Session, rows: NDArray[np.intp], states: Floats) -> Bools:
+    """Where the step, or a rounding of the input, changes the rates at an input's unit rate by more
+    than a part of themselves.
+
+    Args:
+        session: the mechanism as it is driven.
+        rows: numbers of some of its rows (places,).
+        states: (states, places) closed there in doubles.
+
+    Returns:
+        (inputs, places), by each input in turn.
+    """
+    constants, values = _as_written(session, rows)
+    rounded = np.ascontiguousarray(session.inputs.reduced[:, rows])
+    lost = np.zeros(rounded.shape, dtype=bool)
+    for number, value in enumerate(rounded):
+        own = at_unit_rate(session, rounded, states, number)
+        closer = session.run_precise(
+            values,
+            states,
+            constants=constants,
+            rates=unit_rates(rounded, number),
+            demand=Demand.VELOCITY,
+            derivatives=True,
+            iterations=1,
+        )
+        assert own.first is not None
+        assert own.second is not None
+        assert closer.first is not None
+        change = np.abs(closer.first[:, 0] - own.first).max(axis=0)
+        rounding = np.spacing(np.maximum(1.0, np.abs(value))) * np.abs(own.second).max(axis=0)
+        known = DEAD_CENTRE_LOST * np.abs(own.first).max(axis=0)
+        lost[number] = ~((change < known) & (rounding < known))
+    return lost
+
+
+def _as_written(session: Session, rows: NDArray[np.intp]) -> tuple[Floats | None, Floats]:
+    """Constants and inputs (inputs, 2, places) as the file writes them; of a session of no file, or
+    where a number depends on the text in a way that no tape holds, the doubles that they are."""
+    try:
+        precise = session.precise
+        inputs = precise_inputs(precise, session).reduced[..., rows]
+        return precise.constants(session), np.ascontiguousarray(inputs)
+    except (TraceLost, LookupError, ValueError):
+        return None, np.ascontiguousarray(session.inputs.reduced[:, rows])
+
+
+def judge_dead_centres(session: Session, rows: SweepRows, condition: Floats) -> None:
+    """Finds the rows that stand at a dead centre as nearly as a double can say, among those whose
+    condition (rows,) leaves it open, and says so."""
+    judged = np.isin(rows.status, (Status.ok, Status.near_singular, Status.rank_unclear))
+    near = rows.reached & judged & ~(condition <= CONDITION_RATES_UNCLEAR)
+    if not near.any() or not session.driven:
+        return
+    for row in np.flatnonzero(near & _is_lost(session, rows, near)).tolist():
+        found = [way for way in places_before(session, rows, row) if _grows(session, way)]
+        if found:
+            rows.dead_centres += found
+            rows.status[row] = Status.dead_centre
+    if rows.dead_centres:
+        rows.diagnostics.append(_note(rows))
+
+
+def _is_lost(session: Session, rows: SweepRows, near: Bools) -> Bools:
+    """Rows (rows,) whose rates say nothing."""
+    lost: Bools = np.asarray(rows.status == Status.rank_unclear)
+    numbers = np.flatnonzero(near & ~lost)
+    if numbers.size:
+        states = np.ascontiguousarray(rows.states[:, numbers])
+        lost[numbers] = lost_rates(session, numbers, states).any(axis=0)
+    return lost
+
+
+def _grows(session: Session, before: PlacesBefore) -> bool:
+    """Whether rates along the way to a dead centre grow without bound."""
+    way = before.inputs[:, 1] - before.inputs[:, 0]
+    batch = session.run(
+        before.inputs,
+        before.states,
+        demand=Demand.VELOCITY,
+        rates=np.repeat((way / np.abs(way).max())[:, None], 2, axis=1),
+        derivatives=True,
+        iterations=0,
+    )
+    assert batch.first is not None
+    far, close = np.abs(batch.first).max(axis=0)
+    return bool(close >= GROWS_WITHOUT_BOUND * far > 0.0)
+
+
+def put_unbounded(
+    session: Session,
+    rows: SweepRows,
+    wanted: Sequence[Wanted],
+    batch: Batch,
+    places: RowPlaces,
+    asked: Mapping[str, Any],
+) -> None:
+    """Puts the infinite with its sign into a run's outputs, in place, where a quantity grows
+    without bound towards a row at a dead centre; others that take rates or reactions have no value.
+
+    Args:
+        session: the one that ran.
+        rows: the run's.
+        wanted: what it read.
+        batch: what it found.
+        places: of its rows.
+        asked: what else it was told.
+    """
+    assert batch.outputs is not None
+    slots = session.readout(wanted).slots
+    read = [quantity for quantity in wanted if demand_of(session.problem.mechanism, [quantity])]
+    forces = [q for q in read if demand_of(session.problem.mechanism, [q]) & Demand.FORCES]
+    rates = [q for q in read if q not in forces]
+    alike = [_slots(slots, some) for some in (rates, forces) if some]
+    put: set[int] = set()
+    for before in rows.dead_centres if alike else ():
+        there = places.at([before.row] * 2)._replace(inputs=before.inputs, guess=before.states)
+        outputs = session.run(**there.arguments, **asked, iterations=0).outputs
+        assert outputs is not None
+        rests = _comes_to_rest(places.rates, before.row)
+        for lost in alike:
+            far, close = outputs[lost].T
+            grows = np.abs(close) >= GROWS_WITHOUT_BOUND * np.abs(far)
+            # what is zero but for rounding does not grow with the others; where friction jams,
+            # forces have no value even before the dead centre
+            level = np.abs(close).max(where=np.isfinite(close), initial=0.0)
+            grows &= np.abs(close) > REACTION_ROUNDING * level
+            grows &= not rests
+            told = np.where(grows, np.copysign(np.inf, close), np.nan)
+            if before.row in put:
+                # of two branches that meet in the row
+                told[told != batch.outputs[lost, before.row]] = np.nan
+            batch.outputs[lost, before.row] = told
+        put.add(before.row)
+
+
+def _comes_to_rest(rates: Floats | None, row: int) -> bool:
+    """Whether the inputs (inputs, rows) rest in a row of a motion: the limits are then those of its
+    law, along which rates go to zero with the distance."""
+    if rates is None or not rates.any():
+        return False
+    largest = np.abs(rates).max(axis=1)
+    return bool((np.abs(rates[:, row]) <= RESTS * largest).all())
+
+
+def _slots(slots: Mapping[str, Slot], quantities: Sequence[Wanted]) -> list[int]:
+    """The output rows of some quantities."""
+    return [slots[q.name].first + part for q in quantities for part in range(slots[q.name].width)]
+
+
+def _note(rows: SweepRows) -> Diagnostic:
+    ways = [before.row + 1 for before in rows.dead_centres]
+    numbers = list(dict.fromkeys(ways))
+    where = f"row {numbers[0]} stands" if len(numbers) == 1 else f"{len(numbers)} rows stand"
+    first = "" if len(numbers) == 1 else f", the first is row {numbers[0]}"
+    lone = [number for number in numbers if ways.count(number) > 1]
+    both = ""
+    if lone:
+        both = (
+            f"; nothing tells on which of two branches row {lone[0]} is, so what is infinite with "
+            "another sign on each is empty, too"
+        )
+    return Diagnostic(
+        "at-dead-centre",
+        "warning",
+        f"{where} at a dead centre of the inputs{first}: cells that grow without bound towards it "
+        f"say inf, and others that depend on rates or reactions are empty{both}",
+        hint="end the sweep before it, or drive another coordinate",
+    )

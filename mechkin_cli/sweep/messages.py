@@ -1,0 +1,359 @@
+"""What a sweep has to say about its rows beside their verdicts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.assembly import is_cyclic
+from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.expressions import parse
+from mechkin_cli.kernel.functions import cos
+from mechkin_cli.mechanism import (
+    ACTUATION,
+    BEARING_KINDS,
+    is_written,
+    quantities_read,
+    undefined_laws,
+)
+from mechkin_cli.plan import Demand, demand_of
+from mechkin_cli.search import pose_keys, same_poses
+from mechkin_cli.tables import unique_cells
+from mechkin_cli.units import MOMENT
+from mechkin_cli.verdict import Status
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from mechkin_cli.mechanism import Joint, Problem, Wanted
+    from mechkin_cli.session import Session
+    from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.sweep.result import Result
+    from mechkin_cli.sweep.rows import SweepRows
+
+
+LOADS_NAMED = 4
+"""Unique bearing loads that are named one by one."""
+
+
+class _Turn(NamedTuple):
+    """A row that is some whole turns of an input away from the first."""
+
+    name: str
+    row: int
+    turns: int
+
+
+def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnostic | None:
+    """Rows a full turn of the one moving input apart at which the mechanism is not the same.
+
+    A thread that advances with the turn, and what moves with it, is not meant to be. `states`
+    (states, rows) in kernel units.
+    """
+    turns = session.own("turns", lambda: _whole_turns(session))
+    turn = next((turn for turn in turns if reached[turn.row]), None)
+    if turn is None or not reached[0] or not stands_elsewhere(session, states[:, [0, turn.row]]):
+        return None
+    return Diagnostic(
+        "turn-not-closed",
+        "note",
+        f"after {turn.turns} full turn{'s' * (turn.turns > 1)} of {turn.name}, in row "
+        f"{turn.row + 1}, the mechanism is not back at its first row's position: it has gone on to "
+        "another assembly",
+        hint="mechkin ranges shows the circuit",
+    )
+
+
+def _whole_turns(session: Session) -> list[_Turn]:
+    """The rows that are whole turns of the one moving input away from the first, in order."""
+    inputs = session.inputs.values
+    moving = np.flatnonzero(np.ptp(inputs, axis=1) > 0.0)
+    if moving.size != 1:
+        return []
+    number = int(moving[0])
+    item = session.problem.motion.inputs[number]
+    if not is_cyclic(session.problem.mechanism, item.name):
+        return []
+    turns = session.inputs.whole[number] - session.inputs.whole[number, 0]
+    rest = (session.inputs.reduced[number] - session.inputs.reduced[number, 0]) / (2.0 * np.pi)
+    whole = (turns != 0.0) & (np.abs(rest) <= tolerances.SAME_TURN)
+    rows = np.flatnonzero(whole).tolist()
+    return [_Turn(item.name, row, round(abs(float(turns[row])))) for row in rows]
+
+
+def stands_elsewhere(session: Session, both: Floats) -> bool:
+    """Whether the second of two places (states, 2) is not the first; threads may have gone on."""
+    both = np.ascontiguousarray(both)
+    keys = pose_keys(session.layout, both, left_out=_advanced(session, both))
+    return not same_poses(keys[:, :1], keys[:, 1:])[0, 0]
+
+
+def _advanced(session: Session, both: Floats) -> set[tuple[int, int]]:
+    """Unknown freedoms (tree edge, number) of the blocks in which a thread stands elsewhere in the
+    second of two places, and of the blocks that depend on them."""
+    graph, layout = session.graph, session.layout
+    found: set[tuple[int, int]] = set()
+    for carrier in layout.carriers:
+        for number, freedom in enumerate(carrier.part.type.freedoms):
+            if freedom.motion == "thread":
+                place = both[carrier.state + number]
+                if abs(float(place[1] - place[0])) > tolerances.SAME_MODE:
+                    found.add((carrier.edge, carrier.first_freedom + number))
+    edges = {edge for edge, _ in found}
+    for block in graph.blocks:
+        loops = {edge for c in block.closings for edge, _ in graph.closings[c].loop}
+        if edges & loops:
+            found.update(block.unknowns)
+            edges.update(edge for edge, _ in block.unknowns)
+    return found
+
+
+def redundancy_note(result: Result, asked: Sequence[Wanted]) -> Diagnostic:
+    """Redundant constraints leave some reactions arbitrary; which loads of the bearings asked for
+    are unique nevertheless."""
+    graph = result.graph
+    count = sum(block.equations - len(block.unknowns) for block in graph.blocks)
+    joints = sorted({graph.edges[k].joint.name for c in graph.closings for k, _ in c.loop})
+    joints = sorted(filter(is_written, {*joints, *(c.joint.name for c in graph.closings)}))
+    constraints = "one redundant constraint" if count == 1 else f"{count} redundant constraints"
+    free = "free a joint to make them unique (a sphere for a pin, a cylinder for a slide)"
+    unique = _unique_loads(result, asked)
+    if unique:
+        more = ", ..." if len(unique) > LOADS_NAMED else ""
+        are = "is" if len(unique) == 1 else "are"
+        free = f"ask for {', '.join(unique[:LOADS_NAMED])}{more}, which {are} unique; or {free}"
+    return Diagnostic(
+        "not-unique",
+        "note",
+        f"{constraints} in the loops through {', '.join(joints)}: cells of reactions that depend "
+        "on them are not unique and stay empty",
+        hint=free,
+    )
+
+
+def _unique_loads(result: Result, asked: Sequence[Wanted]) -> list[str]:
+    """The bearing loads of the reactions asked for that are unique in every row, where the
+    reactions are not; along a slide there is none."""
+    known, joints = result.problem.quantities(), result.problem.mechanism.joints
+    wanted = {quantity.name for quantity in asked}
+    found = []
+    for load in (load for load in known.values() if load.kind in BEARING_KINDS):
+        slides = not all(coordinate.is_angle for coordinate in joints[load.owner].type.named)
+        reaction = f"{load.owner}.{'moment' if load.dimension == MOMENT else 'force'}"
+        if reaction not in wanted or (slides and load.kind == "axial_force"):
+            continue
+        if _is_unique(result, load.name) and not _is_unique(result, f"norm({reaction})"):
+            found.append(load.name)
+    return found
+
+
+def _is_unique(result: Result, text: str) -> bool:
+    """Whether an expression of reactions is in every row that has a position."""
+    expression, reached = parse(text), result.row_states.reached
+
+    def values(source: Result) -> Floats:
+        found = np.broadcast_to(
+            np.asarray(expression.evaluate(source.quantity).value), reached.shape
+        )
+        return found[reached]
+
+    others = [values(other) for other in result.alternatives]
+    disturbed = [values(other) for other in result.disturbed]
+    return bool(np.isfinite(unique_cells(values(result), others, disturbed)).all())
+
+
+def condition_notes(rows: SweepRows, condition: Floats) -> list[Diagnostic]:
+    """Rows next to singular positions, or whose rank is unclear; `condition` (rows,)."""
+    found = []
+    for status, limit, cost in (
+        (
+            Status.near_singular,
+            tolerances.CONDITION_NEAR_SINGULAR,
+            "rates and loads there keep fewer than nine digits",
+        ),
+        (
+            Status.rank_unclear,
+            tolerances.CONDITION_RANK_UNCLEAR,
+            "the rank of the constraints cannot be decided there; rates and reactions stay empty",
+        ),
+    ):
+        numbers = np.flatnonzero(rows.status == status)
+        if not numbers.size:
+            continue
+        worst = float(np.max(np.nan_to_num(condition[numbers], nan=np.inf)))
+        where = f"row {numbers[0] + 1}" if numbers.size == 1 else f"{numbers.size} rows"
+        first = "" if numbers.size == 1 else f", the first is row {numbers[0] + 1}"
+        verb = "is" if numbers.size == 1 else "are"
+        found.append(
+            Diagnostic(
+                status.label,
+                "warning",
+                f"{where} {verb} {status.label}{first}: {cost}",
+                measured=f"condition {worst:.2g}",
+                limit=f"{limit:g}",
+                hint="move the sweep by a fraction of its step, or keep away from the singular "
+                "position",
+                numbers=(Number("condition", worst, limit=limit),),
+            )
+        )
+    return found
+
+
+def not_converged_note(rows: SweepRows, residual: Floats) -> Diagnostic:
+    """Rows whose loops did not close."""
+    failed = np.flatnonzero(rows.status == Status.not_converged)
+    worst = float(np.max(residual[failed]))
+    return Diagnostic(
+        "not-converged",
+        "error",
+        f"{failed.size} rows did not close, the first is row {failed[0] + 1}",
+        measured=f"residual {worst:.2g}",
+        limit=f"{tolerances.RESIDUAL_ACCEPT:g}",
+        hint="this may be a special position; move the sweep by a fraction of its step",
+        numbers=(Number("residual", worst, limit=tolerances.RESIDUAL_ACCEPT),),
+    )
+
+
+# Poses that are told by three turns: where the middle one is a quarter turn, the others go about
+# one axis, and their rates are lost (gimbal lock).
+
+_TROUBLE = (Status.branch_lost, Status.near_singular, Status.rank_unclear)
+
+
+def middle_turn(joint: Joint) -> str | None:
+    """The name of the turn between two others, None of a joint that has none."""
+    for freedom, step in enumerate(joint.type.steps):
+        if step.between:
+            names = (n for n, number in joint.type.freedom_of.items() if number == freedom)
+            return f"{joint.name}.{next(names)}"
+    return None
+
+
+def locked_in(result: Result, rows: Bools) -> str | None:
+    """The middle turn of a pose that is a quarter turn in some of the rows."""
+    for joint in result.problem.mechanism.joints.values():
+        name = middle_turn(joint)
+        if name is None:
+            continue
+        result.read([result.problem.quantities()[name]])
+        angles = np.asarray(result.quantity(name).value)[rows & result.row_states.reached]
+        if (np.abs(np.asarray(cos(angles))) < tolerances.POSE_LOCKED).any():
+            return name
+    return None
+
+
+def locked_pose_notes(result: Result) -> list[Diagnostic]:
+    """Says of poses whose turns are not given that rows may be lost through them alone."""
+    if result.sound or not np.isin(result.status, [int(status) for status in _TROUBLE]).any():
+        return []
+    driven = {f"{joint}.{coordinate}" for joint, coordinate in result.problem.driven}
+    found = []
+    for joint in result.problem.mechanism.joints.values():
+        name = middle_turn(joint)
+        if name is None or name in driven:
+            continue
+        text = (
+            f"where {name} is a quarter turn the turns before and after it go about one axis: "
+            f"rows may be lost or singular there by how {joint.name} tells its pose alone"
+        )
+        hint = f"remove {joint.name} and read points and directions, or drive its turns"
+        found.append(Diagnostic("locked-pose", "note", text, hint=hint))
+    return found
+
+
+# Rows in which the actuators cannot hold the mechanism, whatever their efforts are.
+
+SHOWN = 6
+"""Rows that a message names one by one."""
+
+
+def watched(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
+    """What tells whether the actuators hold the mechanism, where forces are asked for."""
+
+    drives = problem.mechanism.drives
+    if drives is None or not drives.actuators:
+        return []
+    return [ACTUATION] if demand_of(problem.mechanism, asked) & Demand.FORCES else []
+
+
+def unheld(result: Result) -> Bools | None:
+    """Rows (rows,) in which the set is singular; None where that was not looked at."""
+    if ACTUATION.name not in result.columns:
+        return None
+    least = result.columns[ACTUATION.name][0]
+    return np.asarray(result.solved & ~(least > tolerances.ACTUATORS_AT_REST))
+
+
+def is_held(result: Result) -> bool:
+    """Whether the actuators hold the mechanism in every row, as far as that was looked at."""
+    lost = unheld(result)
+    return lost is None or not lost.any()
+
+
+def actuation_notes(result: Result) -> list[Diagnostic]:
+    """Names the set and the rows where it is singular, or next to that."""
+    lost, drives = unheld(result), result.problem.mechanism.drives
+    if lost is None or drives is None:
+        return []
+    least = result.columns[ACTUATION.name][0]
+    near = result.solved & ~lost & (least < 1.0 / tolerances.CONDITION_NEAR_SINGULAR)
+    names = ", ".join(".".join(pair) for pair in drives.actuators)
+    notes = []
+    if lost.any():
+        text = (
+            f"the actuators {names} are a singular set in {_rows(lost)}: the mechanism can move "
+            f"there while all of them rest; their efforts and the reactions stay empty"
+        )
+        notes.append(_note("singular-actuators", result, lost, text, tolerances.ACTUATORS_AT_REST))
+    if near.any():
+        text = (
+            f"the actuators {names} are next to a singular set in {_rows(near)}: their efforts "
+            "are large and keep fewer than nine digits"
+        )
+        limit = 1.0 / tolerances.CONDITION_NEAR_SINGULAR
+        notes.append(_note("near-singular-actuators", result, near, text, limit))
+    return notes
+
+
+def _note(code: str, result: Result, rows: Bools, text: str, limit: float) -> Diagnostic:
+    least = float(np.min(result.columns[ACTUATION.name][0][rows]))
+    hint = "put an actuator elsewhere, add one, or keep away from that position"
+    turn = locked_in(result, rows)
+    locked = (
+        f"where {turn} is a quarter turn the turns before and after it go about one axis: that is "
+        "a matter of the pose's coordinates, not of the actuators"
+    )
+    return Diagnostic(
+        code,
+        "warning",
+        text + (f"; {locked}" if turn else ""),
+        measured=f"{least:.2g} of the motion",
+        limit=f"{limit:.0e}",
+        hint=hint,
+        numbers=(Number("actuation", least, limit=limit),),
+    )
+
+
+def _rows(rows: Bools) -> str:
+    numbers = [str(int(k) + 1) for k in np.flatnonzero(rows)]
+    if len(numbers) == 1:
+        return f"row {numbers[0]}"
+    if len(numbers) <= SHOWN:
+        return f"rows {', '.join(numbers[:-1])} and {numbers[-1]}"
+    return f"{len(numbers)} rows, the first is row {numbers[0]}"
+
+
+# Loads that vary where one has no value: which, and what to say.
+
+
+def undefined_loads(result: Result, lost: Bools) -> list[Diagnostic]:
+    """What to say of the rows (rows,) of a result in which some load has no value.
+
+    The laws are evaluated once more, from the same quantities as in the kernel and with the same
+    bits, to tell them apart.
+    """
+    known = result.problem.quantities()
+    result.read([known[name] for name in quantities_read(result.problem)])
+    return undefined_laws(result.problem, result.quantity, lost)

@@ -1,0 +1,462 @@
+"""A finished run: the states of all rows, their verdicts, and every quantity read off them.
+
+Quantities are evaluated on the stored states when they are asked for, at the first reading or
+later; nothing is searched or followed again. What was read is kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.expressions import Quantity, UnknownName
+from mechkin_cli.mechanism import BEARING_KINDS, DERIVED_KINDS, bearing_load
+from mechkin_cli.plan import WRENCH_KINDS, Demand, Slot, demand_of, forces_demand
+from mechkin_cli.session import RowPlaces, input_number, input_rest
+from mechkin_cli.sweep.friction import FrictionRows
+from mechkin_cli.sweep.messages import is_held
+from mechkin_cli.sweep.rounding import error_bound
+from mechkin_cli.sweep.rows import make_continuous
+from mechkin_cli.sweep.uniqueness import (
+    DISTURBANCES,
+    SHIFTS,
+    disturbed,
+    reaction_rounding,
+    told_anew,
+)
+from mechkin_cli.units import DIMENSIONLESS, UnitSystem
+from mechkin_cli.verdict import Proof, Status, has_solution
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.assembly import AssemblyStart
+    from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.mechanism import Mechanism, Problem, Wanted
+    from mechkin_cli.proofs import DeadCentreProof, SweepProofs
+    from mechkin_cli.session import Batch, Chart, KernelInputs, Session
+    from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.structure import SolverGraph
+    from mechkin_cli.sweep.rows import SweepRows
+
+
+# The proofs of a run's rows, made when they are asked for.
+
+
+class Proven:
+    """What a result knows of the proofs of its rows."""
+
+    session: Session
+    row_states: SweepRows
+    if TYPE_CHECKING:
+
+        @cached_property
+        def solved(self) -> Bools:
+            """Rows that have a position (rows,)."""
+
+    @cached_property
+    def certificate(self) -> SweepProofs:
+        """What is proven of the rows."""
+        from mechkin_cli.proofs import certify
+
+        rows = self.row_states
+        return certify(self.session, rows.states, self.solved & rows.reached, rows.ends)
+
+    @property
+    def is_certified(self) -> bool:
+        """Whether proofs have been asked for."""
+        return "certificate" in self.__dict__
+
+    @property
+    def proven_way(self) -> tuple[bool, int]:
+        """Whether all rows are proven to lie on one branch, and how many tubes join them."""
+        return bool(self.certificate.is_complete), int(self.certificate.tubes)
+
+    @property
+    def proven_dead_centres(self) -> list[dict[str, object]]:
+        """What is proven of the dead centres beyond which rows are missing, as plain data in the
+        file's units: bounds are None where none is proven to exist; rows count from 1."""
+        return [self._dead_centre_record(found) for found in self.certificate.dead_centres]
+
+    def _dead_centre_record(self, found: DeadCentreProof) -> dict[str, object]:
+        from mechkin_cli.proofs import input_bounds
+
+        session, number = self.session, found.number
+        there = input_number(session.problem, session.layout, number, float(found.place[number]))
+        low, high = (x if isfinite(x) else None for x in input_bounds(session, found))
+        proof = Proof.not_proven if found.why else Proof.proven
+        bounds = {"low": low, "high": high, "last_row": found.row + 1, "tubes": found.tubes}
+        return there.record() | bounds | {"proof": proof.label}
+
+    @property
+    def proof(self) -> NDArray[np.int8]:
+        """What is proven of every row, codes of `Proof` (rows,)."""
+        return self.certificate.status
+
+
+# The outputs of a run by name, as far as the rows' verdicts let them stand.
+
+
+def read_off(
+    rows: SweepRows,
+    mechanism: Mechanism,
+    wanted: Sequence[Wanted],
+    batch: Batch,
+    slots: Mapping[str, Slot],
+) -> dict[str, Floats]:
+    """Quantities (width, rows); nan in rows without a position, and what depends on a rank that is
+    unclear."""
+    values = batch.outputs
+    assert values is not None
+    if not rows.reached.all():
+        values[:, ~rows.reached] = np.nan
+    unclear = rows.status == Status.rank_unclear
+    some_unclear = bool(unclear.any())
+    columns = {}
+    for quantity in wanted:
+        slot = slots[quantity.name]
+        column = values[slot.first : slot.first + slot.width]
+        if some_unclear and demand_of(mechanism, [quantity]):
+            column[:, unclear] = np.nan
+        columns[quantity.name] = column
+    return columns
+
+
+Columns = dict[str, "Floats"]
+"""Quantities by name: (1, rows), vectors (3, rows); SI, nan where a row has none."""
+
+ROW_NUMBERS = {f"row.{n}": n for n in ("residual", "condition", "power_error", "error_bound")}
+"""Verdicts that are numbers, by the names of their quantities."""
+
+
+class Result(Proven):
+    """The rows of a sweep with a position and a verdict each.
+
+    Args:
+        session: the part of the mechanism that was followed, in parts of the first row's size.
+        start: the first assembly.
+        rows: the rows, closed.
+    """
+
+    def __init__(self, session: Session, start: AssemblyStart, rows: SweepRows) -> None:
+        self.session = session
+        self.start = start
+        self.row_states = rows
+        self.events: tuple[str, ...] = ()
+        self.demand = Demand.POSITION
+        self.residual = np.full(rows.reached.size, np.nan)
+        self.shifts: tuple[int, ...] = SHIFTS if session.is_redundant else ()
+        self._columns: Columns = {}
+        self._rests: Columns = {}
+        self._shifted: tuple[Columns, ...] = tuple({} for _ in self.shifts)
+        self._alternative: int | None = None
+        self._disturbance: int | None = None
+        self._condition: Floats | None = None
+        self._power_error: Floats | None = None
+        self._unloaded: bool | None = None
+        self.friction = FrictionRows()
+
+    @property
+    def problem(self) -> Problem:
+        """Mechanism, motion and assembly of the part that was followed."""
+        return self.session.problem
+
+    @property
+    def graph(self) -> SolverGraph:
+        """Tree, closing joints and blocks."""
+        return self.session.graph
+
+    @cached_property
+    def mode(self) -> str:
+        """The letter of the rows' assembly mode where a short search proves that it knows all
+        modes; else `near` or `home`."""
+        from mechkin_cli.assembly import mode_letter
+
+        return mode_letter(self.session, self.start, thorough=False)
+
+    @cached_property
+    def letter(self) -> str:
+        """The letter of the assembly mode, searched for if it is not known yet."""
+        from mechkin_cli.assembly import mode_letter
+
+        return mode_letter(self.session, self.start)
+
+    @property
+    def how(self) -> str:
+        """How the first assembly was found."""
+        return self.start.how
+
+    @property
+    def nodes(self) -> int:
+        """Steps with which the branch was followed."""
+        return self.row_states.nodes
+
+    @property
+    def rows(self) -> int:
+        """Number of rows asked for."""
+        return self.problem.motion.rows
+
+    @property
+    def status(self) -> NDArray[np.int8]:
+        """Verdict of every row, codes of `Status` (rows,)."""
+        return self.row_states.status
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Everything that the run has to say."""
+        own = (*self.start.diagnostics, *self.row_states.diagnostics)
+        return (*self.problem.diagnostics, *own)
+
+    @property
+    def units(self) -> UnitSystem:
+        """The file's units."""
+        return self.problem.units
+
+    @property
+    def coordinates(self) -> Sequence[str]:
+        """All joint coordinates in joint order."""
+        return self.problem.mechanism.coordinates
+
+    @cached_property
+    def inputs(self) -> Mapping[str, Floats]:
+        """What the rows were given, in the file's units exactly as written: time where there is
+        one, then the inputs' values."""
+        time = self.problem.motion.time
+        inputs = {i.name: i.written for i in self.problem.motion.inputs}
+        return inputs if time is None else {"time": time.written, **inputs}
+
+    @cached_property
+    def input_rates(self) -> Mapping[str, Floats]:
+        """The inputs' rates of all orders in the file's units as written, nan in rows without a
+        solution."""
+        known, rates = self.problem.quantities(), {}
+        for driven in self.problem.motion.inputs:
+            for name, (_, written) in driven.orders.items():
+                if name in known and name != driven.name:
+                    rates[name] = np.where(self.solved, written, np.nan)
+        return rates
+
+    @cached_property
+    def solved(self) -> Bools:
+        """Rows that have a position (rows,)."""
+        return has_solution(self.status)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every row has a solution, and all loads, friction and actuators it needs."""
+        lost = self._unloaded or self.friction.is_lost
+        return bool(self.solved.all()) and not lost and is_held(self)
+
+    @property
+    def sound(self) -> bool:
+        """Whether every row is `ok`."""
+        return bool((self.status == Status.ok).all())
+
+    @property
+    def condition(self) -> Floats:
+        """1 / smallest singular value of every row's scaled blocks (rows,); nan where it was not
+        computed."""
+        return self._nothing if self._condition is None else self._condition
+
+    @property
+    def power_error(self) -> Floats:
+        """|sum of powers| / sum of |powers| of every row (rows,); nan where nothing works, or where
+        it was not computed."""
+        return self._nothing if self._power_error is None else self._power_error
+
+    @cached_property
+    def _nothing(self) -> Floats:
+        return np.full(self.rows, np.nan)
+
+    def _verdict(self, name: str) -> Floats:
+        """A number of the row by its name, computed now if it was not."""
+        if name == "condition" and self._condition is None and self.graph.blocks:
+            self._store_verdicts(self._evaluated(Demand.CONDITION))
+        if name == "power_error" and self._power_error is None:
+            demand = forces_demand(self.problem.mechanism) | Demand.VELOCITY | Demand.POWER
+            self._store_verdicts(self._evaluated(demand))
+        found: Floats = error_bound(self) if name == "error_bound" else getattr(self, name)
+        return found
+
+    @property
+    def columns(self) -> Mapping[str, Floats]:
+        """What has been read, see `Columns`."""
+        return self._columns
+
+    @cached_property
+    def alternatives(self) -> tuple[Result, ...]:
+        """The same rows with other reactions in equilibrium (redundant constraints)."""
+        return told_anew(self, "_alternative", len(self.shifts))
+
+    @cached_property
+    def disturbed(self) -> tuple[Result, ...]:
+        """The same rows with reactions off by their rounding, where some may not be unique."""
+        return told_anew(self, "_disturbance", len(DISTURBANCES) if self.shifts else 0)
+
+    @cached_property
+    def _rounding(self) -> Floats:
+        return reaction_rounding(self)
+
+    def quantity(self, name: str) -> Quantity:
+        """A parameter, direction or result by name, in SI.
+
+        Raises:
+            UnknownName: nothing has this name.
+        """
+        problem = self.problem
+        if name in problem.parameters:
+            return problem.parameters[name]
+        if name in ROW_NUMBERS:
+            return Quantity(self._verdict(ROW_NUMBERS[name]), DIMENSIONLESS)
+        wanted = problem.quantities().get(name)
+        if wanted is None:
+            raise UnknownName(name, sorted(self._columns), problem.why_not(name))
+        if wanted.kind in BEARING_KINDS:
+            return bearing_load(wanted, self.quantity)
+        if (given := self._given(name)) is not None:
+            return Quantity(given, wanted.dimension, input_rest(self.session, name))
+        if name not in self._columns:
+            self.read([wanted])
+        columns = self._columns[name]
+        if self._alternative is not None:
+            columns = self._shifted[self._alternative].get(name, columns)
+        if self._disturbance is not None and wanted.kind in WRENCH_KINDS:
+            unit = self.session.layout.length
+            columns = disturbed(columns, wanted, self._rounding, unit, self._disturbance)
+        if wanted.vector:
+            return Quantity(wanted.value(columns), wanted.dimension)
+        return Quantity(columns[0], wanted.dimension, self._rests.get(name))
+
+    def _given(self, name: str) -> Floats | None:
+        """Time, an input's value or its rates in SI; None for what is computed."""
+        motion = self.problem.motion
+        if name == "time" and motion.time is not None:
+            return motion.time.values
+        for driven in motion.inputs:
+            if name == driven.name:
+                return driven.values
+            if name.startswith(driven.name) and name in driven.orders:
+                return np.where(self.solved, driven.orders[name][0], np.nan)
+        return None
+
+    def read(self, wanted: Iterable[Wanted]) -> None:
+        """Evaluates the quantities that have not been read yet."""
+        wanted = list({quantity.name: quantity for quantity in wanted}.values())
+        for name in (ROW_NUMBERS[q.name] for q in wanted if q.name in ROW_NUMBERS):
+            self._verdict(name)
+        new = [q for q in wanted if q.name not in self._columns and q.owner != "row"]
+        derived = [quantity for quantity in new if quantity.kind in DERIVED_KINDS]
+        plain = [quantity for quantity in new if quantity.kind not in DERIVED_KINDS]
+        if derived:
+            from mechkin_cli.derived import basis_of
+
+            basis = basis_of(self.problem.mechanism, derived)
+            plain += [quantity for quantity in basis if quantity.name not in self._columns]
+        if plain:
+            self._read_plain(plain)
+        if derived:
+            from mechkin_cli.derived import BasisQuantities, derived_columns
+            from mechkin_cli.sweep.sweep import Between
+
+            run = BasisQuantities(self, self._columns, self.session.inputs, Between.of(self))
+            self._columns |= derived_columns(run, derived)
+
+    def _read_plain(self, wanted: list[Wanted]) -> None:
+        demand = demand_of(self.problem.mechanism, wanted)
+        wanted += self.friction.beside(self.problem, wanted, demand)
+        if demand & Demand.FORCES and demand & Demand.VELOCITY and self._power_error is None:
+            demand |= Demand.POWER
+        self._keep_read(self._evaluated(demand, wanted), wanted, demand)
+
+    def keep(self, batch: Batch, wanted: Sequence[Wanted], demand: Demand) -> None:
+        """Keeps what the run that closed the rows found."""
+        self.residual = np.where(self.row_states.reached, batch.residual, np.nan)
+        self._keep_read(batch, wanted, demand)
+
+    def _keep_read(self, batch: Batch, wanted: Sequence[Wanted], demand: Demand) -> None:
+        self.demand |= demand
+        self._store_verdicts(batch)
+        if not wanted:
+            return
+        columns, outputs = self._split(wanted, batch, self.session), batch.outputs
+        assert outputs is not None
+        slots = self.session.readout(wanted).slots
+        self._rests |= make_continuous(self, wanted, slots, outputs)
+        self._columns |= columns
+        self.friction.judge(self, wanted, demand)
+        reactions = [quantity for quantity in wanted if quantity.kind in WRENCH_KINDS]
+        for shift, others in zip(self.shifts if reactions else (), self._shifted, strict=False):
+            others |= self.evaluated(reactions, shift=shift)
+
+    def _evaluated(self, demand: Demand, wanted: Sequence[Wanted] = ()) -> Batch:
+        return self.run(wanted, demand)
+
+    def evaluated(
+        self,
+        wanted: Sequence[Wanted],
+        *,
+        session: Session | None = None,
+        inputs: KernelInputs | None = None,
+        demand: Demand = Demand.POSITION,
+        shift: int = 0,
+    ) -> Columns:
+        """Quantities on the stored states, not kept: with other `inputs` (rates), of a session that
+        differs in masses and loads alone, or with the reactions of a `shift`."""
+        demand |= demand_of((session or self.session).problem.mechanism, wanted)
+        batch = self.run(wanted, demand, session=session, inputs=inputs, shift=shift)
+        return self._split(wanted, batch, session or self.session)
+
+    def run(
+        self,
+        wanted: Sequence[Wanted],
+        demand: Demand,
+        *,
+        session: Session | None = None,
+        inputs: KernelInputs | None = None,
+        shift: int = 0,
+        iterations: int = 0,
+        chart: Chart | None = None,
+    ) -> Batch:
+        """One call of the kernel over all rows on their states; rows without a state repeat
+        another's."""
+        session = session or self.session
+        rows = self.row_states
+        inputs = inputs or self.session.inputs
+        places = RowPlaces.of(self.session, rows, inputs, demand, session.tie_rates)
+        if not rows.reached.all():
+            stand_in = np.where(rows.reached, np.arange(rows.reached.size), rows.reached.argmax())
+            places = places.at(stand_in)
+            chart = None if chart is None else chart.at(stand_in)
+        asked: dict[str, Any] = {
+            "readout": session.readout(wanted) if wanted else None,
+            "demand": demand,
+            "shift": shift,
+        }
+        batch = session.run(**places.arguments, **asked, chart=chart, iterations=iterations)
+        if rows.dead_centres and wanted:
+            from mechkin_cli.sweep.dead_centre import put_unbounded
+
+            put_unbounded(session, rows, wanted, batch, places, asked)
+        return batch
+
+    def _split(self, wanted: Sequence[Wanted], batch: Batch, session: Session) -> Columns:
+        slots = session.readout(wanted).slots
+        return read_off(self.row_states, self.problem.mechanism, wanted, batch, slots)
+
+    def _store_verdicts(self, batch: Batch) -> None:
+        missing = ~self.row_states.reached
+        if batch.condition is not None and self._condition is None:
+            self._condition = np.where(missing, np.nan, batch.condition)
+        if batch.power_error is not None and self._power_error is None:
+            self._power_error = np.where(missing, np.nan, batch.power_error)
+        if batch.undefined is not None and self._unloaded is None:
+            lost = batch.undefined.astype(bool) & ~missing
+            self._unloaded = bool(lost.any())
+            if self._unloaded:
+                from mechkin_cli.sweep.messages import undefined_loads
+
+                self.row_states.diagnostics += undefined_loads(self, lost)

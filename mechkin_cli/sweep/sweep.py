@@ -1,0 +1,427 @@
+"""The sweep: first assembly, following, one batched run of what is demanded, a verdict per row."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.assembly import choose_start
+from mechkin_cli.mechanism import (
+    COEFFICIENT_KINDS,
+    DERIVED_KINDS,
+    TRANSMISSION_KINDS,
+    Moments,
+    base_name,
+    base_quantity,
+    dimension_of,
+    find_legs,
+    read_for,
+)
+from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
+from mechkin_cli.session import assembly_size, moves_freely, places_at
+from mechkin_cli.sweep.friction import judged_by
+from mechkin_cli.sweep.messages import (
+    actuation_notes,
+    condition_notes,
+    locked_pose_notes,
+    not_converged_note,
+    open_turn_note,
+    redundancy_note,
+    watched,
+)
+from mechkin_cli.sweep.result import Result
+from mechkin_cli.sweep.rows import follow_rows
+from mechkin_cli.units import TIME
+from mechkin_cli.verdict import Status
+
+if TYPE_CHECKING:
+    from mechkin_cli.assembly import AssemblyStart
+    from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.mechanism import DrivenInput, Problem, Wanted
+    from mechkin_cli.session import Batch, Session
+    from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.sweep.rows import SweepRows
+
+
+# What a sweep is asked, worked out once for a session and kept there: runs that ask the same only
+# run.
+
+
+@dataclass(frozen=True)
+class SweepQuantities:
+    """The quantities of a sweep.
+
+    Attributes:
+        asked: those asked for, and those by which the rows are judged beside them.
+        wanted: of these, what the run that closes the rows reads off: no derived quantities.
+        demand: what that run computes.
+        rests_on_reactions: whether some are not unique where reactions are not.
+    """
+
+    asked: tuple[Wanted, ...]
+    wanted: tuple[Wanted, ...]
+    demand: Demand
+    rests_on_reactions: bool
+
+
+def question(session: Session, asked: Sequence[Wanted], *, verdicts: bool) -> SweepQuantities:
+    """What a session is asked; `verdicts`: each row's condition, and its power error where forces
+    are computed."""
+
+    def worked_out() -> SweepQuantities:
+        problem, everything = session.problem, list(asked)
+        everything += held_moments(problem, everything)
+        everything += watched(problem, everything)
+        wanted, demand = at_once(session, everything, verdicts)
+        return SweepQuantities(
+            tuple(everything),
+            (*wanted, *judged_by(problem, wanted, demand)),
+            demand,
+            rest_on_reactions(problem, everything),
+        )
+
+    key = ("question", tuple(quantity.name for quantity in asked), verdicts)
+    return session.own(key, worked_out)
+
+
+def held_moments(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
+    """The moments that hold idle legs, where forces are computed and they are not asked for."""
+    if not (problem.hold_idle and demand_of(problem.mechanism, asked) & Demand.FORCES):
+        return []
+    from mechkin_cli.idle import idle_freedoms
+
+    known = problem.quantities()
+    moments = {known[idle.holding] for idle in idle_freedoms(problem)}
+    return sorted(moments.difference(asked))
+
+
+def at_once(
+    session: Session, asked: Sequence[Wanted], verdicts: bool
+) -> tuple[list[Wanted], Demand]:
+    """What the run that closes the rows reads off, and its demand: no derived quantities."""
+    mechanism = session.problem.mechanism
+    wanted = [q for q in asked if q.kind not in DERIVED_KINDS and q.owner != "row"]
+    demand = demand_of(mechanism, wanted)
+    if verdicts and session.graph.blocks:
+        demand |= Demand.CONDITION
+    if verdicts and demand & Demand.FORCES and demand & Demand.VELOCITY:
+        demand |= Demand.POWER
+    return wanted, demand
+
+
+def rest_on_reactions(problem: Problem, asked: Sequence[Wanted]) -> bool:
+    """Whether some quantities are not unique where reactions are not."""
+    kinds = {*WRENCH_KINDS, *TRANSMISSION_KINDS}
+    return any(
+        base_quantity(problem.quantities(), base_name(quantity)).kind in kinds
+        if quantity.kind in COEFFICIENT_KINDS
+        else quantity.kind in kinds
+        for quantity in asked
+    )
+
+
+def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool = True) -> Result:
+    """Runs the sweep of a session's problem and reads the quantities asked for.
+
+    Args:
+        session: the problem in the kernel.
+        quantities: names out of `problem.quantities()`.
+        verdicts: compute each row's condition, and its power error where forces are computed.
+
+    Raises:
+        KeyError: an unknown quantity.
+    """
+    names = list(dict.fromkeys(quantities))
+    known = session.problem.quantities() if names else {}
+    asked = [known[name] for name in read_for(names, known)]
+    session = _followed_part(session, asked)
+    session, start = first_assembly(session)
+    if start.stuck:
+        from mechkin_cli.sweep.branch_end import input_faults
+
+        start = replace(start, diagnostics=input_faults(session) or start.diagnostics)
+    wanted = question(session, asked, verdicts=verdicts)
+    result = _closed(session, start, wanted)
+    result.read(wanted.asked)
+    result.row_states.diagnostics += row_notes(
+        result, wanted.asked, rests_on_reactions=wanted.rests_on_reactions
+    )
+    result.row_states.diagnostics += [*actuation_notes(result), *locked_pose_notes(result)]
+    return result
+
+
+def closed_rows(
+    session: Session, start: AssemblyStart, asked: Sequence[Wanted] = (), *, verdicts: bool = False
+) -> Result:
+    """The rows of a session on the branch through the start, with what is asked for and their
+    conditions where `verdicts` are, too."""
+    wanted = question(session, asked, verdicts=verdicts)
+    result = _closed(session, start, wanted)
+    result.read(wanted.asked)
+    return result
+
+
+def first_assembly(session: Session) -> tuple[Session, AssemblyStart]:
+    """The first assembly, and the session with residual and condition in parts of its size."""
+    start = choose_start(session)
+    if start.state is None or session.size is not None:
+        return session, start
+    inputs, state = session.inputs.reduced[:, start.row], start.state
+    return session.own(
+        "in parts of its size",
+        lambda: session.sized(assembly_size(session.plan, inputs, state)),
+    ), start
+
+
+def _followed_part(session: Session, asked: list[Wanted]) -> Session:
+    """The session of the loops that `follow:` leaves."""
+    if session.problem.follow is None:
+        return session
+    from mechkin_cli.sweep.follow_part import followed_session
+
+    return followed_session(session, asked)
+
+
+def _closed(session: Session, start: AssemblyStart, asked: SweepQuantities) -> Result:
+    """Follows and closes all rows and reads what can be read at once."""
+    result = _closed_once(session, start, asked, every_row=False)
+    if result.row_states.has_failed:
+        # a filled-in row ended away from its guess: take every row as a careful step
+        result = _closed_once(session, start, asked, every_row=True)
+    return result
+
+
+def _closed_once(
+    session: Session, start: AssemblyStart, asked: SweepQuantities, *, every_row: bool
+) -> Result:
+    """The same by one way of following; rows that do not close lose their place among the
+    reached."""
+    rows = follow_rows(session, start, every_row=every_row)
+    result = Result(session, start, rows)
+    if not rows.reached.any():
+        return result
+    batch = result.run(asked.wanted, asked.demand, iterations=tolerances.NEWTON_ITERATIONS)
+    slow = rows.reached & ~batch.good
+    if result.graph.blocks and (slow | rows.reached & _is_near_singular(batch)).any():
+        batch = _closed_on_fold(result, asked)
+        # what takes more steps and is no fold had a wrong guess
+        slow &= ~_is_near_singular(batch)
+    failed = slow | _failed(batch, rows)
+    if failed.any():
+        rows.status[failed] = Status.not_converged
+        rows.diagnostics.append(not_converged_note(rows, batch.residual))
+        rows.reached &= ~failed
+    if rows.reached.any():
+        if rows.reached.all():
+            rows.states = batch.states
+        else:
+            rows.states[:, rows.reached] = batch.states[:, rows.reached]
+        judge_condition(session, rows, batch)
+        _judge_inputs(session, rows)
+        if rows.dead_centres and asked.wanted:
+            batch = batch._replace(outputs=result.run(asked.wanted, asked.demand).outputs)
+    result.keep(batch, asked.wanted, asked.demand)
+    return result
+
+
+def _is_near_singular(batch: Batch) -> Bools:
+    """Rows (rows,) above that condition, as far as it was computed."""
+    if batch.condition is None:
+        return np.zeros(batch.residual.size, dtype=bool)
+    found: Bools = batch.condition > tolerances.CONDITION_NEAR_SINGULAR
+    return found
+
+
+def _closed_on_fold(result: Result, asked: SweepQuantities) -> Batch:
+    """The run with so many steps that rows on a fold close, too, where each only halves what is
+    left; and with conditions, which tell that they do."""
+    demand = asked.demand | Demand.CONDITION
+    return result.run(asked.wanted, demand, iterations=tolerances.FOLD_ITERATIONS)
+
+
+def _failed(batch: Batch, rows: SweepRows) -> Bools:
+    """Rows with a guess that did not close near it, on its side of every fold.
+
+    Sides are there where the run demanded more than positions.
+    """
+    limit = rows.limit
+    if batch.condition is not None:
+        # next to singular places branches may be nearer than a position is known to rounding
+        known = np.where(
+            batch.condition <= tolerances.CONDITION_RANK_UNCLEAR,
+            tolerances.CORRECTION_ROUNDING * batch.condition,
+            0.0,
+        )
+        limit = np.maximum(limit, known)
+        on_fold = batch.condition > tolerances.CONDITION_SIDE_UNCLEAR
+        limit = np.where(on_fold, tolerances.FOLD_CORRECTION * limit, limit)
+    failed: Bools = rows.reached & ~(batch.good & (batch.correction <= limit))
+    if not (batch.side != batch.side[:, :1]).any():
+        return failed
+    # on a fold or a branch point a sign is rounding
+    told = rows.reached.copy()
+    if batch.condition is not None:
+        told &= batch.condition <= tolerances.CONDITION_SIDE_UNCLEAR
+    # where a branch point was passed sides change with it: each section has its own
+    turned = np.zeros(told.size, dtype=bool)
+    for section in set(rows.section[told].tolist()):
+        own = np.flatnonzero(told & (rows.section == section))
+        turned[own] = (batch.side[:, own] != batch.side[:, own[:1]]).any(axis=0)
+    return failed | rows.reached & turned
+
+
+def judge_condition(session: Session, rows: SweepRows, batch: Batch) -> None:
+    """Verdicts by condition."""
+    condition = batch.condition
+    if condition is None or (condition <= tolerances.CONDITION_RATES_UNCLEAR).all():
+        return
+    singular = rows.reached & ~(condition <= tolerances.CONDITION_NEAR_SINGULAR)
+    unclear = rows.reached & ~(condition <= tolerances.CONDITION_RANK_UNCLEAR)
+    rows.status[singular & (rows.status == Status.ok)] = Status.near_singular
+    rows.status[unclear & (rows.status == Status.near_singular)] = Status.rank_unclear
+    from mechkin_cli.sweep.dead_centre import judge_dead_centres
+
+    judge_dead_centres(session, rows, condition)
+    rows.diagnostics += condition_notes(rows, condition)
+
+
+def _judge_inputs(session: Session, rows: SweepRows) -> None:
+    """Names inputs that cannot move; the rates of no row mean anything where they are to move: more
+    equations than unknowns leave a least square, whose condition tells nothing."""
+    if not session.is_redundant or not session.driven or not rows.reached.any():
+        return
+    from mechkin_cli.sweep.branch_end import input_faults
+
+    row = int(np.argmax(rows.reached))
+    if moves_freely(session, session.inputs.values[:, row], rows.states[:, row]):
+        return
+    faults = input_faults(session)
+    rows.diagnostics.extend(fault for fault in faults if fault not in rows.diagnostics)
+    if faults and any(moved.any() for moved in session.inputs.orders[1:]):
+        rows.status[rows.reached] = Status.rank_unclear
+        rows.dead_centres.clear()
+
+
+def _read_by_loads(result: Result) -> list[Wanted]:
+    """What loads that vary read, where forces are computed."""
+    if not (result.demand & Demand.FORCES and result.problem.load_laws):
+        return []
+    from mechkin_cli.mechanism import quantities_read
+
+    known = result.problem.quantities()
+    return [known[name] for name in quantities_read(result.problem)]
+
+
+def row_notes(
+    result: Result, asked: Sequence[Wanted], *, rests_on_reactions: bool
+) -> list[Diagnostic]:
+    """What is conventional, left open by a full turn, held, or not unique."""
+    problem, session, rows = result.problem, result.session, result.row_states
+    notes: list[Diagnostic] = []
+    if find_legs(problem.mechanism) or problem.held:
+        from mechkin_cli.idle import (
+            conventional_notes,
+            holding_notes,
+            idle_freedoms,
+            nearly_common_notes,
+        )
+
+        notes += nearly_common_notes(problem)
+        read = [*asked, *_read_by_loads(result)]
+        key = ("conventional", tuple(quantity.name for quantity in read))
+        notes += session.own(key, lambda: conventional_notes(problem, read))
+        if problem.hold_idle:
+            named = {idle.holding for idle in idle_freedoms(problem)}
+            found = {q.name: result.columns[q.name] for q in asked if q.name in named}
+            notes += holding_notes(problem, found)
+    unclear = rows.status == Status.rank_unclear
+    if unclear.any() and (session.is_redundant or unclear[rows.reached].all()):
+        from mechkin_cli.sweep.branch_end import input_faults
+
+        said = {diagnostic.code for diagnostic in rows.diagnostics}
+        notes += [fault for fault in input_faults(session) if fault.code not in said]
+    if problem.mechanism.frictions and result.demand & Demand.FORCES:
+        from mechkin_cli.sweep.friction import uncounted_notes
+
+        notes += uncounted_notes(result)
+    note = open_turn_note(session, rows.states, rows.reached)
+    notes += [note] if note else []
+    if rests_on_reactions and session.is_redundant and rows.reached.any():
+        notes.append(redundancy_note(result, asked))
+    return notes
+
+
+# A sweep in time at other moments: the same branch, followed by the same laws.
+
+
+class Between(NamedTuple):
+    """The motion of a result between its rows: `bends` are moments, in the file's unit, at which
+    the laws of its inputs bend or jump."""
+
+    result: Result
+    bends: Floats
+
+    @classmethod
+    def of(cls, result: Result) -> Between | None:
+        """None where the motion is not known there: without time, and where several inputs move by
+        one motor, whose ties are those of the rows."""
+        motion = result.problem.motion
+        if motion.time is None or motion.course is None or motion.tied:
+            return None
+        return cls(result, np.unique(motion.course.at[motion.course.rows < 0]))
+
+    def at(self, written: Floats) -> Result:
+        """The sweep at rising moments within its own, in the file's unit, and at that of its first
+        assembly, which may be none of them: rows (moments,) or one more."""
+
+        session, problem, start = self.result.session, self.result.problem, self.result.start
+        time, course = problem.motion.time, problem.motion.course
+        assert time is not None
+        assert course is not None
+        first = time.written[start.row]
+        moments = np.unique(np.concatenate([written, [first]]))
+        motion = problem.motion._replace(
+            inputs=tuple(_inputs(self.result, moments)),
+            rows=moments.size,
+            time=Moments(problem.units.to_si(moments.copy(), TIME), moments),
+        )
+        values = np.stack([item.values for item in motion.inputs])
+        motion = motion._replace(course=places_at(course, moments, values))
+        row = int(np.searchsorted(moments, first))
+        return closed_rows(session.moved(replace(problem, motion=motion)), replace(start, row=row))
+
+
+def _inputs(result: Result, moments: Floats) -> list[DrivenInput]:
+    """The inputs at some moments, with no jerk."""
+    session, units = result.session, result.problem.units
+    inputs, route = result.problem.motion.inputs, session.route
+    assert route is not None
+    edges = route.course.edges
+    cells = np.clip(np.searchsorted(edges, moments) - 1, 0, edges.size - 2)
+    jets = np.zeros((moments.size, len(inputs), 4))
+    for cell in np.unique(cells):
+        here = cells == cell
+        jets[here, :, :3] = route.jets(int(cell), moments[here]) * route.units[:, None]
+    second, found = float(units.to_si(1.0, TIME)), []
+    for k, item in enumerate(inputs):
+        written, orders = [], []
+        dimension, unit = dimension_of(item.coordinate), 1.0
+        for order in range(jets.shape[2]):
+            orders.append(jets[:, k, order] / unit)
+            written.append(units.from_si(orders[-1].copy(), dimension))
+            dimension, unit = dimension / TIME, unit * second
+        values, rates, accelerations, jerks = orders
+        found.append(
+            item._replace(
+                values=values,
+                rates=rates,
+                accelerations=accelerations,
+                jerks=jerks,
+                written_orders=np.array(written),
+            )
+        )
+    return found

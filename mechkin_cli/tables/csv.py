@@ -1,0 +1,152 @@
+"""CSV of a table: RFC 4180 with LF line ends, labels as header, numbers as the kernel writes them.
+
+Numbers have the shortest digits that read back as the same double, or, for tables kept under
+version control, the shortest of the value rounded to a number of significant digits; an empty cell
+is a missing value, in quotes where it is alone in its line, as many readers skip blank lines.
+Labels that a spreadsheet would take for formulas begin with an apostrophe (`tables/neutral.py`).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.tables.columns import Columns, TableColumn, Words, words_of
+from mechkin_cli.tables.layout import csv_text
+from mechkin_cli.tolerances import CELLS_PER_THREAD, MOST_TEXT_THREADS
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.show import Floats
+    from mechkin_cli.tables.columns import FloatArray
+
+
+# Columns as the kernel's writers of text take them, and how many threads write.
+
+if TYPE_CHECKING:
+    WordColumn = tuple[NDArray[np.int32], list[str]]
+
+
+def word_column(words: Words, written: Callable[[str], str] = str) -> WordColumn:
+    """Codes and texts; `written` makes of each text what is to stand in the file."""
+    return np.ascontiguousarray(words.codes, np.int32), [written(word) for word in words.words]
+
+
+def number_column(values: Floats) -> Floats:
+    """The numbers without gaps in memory, shape (rows,)."""
+    return np.ascontiguousarray(values, np.float64)
+
+
+def threads_for(columns: Columns | Iterable[TableColumn], threads: int = 0) -> int:
+    """Threads that write a table: those asked for, or with 0 as many as there are processors and
+    as the number of cells is worth. The text does not depend on it."""
+    if threads:
+        return min(threads, MOST_TEXT_THREADS)
+    listed = columns.columns if isinstance(columns, Columns) else tuple(columns)
+    cells = sum(column.rows for column in listed)
+    return max(1, min(_processors(), cells // CELLS_PER_THREAD, MOST_TEXT_THREADS))
+
+
+def _processors() -> int:
+    """Processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+COMMITTED_DIGITS = 12
+"""Significant digits of committed tables: above any rounding, below what a last bit can change."""
+
+SHORTEST = 0
+
+
+def csv_bytes(
+    columns: Columns, significant_digits: int = SHORTEST, threads: int = 0, units: bool = False
+) -> bytes:
+    """The whole file as UTF-8; `SHORTEST` or 1 to 15 significant digits; threads 0: as many as the
+    table is worth; with `units` in the header, as `theta [deg]`."""
+    from mechkin_cli.kernel import _kernel
+
+    labels = [csv_text(_header(column, units)) for column in columns.columns]
+    cells = [
+        word_column(column.values, csv_text)
+        if isinstance(column.values, Words)
+        else _numbers(column, significant_digits)
+        for column in columns.columns
+    ]
+    text: bytes = _kernel.csv_text(
+        labels,
+        cells,
+        significant_digits=significant_digits,
+        quoted_empty=len(labels) == 1,
+        threads=threads_for(columns, threads),
+    )
+    return text
+
+
+def _numbers(column: TableColumn, significant_digits: int) -> FloatArray | WordColumn:
+    """The cells as the kernel takes them: as texts where one is infinite."""
+    assert not isinstance(column.values, Words)
+    cells = number_column(column.values)
+    if column.unbounded is None:
+        return cells
+    from mechkin_cli.kernel import _kernel
+
+    one: bytes = _kernel.csv_text(
+        [""], [cells], significant_digits=significant_digits, quoted_empty=False, threads=1
+    )
+    return word_column(words_of(column.texts(one.decode().split("\n")[1:-1])))
+
+
+def _header(column: TableColumn, units: bool) -> str:
+    return f"{column.label} [{column.unit}]" if units and column.unit else column.label
+
+
+# Numbers of a column as text with one number of decimals, for tables that people read.
+#
+# Declared decimals hold as they are. Undeclared ones give six significant digits to the column's
+# largest value, less the zeros that would end every number; a column whose largest value is below
+# 1e-6 or from 1e9 on is written with exponents. Every text is the exact binary value rounded once,
+# ties to even, so it is the same on every machine; zero has no sign.
+
+SIGNIFICANT_DIGITS = 6
+PLAIN_EXPONENTS = range(-6, 9)
+
+
+class DecimalColumn(NamedTuple):
+    """A column with the layout of its numbers, in the kernel's order; `trimmed` leaves out the
+    zeros that end every one of them."""
+
+    values: Floats
+    scientific: bool
+    decimals: int
+    trimmed: bool = False
+
+
+def decimal_column(values: Floats, decimals: int | None = None) -> DecimalColumn:
+    """The layout of an array of shape (rows,); `decimals` as declared, None to choose them."""
+    values = number_column(values)
+    if decimals is not None:
+        return DecimalColumn(values, False, decimals)
+    largest = np.abs(values).max(initial=0.0, where=np.isfinite(values))
+    exponent = _decimal_exponent(float(largest))
+    if exponent not in PLAIN_EXPONENTS:
+        return DecimalColumn(values, True, SIGNIFICANT_DIGITS - 1)
+    return DecimalColumn(values, False, max(0, SIGNIFICANT_DIGITS - 1 - exponent), True)
+
+
+def column_texts(values: Floats, decimals: int | None = None) -> list[str]:
+    """One text per value of an array of shape (rows,); a value that is not finite has none."""
+    from mechkin_cli.kernel import _kernel
+
+    texts: list[str] = _kernel.decimal_texts(decimal_column(values, decimals))
+    return texts
+
+
+def _decimal_exponent(magnitude: float) -> int:
+    """The exponent of ten in front of which the value, rounded, has one digit."""
+    return int(f"{magnitude:.{SIGNIFICANT_DIGITS - 1}e}".partition("e")[2])

@@ -1,0 +1,332 @@
+"""Agreement of a computed table with the printed one, cell by cell, in exact decimals.
+
+A printed number states a value to within half a unit of its last digit. A cell agrees where the
+computed number lies within that half unit, both ends included: the printed number is then the
+computed one, rounded; at a tie both neighbours are. Beyond that and up to one and a half units it
+is one off in the last digit. Computed numbers are taken with the twelve digits of committed
+tables, which the last bits of a double do not reach, so that a tie is a tie.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from decimal import Context, Decimal
+from itertools import groupby
+from pathlib import Path
+from typing import NamedTuple
+
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place, UsageError
+from mechkin_cli.reading import read_regular
+from mechkin_cli.tables.columns import Columns, TableColumn, Words
+from mechkin_cli.tables.csv import COMMITTED_DIGITS
+from mechkin_cli.tables.layout import ROW_NUMBER
+
+# Reading table files back as text: labels, cells and the lines around them.
+#
+# Cells stay the text that stands in the file; nothing is converted, so that a comparison sees what
+# a reader sees.
+
+_UNESCAPED_BAR = re.compile(r"(?<!\\)\|")
+
+
+class TableText(NamedTuple):
+    """Labels and rows of cells; `lines` are the lines outside the table that are not blank."""
+
+    labels: tuple[str, ...] = ()
+    rows: tuple[tuple[str, ...], ...] = ()
+    lines: tuple[str, ...] = ()
+
+
+def read_table_text(name: str, content: bytes) -> TableText:
+    """The table in a `.csv` or `.md` file; any other file, and a page of several tables, is lines
+    without a table.
+
+    Raises:
+        ValueError: the content is not UTF-8 text, or no CSV.
+    """
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"byte {error.start} is not UTF-8 text") from error
+    if name.endswith(".csv"):
+        return _read_csv(text)
+    if name.endswith(".md"):
+        return _read_markdown(text)
+    return TableText(lines=_filled(text.splitlines()))
+
+
+def _read_csv(text: str) -> TableText:
+    try:
+        records = [tuple(record) for record in csv.reader(io.StringIO(text, newline=""))]
+    except csv.Error as error:
+        raise ValueError(f"not readable as CSV: {error}") from error
+    if not records:
+        return TableText()
+    # a blank line is a row whose only cell is empty
+    return TableText(records[0], tuple(record or ("",) for record in records[1:]))
+
+
+def _read_markdown(text: str) -> TableText:
+    lines = text.splitlines()
+    table = [_markdown_cells(line) for line in lines if _is_of_table(line)]
+    others = _filled(line for line in lines if not _is_of_table(line))
+    if not table or _has_several_tables(lines):
+        return TableText(lines=_filled(lines))
+    return TableText(table[0], tuple(table[2:]), others)
+
+
+def _is_of_table(line: str) -> bool:
+    return line.lstrip().startswith("|")
+
+
+def _has_several_tables(lines: Iterable[str]) -> bool:
+    return sum(is_table for is_table, _ in groupby(lines, _is_of_table)) > 1
+
+
+def _markdown_cells(line: str) -> tuple[str, ...]:
+    return tuple(cell.strip() for cell in _UNESCAPED_BAR.split(line.strip())[1:-1])
+
+
+def _filled(lines: Iterable[str]) -> tuple[str, ...]:
+    return tuple(line.rstrip() for line in lines if line.strip())
+
+
+# Printed values of a table: a CSV file with the digits as the source prints them.
+#
+# The first line holds labels of the table, the first of them that of the column by which rows are
+# found again. A cell's text carries its precision: `1.30` is printed to 0.01. Empty cells are
+# values that the source does not have, or that cannot be read.
+
+MOST_BYTES = 1 << 20
+"""Size of a file of printed values; the longest printed tables have some ten kilobytes."""
+
+_NUMBER = re.compile(
+    r"[+-]?(?:[0-9]{1,30}(?:\.[0-9]{0,30})?|\.[0-9]{1,30})(?:[eE][+-]?[0-9]{1,2})?"
+)
+
+Cell = Decimal | None
+
+
+class PrintedValues(NamedTuple):
+    """Labels and rows of numbers, as printed; None where the print has no value."""
+
+    labels: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+
+
+def read_printed(path: Path) -> PrintedValues:
+    """The printed values in a CSV file.
+
+    Raises:
+        UsageError: the file cannot be read.
+        InvalidFile: it is no table of numbers; with the place of each error.
+    """
+    try:
+        content = read_regular(path, MOST_BYTES)
+    except OSError as error:
+        raise UsageError(
+            f"cannot read the printed values {path}: {error.strerror}; "
+            "put the file there or correct `published:`"
+        ) from error
+    if len(content) > MOST_BYTES:
+        raise _invalid(path, 1, 1, f"the file is larger than {MOST_BYTES} bytes", "shorten it")
+    try:
+        labels, rows, _ = read_table_text("printed.csv", content)
+    except ValueError as error:
+        raise _invalid(path, 1, 1, str(error), "write CSV in UTF-8") from error
+    labels = tuple(label.removeprefix("\ufeff").strip() for label in labels)
+    if not any(labels) or len(set(labels)) < len(labels):
+        raise _invalid(path, 1, 1, "the first line must hold labels, each one once", "add them")
+    filled = [(line, row) for line, row in enumerate(rows, start=2) if any(map(str.strip, row))]
+    return PrintedValues(labels, tuple(_numbers(path, line, labels, row) for line, row in filled))
+
+
+def _numbers(
+    path: Path, line: int, labels: tuple[str, ...], row: tuple[str, ...]
+) -> tuple[Cell, ...]:
+    if len(row) != len(labels):
+        text = f"the row has {len(row)} cells for {len(labels)} labels"
+        raise _invalid(path, line, 1, text, "leave a cell empty where the print has no value")
+    return tuple(_number(path, line, row, place, labels[place]) for place in range(len(row)))
+
+
+def _number(path: Path, line: int, row: tuple[str, ...], place: int, label: str) -> Cell:
+    text = row[place].strip()
+    if not text:
+        return None
+    if not _NUMBER.fullmatch(text):
+        column = 1 + sum(len(cell) + 1 for cell in row[:place])
+        message = f"{label}: {text[:40]!r} is no number"
+        raise _invalid(path, line, column, message, "write the digits as printed, or nothing")
+    return Decimal(text)
+
+
+def _invalid(path: Path, line: int, column: int, message: str, hint: str) -> InvalidFile:
+    place = Place(str(path), line, column)
+    return InvalidFile([Diagnostic("printed-values", "error", message, place, hint=hint)])
+
+
+HALF = Decimal("0.5")
+ONE_OFF = Decimal("1.5")
+_TWELVE = Context(prec=COMMITTED_DIGITS)
+_WIDE = Context(prec=700)
+"""Holds any difference of a double and a printed number exactly."""
+
+
+@dataclass(frozen=True, slots=True)
+class PrintedCell:
+    """One printed number beside the computed one.
+
+    `key` is what found the row, the printed number or its count; `row` counts computed rows from 1.
+    """
+
+    row: int
+    key: Decimal
+    label: str
+    printed: Decimal
+    computed: Decimal
+
+    @property
+    def unit(self) -> Decimal:
+        """One unit of the last printed digit."""
+        return Decimal(1).scaleb(int(self.printed.as_tuple().exponent))
+
+    @property
+    def difference(self) -> Decimal:
+        """Printed less computed, in the unit of the column."""
+        return _WIDE.subtract(self.printed, self.computed)
+
+    @property
+    def units(self) -> Decimal:
+        """Printed less computed, in units of the last printed digit."""
+        return _WIDE.divide(self.difference, self.unit)
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the printed number is the computed one, rounded to the printed digits."""
+        return abs(self.units) <= HALF
+
+    @property
+    def one_off(self) -> bool:
+        """Whether the printed number is a neighbour of the rounded one."""
+        return HALF < abs(self.units) <= ONE_OFF
+
+
+@dataclass(frozen=True, slots=True)
+class TableAgreement:
+    """All printed cells of a table but those that find its rows, `rows_by` a label or the count.
+
+    `without_row` counts printed rows that the table does not have, `without_value` printed cells
+    whose computed cell is empty; `other_labels` are printed columns that the table does not have.
+    """
+
+    cells: tuple[PrintedCell, ...]
+    without_row: int = 0
+    without_value: int = 0
+    other_labels: tuple[str, ...] = ()
+    rows_by: str = ""
+
+    @property
+    def off(self) -> tuple[PrintedCell, ...]:
+        """The cells that do not agree."""
+        return tuple(cell for cell in self.cells if not cell.agrees)
+
+    @property
+    def agreeing(self) -> int:
+        """Number of cells that agree."""
+        return sum(cell.agrees for cell in self.cells)
+
+    @property
+    def one_off(self) -> int:
+        """Number of cells that are one off in the last digit."""
+        return sum(cell.one_off for cell in self.cells)
+
+    @property
+    def differing(self) -> int:
+        """Number of cells that differ by more."""
+        return len(self.cells) - self.agreeing - self.one_off
+
+
+def agreement(table: Columns, printed: PrintedValues, rows_by: str | None = None) -> TableAgreement:
+    """The printed cells beside the computed ones.
+
+    Rows are found by the values of the column `rows_by`, None for the first printed one, or one
+    after the other where it is `ROW_NUMBER`.
+
+    Raises:
+        ValueError: the table or the print has no column of numbers with that label.
+    """
+    columns = {c.label: c for c in table.columns if not isinstance(c.values, Words)}
+    key = printed.labels[0] if rows_by is None else rows_by
+    labels = [label for label in printed.labels if label != key]
+    computed = {label: _decimals(columns[label]) for label in labels if label in columns}
+    cells, without_row, without_value = [], 0, 0
+    for found, row, texts in _paired(table, columns, printed, key):
+        if row is None or found is None:
+            without_row += 1
+            continue
+        for label in computed:
+            text, value = texts[label], computed[label][row]
+            if text is not None and value is None:
+                without_value += 1
+            elif text is not None and value is not None:
+                cells.append(PrintedCell(row + 1, found, label, text, value))
+    others = tuple(label for label in labels if label not in computed)
+    return TableAgreement(tuple(cells), without_row, without_value, others, key)
+
+
+def _paired(
+    table: Columns, columns: Mapping[str, TableColumn], printed: PrintedValues, key: str
+) -> Iterator[tuple[Cell, int | None, Mapping[str, Cell]]]:
+    """Of each printed row what finds it, the computed row, and its cells by label."""
+    rows = [dict(zip(printed.labels, row, strict=True)) for row in printed.rows]
+    if key == ROW_NUMBER:
+        count = table.columns[0].rows
+        for number, row in enumerate(rows):
+            yield Decimal(number + 1), number if number < count else None, row
+        return
+    for labels, who in ((columns, f"table {table.name}"), (printed.labels, "the print")):
+        if key not in labels:
+            raise ValueError(
+                f"the column {key!r} finds the rows, and {who} has no "
+                f"such column of numbers; its labels are {', '.join(labels)}"
+            )
+    places = _PrintedRows(_decimals(columns[key]))
+    for row in rows:
+        yield row[key], places.take(row[key]), row
+
+
+def _decimals(column: TableColumn) -> list[Decimal | None]:
+    """Each value with twelve digits; None where it is no number."""
+    assert not isinstance(column.values, Words)
+    found = (Decimal(value) for value in column.values.tolist())
+    return [_TWELVE.plus(value) if value.is_finite() else None for value in found]
+
+
+class _PrintedRows:
+    """Row numbers by a printed value of one column; each row is found once."""
+
+    def __init__(self, values: list[Decimal | None]) -> None:
+        self._values = values
+        self._by_exponent: dict[int, Mapping[Decimal, list[int]]] = {}
+
+    def take(self, key: Decimal | None) -> int | None:
+        if key is None:
+            return None
+        exponent = int(key.as_tuple().exponent)
+        if exponent not in self._by_exponent:
+            self._by_exponent[exponent] = self._rounded(Decimal(1).scaleb(exponent))
+        rows = self._by_exponent[exponent].get(key)
+        return rows.pop(0) if rows else None
+
+    def _rounded(self, unit: Decimal) -> Mapping[Decimal, list[int]]:
+        found: dict[Decimal, list[int]] = {}
+        for row, value in enumerate(self._values):
+            if value is not None:
+                rounded = _WIDE.quantize(value, unit)
+                found.setdefault(rounded, []).append(row)
+        return found

@@ -1,0 +1,392 @@
+"""Arrays of double-double numbers, about 32 digits each: code written for arrays of doubles runs
+on them unchanged.
+
+They are `Recorded` numbers that differ from row to row, so expressions take them as they take those
+of a tape; and they answer to the functions of numpy that such code calls (`_UFUNCS`, `_FUNCTIONS`).
+What they cannot do raises TypeError, never a rounded answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.exact import Exact
+from mechkin_cli.tape.scalars import (
+    Recorded,
+    fast_two_sum,
+    product_of,
+    quotient_of,
+    root_of,
+    sum_of,
+)
+from mechkin_cli.tape.tape import ARITY, Operation, Tape, compiled, replay_precise
+
+if TYPE_CHECKING:
+    from mechkin_cli.kernel import _kernel
+    from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.tape.scalars import Pair
+
+
+class Truths(np.ndarray[Any, Any]):
+    """What a comparison finds, row by row."""
+
+    def choose(self, chosen: Any, other: Any) -> Any:  # type: ignore[override]
+        """`chosen` where it holds, else `other`."""
+        return np.where(self.view(np.ndarray), chosen, other)
+
+
+class DoubleDoubles(Recorded):
+    """Unevaluated sums high + low, |low| <= ulp(high)/2; both of one shape, float64."""
+
+    __slots__ = ("high", "low")
+    __hash__ = None  # type: ignore[assignment]
+    is_row = True
+
+    def __init__(self, high: Any, low: Any = 0.0) -> None:
+        self.high: Floats = np.asarray(high, dtype=np.float64)
+        lows = np.broadcast_to(np.asarray(low, dtype=np.float64), self.high.shape)
+        # beside an infinity or nan a low part has no meaning
+        self.low: Floats = np.where(np.isfinite(self.high), lows, 0.0)
+
+    @classmethod
+    def view(cls, high: Floats, low: Floats) -> DoubleDoubles:
+        """Of two arrays of one shape as they are, not copied."""
+        found = cls.__new__(cls)
+        found.high, found.low = high, low
+        return found
+
+    @classmethod
+    def of_fraction(cls, value: Fraction) -> DoubleDoubles:
+        """The nearest pair of doubles, of shape ()."""
+        high = float(value)
+        return cls(high, float(value - Fraction(high)))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """As of an array."""
+        return self.high.shape
+
+    @property
+    def size(self) -> int:
+        """As of an array."""
+        return self.high.size
+
+    @property
+    def ndim(self) -> int:
+        """As of an array."""
+        return self.high.ndim
+
+    @property
+    def T(self) -> DoubleDoubles:  # noqa: N802
+        """As of an array."""
+        return DoubleDoubles.view(self.high.T, self.low.T)
+
+    def __len__(self) -> int:
+        return len(self.high)
+
+    def __iter__(self) -> Any:
+        return (self[k] for k in range(len(self)))
+
+    def __getitem__(self, index: Any) -> DoubleDoubles:
+        return DoubleDoubles.view(self.high[index], self.low[index])
+
+    def __setitem__(self, index: Any, value: Any) -> None:
+        given = exactly(value)
+        self.high[index], self.low[index] = given.high, given.low
+
+    def __repr__(self) -> str:
+        return f"DoubleDoubles({self.high!r}, {self.low!r})"
+
+    def copy(self) -> DoubleDoubles:
+        """Of its own."""
+        return DoubleDoubles(self.high.copy(), self.low.copy())
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
+        known = _UFUNCS.get(ufunc)
+        if known is None or method != "__call__" or options:
+            raise TypeError(f"{ufunc.__name__} of double-double numbers")
+        with np.errstate(all="ignore"):
+            return known(*map(exactly, inputs))
+
+    def __array_function__(self, function: Any, types: Any, given: Any, options: Any) -> Any:
+        known = _FUNCTIONS.get(function)
+        if known is None:
+            raise TypeError(f"{function.__name__} of double-double numbers")
+        with np.errstate(all="ignore"):
+            return known(*given, **options)
+
+    def __array__(self, *_: Any, **__: Any) -> Any:
+        raise TypeError("double-double numbers would lose their low parts")
+
+    def apply(self, operation: str, *others: Any) -> Any:
+        """An operation of a tape (`operations.Operation`) on these numbers and others."""
+        with np.errstate(all="ignore"):
+            return _applied(operation, self, *map(exactly, others))
+
+    def apply_after(self, operation: str, first: Any) -> Any:
+        """The operation on a float first."""
+        return exactly(first).apply(operation, self)
+
+    def __add__(self, other: Any) -> DoubleDoubles:
+        return np.add(self, other)  # type: ignore[no-any-return]
+
+    def __radd__(self, other: Any) -> DoubleDoubles:
+        return np.add(other, self)  # type: ignore[no-any-return]
+
+    def __sub__(self, other: Any) -> DoubleDoubles:
+        return np.subtract(self, other)  # type: ignore[no-any-return]
+
+    def __rsub__(self, other: Any) -> DoubleDoubles:
+        return np.subtract(other, self)  # type: ignore[no-any-return]
+
+    def __mul__(self, other: Any) -> DoubleDoubles:
+        return np.multiply(self, other)  # type: ignore[no-any-return]
+
+    def __rmul__(self, other: Any) -> DoubleDoubles:
+        return np.multiply(other, self)  # type: ignore[no-any-return]
+
+    def __truediv__(self, other: Any) -> DoubleDoubles:
+        return np.divide(self, other)  # type: ignore[no-any-return]
+
+    def __rtruediv__(self, other: Any) -> DoubleDoubles:
+        return np.divide(other, self)  # type: ignore[no-any-return]
+
+    def __neg__(self) -> DoubleDoubles:
+        return DoubleDoubles(-self.high, -self.low)
+
+    def __abs__(self) -> DoubleDoubles:
+        return _magnitude(self)
+
+    def __lt__(self, other: Any) -> Any:
+        return np.less(self, other)
+
+    def __le__(self, other: Any) -> Any:
+        return np.less_equal(self, other)
+
+    def __gt__(self, other: Any) -> Any:
+        return np.greater(self, other)
+
+    def __ge__(self, other: Any) -> Any:
+        return np.greater_equal(self, other)
+
+    def __eq__(self, other: Any) -> Any:
+        return np.equal(self, other)
+
+    def __ne__(self, other: Any) -> Any:
+        return np.not_equal(self, other)
+
+
+def exactly(value: Any) -> DoubleDoubles:
+    """A number, an array of doubles or of double-doubles as double-doubles; a double that knows
+    what it was rounded from as that."""
+    if isinstance(value, Exact):
+        return DoubleDoubles.of_fraction(value.fraction)
+    return value if isinstance(value, DoubleDoubles) else DoubleDoubles(value)
+
+
+def joined(parts: Sequence[DoubleDoubles], axis: int = 0) -> DoubleDoubles:
+    """Arrays one behind the other along an axis."""
+    highs, lows = [part.high for part in parts], [part.low for part in parts]
+    return DoubleDoubles.view(np.concatenate(highs, axis), np.concatenate(lows, axis))
+
+
+def stacked(parts: Sequence[DoubleDoubles], axis: int = 0) -> DoubleDoubles:
+    """Arrays of one shape beside each other along a new axis."""
+    highs, lows = [part.high for part in parts], [part.low for part in parts]
+    return DoubleDoubles.view(np.stack(highs, axis), np.stack(lows, axis))
+
+
+def difference(value: Floats, other: DoubleDoubles) -> Floats:
+    """value - other to the last bits of a double, however alike they are."""
+    found = exactly(value) - other
+    return found.high
+
+
+def _of_pairs(
+    function: Callable[..., Pair], plain: Callable[..., Floats]
+) -> Callable[..., DoubleDoubles]:
+    def apply(*numbers: DoubleDoubles) -> DoubleDoubles:
+        high, low = function(*((n.high, n.low) for n in numbers))
+        # the errors of an infinity are nan, it itself is not
+        rough = plain(*(n.high for n in numbers))
+        is_pair = np.isfinite(high)
+        return DoubleDoubles(np.where(is_pair, high, rough), np.where(is_pair, low, 0.0))
+
+    return apply
+
+
+_sum = _of_pairs(sum_of, np.add)
+_product = _of_pairs(product_of, np.multiply)
+_quotient = _of_pairs(quotient_of, np.divide)
+_root = _of_pairs(root_of, np.sqrt)
+
+
+def _difference(a: DoubleDoubles, b: DoubleDoubles) -> DoubleDoubles:
+    return _sum(a, -b)
+
+
+def _magnitude(a: DoubleDoubles) -> DoubleDoubles:
+    negative = a.high < 0.0
+    return DoubleDoubles(np.where(negative, -a.high, a.high), np.where(negative, -a.low, a.low))
+
+
+def _truths(found: Bools) -> Any:
+    return np.asarray(found).view(Truths)
+
+
+def _less(a: DoubleDoubles, b: DoubleDoubles) -> Any:
+    return _truths((a.high < b.high) | ((a.high == b.high) & (a.low < b.low)))
+
+
+def _not_more(a: DoubleDoubles, b: DoubleDoubles) -> Any:
+    return _truths((a.high < b.high) | ((a.high == b.high) & (a.low <= b.low)))
+
+
+def _equal(a: DoubleDoubles, b: DoubleDoubles) -> Any:
+    return _truths((a.high == b.high) & (a.low == b.low))
+
+
+def _where(condition: Any, chosen: Any, other: Any) -> DoubleDoubles:
+    a, b = exactly(chosen), exactly(other)
+    return DoubleDoubles(np.where(condition, a.high, b.high), np.where(condition, a.low, b.low))
+
+
+def _each(function: Callable[..., Any]) -> Callable[..., DoubleDoubles]:
+    """A function that moves numbers and computes nothing: of the high and of the low parts."""
+
+    def apply(numbers: Sequence[Any], *args: Any, **options: Any) -> DoubleDoubles:
+        parts = [exactly(number) for number in numbers]
+        highs, lows = [p.high for p in parts], [p.low for p in parts]
+        return DoubleDoubles(function(highs, *args, **options), function(lows, *args, **options))
+
+    return apply
+
+
+def _largest(a: DoubleDoubles, axis: int, initial: float) -> DoubleDoubles:
+    """The largest along the first axis, at least `initial`."""
+    if axis:
+        raise TypeError("max of double-double numbers along an axis that is not the first")
+    found = exactly(np.full(a.shape[1:], initial))
+    for part in a:
+        found = _where(_less(found, part), part, found)
+    return found
+
+
+def _sign(a: DoubleDoubles) -> DoubleDoubles:
+    return DoubleDoubles(np.where(a.high > 0.0, 1.0, np.where(a.high < 0.0, -1.0, a.high)))
+
+
+def _whole(a: DoubleDoubles) -> DoubleDoubles:
+    high = np.rint(a.high)
+    low = np.where(high == a.high, np.rint(a.low), 0.0)
+    # half way between two whole numbers the low part decides
+    half = (np.abs(a.high - high) == 0.5) & ((a.high - high) * a.low > 0.0)
+    high = np.where(half, high + np.sign(a.low), high)
+    return DoubleDoubles(*fast_two_sum(high, low))
+
+
+def _applied(operation: str, *numbers: DoubleDoubles) -> Any:
+    own = _OPERATIONS.get(operation)
+    if own is not None:
+        return own(*numbers)
+
+    return elementary(operation, *numbers)
+
+
+_UFUNCS: dict[Any, Callable[..., Any]] = {
+    np.add: _sum,
+    np.subtract: _difference,
+    np.multiply: _product,
+    np.divide: _quotient,
+    np.negative: lambda a: -a,
+    np.absolute: _magnitude,
+    np.sqrt: _root,
+    np.less: _less,
+    np.less_equal: _not_more,
+    np.greater: lambda a, b: _less(b, a),
+    np.greater_equal: lambda a, b: _not_more(b, a),
+    np.equal: _equal,
+    np.not_equal: lambda a, b: _truths(~np.asarray(_equal(a, b))),
+    np.isfinite: lambda a: np.isfinite(a.high),
+    np.isnan: lambda a: np.isnan(a.high),
+    np.maximum: lambda a, b: _where(_not_more(b, a) | np.isnan(a.high), a, b),
+    np.minimum: lambda a, b: _where(_not_more(a, b) | np.isnan(a.high), a, b),
+}
+"""Functions of numpy, number by number."""
+
+_FUNCTIONS: dict[Any, Callable[..., Any]] = {
+    np.where: _where,
+    np.max: _largest,
+    np.stack: _each(np.stack),
+    np.concatenate: _each(np.concatenate),
+    np.full_like: lambda like, value: _where(True, value, 0.0 * exactly(like).high),
+    np.ones_like: lambda like: np.ones(exactly(like).shape),
+    np.zeros_like: lambda like: np.zeros(exactly(like).shape),
+}
+"""Functions of numpy, of arrays."""
+
+_OPERATIONS: dict[str, Callable[..., Any]] = {
+    "SQUARE_ROOT": _root,
+    "MAGNITUDE": _magnitude,
+    "SIGN": _sign,
+    "WHOLE": _whole,
+    "LARGER": lambda a, b: _where(_less(a, b), b, a),
+    "SMALLER": lambda a, b: _where(_less(b, a), b, a),
+}
+"""Operations of a tape that need no kernel."""
+
+
+# Elementary functions of double-double numbers, by the kernel.
+
+
+def elementary(operation: str, *numbers: DoubleDoubles) -> DoubleDoubles:
+    """The function of a name (`SIN`), number by number."""
+    parts = np.broadcast_arrays(*(part for n in numbers for part in (n.high, n.low)))
+    shape = parts[0].shape
+    values = np.stack([part.ravel() for part in parts]).reshape(len(numbers), 2, -1)
+    found = replay_precise(_tape(operation), values)[0]
+    return DoubleDoubles(found[:, 0, 0].reshape(shape), found[:, 0, 1].reshape(shape))
+
+
+@cache
+def _tape(operation: str) -> _kernel.Tape:
+    """The tape of one operation."""
+    code = Operation[operation]
+    count = ARITY[code]
+    operands = np.array([[k if k < count else 0 for k in range(3)]], dtype=np.int32)
+    nothing = np.zeros(0, dtype=np.bool_)
+    return compiled(
+        Tape(
+            tuple("xyz"[:count]),
+            np.zeros(0),
+            np.array([code], dtype=np.uint8),
+            operands,
+            np.array([count], dtype=np.int32),
+            np.zeros((0, 3), dtype=np.int32),
+            nothing,
+            nothing,
+        )
+    )
+
+
+# Gaussian elimination in any numbers that numpy can hold, rows of a batch at once.
+
+
+def eliminate(matrix: Any, right: Any) -> Any:
+    """Solutions (rows, n) of systems (rows, n, n) by elimination with partial pivoting."""
+    a = np.concatenate([matrix, right[:, :, None]], axis=2)
+    rows, n = right.shape
+    every = np.arange(rows)
+    for k in range(n):
+        pivot = k + np.argmax(np.abs(a[:, k:, k]), axis=1)
+        a[every, pivot], a[:, k] = a[:, k].copy(), a[every, pivot]
+        a[:, k] /= a[:, k, k][:, None]
+        factors = a[:, :, k].copy()
+        factors[:, k] = 0
+        a -= factors[:, :, None] * a[:, k][:, None, :]
+    return a[:, :, n]

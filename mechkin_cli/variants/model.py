@@ -1,0 +1,400 @@
+"""A model under other parameters, without reading or building anew.
+
+The base model records once, for each set of parameters, how its plan depends on them; variants are
+replays of that. Where a recording does not hold, the variant is built anew: the same answers and
+the same errors, only slower.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.arguments import Setting, a_setting, a_text, settings, shown
+from mechkin_cli.building import build, is_tiny_length, record
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError, nearest_hint
+from mechkin_cli.expressions import ExpressionError, Quantity, constant
+from mechkin_cli.mechanism import Problem
+from mechkin_cli.model import Model
+from mechkin_cli.session import Session
+from mechkin_cli.structure import SolverGraph
+from mechkin_cli.sweep import first_assembly
+from mechkin_cli.tape import TraceLost, Verdict
+from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
+from mechkin_cli.units import LENGTH
+from mechkin_cli.variants.anew import AnewSession, structure_of
+from mechkin_cli.variants.variation import FirstAssembly, SessionVariation, VariedSession
+from mechkin_cli.verdict import SWEEP
+
+if TYPE_CHECKING:
+    from mechkin_cli.building import Built, ViewSettings
+    from mechkin_cli.mechanism import ResponseProblem
+    from mechkin_cli.model import Analysis
+    from mechkin_cli.session import Precise
+    from mechkin_cli.show import Floats
+    from mechkin_cli.units import Dimension, UnitSystem
+    from mechkin_cli.variants.many import Reduce, Variants
+
+
+# Values of parameters as a caller gives them, to SI: one of each, or arrays.
+
+
+def parameter_values(problem: Problem, given: Mapping[str, Any]) -> dict[str, float]:
+    """One value of each parameter, in SI and in the file's order.
+
+    Raises:
+        UsageError: no mapping, an unknown parameter, or an invalid value.
+    """
+    values = settings("parameters", given, '{"P1": "0.6 in"}')
+    return {
+        name: one_value(name, values[name], known.dimension, problem.units)
+        for name, known in _known(problem, values)
+    }
+
+
+def parameter_arrays(problem: Problem, given: Mapping[str, Any]) -> tuple[tuple[str, ...], Floats]:
+    """Names in the file's order, and values (parameters, variants) in SI; one value stands for all
+    variants.
+
+    Raises:
+        UsageError: as `parameter_values`; arrays of more than one dimension or different lengths.
+    """
+    if not isinstance(given, Mapping):
+        settings("parameters", given, '{"P1": [0.5, 0.6]}')
+    for name in given:
+        a_text("a key of parameters", name, '"P1"')
+    columns = {
+        name: _column(name, given[name], known.dimension, problem.units)
+        for name, known in _known(problem, given)
+    }
+    if not columns:
+        raise UsageError('vary takes values of at least one parameter, such as {"P1": [0.5, 0.6]}')
+    lengths = {name: column.size for name, column in columns.items() if column.ndim}
+    if len(set(lengths.values())) > 1:
+        words = ", ".join(f"{name} {n}" for name, n in lengths.items())
+        raise UsageError(f"values of parameters need equally many variants, found {words}")
+    count = next(iter(lengths.values()), 1)
+    rows = [np.broadcast_to(column, (count,)) for column in columns.values()]
+    return tuple(columns), np.stack(rows)
+
+
+def _known(problem: Problem, given: Mapping[str, Any]) -> list[tuple[str, Quantity]]:
+    """Names and quantities, in the file's order."""
+    known = problem.parameters
+    for name in given:
+        if name not in known:
+            listed = ", ".join(list(known)[:10])
+            hint = nearest_hint(name, list(known)) or (
+                f"parameters are {listed}" if known else "write parameters: into the file"
+            )
+            raise UsageError(f"there is no parameter {name[:LONGEST_NAME]}; {hint}")
+    return [(name, known[name]) for name in known if name in given]
+
+
+def one_value(name: str, value: Setting, dimension: Dimension, units: UnitSystem) -> float:
+    """A value in SI; a number is in the file's units, a text carries its own.
+
+    Raises:
+        UsageError: it is none, or no number that can be computed with.
+    """
+    if not isinstance(value, str):
+        in_si = units.to_si(float(value), dimension)
+        if in_si == 0.0 and value != 0.0:
+            raise UsageError(
+                f"{name} = {value} is too small: in SI units it would be zero; write 0 or another "
+                "value or unit"
+            )
+        return _bounded(name, in_si, value, dimension)
+    try:
+        return _bounded(name, constant(value, dimension, units), value, dimension)
+    except ExpressionError as error:
+        unit = units.label(dimension)
+        hint = error.hint or f"write a number with its unit, such as 1 {unit}".rstrip()
+        raise UsageError(f"{name} = {value[:LONGEST_NAME]}: {error.message}; {hint}") from None
+
+
+def _column(name: str, value: Any, dimension: Dimension, units: UnitSystem) -> Floats:
+    try:
+        array = np.asarray(value)
+    except Exception:
+        # whatever a foreign object's conversion raises
+        array = np.empty((0, 0))
+    if isinstance(value, str) or array.ndim == 0:
+        return np.array(one_value(name, a_setting(name, value), dimension, units))
+    if array.ndim > 1:
+        raise UsageError(
+            f"{name}: expected a value a variant, an array of one dimension, not {shown(value)}"
+        )
+    if array.dtype.kind not in "fiu":
+        items = [a_setting(f"{name}[{k}]", item) for k, item in enumerate(value)]
+        return np.array(
+            [one_value(name, item, dimension, units) for item in items], dtype=np.float64
+        )
+    found = units.to_si(array.astype(np.float64), dimension)
+    sizes = np.abs(found)
+    least = SMALLEST_SIZE if dimension == LENGTH else 0.0
+    kept = (sizes >= least) & (sizes > 0.0) | (array == 0)
+    wrong = np.flatnonzero(~((sizes <= LARGEST_NUMBER) & kept))
+    if wrong.size:
+        one_value(f"{name}[{wrong[0]}]", array[wrong[0]].item(), dimension, units)
+        _bounded(f"{name}[{wrong[0]}]", float(found[wrong[0]]), array[wrong[0]], dimension)
+    return found
+
+
+def _bounded(name: str, in_si: float, value: object, dimension: Dimension) -> float:
+    if is_tiny_length(in_si, dimension):
+        raise UsageError(
+            f"{name} = {str(value)[:LONGEST_NAME]} is a length below {SMALLEST_SIZE:g} m; write "
+            "another value or unit"
+        )
+    if not abs(in_si) <= LARGEST_NUMBER:
+        raise UsageError(
+            f"{name} = {str(value)[:LONGEST_NAME]} is no finite number below {LARGEST_NUMBER:g} in "
+            "SI units; write another value or unit"
+        )
+    return in_si
+
+
+class Base:
+    """What the variants of a model share: its first assembly, and its recordings by parameters."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self._variations: dict[tuple[str, ...], SessionVariation | None] = {}
+
+    @cached_property
+    def _assembled(self) -> tuple[Session, FirstAssembly] | None:
+        if self.model.problem.follow is not None:
+            return None  # which loops are followed depends on what is asked
+        if SWEEP not in self.model.runs:
+            return None  # there is no first row to continue
+        session, start = first_assembly(self.model.session)
+        if start.state is None or session.size is None:
+            return None
+        return session, FirstAssembly(start.state, start.row, session.size)
+
+    @property
+    def start(self) -> FirstAssembly:
+        """The first assembly of a model that has a variation."""
+        assert self._assembled is not None
+        return self._assembled[1]
+
+    def variation(self, names: Sequence[str]) -> SessionVariation | None:
+        """How the model depends on some parameters; None where every variant is built anew."""
+        key = tuple(names)
+        if key not in self._variations:
+            self._variations[key] = self._recorded(key)
+        return self._variations[key]
+
+    def _recorded(self, names: tuple[str, ...]) -> SessionVariation | None:
+        if self._assembled is None:
+            return None
+        try:
+            recording = record(self.model.built, names)
+            return SessionVariation(self._assembled[0], recording.recorder, recording.problem)
+        except (TraceLost, TypeError, ValueError):
+            # numpy refuses recorded numbers in words of its own
+            return None
+
+    def built(self, values: Mapping[str, float]) -> Built:
+        """The model with other parameters (SI), by the ordinary path.
+
+        Raises:
+            InvalidFile: with every independent error.
+        """
+        known = self.model.problem.parameters
+        given = {name: Quantity(v, known[name].dimension) for name, v in values.items()}
+        return build(self.model.built.read, given)
+
+
+class VariedModel(Model):
+    """A model with other values of some parameters.
+
+    Args:
+        base: the model as its file has it.
+        values: by name, in SI.
+    """
+
+    def __init__(self, base: Base, values: Mapping[str, float]) -> None:
+        variation = base.variation(tuple(values))
+        if variation is None:
+            # what has the file's own value need not be named, and may be what no tape holds
+            own = base.model.problem.parameters
+            values = {name: v for name, v in values.items() if v != own[name].value}
+            variation = base.variation(tuple(values)) if values else None
+        self._base, self._values = base, dict(values)
+        self._variation = variation
+        row = np.array(list(values.values()))
+        self._row = row
+        verdict = Verdict.OTHER_WAY if variation is None else variation.verdicts(row[:, None])[0]
+        if variation is None or verdict == Verdict.OTHER_WAY:
+            self._variation = None
+            super().__init__(base.built(values), base.model.stem)
+            return
+        super().__init__(base.model.built, base.model.stem)
+        self._advised = verdict == Verdict.OTHER_ADVICE
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        """The parameters that were set, by name, in SI."""
+        return self._values
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled and copied as the file's model and the values."""
+        return _revaried, (self._base.model, self._values)
+
+    @cached_property
+    def problem(self) -> Problem:
+        """The mechanism, its motion and assembly in SI."""
+        if self._variation is None:
+            return self.built.problem
+        problem = self._variation.problem(self._row)
+        if self._advised:
+            fresh = self._base.built(self._values).problem
+            problem = replace(problem, diagnostics=fresh.diagnostics)
+        return problem
+
+    @cached_property
+    def session(self) -> Session:
+        """The mechanism in the kernel."""
+        if self._variation is None:
+            base = self._base.model.session
+            anew = AnewSession(self.problem, self.graph, base, self._between)
+            return anew.reading(lambda: self.precise)
+        varied = VariedSession(self._variation, self._row, self.problem, self._base.start)
+        if varied.continued is not None and varied.continued.state is None:
+            # the branch ends on the way: the same structure, or another problem?
+            fresh = self._base.built(self._values)
+            if isinstance(fresh.graph, Diagnostic):
+                raise InvalidFile([*fresh.problem.diagnostics, fresh.graph])
+            if structure_of(fresh.graph) != structure_of(varied.graph):
+                return Session(fresh.problem, fresh.graph)
+        return varied.reading(lambda: self.precise)
+
+    @cached_property
+    def precise(self) -> Precise:
+        """As `Model.precise`; values that were set are the doubles that they are."""
+        from mechkin_cli.building import precise
+
+        return precise(self.built, self.problem, self._given)
+
+    @property
+    def _given(self) -> dict[str, Quantity]:
+        """The values that were set, in SI."""
+        known = self._base.model.problem.parameters
+        return {name: Quantity(v, known[name].dimension) for name, v in self._values.items()}
+
+    def _between(self, place: float) -> Session:
+        """The session between the file's own parameters (0) and these (1), built anew."""
+        own = self._base.model.problem.parameters
+        values = {}
+        for name, value in self._values.items():
+            start = float(own[name].value)  # type: ignore[arg-type]
+            values[name] = start + place * (value - start)
+        built = self._base.built(values)
+        if isinstance(built.graph, Diagnostic):
+            raise InvalidFile([*built.problem.diagnostics, built.graph])
+        return Session(built.problem, built.graph)
+
+    @property
+    def graph(self) -> SolverGraph:
+        """Tree, closing joints and blocks."""
+        return super().graph if self._variation is None else self.session.graph
+
+    @cached_property
+    def _fresh(self) -> Model:
+        """The same model built anew: no recording holds responses."""
+        built = self.built if self._variation is None else self._base.built(self._values)
+        return _BuiltAnew(built, self.stem, self._given)
+
+    @property
+    def view_settings(self) -> ViewSettings:
+        """As `Model.view_settings`; its lengths are those of these parameters."""
+        return super().view_settings if self.built.view is None else self._fresh.view_settings
+
+    def response(self, name: str) -> ResponseProblem:
+        """What one of the file's responses asks for, in SI."""
+        return self._fresh.response(name)
+
+    def response_graph(self, name: str) -> SolverGraph:
+        """Tree, closing joints and blocks at the start of a response."""
+        return self._fresh.response_graph(name)
+
+    def session_of(self, run: str) -> Session:
+        """As `Model.session_of`."""
+        return self.session if run == SWEEP else self._fresh.session_of(run)
+
+    def respond(
+        self,
+        name: str | None = None,
+        quantities: Iterable[str] | None = None,
+        *,
+        tables: Sequence[str] | None = None,
+        mode: str | None = None,
+        lanes: int = 0,
+        threads: int = 0,
+    ) -> Analysis:
+        """As `Model.respond`; the assembly at the start is chosen for these parameters."""
+        found = self._fresh.respond(
+            name, quantities, tables=tables, mode=mode, lanes=lanes, threads=threads
+        )
+        found.model = self
+        return found
+
+    def with_parameters(self, parameters: Mapping[str, Any]) -> Model:
+        """As `Model.with_parameters`; values of before stay unless they are given anew."""
+        root = self._base.model
+        values = {**self._values, **parameter_values(root.problem, parameters)}
+        ordered = {name: values[name] for name in root.problem.parameters if name in values}
+        return VariedModel(self._base, ordered) if parameters else self
+
+    def vary(
+        self,
+        parameters: Mapping[str, Any],
+        quantities: Iterable[str] | None = None,
+        reduce: Reduce | Sequence[Reduce] | Mapping[str, Any] | None = None,
+        *,
+        run: str = SWEEP,
+        lanes: int = 0,
+        threads: int = 0,
+    ) -> Variants:
+        """As `Model.vary`; values of before stay unless they are given anew."""
+        from mechkin_cli.variants.many import vary
+
+        return vary(self._base, self._values, parameters, quantities, reduce, run, lanes, threads)
+
+
+class _BuiltAnew(Model):
+    """A model that was built with values, which its file does not have; `given` are those in SI."""
+
+    def __init__(self, built: Built, stem: str, given: Mapping[str, Quantity]) -> None:
+        super().__init__(built, stem)
+        self._values_given = given
+
+    @property
+    def _given(self) -> Mapping[str, Quantity]:
+        return self._values_given
+
+
+def _revaried(model: Model, values: Mapping[str, float]) -> Model:
+    """A model with the values that another had."""
+    return VariedModel(Base(model), values) if values else model
+
+
+def with_parameters(base: Base, parameters: Mapping[str, Any]) -> Model:
+    """`Model.with_parameters` of a model as its file has it."""
+    values = parameter_values(base.model.problem, parameters)
+    return VariedModel(base, values) if values else base.model
+
+
+def file_values(values: Floats, problem: Problem, names: Sequence[str]) -> dict[str, Floats]:
+    """Parameters (parameters, variants) in the file's units, by name."""
+    known = problem.parameters
+    return {
+        name: np.asarray(problem.units.from_si(row, known[name].dimension), dtype=np.float64)
+        for name, row in zip(names, values, strict=True)
+    }

@@ -1,0 +1,298 @@
+"""A session under varied parameters: its plan, outputs and inputs as tapes.
+
+Constants of plan and outputs, and the inputs where they depend on a parameter, are replayed; graph,
+structure and length unit stay the base's. A variant starts from the base's first assembly, along
+the straight line in the parameters (kernel/src/variants.hpp).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.expressions import Quantity
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.kernel._kernel import VariantEnd
+from mechkin_cli.kernel.functions import width
+from mechkin_cli.mechanism import Problem
+from mechkin_cli.plan import Demand, Layout, OutputPlan, Readout, Slot, flatten, plan_records
+from mechkin_cli.session import (
+    Continued,
+    KernelInputs,
+    Session,
+    angle_slots,
+    kernel_inputs,
+    step_limits,
+)
+from mechkin_cli.structure import graph_of
+from mechkin_cli.tape import (
+    Filling,
+    TraceLost,
+    compiled,
+    is_traced,
+    next_power_of_two,
+    register,
+    replay,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.mechanism import Attached, Wanted
+    from mechkin_cli.show import Floats
+    from mechkin_cli.tape import Recorder
+
+
+class FirstAssembly(NamedTuple):
+    """Where the base stands: states at a row, and the mechanism's size there in m."""
+
+    state: Floats
+    row: int
+    size: float
+
+
+class Runs(NamedTuple):
+    """Variants by the kernel: outputs (variants, slots, rows) in SI, residual and condition
+    (variants, rows), and how each ended, codes of the kernel's `VariantEnd`; nan where not
+    complete."""
+
+    outputs: Floats
+    residual: Floats
+    condition: Floats
+    end: NDArray[np.int32]
+
+
+class VariantReadout:
+    """Some quantities of all variants: where they stand, and the kernel's runs of them."""
+
+    def __init__(self, variation: SessionVariation, wanted: tuple[Wanted, ...]) -> None:
+        base, layout = variation.base, variation.layout
+        self.variation = variation
+        self.readout = base.readout(wanted)
+        plan = OutputPlan(layout, base.plan, base.driven)
+        for quantity in wanted:
+            plan.add(quantity)
+        constants = [*variation.constants, *flatten(plan.records)]
+        self.tape = variation.tape([*constants, *variation.moving_inputs])
+        self.first = len(variation.constants)
+        self.last = len(constants)
+
+    @property
+    def slots(self) -> Mapping[str, Slot]:
+        """Where each quantity stands among the outputs."""
+        return self.readout.slots
+
+    def outputs(self, values: Floats) -> _kernel.Outputs:
+        """What a run of one variant writes."""
+        constants = replay(self.tape, values[:, None])[0][0]
+        return self.readout.outputs.with_constants(constants[self.first : self.last])
+
+    def runs(self, demand: Demand, start: FirstAssembly) -> _kernel.Variants:
+        """The kernel's variants of this reading."""
+        variation = self.variation
+        base = variation.base
+        moments = base.problem.motion.time
+        return _kernel.Variants(
+            tape=self.tape,
+            plan=base.plan,
+            outputs=self.readout.outputs,
+            parameters=variation.values,
+            inputs=base.inputs.reduced,
+            whole=base.inputs.whole,
+            full=base.inputs.values,
+            time=np.empty(0) if moments is None else moments.values,
+            rates=base.inputs.rates,
+            accelerations=base.inputs.accelerations,
+            jerks=base.inputs.jerks,
+            state=np.ascontiguousarray(start.state),
+            size=start.size,
+            start_row=start.row,
+            demand=int(demand),
+            iterations=tolerances.NEWTON_ITERATIONS,
+            continuation=step_limits(tolerances.LONGEST_DIMENSION_STEP),
+            following=step_limits(straight=base.problem.assembly.straight),
+            angles=angle_slots(base, self.slots),
+            half_turn_side=tolerances.HALF_TURN_SIDE,
+            ways=_ways(base, start.row),
+        )
+
+
+def _ways(base: Session, row: int) -> list[tuple[int, list[int], Floats, _kernel.Course | None]]:
+    """The ways along the inputs' course on and back from a row, where they have one."""
+    if base.route is None:
+        return []
+    ways = [(step, base.route.way(row, step)) for step in (1, -1)]
+    return [(step, way.rows.tolist(), way.values, way.course) for step, way in ways]
+
+
+class SessionVariation:
+    """How a session depends on some parameters.
+
+    Args:
+        base: the session with the file's own parameters.
+        recorder: that holds the parameters as inputs.
+        problem: the session's problem with recorded numbers.
+
+    Raises:
+        TraceLost: the plan depends on a parameter in a way that no tape holds.
+    """
+
+    def __init__(self, base: Session, recorder: Recorder, problem: Problem) -> None:
+        self.base = base
+        self.recorder = recorder
+        self.recorded = problem
+        self.values = np.array(recorder.values[: len(recorder.inputs)])
+        self.layout = Layout(
+            problem.laid_mechanism,
+            graph_of(problem.solved_mechanism, base.graph),
+            base.layout.length,
+            problem.laws,
+        )
+        self._refuse_other_scale(problem)
+        self.constants = flatten(plan_records(self.layout))
+        inputs = kernel_inputs(problem, self.layout).orders
+        self.moving_inputs = _flat(inputs) if any(map(is_traced, inputs)) else []
+        self._readings: dict[tuple[str, ...], VariantReadout] = {}
+
+    def _refuse_other_scale(self, problem: Problem) -> None:
+        """The length unit stays the base's as long as it is not far from the variant's own."""
+        unit = self.base.layout.length
+        own = next_power_of_two(problem.mechanism.box_diagonal())
+        if not (0.5 * unit <= own and own <= 2.0 * unit):
+            raise TraceLost("the length unit is another")
+
+    def tape(self, numbers: Iterable[Any]) -> _kernel.Tape:
+        """The tape from the parameters to some numbers of the recording."""
+        return compiled(self.recorder.tape(register(self.recorder, n) for n in numbers))
+
+    def reading(self, wanted: Iterable[Wanted]) -> VariantReadout:
+        """The reading of some quantities; kept."""
+        wanted = tuple(wanted)
+        key = tuple(quantity.name for quantity in wanted)
+        if key not in self._readings:
+            self._readings[key] = VariantReadout(self, wanted)
+        return self._readings[key]
+
+    def verdicts(self, values: Floats) -> NDArray[np.uint8]:
+        """What the guards say of parameters (parameters, variants), in SI."""
+        return replay(self._plan_tape, values)[1]
+
+    @cached_property
+    def _plan_tape(self) -> _kernel.Tape:
+        return self.tape([*self.constants, *self.moving_inputs])
+
+    @cached_property
+    def _parameter_tape(self) -> _kernel.Tape:
+        return self.tape(q.value for q in self.recorded.parameters.values())
+
+    @cached_property
+    def _mechanism_tape(self) -> _kernel.Tape:
+        return self.tape(self._mechanism.numbers)
+
+    @cached_property
+    def _mechanism(self) -> Filling:
+        return Filling((self.recorded.mechanism, self.recorded.assembly, self.recorded.motion))
+
+    def parameters(self, values: Floats) -> Floats:
+        """All parameters of the file (parameters, variants) in SI, in the file's order."""
+        found: Floats = replay(self._parameter_tape, values)[0].T
+        return found
+
+    def problem(self, values: Floats) -> Problem:
+        """The problem of one variant, as building it would give it."""
+        numbers = self.parameters(values[:, None])[:, 0].tolist()
+        parameters = {
+            name: Quantity(number, quantity.dimension)
+            for (name, quantity), number in zip(
+                self.recorded.parameters.items(), numbers, strict=True
+            )
+        }
+        leaves = replay(self._mechanism_tape, values[:, None])[0][0].tolist()
+        mechanism, assembly, motion = self._mechanism.fill(leaves)
+        problem = replace(
+            self.base.problem,
+            mechanism=mechanism,
+            assembly=assembly,
+            motion=motion,
+            parameters=parameters,
+        )
+        known = self.base.problem.quantities()
+        problem.__dict__["_quantities"] = known
+        return problem
+
+    def plan(self, values: Floats, size: float) -> _kernel.Plan:
+        """The plan of one variant; residual and condition in parts of `size` (m)."""
+        constants = replay(self._plan_tape, values[:, None])[0][0]
+        count = len(self.constants)
+        return self.base.plan.with_constants(constants[:count]).with_size(size)
+
+    def inputs(self, values: Floats) -> KernelInputs:
+        """The inputs of one variant."""
+        base = self.base.inputs
+        if not self.moving_inputs:
+            return base
+        numbers = replay(self._plan_tape, values[:, None])[0][0][len(self.constants) :]
+        orders = numbers.reshape((4, *base.values.shape))
+        return KernelInputs.of(self.problem(values), *orders)
+
+
+def run_variants(
+    variants: _kernel.Variants, values: Floats, lanes: int = 0, threads: int = 1
+) -> Runs:
+    """Runs parameters (parameters, variants) in SI."""
+    values = np.ascontiguousarray(values, dtype=np.float64)
+    return Runs(*variants.run(values, width(lanes), threads))
+
+
+def _flat(tables: Sequence[Any]) -> list[Any]:
+    return [number for table in tables for number in table.flat]
+
+
+# The session of one variant: the base's structure with other constants.
+
+
+class VariedSession(Session):
+    """A session whose first assembly is continued from the base's.
+
+    Args:
+        variation: how the base depends on the parameters.
+        values: (parameters,) of the variant, in SI.
+        problem: its problem.
+        start: the base's first assembly.
+    """
+
+    def __init__(
+        self, variation: SessionVariation, values: Floats, problem: Problem, start: FirstAssembly
+    ) -> None:
+        base = variation.base
+        self.__dict__.update(base.__dict__)
+        self.variation = variation
+        self.values = values
+        self.problem = problem
+        self.graph = graph_of(problem.solved_mechanism, base.graph)
+        for found in ("plan", "layout", "inputs", "route"):
+            self.__dict__.pop(found, None)
+        self._readouts, self._kept, self._own = {}, {}, {}
+        end, size, state = variation.reading(()).runs(Demand.POSITION, start).start(values)
+        lost = end != VariantEnd.COMPLETE
+        self.continued = Continued(None if lost else np.asarray(state), start.row)
+        self.size = base.size if lost else size
+        self.layout = Layout(problem.laid_mechanism, self.graph, base.layout.length, problem.laws)
+        self.plan = variation.plan(values, start.size if lost else size)
+        self.inputs = variation.inputs(values)
+
+    def readout(self, wanted: Iterable[Wanted], points: Iterable[Attached] = ()) -> Readout:
+        """As `Session.readout`; constants of quantities are replayed."""
+        wanted, points = tuple(wanted), tuple(points)
+        key = (tuple(quantity.name for quantity in wanted), points)
+        if points or key in self._readouts:
+            return super().readout(wanted, points)
+        reading = self.variation.reading(wanted)
+        found = reading.readout._replace(outputs=reading.outputs(self.values))
+        self._readouts[key] = found
+        return found

@@ -1,0 +1,467 @@
+"""The small picture of a mechanism: its first position with a solution, and the ways of its points.
+
+Links are lines, areas or stars in their colours, as `view.shapes` has them; joints are symbols; a
+joint on ground stands on a hatched foot. Feet and ways are drawn first, then links, then joints,
+each from far to near, what is as near in the order of the file. Numbers have one decimal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import sqrt
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.mechanism import FIRST, GROUND_NAME, SECOND, Joint, diagonal, is_written
+from mechkin_cli.view.joints import (
+    HOME,
+    carried,
+    drawn_joints,
+    half_axis,
+    half_frame,
+    link_poses,
+    link_shape,
+)
+from mechkin_cli.view.page import FLATNESS, POINTS_APART, thinned
+
+if TYPE_CHECKING:
+    from mechkin_cli.mechanism import JointType, Mechanism
+    from mechkin_cli.show import Floats
+    from mechkin_cli.sweep import Result
+
+
+# Isometric projection: all three axes are shortened alike, seen from the corner (1, 1, 1).
+#
+# With x', y', z' the axes turned so that z' points up, a point stands at (y' - x')/sqrt(2) to the
+# right and (2z' - x' - y')/sqrt(6) upwards, and is (x' + y' + z')/sqrt(3) near.
+
+
+class Isometric(NamedTuple):
+    """The axis (0, 1, 2) of ground that points up, and whether it does so backwards."""
+
+    up: int = 2
+    down: bool = False
+
+    def seen(self, points: Floats) -> Floats:
+        """Places (..., 3) on the picture: to the right, upwards, and how near."""
+        x, y, z = (points[..., (self.up + k) % 3] for k in (1, 2, 3))
+        if self.down:
+            y, z = -y, -z
+        return np.stack(
+            [(y - x) / sqrt(2.0), (2.0 * z - x - y) / sqrt(6.0), (x + y + z) / sqrt(3.0)], axis=-1
+        )
+
+
+def isometric(mechanism: Mechanism) -> Isometric:
+    """The projection of a mechanism: up is against gravity, else z, or y where all axes about which
+    joints turn are along z, so that a plane linkage stands upright."""
+    gravity = np.array(mechanism.gravity)
+    if gravity.any():
+        axis = int(np.argmax(np.abs(gravity)))
+        return Isometric(axis, bool(gravity[axis] > 0.0))
+    turning = [
+        joint.on_first.z
+        for joint in drawn_joints(mechanism)
+        if not all(joint.type.slides) or joint.type.is_oriented
+    ]
+    flat = [max(abs(axis[0]), abs(axis[1])) <= FLATNESS for axis in turning]
+    return Isometric(1) if flat and all(flat) else Isometric(2)
+
+
+# What drawings are made of: lines, areas and discs, in points of the picture, as SVG.
+
+Place = tuple[float, float]
+"""To the right and downwards, in points."""
+
+
+class Stroke(NamedTuple):
+    """A line through places, or the edge of an area where it is closed.
+
+    `ink` names the class of its colour: `k` ink, `p` paper, `l0` to `l7` links; `filled` areas are
+    of that colour with a paler inside.
+    """
+
+    places: tuple[Place, ...]
+    ink: str
+    width: float
+    closed: bool = False
+    filled: bool = False
+    round_ends: bool = False
+
+    @property
+    def svg(self) -> str:
+        """The element."""
+        first, *rest = self.places
+        way = f"M{_place(first)}" + "".join(f"L{_place(place)}" for place in rest)
+        ends = ' stroke-linecap="round"' if self.round_ends else ""
+        inside = f' class="{self.ink} a"' if self.filled else f' class="{self.ink}"'
+        return f'<path{inside} stroke-width="{self.width:.1f}"{ends} d="{way}{"Z" * self.closed}"/>'
+
+
+class Disc(NamedTuple):
+    """A disc of paper with an edge of ink, or of ink alone."""
+
+    centre: Place
+    radius: float
+    is_ink: bool = False
+
+    @property
+    def svg(self) -> str:
+        """The element."""
+        x, y = (number(value) for value in self.centre)
+        kind = "i" if self.is_ink else "d"
+        return f'<circle class="{kind}" cx="{x}" cy="{y}" r="{self.radius:.1f}"/>'
+
+
+Mark = Stroke | Disc
+
+
+def line(a: Place, b: Place, ink: str = "k", width: float = 1.2) -> Stroke:
+    """A straight line."""
+    return Stroke((a, b), ink, width)
+
+
+def bar(a: Place, b: Place, width: float, *, round_ends: bool) -> list[Mark]:
+    """A bar of paper with an edge of ink."""
+    edge = 2.4
+    inside = (a, b) if round_ends else _shortened(a, b, edge / 2.0)
+    outer = Stroke((a, b), "k", width, round_ends=round_ends)
+    return [outer, Stroke(inside, "p", width - edge, round_ends=round_ends)]
+
+
+def moved(place: Place, by: Sequence[float], times: float) -> Place:
+    """A place that is shifted."""
+    return place[0] + times * by[0], place[1] + times * by[1]
+
+
+def number(value: float) -> str:
+    """With one decimal; zero has no sign."""
+    return f"{round(value, 1) + 0.0:.1f}"
+
+
+def _place(place: Place) -> str:
+    return f"{number(place[0])} {number(place[1])}"
+
+
+def _shortened(a: Place, b: Place, by: float) -> tuple[Place, Place]:
+    length = ((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2) ** 0.5
+    share = by / length if length > 2.0 * by else 0.0
+    along = (b[0] - a[0], b[1] - a[1])
+    return moved(a, along, share), moved(b, along, -share)
+
+
+# Symbols of joints in a drawing, by what their entries in the joint table say.
+#
+# A turn about an axis is a pin along it; a slide a block on a rail, with a turn a sleeve, on a
+# thread a nut with its grooves; a ball stands in a ring, on a plate, or between the walls of a
+# groove; two turns are a cross of their axes.
+
+PIN, BLOCK, PLATE, GROOVE, CROSS, RAIL = 5.0, 7.0, 11.0, 12.0, 8.0, 9.0
+"""Half lengths in points."""
+
+THICK, BALL = 8.0, 5.0
+SHORT = 0.25
+"""A pin that is seen more nearly end on than this is a disc."""
+
+
+class Half(NamedTuple):
+    """One link's half of a joint: its place, and what the axes of its frame are on the picture,
+    shortened as they are seen."""
+
+    place: Place
+    axis: Place
+    x: Place
+    y: Place
+
+
+def symbol(kind: JointType, first: Half, second: Half) -> list[Mark]:
+    """A joint, from back to front."""
+    slides, turns = sum(kind.slides), len(kind.slides) - sum(kind.slides)
+    if kind.is_ball:
+        return _ball(first.place)
+    if kind.is_oriented:
+        seat = _groove if kind.named else _plate
+        return [*seat(second, first.place), *_ball(first.place)]
+    if kind.has_slip:
+        bed = _plate if slides > 1 else _groove
+        return [*bed(second, first.place), *_pin(first.place, first.axis)]
+    if turns > 1:
+        rail = _rail(first, second) if slides else []
+        return [*rail, *_cross(second.place, first.axis, second.axis)]
+    if slides > 1:
+        return [*_plate(first, second.place), Disc(second.place, 2.4, is_ink=True)]
+    if not slides and not kind.is_threaded:
+        return _pin(second.place, second.axis)
+    sides = _block(second, round_ends=turns > 0)
+    grooves = _slashes(second) if kind.is_threaded else []
+    return [*_rail(first, second), *sides, *grooves]
+
+
+def ground_mark(place: Place) -> list[Mark]:
+    """A hatched foot below a joint on ground."""
+    x, y = place
+    foot = y + 10.0
+    starts = (x - 4.0, x, x + 4.0, x + 8.0)
+    hatches = [line((k, foot), (k - 3.0, foot + 4.0), width=0.9) for k in starts]
+    return [line((x, y), (x, foot)), line((x - 8.0, foot), (x + 8.0, foot), width=1.6), *hatches]
+
+
+def _pin(place: Place, axis: Place) -> list[Mark]:
+    if axis[0] ** 2 + axis[1] ** 2 < SHORT**2:
+        return [Disc(place, THICK / 2.0), Disc(place, 1.0, is_ink=True)]
+    ends = moved(place, axis, -PIN), moved(place, axis, PIN)
+    return bar(*ends, THICK, round_ends=True)
+
+
+def _block(half: Half, *, round_ends: bool) -> list[Mark]:
+    length = (half.axis[0] ** 2 + half.axis[1] ** 2) ** 0.5
+    if length < SHORT:
+        return [Disc(half.place, THICK / 2.0)]
+    ends = moved(half.place, half.axis, -BLOCK), moved(half.place, half.axis, BLOCK)
+    return bar(*ends, THICK + 1.0, round_ends=round_ends)
+
+
+def _rail(first: Half, second: Half) -> list[Mark]:
+    """From the first link's half through the second's, a little beyond both."""
+    by = first.axis
+    ends = [moved(half.place, by, k * 2.0 * RAIL) for half in (first, second) for k in (-1, 1)]
+    ends.sort(key=lambda place: (place[0] * by[0] + place[1] * by[1], place))
+    return [line(ends[0], ends[-1], width=1.8)]
+
+
+def _slashes(half: Half) -> list[Mark]:
+    across = (-half.axis[1] + 0.3 * half.axis[0], half.axis[0] + 0.3 * half.axis[1])
+    centres = [moved(half.place, half.axis, k * 4.0) for k in (-1, 0, 1)]
+    return [line(moved(c, across, -3.6), moved(c, across, 3.6), width=0.9) for c in centres]
+
+
+def _ball(place: Place) -> list[Mark]:
+    return [Disc(place, BALL), Disc(place, 2.6, is_ink=True)]
+
+
+def _plate(half: Half, touched: Place) -> list[Mark]:
+    """A plate about its own place and the one that is touched."""
+    to = touched[0] - half.place[0], touched[1] - half.place[1]
+    area, way = _area(half.x, half.y), (0.0, 0.0)
+    if abs(area) > SHORT**2:
+        way = _area(to, half.y) / area, _area(half.x, to) / area
+    left, low = (min(0.0, part) - PLATE for part in way)
+    right, high = (max(0.0, part) + PLATE for part in way)
+    corners = [
+        moved(moved(half.place, half.x, a), half.y, b)
+        for a, b in ((left, low), (right, low), (right, high), (left, high))
+    ]
+    return [Stroke(tuple(corners), "k", 1.2, closed=True, filled=True)]
+
+
+def _groove(half: Half, touched: Place) -> list[Mark]:
+    """The walls beside its own place and the one that is touched."""
+    along = half.axis
+    to = touched[0] - half.place[0], touched[1] - half.place[1]
+    length = max(along[0] ** 2 + along[1] ** 2, SHORT**2)
+    way = (to[0] * along[0] + to[1] * along[1]) / length
+    start, end = min(0.0, way) - GROOVE, max(0.0, way) + GROOVE
+    wall = max((half.x, half.y), key=lambda by: abs(_area(by, along)))
+    sides = [moved(half.place, wall, k * 7.5) for k in (-1.0, 1.0)]
+    return [line(moved(s, along, start), moved(s, along, end), width=1.8) for s in sides]
+
+
+def _cross(place: Place, one: Place, other: Place) -> list[Mark]:
+    arms: list[Mark] = []
+    for by in (one, other):
+        ends = moved(place, by, -CROSS), moved(place, by, CROSS)
+        arms += [line(*ends, width=2.6), *(Disc(end, 2.2) for end in ends)]
+    return arms
+
+
+def _area(a: Sequence[float], b: Sequence[float]) -> float:
+    return a[0] * b[1] - a[1] * b[0]
+
+
+PICTURE_NAME = "picture.svg"
+"""Of the file beside a mechanism's tables."""
+
+WIDTH, HEIGHT, MARGIN = 200.0, 150.0, 24.0
+MOST_PATH_POINTS = 120
+
+COLOURS = (
+    ("#0969da", "#58a6ff"),
+    ("#bc4c00", "#ffa657"),
+    ("#1a7f37", "#57d364"),
+    ("#8250df", "#d2a8ff"),
+    ("#bf3989", "#ff9bce"),
+    ("#9a6700", "#e3b341"),
+    ("#1b7c83", "#56d4dd"),
+    ("#a40e26", "#ff7b72"),
+)
+"""Of links in the order of the file, on light and on dark."""
+
+STYLE = "".join(
+    (
+        "path{fill:none;stroke-linejoin:round}.k{stroke:#24292f}.p{stroke:#fff}",
+        ".d{fill:#fff;stroke:#24292f;stroke-width:1.2}.i{fill:#24292f}.a{fill-opacity:.16}",
+        ".k.a{fill:#24292f}.t{stroke-opacity:.55}",
+        *(f".l{k}{{stroke:{c}}}.l{k}.a{{fill:{c}}}" for k, (c, _) in enumerate(COLOURS)),
+        "@media(prefers-color-scheme:dark){.k{stroke:#e6edf3}.p{stroke:#0d1117}",
+        ".d{fill:#0d1117;stroke:#e6edf3}.i,.k.a{fill:#e6edf3}",
+        *(f".l{k}{{stroke:{c}}}.l{k}.a{{fill:{c}}}" for k, (_, c) in enumerate(COLOURS)),
+        "}",
+    )
+)
+
+
+class _Item(NamedTuple):
+    """What is drawn at once, and how near it is."""
+
+    near: float
+    marks: list[Mark]
+
+
+def mechanism_picture(result: Result) -> str:
+    """The picture of a run as one SVG file with a newline at its end."""
+    scene = _Scene(result)
+    marks = [mark for item in scene.items() for mark in item.marks]
+    size = f'width="{WIDTH:.0f}" height="{HEIGHT:.0f}" viewBox="0 0 {WIDTH:.0f} {HEIGHT:.0f}"'
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" {size}>'
+    return "\n".join([head, f"<style>{STYLE}</style>", *(m.svg for m in marks), "</svg>", ""])
+
+
+class _Scene:
+    """A run's first position on the picture."""
+
+    def __init__(self, result: Result) -> None:
+        self.result = result
+        self.mechanism = result.problem.mechanism
+        self.links = [GROUND_NAME, *filter(is_written, self._moving())]
+        poses = link_poses(result, self.links)
+        solved = np.flatnonzero(result.solved)
+        home = np.tile(np.array(HOME), (1, len(self.links), 1))
+        self.poses = poses[solved] if solved.size else home
+        self.view = isometric(self.mechanism)
+        self.joints = drawn_joints(self.mechanism)
+        self.size = diagonal([at.vector for _, at in self.mechanism.joint_points()]) or 1.0
+        self._fit()
+
+    def items(self) -> list[_Item]:
+        """Everything from back to front."""
+        links, joints = (
+            sorted(found, key=lambda item: item.near) for found in (self._shapes(), self._symbols())
+        )
+        return [*self._feet(), *self._paths(), *links, *joints]
+
+    def _moving(self) -> list[str]:
+        return [name for name in self.mechanism.links if name != GROUND_NAME]
+
+    def _placed(self, link: str, points: Floats, row: int = 0) -> Floats:
+        """Points as drawn on a link (points, 3) as they are seen: right, up, near."""
+        pose = self.poses[row, self.links.index(link)]
+        return np.array([self.view.seen(carried(pose, tuple(point))) for point in points])
+
+    def _way(self, link: str, point: Sequence[float]) -> Floats:
+        """A point of a link over the rows, as it is seen."""
+        rows = thinned(range(len(self.poses)), MOST_PATH_POINTS)
+        x, y, z = point
+        return self.view.seen(carried(self.poses[rows, self.links.index(link)], (x, y, z)))
+
+    def _fit(self) -> None:
+        """Where the middle of all that is drawn is, and points per length."""
+        parts = [self._placed(link, shape.points) for link, shape in self._link_shapes()]
+        for joint in self.joints:
+            for side, link in ((FIRST, joint.first), (SECOND, joint.second)):
+                parts.append(self._placed(link, np.array([half_frame(joint, side).o])))
+        parts += [self._way(at.link, at.vector) for _, at in self._named()]
+        parts = [part for part in parts if part.size] or [np.zeros((1, 3))]
+        every = np.concatenate(parts)[:, :2]
+        low, high = every.min(axis=0), every.max(axis=0)
+        room = np.array([WIDTH, HEIGHT]) - 2.0 * MARGIN
+        self.scale = float(np.min(room / np.maximum(high - low, POINTS_APART * self.size)))
+        self.middle = (low + high) / 2.0
+
+    def _on_picture(self, seen: Floats) -> Place:
+        x, y = self.scale * (seen[:2] - self.middle)
+        # the feet below the joints need some room, too
+        return WIDTH / 2.0 + float(x), HEIGHT / 2.0 - 4.0 - float(y)
+
+    def _link_shapes(self) -> Iterator[tuple[str, Any]]:
+        for link in self.links[1:]:
+            yield link, link_shape(self.mechanism, link, self.size)
+
+    def _named(self) -> Iterator[tuple[str, Any]]:
+        for name, at in self.mechanism.points.items():
+            if at.link in self.links[1:]:
+                yield name, at
+
+    def _ink(self, link: str) -> str:
+        return f"l{(self.links.index(link) - 1) % len(COLOURS)}"
+
+    def _shapes(self) -> Iterator[_Item]:
+        for link, shape in self._link_shapes():
+            if shape.kind == "none":
+                continue
+            seen, ink = self._placed(link, shape.points), self._ink(link)
+            places = sorted(self._on_picture(one) for one in seen)
+            near = _rounded(float(seen[:, 2].sum()) / len(seen) / self.size)
+            if shape.kind == "star":
+                centre = self._on_picture(self._placed(link, shape.centre[None])[0])
+                marks: list[Mark] = [_rod((centre, place), ink) for place in places]
+            elif shape.kind == "plate":
+                marks = [Stroke(_hull(places), ink, 2.4, closed=True, filled=True)]
+            else:
+                marks = [_rod(tuple(places), ink)]
+            yield _Item(near, marks)
+
+    def _symbols(self) -> Iterator[_Item]:
+        for joint in self.joints:
+            first, second = self._half(joint, FIRST), self._half(joint, SECOND)
+            place = self._placed(joint.second, np.array([half_frame(joint, SECOND).o]))[0]
+            near = _rounded(float(place[2]) / self.size)
+            yield _Item(near, symbol(joint.type, first, second))
+
+    def _half(self, joint: Joint, side: int) -> Half:
+        link = joint.first if side == FIRST else joint.second
+        frame = half_frame(joint, side)
+        point = np.array(frame.o)
+        axes = [point + np.array(axis) for axis in (half_axis(joint, side), frame.x, frame.y)]
+        seen = self._placed(link, np.array([point, *axes]))
+        along = [(float(a[0] - seen[0, 0]), float(seen[0, 1] - a[1])) for a in seen[1:]]
+        return Half(self._on_picture(seen[0]), *along)
+
+    def _feet(self) -> Iterator[_Item]:
+        for joint in self.joints:
+            for side, link in ((FIRST, joint.first), (SECOND, joint.second)):
+                if link == GROUND_NAME:
+                    yield _Item(0.0, ground_mark(self._half(joint, side).place))
+
+    def _paths(self) -> Iterator[_Item]:
+        for _, at in self._named():
+            way = tuple(self._on_picture(one) for one in self._way(at.link, at.vector))
+            ink = self._ink(at.link)
+            marks: list[Mark] = [Stroke(way, f"{ink} t", 1.0)] if len(way) > 1 else []
+            yield _Item(0.0, [*marks, Disc(way[0], 1.8, is_ink=True)])
+
+
+def _rod(places: tuple[Place, ...], ink: str) -> Stroke:
+    return Stroke(places, ink, 3.2, round_ends=True)
+
+
+def _rounded(near: float) -> float:
+    """What is as near but for rounding is as near."""
+    return round(near, 6)
+
+
+def _hull(places: list[Place]) -> tuple[Place, ...]:
+    """The convex hull of sorted places (Andrew's monotone chain), counted from the leftmost."""
+    chains: list[list[Place]] = []
+    for way in (places, places[::-1]):
+        chain: list[Place] = []
+        for place in way:
+            while len(chain) > 1 and _turns_right(chain[-2], chain[-1], place):
+                chain.pop()
+            chain.append(place)
+        chains.append(chain)
+    return (*chains[0][:-1], *chains[1][:-1])
+
+
+def _turns_right(a: Place, b: Place, c: Place) -> bool:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 0.0

@@ -1,1 +1,0 @@
-"""Small line drawings of mechanisms: isometric, as SVG with fixed decimals."""

@@ -1,0 +1,282 @@
+"""The page: the template that is built from `page/`, with the data of a scene in it."""
+
+from __future__ import annotations
+
+import json
+from base64 import b64encode
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.diagnostics import legible
+from mechkin_cli.mechanism import GROUND_NAME, find_legs, is_written
+from mechkin_cli.units import LENGTH
+from mechkin_cli.verdict import SWEEP
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from mechkin_cli.mechanism import Problem
+    from mechkin_cli.show import Floats
+    from mechkin_cli.units import UnitSystem
+    from mechkin_cli.view.scene import ShownRun
+
+
+# Data of a page as JSON that stands in an HTML file: arrays in base64, nothing that is markup.
+#
+# Arrays are row-major and little-endian: {"f32": ...}, {"f64": ...}, {"i32": ...}, {"u8": ...}.
+
+if TYPE_CHECKING:
+    Plain = dict[str, object]
+
+_TYPES = {"f32": "<f4", "f64": "<f8", "i32": "<i4", "u8": "|u1"}
+_MARKUP = {ord("<"): "\\u003c", ord(">"): "\\u003e", ord("&"): "\\u0026"}
+
+
+def packed(kind: Literal["f32", "f64", "i32", "u8"], values: ArrayLike) -> dict[str, str]:
+    """An array of any shape.
+
+    Example:
+        >>> packed("i32", [1, 2])
+        {'i32': 'AQAAAAIAAAA='}
+    """
+    array = np.ascontiguousarray(values, dtype=_TYPES[kind])
+    return {kind: b64encode(array.tobytes()).decode("ascii")}
+
+
+def script_json(data: Plain) -> str:
+    r"""JSON in ASCII in which no text can end the script element that holds it, or begin another.
+
+    Raises:
+        ValueError: a number outside of arrays is not finite.
+
+    Example:
+        >>> script_json({"name": "</script>"})
+        '{"name":"\\u003c/script\\u003e"}'
+    """
+    text = json.dumps(_shown(data), ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    return text.translate(_MARKUP)
+
+
+def _shown(value: object) -> object:
+    """Plain data whose texts hold no characters that do not print or that turn the line."""
+    if isinstance(value, str):
+        return legible(value)
+    if isinstance(value, list):
+        return [_shown(item) for item in value]
+    if isinstance(value, dict):
+        return {key: _shown(item) for key, item in value.items()}
+    return value
+
+
+PAGE_NAME = "view.html"
+"""Name of the page where none is given: it stands beside the tables."""
+
+TEMPLATE = Path(__file__).with_name("page.html")
+PLACE = "/*mechkin-data*/null"
+"""Where the data stand in the template, once."""
+
+
+@cache
+def template() -> str:
+    """The text of the page without data."""
+    return TEMPLATE.read_text(encoding="utf-8")
+
+
+def filled(page: str, data: Plain) -> bytes:
+    """The page with data in it, in UTF-8.
+
+    Raises:
+        ValueError: the page has no place for data, or several.
+    """
+    if page.count(PLACE) != 1:
+        raise ValueError(
+            f"the template of the page has {PLACE} {page.count(PLACE)} times, not once"
+        )
+    before, _, after = page.partition(PLACE)
+    return (before + script_json(data) + after).encode("utf-8")
+
+
+# Lengths (m) in the file's unit, for data of a page.
+
+
+class Lengths:
+    """Converts lengths of one file."""
+
+    def __init__(self, units: UnitSystem) -> None:
+        self._units = units
+
+    def one(self, value: float) -> float:
+        """A length."""
+        return float(self._units.from_si(float(value), LENGTH))
+
+    def vector(self, point: Iterable[float]) -> list[float]:
+        """A point or shift."""
+        return [self.one(value) for value in point]
+
+    def array(self, values: Floats) -> Floats:
+        """An array, not the one that was given."""
+        found: Floats = np.array(self._units.from_si(np.array(values), LENGTH), dtype=np.float64)
+        return found
+
+
+# How much one page holds; where a run has more, a note says what was left out.
+
+MOST_POSES = 2000
+"""Poses of a branch: at 60 pictures a second half a minute of motion without a pose shown twice,
+and 56 kB for each link."""
+
+MOST_ROWS = 20_000
+"""Rows of a branch that curves and tables show: more than any screen has points."""
+
+MOST_CELLS = 400_000
+"""Cells of the tables of a branch that are shown, and of those of all other modes together: 12 MB
+as texts and numbers."""
+
+LEAST_ROWS = 200
+"""Rows of a branch that are shown however many columns and modes there are."""
+
+MOST_MODES = 16
+"""Assembly modes that are shown beside the file's own: more can hardly be told apart by eye."""
+
+MOST_MODE_ROWS = 100_000
+"""Rows of all other assembly modes together: half a second of work for most mechanisms."""
+
+MOST_MODE_POSES = 8000
+"""Poses of all other assembly modes together, as many as of four runs."""
+
+POINTS_APART = 0.001
+"""Points of a link nearer to each other than this part of the mechanism's size are one."""
+
+FLATNESS = 0.01
+"""Points of a link lie in a line, or in a plane, where they are off by at most this part of their
+extent: less than the thickness of what is drawn."""
+
+
+# How many rows and poses of a branch a page shows: the own branch most, other modes a part.
+
+
+class Share(NamedTuple):
+    """The most rows, and the most poses."""
+
+    rows: int
+    poses: int
+
+
+def shares(run: ShownRun) -> list[Share]:
+    """What each branch of a run is given, in their order."""
+    own, *others = run.branches
+    columns = sum(len(table.columns) for table in own.analysis.tables)
+    found = [Share(_rows(columns), MOST_POSES)]
+    if others:
+        poses = min(MOST_POSES, MOST_MODE_POSES // len(others))
+        found += [Share(_rows(columns * len(others)), poses)] * len(others)
+    return found
+
+
+def _rows(columns: int) -> int:
+    """The rows that so many columns share, of one branch or several."""
+    return max(LEAST_ROWS, min(MOST_ROWS, MOST_CELLS // max(columns, 1)))
+
+
+# Which rows are shown where there are more than a page holds: even steps, and what must not be
+# missed.
+
+if TYPE_CHECKING:
+    Numbers = NDArray[np.intp]
+
+
+def thinned(rows: ArrayLike, most: int, keep: ArrayLike = ()) -> Numbers:
+    """At most `most` (two or more) of rising row numbers: all if there are no more; else the first
+    and the last, those of them to `keep`, up to half of what is left, and others in even steps.
+
+    Example:
+        >>> thinned(range(100), 5, keep=[60]).tolist()
+        [0, 33, 60, 66, 99]
+    """
+    numbers = np.asarray(rows, dtype=np.intp)
+    if numbers.size <= most:
+        return numbers
+    kept = np.intersect1d(np.asarray(keep, dtype=np.intp), numbers)[: (most - 2) // 2]
+    steps = np.linspace(0, numbers.size - 1, most - kept.size)
+    even = numbers[steps.round().astype(np.intp)]
+    return np.union1d(even, kept)
+
+
+def turning_points(codes: ArrayLike) -> Numbers:
+    """The rows on both sides of every change of a code.
+
+    Example:
+        >>> turning_points([0, 0, 0, 2, 2]).tolist()
+        [2, 3]
+    """
+    changed = np.flatnonzero(np.diff(np.asarray(codes)))
+    return np.union1d(changed, changed + 1).astype(np.intp)
+
+
+# What a file leaves out and mechkin assumes, in sentences for the reader of a page.
+
+
+def assumed(problem: Problem, runs: Sequence[ShownRun]) -> list[str]:
+    """The sentences; those about a run are of its own branch."""
+    sentences = [_units(problem.units), *_assemblies(runs), *_motion(problem, runs)]
+    sentences += [*_bodies(problem), *_arrows(runs), *_idle(problem)]
+    return list(dict.fromkeys(sentences))
+
+
+def _units(units: UnitSystem) -> str:
+    names = f"{units.length}, {units.angle}, {units.mass}, {units.force} and {units.time}"
+    return f"Bare numbers are in {names}, angular rates in {units.angular_rate}."
+
+
+def _assemblies(runs: Sequence[ShownRun]) -> Iterator[str]:
+    for run in runs:
+        result = run.branches[0].analysis.result
+        if result.how:
+            yield f"{run.title}: the assembly at the first row is {result.how}."
+
+
+def _motion(problem: Problem, runs: Sequence[ShownRun]) -> Iterator[str]:
+    if not any(run.name == SWEEP for run in runs):
+        return
+    inputs = problem.motion.inputs
+    still = [one.name for one in inputs if not np.any(one.rates)]
+    if still:
+        yield f"The rates of {', '.join(still)} are zero: none are given."
+    if inputs and problem.mechanism.drives is None:
+        names = ", ".join(one.name for one in inputs)
+        yield f"Drives act at the inputs: {names}."
+
+
+def _bodies(problem: Problem) -> Iterator[str]:
+    mechanism = problem.mechanism
+    links = [name for name in mechanism.links if name != GROUND_NAME and is_written(name)]
+    light = [name for name in links if not mechanism.links[name].has_mass]
+    if light and len(light) == len(links):
+        yield "No link has mass."
+    elif light:
+        yield f"Links without mass: {', '.join(light)}."
+    if not any(mechanism.gravity):
+        yield "No gravity acts in the sweep." if problem.responses else "No gravity acts."
+    yield "Bodies are rigid, and joints have no play."
+    if not mechanism.frictions:
+        yield "Joints do not rub."
+
+
+def _arrows(runs: Sequence[ShownRun]) -> Iterator[str]:
+    if any(run.branches[0].forces for run in runs):
+        yield (
+            "Arrows at joints are what the first link exerts on the second, without the drive; one "
+            "with axes behind its name, such as (x, y), has these components alone: redundant "
+            "constraints leave the others arbitrary."
+        )
+
+
+def _idle(problem: Problem) -> Iterator[str]:
+    for leg in find_legs(problem.mechanism):
+        yield f"{leg.words}: where it stands about that line is told by convention."
+    for held in problem.held:
+        yield f"{held.words}: {held.convention}."
